@@ -1,5 +1,5 @@
 //! The order of work: by tool, then by radius and direction (one setting of the head), then by azimuth.
-use gcode_sim::job::{AxisDirection, HoleWanted, PinHoles, Tool};
+use gcode_part::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 
 /// One tool and the holes it makes.
 #[derive(Debug)]
@@ -14,14 +14,14 @@ pub struct HeadSetting<'j> {
     pub radius: f64,
     pub axis: AxisDirection,
     /// In the order of their azimuths.
-    pub holes: Vec<&'j HoleWanted>,
+    pub holes: Vec<&'j HoleSpec>,
 }
 
 /// Every tool that makes a hole, in the order of the tool list.
 pub fn passes(job: &PinHoles) -> Vec<ToolPass<'_>> {
-    let mut holes: Vec<&HoleWanted> = job.holes.iter().collect();
+    let mut holes: Vec<&HoleSpec> = job.holes.iter().collect();
     holes.sort_by(|one, other| {
-        let direction = |hole: &HoleWanted| matches!(hole.axis, AxisDirection::Normal);
+        let direction = |hole: &HoleSpec| matches!(hole.axis, AxisDirection::Normal);
         one.radius
             .total_cmp(&other.radius)
             .then(direction(one).cmp(&direction(other)))
@@ -43,7 +43,7 @@ pub fn passes(job: &PinHoles) -> Vec<ToolPass<'_>> {
 
 #[cfg(test)]
 mod tests {
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     use super::*;
 

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 
 use divan::counter::ItemsCount;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::reference::Reference;
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{Request, Simulation, simulate};
-use gcode_sim::verify::{Answer, Tolerances};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Tolerances};
+use gcode_lang::program::NoLibrary;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
+use gcode_part::job::Job;
+use gcode_session::{Request, Simulation, simulate};
 
 fn main() {
     divan::main();
@@ -27,13 +27,13 @@ struct Case {
 impl Case {
     fn new((rows, along): (u32, u32)) -> Self {
         let job = Job::parse(&job(rows, along)).expect("the job is one");
-        let machine = Machine::of_job(&job).expect("the job has a machine");
-        let wanted = Wanted::of_job(&job).expect("the job has a part");
+        let machine = Machine::from_job(&job).expect("the job has a machine");
+        let wanted = NominalPart::from_job(&job).expect("the job has a part");
         let reference = wanted.into_holes().expect("the part has holes");
         assert_eq!(reference.holes.len() as u32, rows * along);
         let program = program(&reference, along as usize);
         let mut request = Request::new("O1.nc", program.into_bytes(), machine);
-        request.conduct = reference.conduct.clone();
+        request.conduct = reference.process_limits.clone();
         Self { request, reference }
     }
 

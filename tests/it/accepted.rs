@@ -2,15 +2,16 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use gcode_sim::changes::{Record, Revision, changes};
+use gcode_control::Limits;
+use gcode_inspect::machine::{Machine, Probe};
+use gcode_lang::program::Library;
+use gcode_lang::units::Deg;
+use gcode_part::ProbedPart;
+use gcode_review::{Record, Revision, changes};
+use gcode_session::Request;
 use gcode_sim::cli::library::Folders;
-use gcode_sim::exec::Limits;
-use gcode_sim::machine::{Machine, Probe};
-use gcode_sim::part::probed::Probed;
-use gcode_sim::program::Library;
 use gcode_sim::report::changes::ChangesReport;
-use gcode_sim::session::Request;
-use gcode_sim::units::Deg;
+use gcode_tests::verify::machine_of;
 use gcode_tests::workspace;
 
 /// Blocks of a program that are looked at: the first rows of a honeycomb tell what its macro does, and the whole is held
@@ -47,13 +48,13 @@ fn home(main: &Path) -> PathBuf {
 pub(crate) fn request(main: &Path) -> Request {
     let home = home(main);
     let read = |name: &str| std::fs::read_to_string(home.join(name)).ok();
-    let machine = read("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
+    let machine = machine_of(&home).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let name = main.strip_prefix(workspace()).unwrap().display().to_string();
     let mut request = Request::new(name, std::fs::read(main).unwrap(), machine);
     request.limits = Limits { blocks: BLOCKS };
     // Programs that probe find the part of their job there.
-    if let Some(Ok(Probed { surface, radius: Some(radius), .. })) =
-        read("job.toml").map(|text| Probed::parse(&text))
+    if let Some(Ok(ProbedPart { surface, radius: Some(radius), .. })) =
+        read("job.toml").map(|text| ProbedPart::parse(&text))
     {
         request.part = Some(surface);
         request.machine.probe.get_or_insert(Probe::new(radius));
@@ -95,7 +96,7 @@ fn accepted(main: &Path) -> PathBuf {
 }
 
 /// What is different from what was accepted, in the words of `diff`; nothing where nothing is.
-fn told(name: &str, old: &Record, new: &Record) -> Option<String> {
+fn describe_difference(name: &str, old: &Record, new: &Record) -> Option<String> {
     let found = changes(old, new, TOLERANCE);
     let report = ChangesReport::new(("as accepted", old), (name, new), &found, Vec::new(), TOLERANCE);
     (!found.is_empty()).then(|| report.text())
@@ -114,8 +115,8 @@ fn every_example_does_what_was_accepted_and_every_macro_is_in_one() {
             .ok()
             .map(|text| Record::from_json(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display())));
         let change = match &known {
-            Some(known) if known.is_older() => Some("accepted when less was noted\n".to_owned()),
-            Some(known) => told(&name, known, &record),
+            Some(known) if known.is_legacy() => Some("accepted by an earlier version\n".to_owned()),
+            Some(known) => describe_difference(&name, known, &record),
             None => Some("nothing is accepted yet\n".to_owned()),
         };
         let Some(change) = change else { continue };
@@ -171,7 +172,7 @@ fn a_macro_that_moves_a_hole_is_refused_and_the_move_is_shown() {
     let mut library =
         Changed { folders: folders(&main), number: 8101, from: "#18+[#17", to: "#18+0.01+[#17" };
     let old = Record::from_json(&std::fs::read_to_string(accepted(&main)).unwrap()).unwrap();
-    let told = told("O8100", &old, &revision(&main, &mut library).record).expect("a change");
+    let told = describe_difference("O8100", &old, &revision(&main, &mut library).record).expect("a change");
     // The rotary turns the way of the others.
     let entry = "hole-moved     holes 1, 2, 3, 4, 5: moved by X +0.0100 of the machine, up to 0.0100 mm (hole 1: \
                  +0.0100 +0.0000 +0.0000 mm)";

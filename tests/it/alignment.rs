@@ -4,18 +4,18 @@ use std::path::Path;
 use nalgebra::{Point3, Rotation3, Translation3, Vector3};
 use proptest::prelude::*;
 
+use gcode_control::{Outcome, Value};
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::file_name;
-use gcode_sim::exec::{Outcome, Value};
-use gcode_sim::holes::Extractor;
-use gcode_sim::job::Job;
-use gcode_sim::machine::{Frame, Machine, Placement};
-use gcode_sim::part::surface::Surface;
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::session::{Request, Run, run, simulate};
-use gcode_sim::units::Deg;
-use gcode_sim::verify::{Answer, Tolerances, Verdict};
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::{Frame, Machine, Placement};
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_lang::units::Deg;
+use gcode_part::NominalPart;
+use gcode_part::Surface;
+use gcode_part::job::Job;
+use gcode_session::{Request, Run, run, simulate};
 
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);
@@ -33,7 +33,7 @@ fn measured(job: &str, main: u32, part: Placement, more: &str, variables: Vec<(u
     let mut request = Request::new(file_name(main), text, machine);
     request.variables = variables;
     let surface = Surface::Ellipsoid { a: wanted.surface.a, b: wanted.surface.b };
-    let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
+    let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
     run(&request, &mut Programs(&package), &mut probe).unwrap()
 }
 
@@ -50,7 +50,7 @@ fn placed(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
 
 /// What the run-out program found: shift in x and z, tilt about x and z.
 fn found(run: &Run) -> [f64; 4] {
-    assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stopped());
+    assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stop_finding());
     [580, 581, 582, 583].map(|number| common(run, number))
 }
 
@@ -102,7 +102,7 @@ proptest! {
             .collect();
         let variables = (501..).zip(points.iter().flatten().copied()).collect();
         let run = measured(&job, 8200, Placement::default(), "", variables);
-        prop_assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stopped());
+        prop_assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stop_finding());
         // The model's chord by the ellipse's equation.
         let y = |x: f64| 724.3 * (1.0 - x * x / (1158.8 * 1158.8)).sqrt();
         let chord = Point3::new(812.4, y(812.4), 0.0) - Point3::new(318.0, y(318.0), 0.0);
@@ -126,7 +126,7 @@ fn five_holes(part: Placement, zero: f64) -> Verdict {
     let job = Job::parse(&example("melon-mould")).unwrap();
     let package = families::emit(&job);
     let machine = Machine { part, ..Machine::parse(&package.machine).unwrap() };
-    let reference = Wanted::of_job(&job).unwrap().into_holes().unwrap();
+    let reference = NominalPart::from_job(&job).unwrap().into_holes().unwrap();
     let text = package.main().unwrap().text.clone().into_bytes();
     let mut request = Request::new("O8100.nc", text, machine.clone());
     request.variables.push((5222, zero));
@@ -171,7 +171,7 @@ fn after_the_correction_the_five_holes_hold_and_before_they_do_not() {
         let enough = if shift[1] == 0.0 { Answer::Pass } else { Answer::Fail };
         assert_eq!(run_out.verdict, enough, "{shift:?} {tilt:?}: {:?}", run_out.worst);
         let chord = measured(&example("alignment"), 8200, part, "", Vec::new());
-        assert!(matches!(chord.outcome, Outcome::End), "{:?}", chord.stopped());
+        assert!(matches!(chord.outcome, Outcome::End), "{:?}", chord.stop_finding());
         assert!((common(&chord, 574) - shift[1]).abs() < 0.001, "{}", common(&chord, 574));
         let after = five_holes(part, common(&chord, 5222));
         assert_eq!(after.verdict, Answer::Pass, "{found:?}: {:?}", after.worst);
@@ -181,10 +181,11 @@ fn after_the_correction_the_five_holes_hold_and_before_they_do_not() {
             // A hole that is far off is none of the wanted ones.
             for verdict in [&before, &run_out] {
                 let hole = verdict.holes.iter().find(|hole| hole.id == after.id);
-                let phi = hole.map_or("not there".to_owned(), |hole| format!("{:.3}", hole.phi));
+                let phi =
+                    hole.map_or("not there".to_owned(), |hole| format!("{:.3}", hole.position_deviation));
                 row.push_str(&format!(" {phi} |"));
             }
-            row.push_str(&format!(" {:.3} |", after.phi));
+            row.push_str(&format!(" {:.3} |", after.position_deviation));
         }
     }
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/methods/alignment.md");

@@ -2,25 +2,26 @@
 //! half written that the next program would take for whole.
 use std::collections::{BTreeMap, BTreeSet};
 
+use gcode_control::{Control, Limits, Observer};
 use gcode_gen::package::file_name;
-use gcode_sim::exec::{Control, Limits, Watcher};
-use gcode_sim::machine::Placement;
-use gcode_tests::alignment::{Bench, alarm, kept, marks, standing, vacant, value};
+use gcode_inspect::machine::Placement;
+use gcode_tests::alignment::{Bench, alarm, kept_variables, marks, placement, vacant, value};
 use gcode_tests::workspace;
 
 /// The common variables that each file's blocks assign.
 #[derive(Default)]
 struct Assigned(BTreeMap<String, BTreeSet<u32>>);
 
-impl Watcher for Assigned {
-    fn before(&mut self, control: &mut Control) {
+impl Observer for Assigned {
+    fn before_block(&mut self, control: &mut Control) {
         let Some(block) = control.next_block() else { return };
         let file = control.memory().sources().get(block.source).name.to_string();
-        let numbers = control.will_assign().into_iter().filter(|number| (100..1000).contains(number));
+        let numbers =
+            control.next_assigned_variables().into_iter().filter(|number| (100..1000).contains(number));
         self.0.entry(file).or_default().extend(numbers);
     }
 
-    fn after(&mut self, _: &Control) {}
+    fn after_block(&mut self, _: &Control) {}
 }
 
 /// `#501-#560 #578`, of a head's line.
@@ -52,11 +53,11 @@ fn every_head_names_the_common_variables_that_are_overwritten() {
     for (main, set) in
         [(8210, &[][..]), (8230, &tilt), (8200, &[]), (8200, &marks()), (8200, &anew), (8220, &[])]
     {
-        assert_eq!(alarm(&bench.watched(main, &good, set, &mut all)), None, "O{main}");
+        assert_eq!(alarm(&bench.run_observed(main, &good, set, &mut all)), None, "O{main}");
     }
     // As many readings as there may be; they are taken before the fit begins.
     let most = Bench { limits: Limits { blocks: 4_000 }, ..Bench::of(&[("25.0, 11]", "25.0, 100]")]) };
-    most.watched(8210, &good, &[], &mut all);
+    most.run_observed(8210, &good, &[], &mut all);
 
     let readme = std::fs::read_to_string(workspace().join("macros/README.md")).unwrap();
     let page = std::fs::read_to_string(workspace().join("docs/methods/alignment.md")).unwrap();
@@ -85,10 +86,10 @@ fn every_head_names_the_common_variables_that_are_overwritten() {
 #[derive(Default)]
 struct States(Vec<Vec<(u32, f64)>>);
 
-impl Watcher for States {
-    fn before(&mut self, _: &mut Control) {}
+impl Observer for States {
+    fn before_block(&mut self, _: &mut Control) {}
 
-    fn after(&mut self, control: &Control) {
+    fn after_block(&mut self, control: &Control) {
         let now: Vec<_> = control.variables().filter(|(number, _)| (500..600).contains(number)).collect();
         if !self.0.contains(&now) {
             self.0.push(now);
@@ -109,7 +110,7 @@ fn reset_in_o8230_uses_no_tilt_twice() {
         let mut set = vec![(583, 0.1), (585, 0.001)];
         set.extend(stands.map(|angle| (596, angle)));
         let mut states = States::default();
-        bench.watched(8230, &Placement::default(), &set, &mut states);
+        bench.run_observed(8230, &Placement::default(), &set, &mut states);
         let mut met = BTreeSet::new();
         for state in &states.0 {
             let next = bench.run(8230, &Placement::default(), state);
@@ -132,13 +133,17 @@ fn reset_in_o8230_uses_no_tilt_twice() {
 fn reset_in_o8210_leaves_no_mixture_of_two_parts() {
     let yesterday: Vec<_> = (580..586).chain(590..596).map(|number| (number, 0.25)).collect();
     let mut states = States::default();
-    let whole =
-        Bench::of(&[]).watched(8210, &standing([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]), &yesterday, &mut states);
+    let whole = Bench::of(&[]).run_observed(
+        8210,
+        &placement([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]),
+        &yesterday,
+        &mut states,
+    );
     assert_eq!(alarm(&whole), None);
     assert!(states.0.len() > 30, "every write is another state");
     for first in [580, 590] {
         let results = |state: &[(u32, f64)]| [0, 1, 2, 3, 4, 5].map(|n| of(state, first + n));
-        let [before, after] = [results(&yesterday), results(&kept(&whole))];
+        let [before, after] = [results(&yesterday), results(&kept_variables(&whole))];
         assert!(before != after && after.iter().all(Option::is_some));
         for state in &states.0 {
             let now = results(state);
@@ -157,10 +162,10 @@ fn results_are_vacant(state: &[(u32, f64)]) -> bool {
 #[test]
 fn reset_in_o8200_leaves_no_points_that_are_used_in_part_or_twice() {
     let bench = Bench::of(&[]);
-    let high = standing([0.0, 0.2, 0.0], [0.0; 3]);
+    let high = placement([0.0, 0.2, 0.0], [0.0; 3]);
     for set in [Vec::new(), marks()] {
         let mut states = States::default();
-        let whole = bench.watched(8200, &high, &set, &mut states);
+        let whole = bench.run_observed(8200, &high, &set, &mut states);
         assert_eq!(alarm(&whole), None);
         let wanted = value(&whole, 574);
         let mut met = BTreeSet::new();

@@ -3,15 +3,15 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
+use gcode_control::{Control, Outcome};
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::file_name;
-use gcode_sim::exec::{Control, Outcome};
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::Memory;
-use gcode_sim::session::Request;
+use gcode_inspect::machine::Machine;
+use gcode_lang::program::Memory;
+use gcode_part::NominalPart;
+use gcode_part::job::Job;
+use gcode_session::Request;
 
 /// Blocks executed of each program, by the name of its file.
 fn blocks(job: &Job) -> BTreeMap<String, u64> {
@@ -26,7 +26,7 @@ fn blocks(job: &Job) -> BTreeMap<String, u64> {
     let mut counted = BTreeMap::new();
     let outcome = loop {
         let outcome = control.step(&mut library, &mut ());
-        let source = control.memory().sources().get(control.place().block.source);
+        let source = control.memory().sources().get(control.backtrace().block.source);
         *counted.entry(source.name.clone()).or_insert(0) += 1;
         if let Some(outcome) = outcome {
             break outcome;
@@ -42,9 +42,9 @@ fn the_macros_cost_so_many_blocks_for_each_hole() {
     for example in ["melon-mould", "honeycomb", "burr"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("examples").join(example);
         let job = Job::parse(&std::fs::read_to_string(path.join("job.toml")).unwrap()).unwrap();
-        let (wanted, what) = match Wanted::of_job(&job).unwrap() {
-            Wanted::Holes(holes) => (holes.holes.len(), "hole"),
-            Wanted::Flutes(flutes) => (flutes.count as usize, "flute"),
+        let (wanted, what) = match NominalPart::from_job(&job).unwrap() {
+            NominalPart::Holes(holes) => (holes.holes.len(), "hole"),
+            NominalPart::Flutes(flutes) => (flutes.count as usize, "flute"),
         };
         let package = families::emit(&job);
         for (name, blocks) in blocks(&job) {

@@ -1,6 +1,6 @@
 //! Laws of `diff`: a program and itself are the same, whatever its numbers, comments and spaces.
-use gcode_sim::changes::{Record, changes};
-use gcode_tests::changes::{found, revision, told};
+use gcode_review::{Record, changes};
+use gcode_tests::changes::{find_changes, messages, revision};
 use proptest::prelude::*;
 
 /// A block and what it may look like after a rewrite: `{}` stands for the number of a local.
@@ -38,7 +38,7 @@ proptest! {
 
     #[test]
     fn what_a_rewrite_keeps_is_no_change(blocks in prop::collection::vec(0..BLOCKS.len(), 0..24)) {
-        let found = found(&program(&blocks, 1), &rewritten(&program(&blocks, 14)));
+        let found = find_changes(&program(&blocks, 1), &rewritten(&program(&blocks, 14)));
         prop_assert!(found.is_empty(), "{found:?}");
     }
 
@@ -65,7 +65,7 @@ proptest! {
         let mut lines: Vec<&str> = old.lines().collect();
         let at = 2 + at.min(blocks.len());
         lines.insert(at, "G4 P123");
-        let found = found(&old, &(lines.join("\n") + "\n"));
+        let found = find_changes(&old, &(lines.join("\n") + "\n"));
         let codes: Vec<_> = found.iter().map(|change| &*change.code).collect();
         prop_assert_eq!(codes, ["dwell"]);
     }
@@ -78,12 +78,12 @@ const PART: &str = "O1\nG90 G54\nT1 M6\nG43 H1 G0 Z50. M8\nG98 G81 X10. Y0 Z-1. 
 /// `PART` with one thing written otherwise.
 fn changed(from: &str, to: &str) -> Vec<String> {
     assert_eq!(PART.matches(from).count(), 1, "{from}");
-    told(PART, &PART.replace(from, to))
+    messages(PART, &PART.replace(from, to))
 }
 
 #[test]
 fn what_is_called_by_number_counts_where_the_tables_hold_the_same() {
-    assert_eq!(told(PART, PART), Vec::<String>::new());
+    assert_eq!(messages(PART, PART), Vec::<String>::new());
     let found = changed("G43 H2", "G43 H3");
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].starts_with("tool-length: G43 H3 instead of G43 H2, both 0 here ("), "{found:?}");
@@ -98,7 +98,7 @@ fn what_is_called_by_number_counts_where_the_tables_hold_the_same() {
         assert_eq!(found.len(), 1, "{from} -> {to}: {found:?}");
         assert!(found[0].starts_with(what), "{from} -> {to}: {found:?}");
         let stays = matches!(to, "G55 G0 X0 Y30." | "G61 G41 D1 G1");
-        assert_eq!(found[0].ends_with(", and stays so for the next program"), stays, "{found:?}");
+        assert_eq!(found[0].ends_with(", also for the next program"), stays, "{found:?}");
     }
 }
 
@@ -110,21 +110,21 @@ fn mist_is_no_coolant() {
 #[test]
 fn a_lost_spot_drilling_is_told_at_its_hole() {
     let found = changed("Z-1. R2. F100\nX20.\n", "Z-1. R2. F100\n");
-    assert_eq!(found, ["hole-tool: hole 2: no longer made by T1, in all by T2"]);
+    assert_eq!(found, ["hole-tool: hole 2: no longer made by T1, in total by T2"]);
 }
 
 #[test]
 fn a_stop_that_comes_later_is_one_entry() {
     let old = "O1\nG0 X1.\nM00\nG0 Y5.\nM30\n";
     let new = "O1\nG0 X1.\nG0 Y5.\nM00\nM30\n";
-    assert_eq!(told(old, new), ["stop: the stop M00 comes later than before"]);
-    assert_eq!(told(new, old), ["stop: the stop M00 comes earlier than before"]);
+    assert_eq!(messages(old, new), ["stop: the stop M00 is executed later than before"]);
+    assert_eq!(messages(new, old), ["stop: the stop M00 is executed earlier than before"]);
 }
 
 #[test]
 fn behind_an_alarm_nothing_is_compared() {
     let stops = PART.replace("T2 M6\n", "T2 M6\n#3000=1(NO TOOL)\n");
-    let found = told(PART, &stops);
+    let found = messages(PART, &stops);
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].starts_with("outcome: "), "{found:?}");
 }
@@ -132,25 +132,25 @@ fn behind_an_alarm_nothing_is_compared() {
 #[test]
 fn a_block_skip_and_codes_that_move_nothing_here_are_one_entry_each() {
     for (from, to, told) in [
-        ("G0 X0 Y30. M1", "/G0 X0 Y30. M1", "block-skip: the block skip / is new"),
-        ("G0 X0 Y30. M1", "/3 G0 X0 Y30. M1", "block-skip: the block skip /3 is new"),
-        ("G0 X0 Y30. M1", "G0 X0 /2 Y30. M1", "block-skip: the block skip /2 is new"),
-        ("X50.\nG40", "G9 X50.\nG40", "path-mode: G09 is new"),
-        ("T1 M6", "G5.1 Q1\nT1 M6", "path-mode: G05.1 Q1 is new"),
-        ("T1 M6", "G8 P1\nT1 M6", "path-mode: G08 P1 is new"),
-        ("T1 M6", "G25\nT1 M6", "g-code: G25 is new"),
-        ("T1 M6", "M29 S500\nT1 M6", "m-code: M29 is new"),
+        ("G0 X0 Y30. M1", "/G0 X0 Y30. M1", "block-skip: the block skip / is added"),
+        ("G0 X0 Y30. M1", "/3 G0 X0 Y30. M1", "block-skip: the block skip /3 is added"),
+        ("G0 X0 Y30. M1", "G0 X0 /2 Y30. M1", "block-skip: the block skip /2 is added"),
+        ("X50.\nG40", "G9 X50.\nG40", "path-mode: G09 is added"),
+        ("T1 M6", "G5.1 Q1\nT1 M6", "path-mode: G05.1 Q1 is added"),
+        ("T1 M6", "G8 P1\nT1 M6", "path-mode: G08 P1 is added"),
+        ("T1 M6", "G25\nT1 M6", "g-code: G25 is added"),
+        ("T1 M6", "M29 S500\nT1 M6", "m-code: M29 is added"),
     ] {
         assert_eq!(changed(from, to), [told], "{to}");
         let gone = PART.replace(from, to);
         assert_eq!(
-            self::told(&gone, PART),
-            [told.replace(" is new", " is no longer there")],
+            self::messages(&gone, PART),
+            [told.replace(" is added", " is removed")],
             "{to} taken away"
         );
     }
     let (off, on) = (PART.replace("T1 M6", "G5.1 Q0\nT1 M6"), PART.replace("T1 M6", "G5.1 Q1\nT1 M6"));
-    assert_eq!(told(&off, &on), ["path-mode: G05.1 Q1 instead of G05.1 Q0"]);
+    assert_eq!(messages(&off, &on), ["path-mode: G05.1 Q1 instead of G05.1 Q0"]);
 }
 
 /// Also in front of what makes no step: an assignment, a jump, a call.
@@ -159,7 +159,7 @@ fn a_block_skip_before_a_statement_is_told_at_its_block() {
     let old = "O1\n#100=5.\nG0 X#100\nIF[#100 GT 9.]GOTO 9\nM98 P2\nN9 M30\nO2\nG0 Y1.\nM99\n";
     for block in ["#100=5.", "IF[#100", "M98 P2"] {
         let new = old.replace(block, &format!("/{block}"));
-        let found = found(old, &new);
+        let found = find_changes(old, &new);
         let codes: Vec<_> = found.iter().map(|change| &*change.code).collect();
         assert_eq!(codes, ["block-skip"], "{block}");
         let place = found[0].new.as_ref().unwrap();
@@ -172,7 +172,7 @@ fn a_block_skip_before_a_statement_is_told_at_its_block() {
 fn what_is_left_names_the_block_that_wrote_it() {
     let old = "O1\n#500=1.\nG65 P2 A2.\nM30\nO2\n#501=#1\n#502=7.\nG10 L2 P1 X#1\n#2005=#1\nM99\n";
     let new = old.replace("A2.", "A3.");
-    let found = found(old, &new);
+    let found = find_changes(old, &new);
     let shown: Vec<String> = found
         .iter()
         .map(|change| {
@@ -183,9 +183,9 @@ fn what_is_left_names_the_block_that_wrote_it() {
     assert_eq!(
         shown,
         [
-            "variable: #501 is left 3 instead of 2 by #501=#1, from G65 P2 A3.",
-            "work-offset: G54 X is left 3 instead of 2 by G10 L2 P1 X#1, from G65 P2 A3.",
-            "tool-offset: H5 wear is left 3 instead of 2 by #2005=#1, from G65 P2 A3.",
+            "variable: #501 ends as 3 instead of 2 by #501=#1, from G65 P2 A3.",
+            "work-offset: G54 X ends as 3 instead of 2 by G10 L2 P1 X#1, from G65 P2 A3.",
+            "tool-offset: H5 wear ends as 3 instead of 2 by #2005=#1, from G65 P2 A3.",
         ]
     );
 }
@@ -195,7 +195,7 @@ fn what_is_left_names_the_block_that_wrote_it() {
 fn a_hole_that_a_tool_makes_once_more_is_one_entry() {
     let again = "T1 M6\nG43 H1 G0 Z50.\nG98 G81 X10. Y0 Z-1. R2. F100\nG80\n";
     let found = changed("T2 M6", &format!("{again}T2 M6"));
-    assert_eq!(found, ["hole-tool: hole 1: made once more by T1, in all by T1 (2 times) and T2"]);
+    assert_eq!(found, ["hole-tool: hole 1: one more pass by T1, in total by T1 (2 times) and T2"]);
 }
 
 #[test]
@@ -203,12 +203,12 @@ fn a_swapped_tool_is_one_entry_for_all_its_holes() {
     // T2 drills what T1 has drilled, and one hole alone: in all of them T3 stands for T2.
     let more = PART.replace("Z-9. R2. F80\nX20.\n", "Z-9. R2. F80\nX20.\nX30.\n");
     assert_eq!(
-        told(&more, &more.replace("T2 M6", "T3 M6")),
+        messages(&more, &more.replace("T2 M6", "T3 M6")),
         ["hole-tool: holes 1, 2, 3: made by T3 instead of T2"]
     );
     // T1 twice: T2 isn't there any more.
     assert_eq!(
-        told(&more, &more.replace("T2 M6", "T1 M6")),
+        messages(&more, &more.replace("T2 M6", "T1 M6")),
         ["hole-tool: holes 1, 2, 3: made by T1 instead of T2"]
     );
 }
@@ -224,7 +224,7 @@ fn the_return_level_alone_is_one_entry() {
     let found = changed("G98 G81 X10. Y0 Z-9.", "G99 G81 X10. Y0 Z-9.");
     assert_eq!(found.len(), 1, "{found:#?}");
     assert!(found[0].starts_with("return-level: G99 instead of G98: "), "{found:#?}");
-    let both = ", and stays so for the next program; moves end elsewhere, by Z -48.0000 (a rapid, 3 feeds)";
+    let both = ", also for the next program; moves end at a different point: Z -48.0000 (a rapid, 3 feeds)";
     assert!(found[0].ends_with(both), "{found:#?}");
 }
 
@@ -234,13 +234,13 @@ fn one_shifted_word_is_one_entry() {
     let old = "O1\nG90 G54 G0 X0 Y0\nZ5.\nG1 Z-1. F100\nG1 X20.\nG2 X30. I5. J0\nG1 Y9.\nG0 Z5.\nM30\n";
     // The rapid to X0 wasn't needed before.
     assert_eq!(
-        told(old, &old.replace("G0 X0 Y0", "G0 X0.01 Y0")),
-        ["move-shifted: moves end elsewhere, by X +0.0100 (2 rapids, a feed, the first of them new)"]
+        messages(old, &old.replace("G0 X0 Y0", "G0 X0.01 Y0")),
+        ["move-shifted: moves end at a different point: X +0.0100 (2 rapids, a feed, the first added)"]
     );
-    let of_arc = told(old, &old.replace("X30. I5.", "X30.02 I5.01"));
+    let of_arc = messages(old, &old.replace("X30. I5.", "X30.02 I5.01"));
     // Its radius is another too, which where it ends doesn't say.
     let shape = "an arc of radius 5.0100 sweeps -180.000° about 25.0100 0.0000 instead of one of 5.0000 -180.000° about 25.0000 0.0000";
-    let shifted = "move-shifted: moves end elsewhere, by X +0.0200 (an arc, a feed, a rapid)";
+    let shifted = "move-shifted: moves end at a different point: X +0.0200 (an arc, a feed, a rapid)";
     assert_eq!(of_arc, [format!("move-arc: {shape}"), shifted.to_owned()]);
 }
 
@@ -248,15 +248,15 @@ fn one_shifted_word_is_one_entry() {
 #[test]
 fn a_longer_way_in_inverse_time_has_no_other_feed() {
     let old = "O1\nG90 G93\nG1 X10. F10.\nX20. F10.\nX30. F20.\nG94\nM30\n";
-    let longer = told(old, &old.replace("X20.", "X20.01"));
-    assert_eq!(longer, ["move-shifted: a feed ends elsewhere, by X +0.0100"]);
+    let longer = messages(old, &old.replace("X20.", "X20.01"));
+    assert_eq!(longer, ["move-shifted: a feed ends at a different point: X +0.0100"]);
     // F10 over 10 mm is 100 mm/min, F12 is 120.
-    let faster = told(old, &old.replace("X20. F10.", "X20. F12."));
+    let faster = messages(old, &old.replace("X20. F10.", "X20. F12."));
     assert_eq!(faster, ["feed: feed F120 instead of F100"]);
     // One block makes ways of 1, 2 and 3 mm in a tenth of a minute each, then in an eighth.
     let all = "O1\nG91 G93\n#1=1\nWHILE[#1 LE 3]DO1\nG1 X#1 F10.\n#1=#1+1\nEND1\nG94\nM30\n";
     assert_eq!(
-        told(all, &all.replace("F10.", "F8.")),
+        messages(all, &all.replace("F10.", "F8.")),
         ["feed: feed F8 instead of F10 (3 moves, all by the same factor)"]
     );
 }
@@ -268,25 +268,25 @@ fn a_tool_called_and_a_speed_that_nothing_takes_up_are_one_entry() {
     let old = "O1\nT1 M6\nT2\nS500 M3\nG0 X1.\nM6\nM5\nT3\nS800\nM41\nG0 X2.\nM30\n";
     for (from, to, entry) in [
         ("T3", "T4", "tool: T4 without M06 instead of T3 without M06"),
-        ("T3\n", "", "tool: T3 without M06 is no longer there"),
+        ("T3\n", "", "tool: T3 without M06 is removed"),
         ("S800", "S900", "spindle: S900 without M03 or M04 instead of S800 without M03 or M04"),
         // Fetched early or late, the same tool is put in.
         ("T2\n", "", "tool: tool T1 instead of tool T2"),
     ] {
-        assert_eq!(told(old, &old.replace(from, to)), [entry], "{from} -> {to}");
+        assert_eq!(messages(old, &old.replace(from, to)), [entry], "{from} -> {to}");
     }
-    assert_eq!(told(old, &old.replace("T2\nS500 M3\n", "S500 M3\nT2\n")), Vec::<String>::new());
-    assert_eq!(told(old, &old.replace("S500 M3", "S500\nM3")), Vec::<String>::new());
+    assert_eq!(messages(old, &old.replace("T2\nS500 M3\n", "S500 M3\nT2\n")), Vec::<String>::new());
+    assert_eq!(messages(old, &old.replace("S500 M3", "S500\nM3")), Vec::<String>::new());
 }
 
 #[test]
 fn a_switch_of_the_control_is_one_entry() {
     let old = "O1\n#3003=1\n#3004=7\nG0 X1.\n#3004=0\n#3003=0\nM30\n";
-    assert_eq!(told(old, &old.replace("#3003=1", "#3003=3")), ["switch: #3003=3 instead of #3003=1"]);
+    assert_eq!(messages(old, &old.replace("#3003=1", "#3003=3")), ["switch: #3003=3 instead of #3003=1"]);
     for lost in ["#3003=0", "#3004=7"] {
         assert_eq!(
-            told(old, &old.replace(&format!("{lost}\n"), "")),
-            [format!("switch: {lost} is no longer there")]
+            messages(old, &old.replace(&format!("{lost}\n"), "")),
+            [format!("switch: {lost} is removed")]
         );
     }
 }
@@ -296,8 +296,8 @@ fn a_switch_of_the_control_is_one_entry() {
 fn another_end_is_one_entry_that_names_its_block() {
     let old = "O1\nG0 X1.\nM30\n";
     let shown = |new: &str| -> Vec<String> {
-        let found = found(old, new);
-        let line = |place: &Option<gcode_sim::changes::Where>| place.as_ref().map(|place| place.line);
+        let found = find_changes(old, new);
+        let line = |place: &Option<gcode_review::BlockLocation>| place.as_ref().map(|place| place.line);
         let each = found.iter();
         each.map(|c| format!("{} {:?} {:?}: {}", c.code, line(&c.old), line(&c.new), c.message)).collect()
     };
@@ -321,15 +321,16 @@ const PECKS: &str = "O1\nG90 G54 G0 X10. Y10. Z50.\nG83 Z-10. R2. Q3. F75.\nG80\
 
 #[test]
 fn a_peck_more_is_told_by_the_depth() {
-    assert_eq!(told(PECKS, &PECKS.replace("Z-10.", "Z-10.01")), ["hole-depth: hole 1: 0.0100 mm deeper"]);
+    assert_eq!(messages(PECKS, &PECKS.replace("Z-10.", "Z-10.01")), ["hole-depth: hole 1: 0.0100 mm deeper"]);
 }
 
 #[test]
 fn a_rapid_where_a_feed_made_a_hole_is_told_as_that() {
-    let found = told(PECKS, &PECKS.replace("G83 Z-10. R2. Q3.", "G81 Z-10. R-10."));
+    let found = messages(PECKS, &PECKS.replace("G83 Z-10. R2. Q3.", "G81 Z-10. R-10."));
     assert!(
-        found[0]
-            .starts_with("hole-lost: hole 1: a rapid goes to the bottom where a feed did, at 10.000 10.000 "),
+        found[0].starts_with(
+            "hole-lost: hole 1: a rapid instead of a feed goes to the bottom, at 10.000 10.000 "
+        ),
         "{found:?}"
     );
 }
@@ -338,9 +339,9 @@ fn a_rapid_where_a_feed_made_a_hole_is_told_as_that() {
 #[test]
 fn moves_are_made_under_what_is_in_force_in_their_own_block() {
     let old = "O1\nG90 G54 G0 X0 Y0\nG1 G41 D1 X20. F100\nY20.\nG40 X0\nM30\n";
-    let found = told(old, &old.replace("D1", "D2"));
+    let found = messages(old, &old.replace("D1", "D2"));
     assert_eq!(found, ["cutter-side: G41 D2 instead of G41 D1 (2 moves)"]);
-    assert_eq!(told(old, &old.replace(" D1", "")), ["cutter-side: G41 D0 instead of G41 D1 (2 moves)"]);
+    assert_eq!(messages(old, &old.replace(" D1", "")), ["cutter-side: G41 D0 instead of G41 D1 (2 moves)"]);
 }
 
 /// R of an arc says how far the centre is from both its ends.
@@ -348,10 +349,10 @@ fn moves_are_made_under_what_is_in_force_in_their_own_block() {
 fn the_arc_behind_a_shifted_end_is_no_other_arc() {
     let old = "O1\nG90 G54 G0 X0 Y0\nG1 X20. F100\nG3 X30. Y20. R20.\nG1 Y30.\nM30\n";
     assert_eq!(
-        told(old, &old.replace("X20.", "X20.01")),
-        ["move-shifted: a feed ends elsewhere, by X +0.0100"]
+        messages(old, &old.replace("X20.", "X20.01")),
+        ["move-shifted: a feed ends at a different point: X +0.0100"]
     );
-    let other = told(old, &old.replace("R20.", "R21."));
+    let other = messages(old, &old.replace("R20.", "R21."));
     assert!(other.len() == 1 && other[0].starts_with("move-arc: "), "{other:?}");
 }
 
@@ -360,10 +361,10 @@ fn the_arc_behind_a_shifted_end_is_no_other_arc() {
 fn what_stands_behind_a_stop_midway_is_paired_with_nothing() {
     let holes = |blocks: &str| format!("O1\nG90 G54 G0 Z50.\nG81 Z-5. R2. X10. Y0 F100\n{blocks}G80\nM30\n");
     let (old, new) = ("X20.\nX30.\nX40.\nX50.\n", "X20.\nX30.\n#3000=1(STOP)\nX40.\nX50.\n");
-    let found = told(&holes(old), &holes(new));
+    let found = messages(&holes(old), &holes(new));
     assert_eq!(found.len(), 1, "{found:?}");
     // Back at the first hole: a run that goes on looks alike.
-    let again = told(&holes("X20.\nX10.\nX20.\nX10.\n"), &holes("X20.\n#3000=1(STOP)\nX10.\n"));
+    let again = messages(&holes("X20.\nX10.\nX20.\nX10.\n"), &holes("X20.\n#3000=1(STOP)\nX10.\n"));
     assert_eq!(again.len(), 1, "{again:?}");
 }
 
@@ -371,8 +372,8 @@ fn what_stands_behind_a_stop_midway_is_paired_with_nothing() {
 #[test]
 fn q_counts_where_the_cycle_has_it() {
     let old = "O1\nG90 G54 G0 Z50.\nG82 X10. Y0 Z-5. R2. Q3. P500 F100\nG80\nM30\n";
-    assert_eq!(told(old, &old.replace("Q3.", "Q4.")), Vec::<String>::new());
+    assert_eq!(messages(old, &old.replace("Q3.", "Q4.")), Vec::<String>::new());
     // The same ways in one peck: what the control does between them is another matter.
-    let found = told(PECKS, &PECKS.replace("Q3.", "Q2."));
+    let found = messages(PECKS, &PECKS.replace("Q3.", "Q2."));
     assert_eq!(found, ["cycle: cycle G83 Q2 instead of G83 Q3 (1 hole)"]);
 }

@@ -1,12 +1,12 @@
 //! `check` on what stands in this repository: nothing to find in macros and examples, a page and a case for each rule.
 use std::path::{Path, PathBuf};
 
-use gcode_sim::check::rules::ALL;
-use gcode_sim::check::{Checked, check};
+use gcode_lang::control::Settings;
+use gcode_lang::diag::Severity;
+use gcode_lang::program::NoLibrary;
+use gcode_lint::rules::ALL;
+use gcode_lint::{CheckResult, check};
 use gcode_sim::cli::library::Folders;
-use gcode_sim::control::Settings;
-use gcode_sim::diag::Severity;
-use gcode_sim::program::NoLibrary;
 use gcode_tests::workspace;
 
 /// The programs below `dir`.
@@ -24,7 +24,7 @@ fn programs(dir: &Path) -> Vec<PathBuf> {
     found
 }
 
-fn messages(checked: &Checked) -> Vec<String> {
+fn messages(checked: &CheckResult) -> Vec<String> {
     checked.findings.iter().map(|f| format!("{}: {}", f.code, f.message)).collect()
 }
 
@@ -58,16 +58,20 @@ fn a_fault_put_into_an_example_is_found() {
         (
             " W21.6405",
             "",
-            "missing-argument: O8101 needs W (#23): without it, it stops with MC3010 (W MISSING)",
+            "missing-argument: O8101 needs W (#23): if it is omitted, the program stops with MC3010 (W MISSING)",
         ),
         ("D15. C2. V50. F10.", "D15. C2 V50. F10.", "missing-point: C2 is 0.002 for the macro"),
-        ("G65 P8102", "G65 P8103", "missing-program: PS0076: program O8103 is not here"),
+        ("G65 P8102", "G65 P8103", "missing-program: PS0076: program O8103 is not found"),
         (
             "Y[724.3+0.+50.]",
             "Y(724.3+0.+50.)",
             "round-brackets: PS0005: address Y has no number: round brackets are a comment",
         ),
-        ("N380 M30", "N370 M30", "doubled-n: N370 stands in line 64 already: a search finds one of the two"),
+        (
+            "N380 M30",
+            "N370 M30",
+            "doubled-n: N370 is already defined in line 64: a search finds one of the two",
+        ),
     ];
     for (right, wrong, told) in faults {
         let spoilt = text.replacen(right, wrong, 1);
@@ -87,7 +91,7 @@ fn every_rule_has_its_page_and_a_case() {
         told += &std::fs::read_to_string(entry.unwrap().path().join("findings.snap")).unwrap();
     }
     for rule in ALL {
-        let heading = format!("\n## {}: {}\n", rule.name, rule.about);
+        let heading = format!("\n## {}: {}\n", rule.name, rule.summary);
         assert!(page.contains(&heading), "docs/checks.md lacks '{}'", heading.trim());
         let finds = [" error ", " warning "].iter().any(|s| told.contains(&format!("{s}{}:", rule.name)));
         assert!(finds, "no case in tests/suite/check finds {}", rule.name);

@@ -1,15 +1,15 @@
 //! Laws of the control: it never panics, and it runs the same program the same way every time.
-use gcode_sim::control::Settings;
-use gcode_sim::exec::{Control, Limits, Outcome};
-use gcode_sim::motion::{Event, Sink};
-use gcode_sim::program::{Memory, NoLibrary};
+use gcode_control::{Control, Limits, Outcome};
+use gcode_lang::control::Settings;
+use gcode_lang::motion::{Event, EventSink};
+use gcode_lang::program::{Memory, NoLibrary};
 use proptest::prelude::*;
 
 /// Everything told, as text.
 #[derive(Default)]
-struct Told(Vec<String>);
+struct EventLog(Vec<String>);
 
-impl Sink for Told {
+impl EventSink for EventLog {
     fn event(&mut self, event: &Event<'_>) {
         if self.0.len() < 1000 {
             self.0.push(format!("{:?} {:?}", event.kind, event.seconds));
@@ -21,7 +21,7 @@ fn run(program: &[u8], settings: &Settings) -> (String, Vec<String>) {
     let mut memory = Memory::default();
     memory.load("case.nc", program);
     let mut control = Control::new(memory, settings.clone());
-    let mut told = Told::default();
+    let mut told = EventLog::default();
     let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
     let end = match outcome {
         Outcome::End => "end".to_owned(),
@@ -52,8 +52,9 @@ fn programs() -> impl Strategy<Value = String> {
 fn settings() -> impl Strategy<Value = Settings> {
     (any::<bool>(), any::<bool>(), prop::option::of(0.0..1.0)).prop_map(
         |(calculator_input, rolls, skip_signal)| {
-            let mut settings = Settings { calculator_input, skip_signal, ..Settings::default() };
-            settings.roll_over[4] = rolls;
+            let mut settings =
+                Settings { uses_calculator_input: calculator_input, skip_signal, ..Settings::default() };
+            settings.rolls_over[4] = rolls;
             settings
         },
     )

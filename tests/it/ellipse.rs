@@ -1,17 +1,17 @@
 //! The ellipse program of an alignment: the ball's distance from the surface along the emitted path, the count of moves, what
 //! is refused, and the reading on a misplaced part.
+use gcode_control::Outcome;
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::Code;
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, Sink};
-use gcode_sim::part::indicator::tilted;
-use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Following, Request, follow, run};
-use gcode_sim::units::{Deg, Mm};
+use gcode_inspect::machine::Machine;
+use gcode_lang::alarm::AlarmCode;
+use gcode_lang::motion::{Event, EventKind, EventSink};
+use gcode_lang::units::{Deg, Mm};
+use gcode_part::Surface;
+use gcode_part::job::Job;
+use gcode_part::tilted_ellipsoid;
+use gcode_session::{Request, StylusRun, read_stylus, run};
 use nalgebra::Vector3;
 
 /// An ellipsoid, the ends of the path, the ball, the chord error, the control.
@@ -65,12 +65,12 @@ impl Path {
     }
 
     /// What is read on a part that is shifted and tilted about z.
-    fn read(&self, shift: [f64; 3], tilt: f64) -> Following {
+    fn read(&self, shift: [f64; 3], tilt: f64) -> StylusRun {
         let package = self.package();
         let mut request = self.request(&package);
         request.machine.part.shift = Vector3::from(shift);
         request.machine.part.tilt[2] = Deg(tilt);
-        follow(&request, &mut Programs(&package), self.surface(), self.radius).unwrap()
+        read_stylus(&request, &mut Programs(&package), self.surface(), self.radius).unwrap()
     }
 }
 
@@ -80,7 +80,7 @@ struct Points {
     all: Vec<[f64; 2]>,
 }
 
-impl Sink for Points {
+impl EventSink for Points {
     fn event(&mut self, event: &Event<'_>) {
         if let EventKind::Feed { to, .. } = &event.kind {
             self.all.push([to[0], to[1]]);
@@ -213,7 +213,7 @@ fn what_can_not_be_followed_is_refused() {
         let mut points = Points::default();
         let ran = run(&request, &mut Programs(&package), &mut points).unwrap();
         let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
-        assert_eq!(stopped.alarm.row().code, Code::Mc(3000 + number), "{to} in place of {from}");
+        assert_eq!(stopped.alarm.row().code, AlarmCode::Mc(3000 + number), "{to} in place of {from}");
         assert!(points.all.is_empty(), "nothing is fed before: {to} in place of {from}");
     }
 }
@@ -250,11 +250,11 @@ fn a_misplaced_part_is_read_as_far_as_it_is_off() {
         ([0.03, -0.02, 0.1], 0.005),
     ] {
         let following = MELON.read(shift, tilt);
-        let readings = &following.followed.passes[0].readings;
+        let readings = &following.readings.passes[0].readings;
         assert!(readings.len() > 500);
         for reading in readings {
-            let [x, y, _]: [f64; 3] = reading.at.coords.into();
-            let normal = MELON.surface().nearest(&reading.at).normal;
+            let [x, y, _]: [f64; 3] = reading.ball_centre.coords.into();
+            let normal = MELON.surface().nearest(&reading.ball_centre).normal;
             let moved = normal.x * shift[0] + normal.y * shift[1];
             let turned = Deg(tilt).to_rad() * (x * normal.y - y * normal.x);
             let off = reading.value + moved + turned;
@@ -271,12 +271,13 @@ fn the_machine_finds_what_the_formula_of_figure_5_says() {
         let machine = Machine::parse(&text).unwrap();
         let program = b"O1\nG21 G90 G94 G00 X1500. Y200.\nG31 X1000. F100.\n#500=#5061\nM30\n%\n";
         let mut request = Request::new("O1.nc", program.as_slice(), machine);
-        request.settings.increment = gcode_sim::control::Increment::IsC;
+        request.settings.increment = gcode_lang::control::Increment::IsC;
         let surface = MELON.surface();
-        let mut probe = gcode_sim::holes::Extractor::new(&request.machine).with_surface(Some(surface));
+        let mut probe =
+            gcode_inspect::holes::HoleExtractor::new(&request.machine).with_surface(Some(surface));
         let ran = run(&request, &mut Programs(&MELON.package()), &mut probe).unwrap();
         let x = ran.control.variable(500).unwrap().number();
-        let said = tilted(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();
+        let said = tilted_ellipsoid(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();
         // The ball's radius, and half an increment.
         let wanted = said.radius + said.change;
         assert!((x - wanted.0).abs() < 3e-4, "{x} is not {wanted}");

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-use gcode_sim::changes::{Change, Record, Revision, changes};
+use gcode_control::Limits;
+use gcode_lang::program::Library;
+use gcode_review::{Change, Record, Revision, changes};
 use gcode_sim::cli::library::Folders;
-use gcode_sim::exec::Limits;
-use gcode_sim::program::Library;
 use gcode_tests::workspace;
 use serde_json::Value;
 
@@ -26,7 +26,7 @@ struct Texts {
 }
 
 impl Texts {
-    fn given(&mut self, found: Option<(String, Vec<u8>)>) -> Option<(String, Vec<u8>)> {
+    fn with_text(&mut self, found: Option<(String, Vec<u8>)>) -> Option<(String, Vec<u8>)> {
         let (name, bytes) = found?;
         self.read.insert(name.clone(), String::from_utf8_lossy(&bytes).into_owned());
         match &self.other {
@@ -39,12 +39,12 @@ impl Texts {
 impl Library for Texts {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
         let found = self.folders.program(number);
-        self.given(found)
+        self.with_text(found)
     }
 
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
         let found = self.folders.named(name);
-        self.given(found)
+        self.with_text(found)
     }
 }
 
@@ -92,7 +92,7 @@ struct Tally {
 }
 
 /// Every `nth` word of the examples, changed.
-fn tried(nth: usize, only: &str) -> (BTreeMap<String, Tally>, String) {
+fn count_effects(nth: usize, only: &str) -> (BTreeMap<String, Tally>, String) {
     let (mut tallies, mut wrong) = (BTreeMap::<String, Tally>::new(), String::new());
     let mut number = 0;
     for main in mains() {
@@ -140,7 +140,7 @@ fn is_more(main: &str, slip: &Slip) -> bool {
 fn shown(main: &str, program: &str, slip: &Slip, is_idle: bool, found: &[Change]) -> String {
     let what = if is_idle { "nothing different" } else { "different" };
     let entries = found.iter().map(|change| {
-        let at = |place: &Option<gcode_sim::changes::Where>| place.as_ref().map(|place| place.line);
+        let at = |place: &Option<gcode_review::BlockLocation>| place.as_ref().map(|place| place.line);
         format!("    {} {:?} {:?}: {}\n", change.code, at(&change.old), at(&change.new), change.message)
     });
     let entries: String = entries.collect();
@@ -192,7 +192,8 @@ const MORE: [(&str, &str, &str); 7] = [
 #[test]
 fn a_word_of_the_examples_changed_is_one_entry() {
     let only = std::env::var("EVERY_WORD").ok();
-    let (tallies, wrong) = tried(if only.is_some() { 1 } else { 9 }, only.as_deref().unwrap_or_default());
+    let (tallies, wrong) =
+        count_effects(if only.is_some() { 1 } else { 9 }, only.as_deref().unwrap_or_default());
     if only.is_some() {
         for (letter, tally) in &tallies {
             writeln!(std::io::stderr(), "{letter}: {tally:?}").unwrap();

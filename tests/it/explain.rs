@@ -2,23 +2,23 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use gcode_sim::changes::CODES;
-use gcode_sim::diag::{Diagnostic, Severity};
-use gcode_sim::exec::Outcome;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::probed::Probed;
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::NoLibrary;
+use gcode_control::Outcome;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::Tolerances;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::program::NoLibrary;
+use gcode_part::NominalPart;
+use gcode_part::ProbedPart;
+use gcode_review::CODES;
+use gcode_session::{Request, grind, read_stylus, simulate};
 use gcode_sim::report::explain::{self, PAGES, Page};
-use gcode_sim::session::{Request, follow, grind, simulate};
-use gcode_sim::verify::Tolerances;
 use gcode_tests::{expect, workspace};
 
-use crate::tidy::below;
+use crate::house_rules::below;
 
 /// The codes that the table of alarms can give; all that programs raise themselves are `MC3000`.
 fn alarms() -> BTreeSet<String> {
-    let text = include_str!("../../gcode-sim/src/alarm/table.rs");
+    let text = include_str!("../../gcode-sim/crates/gcode-lang/src/alarm/table.rs");
     let mut codes = BTreeSet::new();
     for (family, name) in [("Ps(", "PS"), ("Ot(", "OT"), ("Sim(", "SIM")] {
         for rest in text.split(&format!("({family}")).skip(1) {
@@ -31,14 +31,24 @@ fn alarms() -> BTreeSet<String> {
 }
 
 /// Modules that tell no finding of a run, or the rules of `check` and the entries of `diff`, which have their own pages.
-const OTHERS: [&str; 8] = ["changes", "check", "cli", "control", "gauge", "job", "report", "schema"];
+const OTHERS: [&str; 9] = [
+    "crates/gcode-lang/src/control",
+    "crates/gcode-lint",
+    "crates/gcode-part/src/gauge",
+    "crates/gcode-part/src/job",
+    "crates/gcode-part/src/reader",
+    "crates/gcode-review",
+    "src/cli",
+    "src/report",
+    "src/schema",
+];
 
 /// Words that look like a code.
 const WORDS: [&str; 2] = ["left-hand", "right-hand"];
 
 /// The codes of findings: quoted, small letters with a hyphen between them, in all modules that may tell one.
 fn findings() -> BTreeSet<String> {
-    let source = workspace().join("gcode-sim/src");
+    let source = workspace().join("gcode-sim");
     let others = OTHERS.map(|module| source.join(module));
     let mut codes = BTreeSet::new();
     for file in below(&source, "rs") {
@@ -138,12 +148,12 @@ fn on_a_machine(page: &Page, program: &str) -> Outcome {
         page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
     let machine = Machine::parse(machines[0]).unwrap();
     let mut request = Request::new("example.nc", program.as_bytes(), machine);
-    request.part = Some(Probed::parse(jobs[0]).unwrap().surface);
+    request.part = Some(ProbedPart::parse(jobs[0]).unwrap().surface);
     simulate(&request, &mut NoLibrary, None).unwrap().run.outcome
 }
 
 /// What is found on a page's first or second program, against its reference on its machine, or the second on the second.
-fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
+fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
     let program = page.fenced("nc")[number];
     let (jobs, machines): (Vec<&str>, Vec<&str>) =
         page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
@@ -153,18 +163,20 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
         .map_or_else(Machine::default, |text| Machine::parse(text).unwrap());
     // A finding on the reference itself has a second one without it.
     let job = jobs.get(number).or(jobs.first()).copied();
-    let wanted = page.fenced("csv").into_iter().chain(job).next().map(|text| Wanted::parse(text).unwrap());
+    let wanted =
+        page.fenced("csv").into_iter().chain(job).next().map(|text| NominalPart::parse(text).unwrap());
     let mut request = Request::new("example.nc", program.as_bytes(), machine.clone());
-    if let Some(Wanted::Flutes(flutes)) = &wanted {
+    if let Some(NominalPart::Flutes(flutes)) = &wanted {
         return grind(&request, &mut NoLibrary, flutes).unwrap().verify().diagnostics;
     }
-    let reference = wanted.and_then(Wanted::into_holes);
+    let reference = wanted.and_then(NominalPart::into_holes);
     // Of a job on these pages only the surface counts, or the pattern.
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     if let (Some(surface), Some(probe)) = (surface, &machine.probe) {
-        return follow(&request, &mut NoLibrary, surface, probe.radius).unwrap().followed.findings;
+        return read_stylus(&request, &mut NoLibrary, surface, probe.radius).unwrap().readings.findings;
     }
-    request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
+    request.conduct =
+        reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     match reference {
         Some(reference)
@@ -180,11 +192,11 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
 fn the_first_program_gives_the_finding_and_the_second_none() {
     let mut wrong = String::new();
     for page in PAGES.iter().filter(|page| is_finding(page)) {
-        let codes: Vec<_> = found(page, 0).into_iter().map(|finding| finding.code).collect();
+        let codes: Vec<_> = findings_on(page, 0).into_iter().map(|finding| finding.code).collect();
         if !codes.iter().any(|code| code == page.code) {
             wrong.push_str(&format!("{}: the first gives {codes:?}\n", page.code));
         }
-        let good: Vec<_> = found(page, 1)
+        let good: Vec<_> = findings_on(page, 1)
             .into_iter()
             .filter(|f| Severity::Note < f.severity)
             .map(|f| (f.code, f.message))

@@ -1,45 +1,44 @@
 //! Findings on flutes say where on the burr, by pass and by place.
-use gcode_sim::machine::Machine;
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{Grinding, Request, grind};
-use gcode_sim::verify::OnPart;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::PartPoint;
+use gcode_lang::program::NoLibrary;
+use gcode_part::NominalPart;
+use gcode_session::{GrindingRun, Request, grind};
+use gcode_tests::root;
+use gcode_tests::verify::{machine_of, reference_of};
 use nalgebra::Vector3;
 
 /// The sites of the finding of that code.
-fn sites(grinding: &Grinding, code: &str) -> Vec<OnPart> {
+fn sites(grinding: &GrindingRun, code: &str) -> Vec<PartPoint> {
     let verdict = grinding.verify();
     let finding = verdict.findings.iter().find(|finding| finding.code == code);
     finding.unwrap_or_else(|| panic!("no {code} in {:?}", verdict.findings)).sites.clone()
 }
 
-fn run(program: &str, machine: &str, reference: &str) -> Grinding {
+fn run(program: &str, machine: &str, reference: &str) -> GrindingRun {
     let machine = Machine::parse(machine).unwrap();
-    let Wanted::Flutes(wanted) = Wanted::parse(reference).unwrap() else { panic!("a burr") };
+    let NominalPart::Flutes(wanted) = NominalPart::parse(reference).unwrap() else { panic!("a burr") };
     grind(&Request::new("case.nc", program.as_bytes(), machine), &mut NoLibrary, &wanted).unwrap()
 }
 
 /// Program, machine and reference of a case of kind `verify`.
-macro_rules! case {
-    ($name:literal) => {{
-        let program = include_str!(concat!("../suite/verify/", $name, "/case.nc"));
-        let machine = include_str!(concat!("../suite/verify/", $name, "/machine.toml"));
-        let reference = include_str!(concat!("../suite/verify/", $name, "/reference.toml"));
-        (program, machine, reference)
-    }};
+fn case(name: &str) -> [String; 3] {
+    let folder = root().join("verify").join(name);
+    let program = std::fs::read_to_string(folder.join("case.nc")).unwrap();
+    [program, machine_of(&folder).unwrap(), reference_of(&folder).unwrap()]
 }
 
 /// Of four flutes a quarter apart the fourth is missing: its place is across from the second.
 #[test]
 fn a_missing_flute_is_where_it_would_be() {
-    let (program, machine, reference) = case!("a_missing_flute_is_counted");
+    let [program, machine, reference] = &case("a_missing_flute_is_counted");
     let grinding = run(program, machine, reference);
     let [site] = sites(&grinding, "flute-missing")[..] else { panic!("one is missing") };
     assert_eq!(site.pass, None);
     let [x, y, z] = site.at;
     // Halfway from 4 to −6·cos 30° it is the ball: r² = 36 − x² but for the foot's own place.
     assert!((x + 0.598).abs() < 0.01 && (Vector3::new(x, y, z).norm() - 6.0).abs() < 1e-9, "{site:?}");
-    let across = grinding.ground.passes[1].trace.angle_at(x).unwrap();
+    let across = grinding.result.passes[1].trace.angle_at(x).unwrap();
     let radius = Vector3::new(0.0, y, z).norm();
     let (there, here) = ([radius * across.cos(), -radius * across.sin()], [y, z]);
     assert!((there[0] + here[0]).abs() < 0.01 && (there[1] + here[1]).abs() < 0.01, "{there:?} {here:?}");
@@ -48,7 +47,7 @@ fn a_missing_flute_is_where_it_would_be() {
 /// Of four flutes two neighbours: half the burr is bare, with room for the other two.
 #[test]
 fn each_of_several_missing_flutes_has_its_place() {
-    let (program, machine, reference) = case!("a_missing_flute_is_counted");
+    let [program, machine, reference] = &case("a_missing_flute_is_counted");
     let found = sites(&run(&program.replace("LT 3]", "LT 2]"), machine, reference), "flute-missing");
     let [one, other] = found[..] else { panic!("{found:?}") };
     let across = one.at[1] * other.at[1] + one.at[2] * other.at[2];
@@ -58,18 +57,18 @@ fn each_of_several_missing_flutes_has_its_place() {
 /// Each flute of the other hand is wrong, and the sites name every one.
 #[test]
 fn what_is_wrong_with_all_passes_is_on_all_of_them() {
-    let (program, machine, reference) = case!("a_left_hand_burr_is_not_a_right_hand_one");
+    let [program, machine, reference] = &case("a_left_hand_burr_is_not_a_right_hand_one");
     let grinding = run(program, machine, reference);
     let mut passes: Vec<_> = sites(&grinding, "flute-helix").iter().map(|site| site.pass).collect();
     passes.sort_unstable();
-    let all: Vec<_> = (1..=grinding.ground.passes.len()).map(Some).collect();
+    let all: Vec<_> = (1..=grinding.result.passes.len()).map(Some).collect();
     assert_eq!(passes, all);
 }
 
 /// A rapid a millimetre into the cylinder, where its first flute is to begin.
 #[test]
 fn a_dive_is_where_it_is_deepest() {
-    let (program, machine, reference) = case!("four_flutes_of_a_burr_pass");
+    let [program, machine, reference] = &case("four_flutes_of_a_burr_pass");
     let into = program.replacen("WHILE[", "G00 Y3.\nX-4. A0 B20. C0\nY-1.\nY3.\nWHILE[", 1);
     let [site] = sites(&run(&into, machine, reference), "wheel-into-burr")[..] else { panic!("one block") };
     assert_eq!(site.pass, None);
@@ -80,7 +79,7 @@ fn a_dive_is_where_it_is_deepest() {
 /// The third flute goes 15° astray in one block, at C30: on a ball of radius 6 that is x = −6·sin 30°.
 #[test]
 fn one_wrong_block_is_on_its_pass_alone() {
-    let (program, machine, reference) = case!("one_block_off_its_flute_is_named");
+    let [program, machine, reference] = &case("one_block_off_its_flute_is_named");
     let [site] = sites(&run(program, machine, reference), "flute-index")[..] else { panic!("one place") };
     assert_eq!(site.pass, Some(3));
     assert!((site.at[0] + 3.0).abs() < 1e-3, "{site:?}");

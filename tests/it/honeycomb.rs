@@ -1,16 +1,16 @@
 //! The emitted honeycomb programs on the control: random jobs, called wrongly, with faults put in, counted.
 use std::path::Path;
 
+use gcode_control::Outcome;
 use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::Alarm;
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, Position, Sink};
-use gcode_sim::session::{Request, Run, run};
-use gcode_sim::verify::{Answer, Verdict};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Verdict};
+use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_part::job::Job;
+use gcode_session::{Request, Run, run};
 use proptest::prelude::*;
 
 /// A small job: diameter 100, pitch 20, length 90: 9 rows of each group, 5 and 4 holes.
@@ -52,10 +52,10 @@ fn verdict(text: &str, changes: &[(&str, &str)]) -> Verdict {
         let program = package.programs.iter_mut().find(|program| program.text.contains(from)).expect(from);
         program.text = program.text.replace(from, to);
     }
-    check(&job, &package).unwrap().judgement.into_holes().unwrap()
+    check(&job, &package).unwrap().verdict.into_holes().unwrap()
 }
 
-fn ran(package: &Package, sink: &mut impl Sink) -> Run {
+fn ran(package: &Package, sink: &mut impl EventSink) -> Run {
     let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
     run(&Request::new("O8300.nc", main.text.as_bytes(), machine), &mut Programs(package), sink).unwrap()
@@ -68,9 +68,9 @@ fn the_small_job_counted_by_hand() {
     let verdict = verdict(SMALL, &[]);
     assert_eq!((verdict.verdict, verdict.holes.len()), (Answer::Pass, 9 * 5 + 9 * 4));
     let neighbours = verdict.neighbours.unwrap();
-    assert!((neighbours.wanted - 20.153_326_3).abs() < 1e-6, "{}", neighbours.wanted);
+    assert!((neighbours.nominal - 20.153_326_3).abs() < 1e-6, "{}", neighbours.nominal);
     // Even rows without their ends; of odd ones the inner two have both neighbours in the row.
-    assert_eq!((neighbours.with_six, neighbours.with_six_wanted), (9 * 3 + 9 * 2, 45));
+    assert_eq!((neighbours.with_six, neighbours.with_six_nominal), (9 * 3 + 9 * 2, 45));
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn a_coarse_increment_spoils_a_large_cylinder_and_the_refusal_says_so() {
         ("pitch = 20.0", "pitch = 17.0"),
     ]);
     let checked = check(&job(&text), &families::emit(&job(&text))).unwrap();
-    assert!(checked.refusals.concat().contains("a finer increment or a wider tolerance is needed"));
+    assert!(checked.refusals.concat().contains("use a finer increment or a wider tolerance"));
 }
 
 proptest! {
@@ -134,14 +134,14 @@ proptest! {
         let job = job(&text);
         let checked = check(&job, &families::emit(&job)).unwrap();
         prop_assert!(checked.refusals.is_empty(), "{}\n{text}", checked.refusals.concat());
-        let verdict = checked.judgement.into_holes().unwrap();
+        let verdict = checked.verdict.into_holes().unwrap();
         let (worst, rounding) = (verdict.worst.unwrap(), verdict.rounding.unwrap());
         prop_assert!(worst <= rounding + 1e-6, "Φ{worst} where rounding explains Φ{rounding}\n{text}");
         let neighbours = verdict.neighbours.unwrap();
-        prop_assert_eq!(neighbours.with_six, neighbours.with_six_wanted);
+        prop_assert_eq!(neighbours.with_six, neighbours.with_six_nominal);
         // Both ends of a distance may be rounded; the chord of a step of the rotary is shorter on the pitch's diameter.
         for extreme in [neighbours.min, neighbours.max].into_iter().flatten() {
-            prop_assert!((extreme.distance - neighbours.wanted).abs() <= rounding + 1e-6, "{extreme:?}\n{text}");
+            prop_assert!((extreme.distance - neighbours.nominal).abs() <= rounding + 1e-6, "{extreme:?}\n{text}");
         }
     }
 }
@@ -186,12 +186,12 @@ fn codes(verdict: &Verdict) -> Vec<String> {
 fn a_fault_in_the_macro_is_named() {
     let faults = [
         ("#18 LT 2*#14", "#18 LT #14", "row-missing", "rows 9 to 17 are missing"),
-        ("ROUND[3.14159265", "FUP[3.14159265", "row-angle", "18° apart, 20.0000° wanted"),
+        ("ROUND[3.14159265", "FUP[3.14159265", "row-angle", "18° apart, nominal 20.0000°"),
         ("#15=180/#14", "#15=FIX[178/#14]", "row-angle", "right for a diameter of 105.26 mm"),
         ("*#16/2 (WHERE", "*0 (WHERE", "row-group", "no row is staggered: all 18 rows begin at x 0.000"),
         ("#18=#18+1", "#18=#18+2", "row-group", "all 9 rows begin at x 0.000"),
-        ("/[2*#14]/COS[30.]", "/[2*#14]/COS[31.]", "row-pitch", "the holes of a row stand 20.36"),
-        ("#18*#15]", "#18*[#15+.5]]", "row-angle", "20.5° apart, 20.0000° wanted"),
+        ("/[2*#14]/COS[30.]", "/[2*#14]/COS[31.]", "row-pitch", "the holes of a row are 20.36"),
+        ("#18*#15]", "#18*[#15+.5]]", "row-angle", "20.5° apart, nominal 20.0000°"),
     ];
     for (from, to, code, told) in faults {
         let verdict = verdict(SMALL, &[(from, to)]);
@@ -229,7 +229,7 @@ fn called(changes: &[(&str, &str)], modes: &str) -> (u32, String) {
         run(&Request::new("O1.nc", text.as_bytes(), machine), &mut Programs(&package), &mut moves).unwrap();
     match &done.outcome {
         Outcome::Alarm(stopped) => match &stopped.alarm {
-            Alarm::Raised { number, text, .. } => {
+            Alarm::UserAlarm { number, text, .. } => {
                 assert_eq!(moves.0, 0, "moved before the alarm: {call}");
                 (u32::from(*number), text.to_string())
             }
@@ -241,7 +241,7 @@ fn called(changes: &[(&str, &str)], modes: &str) -> (u32, String) {
 
 struct Count(u32);
 
-impl Sink for Count {
+impl EventSink for Count {
     fn event(&mut self, event: &Event<'_>) {
         self.0 += u32::from(matches!(event.kind, EventKind::Rapid { .. } | EventKind::Feed { .. }));
     }
@@ -309,7 +309,7 @@ struct Turns {
     turns: u32,
 }
 
-impl Sink for Turns {
+impl EventSink for Turns {
     fn event(&mut self, event: &Event<'_>) {
         let to = match &event.kind {
             EventKind::Rapid { to } | EventKind::Feed { to, .. } => to,
@@ -359,7 +359,7 @@ fn a_diameter_changed_at_the_machine_closes_again() {
     let mut package = families::emit(&job(SMALL));
     package.programs[0].text = package.programs[0].text.replace("D100.", "D130.").replace("I100.", "I130.");
     package.machine = package.machine.replace("-50.0", "-65.0");
-    let verdict = check(&job(&other), &package).unwrap().judgement.into_holes().unwrap();
+    let verdict = check(&job(&other), &package).unwrap().verdict.into_holes().unwrap();
     assert_eq!(verdict.verdict, Answer::Pass, "{:?}", verdict.findings);
 }
 

@@ -2,11 +2,11 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use gcode_sim::exec::{Outcome, Progress};
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, Sink};
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{Request, run};
+use gcode_control::{Outcome, Progress};
+use gcode_inspect::machine::Machine;
+use gcode_lang::motion::{Event, EventSink};
+use gcode_lang::program::NoLibrary;
+use gcode_session::{Request, run};
 use gcode_tests::{expect, fuzz};
 use proptest::prelude::*;
 
@@ -168,9 +168,9 @@ proptest! {
 /// Somebody who ends the run at its first move.
 struct Impatient(Arc<Progress>);
 
-impl Sink for Impatient {
+impl EventSink for Impatient {
     fn event(&mut self, _: &Event<'_>) {
-        self.0.stop.store(true, Ordering::Relaxed);
+        self.0.cancel.store(true, Ordering::Relaxed);
     }
 }
 
@@ -186,7 +186,7 @@ fn a_run_ended_from_outside_tells_what_is_known_so_far() {
     assert_eq!(done.control.blocks(), 4096);
     assert_eq!(done.control.work_position(0), 10.0);
     assert_eq!(done.control.variable(1).unwrap().number(), 1024.0);
-    let finding = done.stopped().unwrap();
+    let finding = done.stop_finding().unwrap();
     assert_eq!((finding.code.as_str(), progress.blocks.load(Ordering::Relaxed)), ("limit", 4096));
-    assert!(finding.message.contains("ended from outside after 4096 blocks"), "{}", finding.message);
+    assert!(finding.message.contains("interrupted after 4096 blocks"), "{}", finding.message);
 }

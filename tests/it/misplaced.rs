@@ -6,14 +6,14 @@ use proptest::prelude::*;
 
 use gcode_gen::check::check;
 use gcode_gen::families;
-use gcode_sim::job::Job;
-use gcode_sim::machine::{Machine, Placement};
-use gcode_sim::part::hole::{Hole, HoleList, Unit};
-use gcode_sim::part::reference::Reference;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{Request, simulate};
-use gcode_sim::units::Deg;
-use gcode_sim::verify::{Tolerances, Verdict};
+use gcode_inspect::machine::{Machine, Placement};
+use gcode_inspect::verify::{Tolerances, Verdict};
+use gcode_lang::program::NoLibrary;
+use gcode_lang::units::Deg;
+use gcode_part::Reference;
+use gcode_part::job::Job;
+use gcode_part::{Hole, HoleList, Unit};
+use gcode_session::{Request, simulate};
 
 /// One axial hole at radius `r` with its mouth at height `y` and 15 deep, drilled at each angle of B.
 fn drilled(r: f64, y: f64, angles: &[f64], machine: &Machine, reference: &Reference) -> Verdict {
@@ -53,7 +53,7 @@ fn phis(lines: &str, angles: &[f64]) -> Vec<f64> {
     let machine = misplaced(lines);
     let verdict = drilled(300.0, 320.0, angles, &machine, &wanted(300.0, 320.0, angles));
     assert_eq!(verdict.holes.len(), angles.len(), "{:?}", verdict.missing);
-    verdict.holes.iter().map(|hole| hole.phi).collect()
+    verdict.holes.iter().map(|hole| hole.position_deviation).collect()
 }
 
 fn near(found: &[f64], expected: &[f64]) {
@@ -78,7 +78,7 @@ fn a_part_shifted_along_the_hole_changes_its_depth() {
         let machine = misplaced(&format!("shift = [0, {shift}, 0]"));
         let verdict = drilled(300.0, 320.0, &[0.0, 180.0], &machine, &wanted(300.0, 320.0, &[0.0, 180.0]));
         for hole in &verdict.holes {
-            assert!(hole.phi < 1e-9 && (hole.depth_error - deeper).abs() < 1e-9, "{hole:?}");
+            assert!(hole.position_deviation < 1e-9 && (hole.depth_error - deeper).abs() < 1e-9, "{hole:?}");
         }
     }
 }
@@ -139,7 +139,7 @@ proptest! {
         let verdict = drilled(r, y, &angles, &machine, &reference);
         prop_assert_eq!(verdict.holes.len(), angles.len());
         for hole in &verdict.holes {
-            prop_assert!(hole.phi < 1e-8 && hole.depth_error.abs() < 1e-8, "{:?}", hole);
+            prop_assert!(hole.position_deviation < 1e-8 && hole.depth_error.abs() < 1e-8, "{:?}", hole);
         }
     }
 }
@@ -160,7 +160,7 @@ fn a_machine_with_errors_moves_the_holes_and_nothing_else_is_found() {
         );
         let mut package = package.clone();
         package.machine = format!("{plain}\n{errors}");
-        let verdict = || check(&job, &package).unwrap().judgement.into_holes().unwrap();
+        let verdict = || check(&job, &package).unwrap().verdict.into_holes().unwrap();
         let found = verdict();
         let other: Vec<_> = found
             .diagnostics

@@ -2,7 +2,7 @@
 //! the programs that other tests are about.
 use std::path::{Path, PathBuf};
 
-use gcode_sim::changes::{Change, Record, Revision, changes};
+use gcode_review::{Change, Record, Revision, changes};
 use gcode_tests::workspace;
 
 use crate::accepted::{folders, mains, request};
@@ -118,7 +118,7 @@ fn slip(block: &str, slip: Slip) -> Option<String> {
 fn is_named(slip: Slip, found: &[Change]) -> bool {
     let [only] = found else { return false };
     match slip {
-        Slip::Stop => only.code == "stop" && only.message.starts_with("the stop M00 is no longer there"),
+        Slip::Stop => only.code == "stop" && only.message.starts_with("the stop M00 is removed"),
         Slip::Feed => only.code == "feed",
         // A tool of another diameter or length: the entry names both.
         Slip::Tool => only.message.contains("made by T") || only.message.starts_with("tool T"),

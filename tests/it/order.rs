@@ -1,7 +1,7 @@
 //! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what
 //! the cut is made with otherwise because of that.
-use gcode_sim::changes::Change;
-use gcode_tests::changes::{found, told};
+use gcode_review::Change;
+use gcode_tests::changes::{find_changes, messages};
 
 /// The lines of an entry, before and now.
 fn lines(change: &Change) -> [Option<u32>; 2] {
@@ -28,27 +28,28 @@ const SWAPPED: &str = "X60.\nX30.\nX100.";
 #[test]
 fn passes_in_another_order_are_one_entry_at_their_own_block() {
     let old = reamed([LIST; 3]);
-    assert_eq!(told(&old, &old), [""; 0]);
+    assert_eq!(messages(&old, &old), [""; 0]);
     for tool in 0..3 {
         let mut lists = [LIST; 3];
         lists[tool] = SWAPPED;
-        let found = found(&old, &reamed(lists));
+        let found = find_changes(&old, &reamed(lists));
         let number = tool + 1;
-        let message = format!("hole 2: pass {number} of 3, by T{number}, made at another time, after hole 3");
+        let message =
+            format!("hole 2: pass {number} of 3, by T{number}, made in a different order, after hole 3");
         assert_eq!(found.len(), 1, "{found:#?}");
         assert_eq!((&*found[0].code, &found[0].message), ("hole-order", &message));
         let line = 8 + 8 * tool as u32;
         assert_eq!(lines(&found[0]), [Some(line), Some(line + 1)]);
     }
     // The hole with all its passes.
-    let found = found(&old, &reamed([SWAPPED; 3]));
+    let found = find_changes(&old, &reamed([SWAPPED; 3]));
     assert_eq!(found.len(), 1, "{found:#?}");
-    assert_eq!(found[0].message, "hole 2: made at another time, after hole 3");
+    assert_eq!(found[0].message, "hole 2: made in a different order, after hole 3");
     assert_eq!(lines(&found[0]), [Some(8), Some(9)]);
     // Spotted and reamed in the new order, drilled in the old one.
     assert_eq!(
-        told(&old, &reamed([SWAPPED, LIST, SWAPPED])),
-        ["hole-order: hole 2: passes 1 and 3 of 3, by T1 and T3, made at another time, after hole 3"]
+        messages(&old, &reamed([SWAPPED, LIST, SWAPPED])),
+        ["hole-order: hole 2: passes 1 and 3 of 3, by T1 and T3, made in a different order, after hole 3"]
     );
 }
 
@@ -59,8 +60,8 @@ fn a_tool_that_begins_with_another_hole_says_so() {
         "G85 Z-20. R2. X100. Y0 F100\nX10.\nX30.\nX60.",
     );
     assert_eq!(
-        told(&reamed([LIST; 3]), &last_first),
-        ["hole-order: hole 4: pass 3 of 3, by T3, made at another time, first of T3's"]
+        messages(&reamed([LIST; 3]), &last_first),
+        ["hole-order: hole 4: pass 3 of 3, by T3, made in a different order, first of T3"]
     );
 }
 
@@ -75,18 +76,14 @@ fn a_hole_made_at_another_time_is_told_with_what_it_is_made_with_then() {
     };
     let (early, late) = (program("X30.\n", "X70.\n"), program("", "X30.\nX70.\n"));
     assert_eq!(
-        told(&early, &late),
-        [
-            "hole-order: hole 2: made at another time, after hole 3, with F80 instead of F100, M03 S500 instead of M03 S900, \
-            coolant off instead of M08"
-        ]
+        messages(&early, &late),
+        ["hole-order: hole 2: made in a different order, after hole 3, with F80 instead of F100, M03 S500 \
+          instead of M03 S900, coolant off instead of M08"]
     );
     assert_eq!(
-        told(&late, &early),
-        [
-            "hole-order: hole 3: made at another time, after hole 1, with F100 instead of F80, M03 S900 instead of M03 S500, \
-            M08 instead of coolant off"
-        ]
+        messages(&late, &early),
+        ["hole-order: hole 3: made in a different order, after hole 1, with F100 instead of F80, M03 S900 \
+          instead of M03 S500, M08 instead of coolant off"]
     );
 }
 
@@ -101,23 +98,22 @@ fn milled(first: &str, between: &str, then: &str) -> String {
 
 #[test]
 fn swapped_sections_are_one_entry() {
-    let found = found(&milled(LEFT, "", RIGHT), &milled(RIGHT, "", LEFT));
+    let found = find_changes(&milled(LEFT, "", RIGHT), &milled(RIGHT, "", LEFT));
     assert_eq!(found.len(), 1, "{found:#?}");
-    let message = "8 moves are made later than before, the first a rapid to X10.0000 Y10.0000";
+    let message = "8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000";
     assert_eq!((&*found[0].code, &*found[0].message), ("move-order", message));
     assert_eq!(lines(&found[0]), [Some(5), Some(13)]);
     // In reverse order, two of three sections change places with one.
     let last = RIGHT.replace("Y10.", "Y50.").replace("Y30.", "Y70.");
     assert_eq!(
-        told(&milled(LEFT, RIGHT, &last), &milled(&last, RIGHT, LEFT)),
-        [
-            "move-order: 16 moves in 2 places are made at other times, the first a rapid to X10.0000 Y10.0000, later"
-        ]
+        messages(&milled(LEFT, RIGHT, &last), &milled(&last, RIGHT, LEFT)),
+        ["move-order: 16 moves in 2 places are executed in a different order, the first a rapid to \
+          X10.0000 Y10.0000, later"]
     );
     // What is milled twice and once less is no other order.
     let twice = milled(LEFT, LEFT, RIGHT);
     let codes: Vec<_> =
-        self::found(&twice, &milled(LEFT, "", RIGHT)).into_iter().map(|one| one.code).collect();
+        self::find_changes(&twice, &milled(LEFT, "", RIGHT)).into_iter().map(|one| one.code).collect();
     assert!(!codes.is_empty() && codes.iter().all(|code| code == "move-lost"), "{codes:?}");
 }
 
@@ -128,11 +124,11 @@ fn a_section_is_told_with_what_it_is_made_with_then() {
         |number: u32, section: &str| format!("T{number} M6\nS{number}00 M3\nG43 H{number} Z50.\n{section}");
     let (left, right) = (tool(3, LEFT), tool(4, RIGHT));
     assert_eq!(
-        told(&milled(&left, "", &right), &milled(&right, "", &left)),
-        ["move-order: 8 moves are made later than before, the first a rapid to X10.0000 Y10.0000"]
+        messages(&milled(&left, "", &right), &milled(&right, "", &left)),
+        ["move-order: 8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000"]
     );
     // The sections change places, their tools don't.
-    let others = told(&milled(&left, "", &right), &milled(&tool(3, RIGHT), "", &tool(4, LEFT)));
+    let others = messages(&milled(&left, "", &right), &milled(&tool(3, RIGHT), "", &tool(4, LEFT)));
     let order: Vec<_> = others.iter().filter(|entry| entry.starts_with("move-order: ")).collect();
     assert!(
         order.iter().any(|entry| {
@@ -141,14 +137,14 @@ fn a_section_is_told_with_what_it_is_made_with_then() {
         "{others:#?}"
     );
     let between = "S500\nM8\n";
-    let found = told(&milled(LEFT, between, RIGHT), &milled(RIGHT, between, LEFT));
+    let found = messages(&milled(LEFT, between, RIGHT), &milled(RIGHT, between, LEFT));
     assert!(
         found.contains(
-            &"move-order: 8 moves are made later than before, the first a rapid to X10.0000 Y10.0000, with M03 S500 instead of \
-            M03 S900, M08 instead of coolant off"
+            &"move-order: 8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000, \
+              with M03 S500 instead of M03 S900, M08 instead of coolant off"
                 .to_owned()
         ),
         "{found:#?}"
     );
-    assert!(found.contains(&"spindle: S500 comes later than before".to_owned()), "{found:#?}");
+    assert!(found.contains(&"spindle: S500 is executed later than before".to_owned()), "{found:#?}");
 }

@@ -261,9 +261,9 @@ fn a_lost_stop_is_marked_where_it_was() {
          `${mark.closest('.half').id} ${mark.textContent}`)",
     );
     let wanted = [
-        "old-0-4 stop not made here by the new program",
-        "old-0-6 stop made otherwise by the new program",
-        "new-0-5 stop made otherwise by the old program",
+        "old-0-4 stop not executed here by the new program",
+        "old-0-6 stop executed differently by the new program",
+        "new-0-5 stop executed differently by the old program",
     ];
     assert_eq!(marks, json!(wanted));
     let listed = browser.run(
@@ -271,9 +271,9 @@ fn a_lost_stop_is_marked_where_it_was() {
          `${stop.querySelector('code').textContent} ${stop.querySelector('.mark').textContent}`)",
     );
     let wanted = [
-        "M00 not made here by the new program",
-        "#3006 made otherwise by the new program",
-        "#3006 made otherwise by the old program",
+        "M00 not executed here by the new program",
+        "#3006 executed differently by the new program",
+        "#3006 executed differently by the old program",
     ];
     assert_eq!(listed, json!(wanted));
 
@@ -332,7 +332,8 @@ fn a_long_table_is_printed_in_part_and_says_so() {
     browser.click(".holes th:nth-child(1) button");
     assert_eq!(browser.run(rows), json!([310, "310", ""]));
     browser.command("Emulation.setEmulatedMedia", &json!({"media": "print"}));
-    let note = "The first 300 of 310 rows are printed, as they were sorted; the others are on the screen.";
+    let note = "The first 300 of 310 rows are printed, in the order of the screen; the others are on the \
+                screen only.";
     assert_eq!(browser.run(rows), json!([300, "310", note]));
     is_quiet(&browser);
 }
@@ -366,11 +367,11 @@ fn what_is_worst_and_what_nobody_executed_stands_first() {
     let marks = browser.run(
         "return [...document.querySelectorAll('#told .findings .mark')].map((mark) => mark.textContent)",
     );
-    assert_eq!(marks, json!(["not of the old program"]));
+    assert_eq!(marks, json!(["not in the old program"]));
 
     let answers = browser
         .run("return [...document.querySelectorAll('header .answer')].map((answer) => answer.textContent)");
-    let open = "Executed by neither run, so nothing is known of them: 1 changed block";
+    let open = "Executed by neither run, effect unknown: 1 changed block";
     assert_eq!(answers[1], open);
     browser.click("header .answer a");
     let seen = browser
@@ -439,7 +440,7 @@ fn a_program_alone_has_a_page_too() {
     let judged = page(place.path(), &format!("verify {program} --reference {example}/job.toml"));
     let text = std::fs::read_to_string(&judged).unwrap();
     assert!(
-        text.contains("PASS, 5 of 5 wanted holes good")
+        text.contains("PASS, 5 of 5 holes in tolerance")
             && text.contains("Predicted by simulation, not measured")
     );
     assert!(!text.contains("id=\"changes\"") && !text.contains("canvas-old"));

@@ -1,17 +1,17 @@
 //! The emitted pin-hole programs on the control: edited by hand, called wrongly, with the printed equation, counted.
 use std::path::Path;
 
+use gcode_control::Outcome;
 use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::Alarm;
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, Position, Sink};
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::session::{Request, Run, run, simulate};
-use gcode_sim::verify::{Answer, Tolerances, Verdict};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_part::NominalPart;
+use gcode_part::job::Job;
+use gcode_session::{Request, Run, run, simulate};
 
 /// The main job of the examples.
 fn melon() -> String {
@@ -44,7 +44,7 @@ fn edited(text: &str, changes: &[(u32, &str, &str, &str)]) -> Package {
 }
 
 fn verdict(package: &Package, reference: &str) -> Verdict {
-    check(&job(reference), package).unwrap().judgement.into_holes().unwrap()
+    check(&job(reference), package).unwrap().verdict.into_holes().unwrap()
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn the_printed_equation_8_fails() {
     let package = edited(&melon(), &[(8101, "#24=", right, printed), (8102, "#24=", right, printed)]);
     let checked = check(&job(&melon()), &package).unwrap();
     assert!(checked.refusals.concat().contains("rapid through the part"), "{}", checked.refusals.concat());
-    let verdict = checked.judgement.into_holes().unwrap();
+    let verdict = checked.verdict.into_holes().unwrap();
     assert_eq!(verdict.verdict, Answer::Fail);
     assert_eq!(verdict.missing, ["1", "2", "3", "4", "5"], "no hole is anywhere near its place");
 }
@@ -106,13 +106,13 @@ fn a_table_that_turns_the_other_way_fails() {
 #[test]
 fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
     let text = melon();
-    let reference = Wanted::of_job(&job(&text)).unwrap().into_holes().unwrap();
+    let reference = NominalPart::from_job(&job(&text)).unwrap().into_holes().unwrap();
     let package = families::emit(&job(&text));
     let main = package.main().unwrap();
     for machine in [Machine::default(), Machine::parse(&package.machine).unwrap()] {
         for signed in [false, true] {
             let mut request = Request::new("O8100.nc", main.text.as_bytes(), machine.clone());
-            request.settings.signed_angles = signed;
+            request.settings.returns_signed_angles = signed;
             let done = simulate(&request, &mut Programs(&package), reference.surface).unwrap();
             let verdict = done.verify(&reference, Tolerances::of(&reference, None), &machine);
             assert_eq!(verdict.verdict, Answer::Pass, "{:?}", verdict.findings);
@@ -171,7 +171,7 @@ struct Rectangles {
     rapids: u32,
 }
 
-impl Sink for Rectangles {
+impl EventSink for Rectangles {
     fn event(&mut self, event: &Event<'_>) {
         let to = match &event.kind {
             EventKind::Rapid { to } => {
@@ -242,7 +242,7 @@ fn refused(before: &str, call: &str, from: &str, to: &str) -> (u16, String) {
     assert_eq!(done.control.moves(), 0, "{changed} moves something before it is refused");
     match done.outcome {
         Outcome::Alarm(stopped) => match stopped.alarm {
-            Alarm::Raised { number, text, .. } => (number, text),
+            Alarm::UserAlarm { number, text, .. } => (number, text),
             other => panic!("{changed}: {other}"),
         },
         other => panic!("{changed} is not refused: {other:?}"),
@@ -314,7 +314,7 @@ fn a_hole_is_refused_where_the_head_does_not_come_to_its_angle() {
     let request = Request::new("O1.nc", format!("O1\nG21\n{CALL}\nM30\n").into_bytes(), Machine::default());
     let done = run(&request, &mut Programs(&package), &mut ()).unwrap();
     let Outcome::Alarm(stopped) = done.outcome else { panic!("{:?}", done.outcome) };
-    let Alarm::Raised { number, text, .. } = stopped.alarm else { panic!("{}", stopped.alarm) };
+    let Alarm::UserAlarm { number, text, .. } = stopped.alarm else { panic!("{}", stopped.alarm) };
     assert_eq!((number, text.as_str()), (16, "HEAD NOT AT ANGLE FOR R"));
     assert_eq!(done.control.moves(), 0);
 }

@@ -1,7 +1,7 @@
 //! Files as senders, editors and memory dumps leave them: their line ends, their bytes, their sizes.
-use gcode_sim::exec::Outcome;
-use gcode_sim::source::SourceId;
-use gcode_sim::syntax::{parse, print};
+use gcode_control::Outcome;
+use gcode_lang::source::SourceId;
+use gcode_lang::syntax::{parse, print};
 use gcode_tests::expect::{self, Ran};
 use proptest::prelude::*;
 

@@ -1,12 +1,12 @@
 //! What a run alone doesn't show: what a program finds as it was left, places that are the same here alone, pulses,
 //! guards that no run needed.
-use gcode_sim::changes::{changes, unexecuted};
-use gcode_tests::changes::{revision, told};
+use gcode_review::{changes, unexecuted};
+use gcode_tests::changes::{messages, revision};
 
 /// `PROGRAM` with one thing written otherwise.
 fn changed(from: &str, to: &str) -> Vec<String> {
     assert_eq!(PROGRAM.matches(from).count(), 1, "{from}");
-    told(PROGRAM, &PROGRAM.replace(from, to))
+    messages(PROGRAM, &PROGRAM.replace(from, to))
 }
 
 /// Two tools, the second one started anew.
@@ -16,12 +16,12 @@ const PROGRAM: &str = "O1\nG90 G21 G54\nG17 G40 G49 G80\nG10 L2 P1 X0 Y0\nT1 M6\
 #[test]
 fn a_spindle_that_is_not_started_again_behind_a_tool_change_is_told() {
     assert_eq!(changed("S3000 M3", "S3000"), ["spindle: S3000 without M03 or M04 instead of M03 S3000"]);
-    assert_eq!(told(PROGRAM, PROGRAM), Vec::<String>::new());
+    assert_eq!(messages(PROGRAM, PROGRAM), Vec::<String>::new());
 }
 
 #[test]
 fn a_mode_that_is_no_longer_commanded_is_told_with_its_block() {
-    let relies = "the program now relies on what the control was left in";
+    let relies = "the program now depends on the previous program's modes";
     assert_eq!(
         changed("G90 G21 G54\n", ""),
         [format!("start: G90, G21 and G54 are no longer commanded before the first move: {relies}")]
@@ -33,10 +33,10 @@ fn a_mode_that_is_no_longer_commanded_is_told_with_its_block() {
     // Later than before, but for a move that needs it.
     let late = PROGRAM.replace("G90 G21 G54", "G21 G54").replace("X10.\n", "G90 X10.\n");
     assert_eq!(
-        told(PROGRAM, &late),
+        messages(PROGRAM, &late),
         [format!("start: G90 is no longer commanded before the first move: {relies}")]
     );
-    assert_eq!(told(&late, PROGRAM), Vec::<String>::new(), "what is commanded earlier relies on less");
+    assert_eq!(messages(&late, PROGRAM), Vec::<String>::new(), "what is commanded earlier relies on less");
 }
 
 #[test]
@@ -44,23 +44,21 @@ fn modes_commanded_elsewhere_before_the_first_move_are_the_same() {
     let called = "M98 P2\nG17 G40 G49 G80\n";
     let (block, end) = ("G90 G21 G54\nG17 G40 G49 G80\n", "M30\nO2\nG90\nG21 G54\nM99\n");
     let other = PROGRAM.replace(block, called).replace("M30\n", end);
-    assert_eq!(told(PROGRAM, &other), Vec::<String>::new());
+    assert_eq!(messages(PROGRAM, &other), Vec::<String>::new());
     // In the block of the move itself.
     let with = PROGRAM.replace("G90 G21 G54\n", "").replace("G0 X0 Y0", "G90 G21 G54 G0 X0 Y0");
-    assert_eq!(told(PROGRAM, &with), Vec::<String>::new());
+    assert_eq!(messages(PROGRAM, &with), Vec::<String>::new());
 }
 
 #[test]
 fn an_axis_that_is_no_longer_sent_anywhere_is_told() {
     assert_eq!(
         changed("G0 X0 Y0\n", "G0\n"),
-        [
-            "start: X and Y are no longer sent to a place before the first move: the tool goes on from wherever they stand"
-        ]
+        ["start: X and Y are no longer positioned before the first move: the start position is undefined"]
     );
     assert_eq!(
         changed("G0 X0 Y0\n", "G91 G0 X0 Y0\nG90\n")[0],
-        "start: X and Y are no longer sent to a place before the first move: the tool goes on from wherever they stand"
+        "start: X and Y are no longer positioned before the first move: the start position is undefined"
     );
 }
 
@@ -68,10 +66,8 @@ fn an_axis_that_is_no_longer_sent_anywhere_is_told() {
 fn an_offset_that_is_no_longer_written_is_told_though_it_is_the_same_here() {
     assert_eq!(
         changed("G10 L2 P1 X0 Y0\n", ""),
-        [
-            "start: G10 L2 P1 X and G10 L2 P1 Y are no longer written before the first move: the program now relies on the \
-          value that was left"
-        ]
+        ["start: G10 L2 P1 X and G10 L2 P1 Y are no longer written before the first move: the program now \
+          depends on the value left by the previous program"]
     );
 }
 
@@ -81,21 +77,21 @@ fn codes_that_end_in_the_same_place_here_are_told() {
     for (old, new, wanted) in [
         ("G91 G28 Z0", "G91 G30 Z0", "g-code: G30 instead of G28"),
         ("G91 G30 P2 Z0", "G91 G30 P3 Z0", "g-code: G30 P3 instead of G30 P2"),
-        ("G60 X5.", "G0 X5.", "path-mode: G60 is no longer there"),
-        ("G0 X5.", "G60 X5.", "path-mode: G60 is new"),
+        ("G60 X5.", "G0 X5.", "path-mode: G60 is removed"),
+        ("G0 X5.", "G60 X5.", "path-mode: G60 is added"),
         ("M19 R90.", "M19 R91.", "m-code: M19 R91 instead of M19 R90"),
         ("#1100=1\nG4 P100\n#1100=0", "#1101=1\nG4 P100\n#1101=0", "signal: #1101=1 instead of #1100=1"),
-        ("#1132=1\n#1132=0", "#1132=0", "signal: #1132=1 is no longer there"),
+        ("#1132=1\n#1132=0", "#1132=0", "signal: #1132=1 is removed"),
         ("#1100=1", "#1101=1", "signal: #1101=1 instead of #1100=1"),
     ] {
-        let found = told(&with(old), &with(new));
+        let found = messages(&with(old), &with(new));
         assert_eq!(found[0], wanted, "{old} -> {new}: {found:?}");
         let pulse = if old.contains("G4") { 2 } else { 1 };
         assert_eq!(found.len(), pulse, "{old} -> {new}: {found:?}");
-        assert_eq!(told(&with(old), &with(old)), Vec::<String>::new(), "{old}");
+        assert_eq!(messages(&with(old), &with(old)), Vec::<String>::new(), "{old}");
     }
     // Where the moves are others these are the one entry.
-    let found = told(&with("G91 G28 Z0"), &with("G91"));
+    let found = messages(&with("G91 G28 Z0"), &with("G91"));
     assert!(found.iter().all(|entry| !entry.contains("G28")), "{found:?}");
 }
 
@@ -103,7 +99,7 @@ fn codes_that_end_in_the_same_place_here_are_told() {
 fn another_o_number_is_another_program() {
     assert_eq!(
         changed("O1\n", "O2\n"),
-        ["program: O0002 instead of O0001: on the control that is another program"]
+        ["program: O0002 instead of O0001: a different program on the control"]
     );
 }
 

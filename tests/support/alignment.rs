@@ -1,15 +1,15 @@
 //! The programs of an alignment on a part that stands somehow, and what they leave in the control.
+use gcode_control::{Limits, Observer, Outcome};
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::Code;
-use gcode_sim::exec::{Limits, Outcome, Watcher};
-use gcode_sim::holes::Extractor;
-use gcode_sim::job::{Alignment, Job};
-use gcode_sim::machine::{Machine, Placement};
-use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Request, Run, run_watched};
-use gcode_sim::units::Deg;
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::{Machine, Placement};
+use gcode_lang::alarm::AlarmCode;
+use gcode_lang::units::Deg;
+use gcode_part::Surface;
+use gcode_part::job::{Alignment, Job};
+use gcode_session::{Request, Run, run_observed};
 
 use crate::workspace;
 
@@ -51,16 +51,16 @@ impl Bench {
 
     /// A main program on a part that stands so, with these variables in the control.
     pub fn run(&self, main: u32, part: &Placement, set: &[(u32, f64)]) -> Run {
-        self.watched(main, part, set, &mut ())
+        self.run_observed(main, part, set, &mut ())
     }
 
     /// The same with somebody who looks on from block to block.
-    pub fn watched(
+    pub fn run_observed(
         &self,
         main: u32,
         part: &Placement,
         set: &[(u32, f64)],
-        watcher: &mut impl Watcher,
+        watcher: &mut impl Observer,
     ) -> Run {
         let machine = Machine { part: *part, ..Machine::parse(&self.package.machine).unwrap() };
         let text = self.package.program(main).unwrap().text.clone().into_bytes();
@@ -68,13 +68,13 @@ impl Bench {
         request.variables = set.to_vec();
         request.limits = self.limits;
         let surface = Surface::Ellipsoid { a: self.job.surface.a, b: self.job.surface.b };
-        let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
-        run_watched(&request, &mut Programs(&self.package), &mut probe, watcher).unwrap()
+        let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
+        run_observed(&request, &mut Programs(&self.package), &mut probe, watcher).unwrap()
     }
 }
 
 /// A part that is shifted (mm) and then tilted about x, y and z (degrees).
-pub fn standing(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
+pub fn placement(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
     Placement { shift: shift.into(), tilt: tilt.map(Deg), ..Placement::default() }
 }
 
@@ -82,7 +82,7 @@ pub fn standing(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
 pub fn alarm(run: &Run) -> Option<u16> {
     match &run.outcome {
         Outcome::Alarm(stopped) => match stopped.alarm.row().code {
-            Code::Mc(number) => Some(number),
+            AlarmCode::Mc(number) => Some(number),
             other => panic!("{other}"),
         },
         Outcome::End => None,
@@ -100,7 +100,7 @@ pub fn value(run: &Run, number: u32) -> f64 {
 }
 
 /// What stands in #500 to #599 at the end of a run, for the next one.
-pub fn kept(run: &Run) -> Vec<(u32, f64)> {
+pub fn kept_variables(run: &Run) -> Vec<(u32, f64)> {
     (500..600).filter(|n| !vacant(run, *n)).map(|n| (n, value(run, n))).collect()
 }
 

@@ -1,13 +1,13 @@
 //! Draws a burr's flutes as its job's programs grind them, or as the program `case.nc` does: cases of kind `picture` that have
 //! a `job.toml`.
+use gcode_draw::{Scene, helix_graph, side_view, tip_view};
 use gcode_gen::families;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::picture::{Scene, helix_graph, side_view, tip_view};
-use gcode_sim::program::NoLibrary;
+use gcode_inspect::machine::Machine;
+use gcode_lang::program::NoLibrary;
+use gcode_part::NominalPart;
+use gcode_part::job::Job;
+use gcode_session::{Request, grind};
 use gcode_sim::report::flute_view;
-use gcode_sim::session::{Request, grind};
 
 /// The scene of one view; the job's form must be `moves`, for there is no library here.
 pub(super) fn scene(job: &str, program: Option<String>, view: &str) -> Scene {
@@ -17,7 +17,9 @@ pub(super) fn scene(job: &str, program: Option<String>, view: &str) -> Scene {
     let machine = Machine::parse(&package.machine).unwrap();
     let text = program.unwrap_or_else(|| main.text.clone());
     let request = Request::new("O8400.nc", text.as_bytes(), machine);
-    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("the job is no burr") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("the job is no burr")
+    };
     let grinding = grind(&request, &mut NoLibrary, &wanted).unwrap();
     let view_of = flute_view::of("O8400.nc", &grinding, &grinding.verify());
     match view {

@@ -1,8 +1,8 @@
 //! What `diff` finds between two programs, as the tests of it ask.
-use gcode_sim::changes::{Change, Revision, changes};
-use gcode_sim::machine::Machine;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::Request;
+use gcode_inspect::machine::Machine;
+use gcode_lang::program::NoLibrary;
+use gcode_review::{Change, Revision, changes};
+use gcode_session::Request;
 
 /// From how many mm on a difference is one.
 const TOLERANCE: f64 = 0.0001;
@@ -18,19 +18,19 @@ fn revision_on(machine: &Machine, text: &str) -> Revision {
 }
 
 /// What is different between two programs.
-pub fn found(old: &str, new: &str) -> Vec<Change> {
-    found_on(&Machine::default(), old, new)
+pub fn find_changes(old: &str, new: &str) -> Vec<Change> {
+    find_changes_on(&Machine::default(), old, new)
 }
 
 /// What is different between two programs on a machine.
-pub fn found_on(machine: &Machine, old: &str, new: &str) -> Vec<Change> {
+pub fn find_changes_on(machine: &Machine, old: &str, new: &str) -> Vec<Change> {
     let [old, new] = [old, new].map(|text| revision_on(machine, text).record);
     changes(&old, &new, TOLERANCE)
 }
 
 /// What is different, as `code: message`.
-pub fn told(old: &str, new: &str) -> Vec<String> {
-    texts(&found(old, new))
+pub fn messages(old: &str, new: &str) -> Vec<String> {
+    texts(&find_changes(old, new))
 }
 
 /// Entries as `code: message`.

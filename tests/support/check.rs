@@ -3,9 +3,9 @@
 //! Programs it calls stand in the same file. A comment `(@KEY=VALUE)` is a setting of the control.
 use std::fmt::Write as _;
 
-use gcode_sim::check::{Checked, check};
-use gcode_sim::program::NoLibrary;
-use gcode_sim::source::Span;
+use gcode_lang::program::NoLibrary;
+use gcode_lang::source::Span;
+use gcode_lint::{CheckResult, check};
 
 use crate::{Case, expect};
 
@@ -16,7 +16,7 @@ pub(crate) fn run(case: &Case) {
     let mut shown = String::new();
     for finding in &checked.findings {
         let severity = finding.severity.name();
-        if let Some(place) = &finding.place {
+        if let Some(place) = &finding.backtrace {
             writeln!(shown, "{}", at(&checked, place.block)).unwrap();
         }
         writeln!(shown, "  {severity} {}: {}", finding.code, finding.message).unwrap();
@@ -26,13 +26,13 @@ pub(crate) fn run(case: &Case) {
         finding.help.iter().for_each(|help| writeln!(shown, "  help: {help}").unwrap());
     }
     if checked.findings.is_empty() {
-        shown.push_str("nothing found\n");
+        shown.push_str("no findings\n");
     }
     case.snapshot("findings", &shown);
 }
 
-fn at(checked: &Checked, block: Span) -> String {
+fn at(checked: &CheckResult, block: Span) -> String {
     let sources = checked.memory.sources();
     let program = checked.program(block).map_or_else(String::new, |program| program.label());
-    format!("{program} line {}: {}", sources.place(block).line, sources.text(block).trim())
+    format!("{program} line {}: {}", sources.line_column(block).line, sources.text(block).trim())
 }

@@ -4,9 +4,9 @@
 //! is one, is the end as it was worked out by hand, in the words of [`crate::expect`].
 use std::fmt::Write as _;
 
-use gcode_sim::exec::{Outcome, Stopped};
-use gcode_sim::motion::{Call, EventKind, Lengthening};
-use gcode_sim::source::Span;
+use gcode_control::{AlarmStop, Outcome};
+use gcode_lang::motion::{Call, EventKind, LengthCompensation};
+use gcode_lang::source::Span;
 
 use crate::Case;
 use crate::expect::{self, Ran};
@@ -55,26 +55,31 @@ fn shown(ran: &Ran) -> String {
     text
 }
 
-fn alarmed(ran: &Ran, stopped: &Stopped, text: &mut String) {
+fn alarmed(ran: &Ran, stopped: &AlarmStop, text: &mut String) {
     let sources = ran.control.memory().sources();
-    let place = sources.place(stopped.span);
+    let place = sources.line_column(stopped.span);
     let code = stopped.alarm.code();
     writeln!(text, "{:>3}  {code} {}, at column {}", place.line, stopped.alarm, place.column).unwrap();
-    let mut call: Option<&Call> = stopped.place.calls.as_deref();
+    let mut call: Option<&Call> = stopped.backtrace.calls.as_deref();
     while let Some(inner) = call {
-        writeln!(text, "     called in line {}: {}", line(ran, inner.from), sources.text(inner.from).trim())
-            .unwrap();
-        call = inner.outer.as_deref();
+        writeln!(
+            text,
+            "     called in line {}: {}",
+            line(ran, inner.calling_block),
+            sources.text(inner.calling_block).trim()
+        )
+        .unwrap();
+        call = inner.outer_calls.as_deref();
     }
 }
 
 fn line(ran: &Ran, span: Span) -> u32 {
-    ran.control.memory().sources().place(span).line
+    ran.control.memory().sources().line_column(span).line
 }
 
 fn event(ran: &Ran, kind: &EventKind) -> String {
     let axes = &ran.control.settings().axes;
-    let at = |to: &gcode_sim::motion::Position| {
+    let at = |to: &gcode_lang::motion::Position| {
         let moved = axes.iter().filter(|(axis, letter)| "XYZ".contains(*letter) || to[*axis] != 0.0);
         let words: Vec<_> = moved.map(|(axis, letter)| format!("{letter}{:.4}", to[axis])).collect();
         words.join(" ")
@@ -87,24 +92,26 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
             let centre = format!("{a}{:.4} {b}{:.4}", arc.centre.0, arc.centre.1);
             format!("arc   {} at {:.1}, {:.3} degrees round {centre}", at(to), rate.0, arc.sweep.0)
         }
-        EventKind::Skip { to, rate, touched } => {
+        EventKind::Skip { to, rate, has_signal: touched } => {
             format!("skip  {} at {:.1}, {}", at(to), rate.0, if *touched { "signal" } else { "no signal" })
         }
         EventKind::Dwell { time } => format!("dwell {:.3} s", time.0),
-        EventKind::Tool { number } => format!("tool {number}"),
-        EventKind::ToolLength { offset, by } => match by {
-            Lengthening::Off => format!("tool length {}", at(offset)),
-            Lengthening::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
-            Lengthening::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
+        EventKind::ToolChange { number } => format!("tool {number}"),
+        EventKind::ToolLength { offset, compensation: by } => match by {
+            LengthCompensation::Off => format!("tool length {}", at(offset)),
+            LengthCompensation::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
+            LengthCompensation::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
         },
-        EventKind::Unplaced { axes: unplaced } => {
+        EventKind::WorkZeroUnknown { axes: unplaced } => {
             let letters = axes.iter().filter(|(axis, _)| unplaced >> axis & 1 == 1);
             format!("not placed on the part: {}", letters.map(|(_, letter)| letter).collect::<String>())
         }
-        EventKind::Spindle { turning, speed } => format!("spindle {turning:?} {}", speed.0).to_lowercase(),
-        EventKind::Coolant { on, .. } => format!("coolant {}", if *on { "on" } else { "off" }),
+        EventKind::Spindle { direction: turning, speed } => {
+            format!("spindle {turning:?} {}", speed.0).to_lowercase()
+        }
+        EventKind::Coolant { is_on: on, .. } => format!("coolant {}", if *on { "on" } else { "off" }),
         EventKind::Auxiliary { code } => format!("M{code:02} for the machine builder"),
-        EventKind::Stop { kind, text, named } => {
+        EventKind::Stop { kind, text, variables: named } => {
             let named: Vec<_> = named.iter().map(|(n, value)| format!(" #{n} is {value:.4}")).collect();
             format!("stop {kind:?} {text}{}", named.concat()).trim_end().to_owned()
         }

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `end=normal` | M30, M02 or the end of the program was reached without an alarm |
 //! | `end=repeats` | the run was ended because the program provably repeats for ever |
-//! | `alarm=PS0112` | the control stopped with this alarm; several with `\|`, `ANY` for some alarm |
+//! | `alarm=PS0112` | the control stopped with this alarm; with one of several, `PS0112\|PS0119`, where `why` says what is open |
 //! | `msg="TEXT"` | the alarm's text |
 //! | `stop=TEXT` | an operator stop with this text |
 //! | `note=lower-case` | the run told this note, by its name; `note=none` where it told none |
@@ -19,15 +19,16 @@
 //! | `time_min=0.5` | the time of all blocks in minutes |
 //! | `amove=-10,20` | the ways of the A axis |
 //! | `within=0.001` | the tolerance of all numbers, 1e-6 where it isn't said |
+//! | `why=TEXT` | always: the reason for the alarm, the last item. It begins with `open:` where several are right |
 //!
 //! A comment `(@KEY=VALUE)` in the program is a setting of the control, by the name it has on the command line.
 use std::fmt::Write as _;
 
-use gcode_sim::control::Settings;
-use gcode_sim::exec::{Control, Limits, Outcome, Value};
-use gcode_sim::motion::{Event, EventKind, Position, Sink};
-use gcode_sim::program::{Memory, NoLibrary};
-use gcode_sim::source::Span;
+use gcode_control::{Control, Limits, Outcome, Value};
+use gcode_lang::control::Settings;
+use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_lang::program::{Memory, NoLibrary};
+use gcode_lang::source::Span;
 
 /// Everything the machine was told, and a control at the end of its run.
 pub struct Ran {
@@ -64,9 +65,12 @@ pub fn run(program: &[u8]) -> Ran {
 impl Ran {
     /// What differs from `expected`, one line each.
     pub fn differences(&self, expected: &str) -> Vec<String> {
-        let within = items(expected).find(|(key, _)| *key == "within");
+        let (demands, why) = expected.split_once("; why=").unwrap_or((expected, ""));
+        let within = items(demands).find(|(key, _)| *key == "within");
         let tolerance = within.map_or(1e-6, |(_, value)| value.parse().unwrap());
-        items(expected)
+        let several = items(demands).any(|(key, value)| key == "alarm" && value.contains('|'));
+        assert_eq!(several, why.starts_with("open: "), "one alarm, or why several are right: {expected}");
+        items(demands)
             .filter(|(key, _)| *key != "within")
             .filter_map(|(key, value)| self.difference(key, value, tolerance))
             .collect()
@@ -84,7 +88,7 @@ impl Ran {
                     Outcome::Alarm(stopped) => stopped.alarm.code().to_string(),
                     Outcome::End | Outcome::Limit => String::new(),
                 };
-                let holds = wanted.split('|').any(|w| w == code || (w == "ANY" && !code.is_empty()));
+                let holds = wanted.split('|').any(|wanted| wanted == code);
                 return self.not(holds, &format!("alarm={wanted}"));
             }
             "msg" => {
@@ -102,11 +106,12 @@ impl Ran {
                 return self.not(kinds.join(",") == wanted, &format!("stops={wanted}"));
             }
             "passed_on" => {
-                let codes: Vec<_> = self.control.passed_on().keys().map(|code| format!("M{code}")).collect();
+                let codes: Vec<_> =
+                    self.control.auxiliary_codes().keys().map(|code| format!("M{code}")).collect();
                 return self.not(codes.join(",") == wanted, &format!("passed_on={wanted}"));
             }
             "note" => {
-                let holds = self.control.notes().any(|(note, _)| note.parts().0 == wanted);
+                let holds = self.control.notes().any(|(note, _)| note.describe().0 == wanted);
                 let holds = if wanted == "none" { self.control.notes().next().is_none() } else { holds };
                 return self.not(holds, &format!("note={wanted}"));
             }
@@ -136,7 +141,7 @@ impl Ran {
             }
         };
         let wanted_numbers: Option<Vec<f64>> = wanted.split(',').map(|w| w.parse().ok()).collect();
-        let holds = wanted_numbers.is_some_and(|wanted| close(&found, &wanted, tolerance));
+        let holds = wanted_numbers.is_some_and(|wanted| is_close(&found, &wanted, tolerance));
         (!holds).then(|| format!("{key} is {found:?}, {wanted} is wanted"))
     }
 
@@ -164,31 +169,31 @@ fn items(expected: &str) -> impl Iterator<Item = (&str, &str)> {
     expected.split("; ").map(|item| item.trim().split_once('=').unwrap_or_else(|| panic!("item {item}")))
 }
 
-fn close(found: &[f64], wanted: &[f64], tolerance: f64) -> bool {
+fn is_close(found: &[f64], wanted: &[f64], tolerance: f64) -> bool {
     found.len() == wanted.len() && found.iter().zip(wanted).all(|(f, w)| (f - w).abs() <= tolerance)
 }
 
 /// One thing the machine was told, by its letter and its numbers.
-type Told = (char, Vec<f64>);
+type PathEntry = (char, Vec<f64>);
 
 #[derive(Default)]
 struct Path {
-    told: Vec<Told>,
+    entries: Vec<PathEntry>,
     stations: Vec<Position>,
     events: Vec<(Span, EventKind)>,
 }
 
-impl Sink for Path {
+impl EventSink for Path {
     fn event(&mut self, event: &Event<'_>) {
         self.events.push((event.block, event.kind.clone()));
         let (letter, to) = match &event.kind {
             EventKind::Rapid { to } => ('R', to),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => ('F', to),
             EventKind::Arc { to, .. } => ('A', to),
-            EventKind::Dwell { time } => return self.told.push(('D', vec![time.0])),
+            EventKind::Dwell { time } => return self.entries.push(('D', vec![time.0])),
             _ => return,
         };
-        self.told.push((letter, to.0[..3].to_vec()));
+        self.entries.push((letter, to.0[..3].to_vec()));
         self.stations.push(*to);
     }
 }
@@ -200,7 +205,7 @@ impl Path {
     }
 
     fn difference(&self, wanted: &str, tolerance: f64) -> Option<String> {
-        let wanted_path: Vec<Told> = wanted
+        let wanted_path: Vec<PathEntry> = wanted
             .split_whitespace()
             .map(|step| {
                 let (letter, rest) = step.split_once('(').unwrap();
@@ -208,11 +213,12 @@ impl Path {
                 (letter.chars().next().unwrap(), numbers.collect())
             })
             .collect();
-        let same = |(a, b): (&Told, &Told)| a.0 == b.0 && close(&a.1, &b.1, tolerance);
-        let holds = wanted_path.len() == self.told.len() && self.told.iter().zip(&wanted_path).all(same);
+        let same = |(a, b): (&PathEntry, &PathEntry)| a.0 == b.0 && is_close(&a.1, &b.1, tolerance);
+        let holds =
+            wanted_path.len() == self.entries.len() && self.entries.iter().zip(&wanted_path).all(same);
         (!holds).then(|| {
             let mut found = String::new();
-            for (letter, numbers) in &self.told {
+            for (letter, numbers) in &self.entries {
                 let numbers: Vec<_> = numbers.iter().map(f64::to_string).collect();
                 write!(found, "{letter}({}) ", numbers.join(",")).unwrap();
             }

@@ -1,11 +1,11 @@
 //! What holds for any bytes whatever: the bodies of the fuzz targets, and of the test that replays their corpus.
-use gcode_sim::control::Settings;
-use gcode_sim::exec::{Control, Limits};
-use gcode_sim::holes::Extractor;
-use gcode_sim::machine::Machine;
-use gcode_sim::program::{Memory, NoLibrary};
-use gcode_sim::source::SourceId;
-use gcode_sim::syntax::{parse, print};
+use gcode_control::{Control, Limits};
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::Machine;
+use gcode_lang::control::Settings;
+use gcode_lang::program::{Memory, NoLibrary};
+use gcode_lang::source::SourceId;
+use gcode_lang::syntax::{parse, print};
 
 /// Reading never fails, and what was read prints as something that prints the same again.
 pub fn reader(bytes: &[u8]) {
@@ -31,7 +31,7 @@ fn end_state(bytes: &[u8]) -> String {
     let mut memory = Memory::default();
     memory.load("case", bytes);
     let mut control = Control::new(memory, Settings::default());
-    let mut extractor = Extractor::new(&machine);
+    let mut extractor = HoleExtractor::new(&machine);
     let outcome = control.run(Limits { blocks: 2_000 }, &mut NoLibrary, &mut extractor);
     let variables: Vec<_> = control.variables().collect();
     let extracted = extractor.finish();

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use gcode_gen::package::file_name;
-use gcode_sim::job::Job;
+use gcode_part::job::Job;
 
 use crate::Case;
 

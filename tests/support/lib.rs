@@ -14,13 +14,14 @@ mod cli;
 mod control;
 mod exec;
 pub mod expect;
+mod expected_verdict;
 pub mod fuzz;
 mod r#gen;
 mod picture;
 pub mod programs;
 pub mod sheet;
 mod syntax;
-mod verify;
+pub mod verify;
 
 use std::path::{Path, PathBuf};
 

@@ -3,13 +3,13 @@
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
-use gcode_sim::changes::Compared;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::hole::Hole;
-use gcode_sim::picture::{
-    Cylinder, Difference, DrawnHole, PathKind, PathPiece, Question, Sheet, Side, Size, Standing, TopView,
-    compare, development, lay_out, paint, png, top_view,
+use gcode_draw::{
+    Cylinder, Difference, DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, Sheet, Side, Size,
+    TopView, compare, development, lay_out, paint, png, top_view,
 };
+use gcode_inspect::machine::Machine;
+use gcode_part::Hole;
+use gcode_review::RevisionDiff;
 use gcode_sim::report::changed_view;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};
@@ -99,32 +99,32 @@ pub(crate) fn run(case: &Case) {
         let scene = burr_picture::scene(&job, case.optional("case.nc"), &picture.view);
         let sheet = lay_out(&scene, picture.size.parse().unwrap()).unwrap();
         case.snapshot("says", &words(&sheet));
-        return hold(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
+        return assert_picture(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
     }
     if let Some(old) = case.optional("old.nc") {
         let picture: ChangedPicture = toml::from_str(&case.text("case.toml")).unwrap();
         let view = changed(&old, &case.text("new.nc"), picture.tolerance);
         let sheet = lay_out(&top_view(&view), picture.size.parse().unwrap()).unwrap();
         case.snapshot("says", &words(&sheet));
-        return hold(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
+        return assert_picture(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
     }
     let (picture, sheet) = draw(&case.text("case.toml"));
     let bytes = png(&paint(&sheet)).unwrap();
     let Some(other) = case.optional("other.toml") else {
         case.snapshot("says", &words(&sheet));
-        return hold(case, &cropped(&bytes, picture.crop));
+        return assert_picture(case, &cropped(&bytes, picture.crop));
     };
     let (_, other) = draw(&other);
     let difference = compare(&bytes, &png(&paint(&other)).unwrap(), 1).unwrap();
-    case.snapshot("says", &told(&difference));
-    hold(case, &cropped(&difference.png().unwrap(), picture.crop));
+    case.snapshot("says", &describe(&difference));
+    assert_picture(case, &cropped(&difference.png().unwrap(), picture.crop));
 }
 
 /// The holes of a new revision over those of the old one, on the machine that is taken where none is told.
 fn changed(old: &str, new: &str, tolerance: f64) -> TopView {
     let machine = Machine::default();
     let (old, new) = (revision(old), revision(new));
-    let compared = Compared::new(&old.record, &new.record, tolerance);
+    let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let differences = (&compared, tolerance);
     changed_view::of_changes("O0100.nc", (&old, &new), &machine, differences, None)
 }
@@ -144,8 +144,8 @@ fn draw(text: &str) -> (Picture, Sheet) {
         }),
         tolerance: picture.tolerance,
         rotary: "B".to_owned(),
-        question: Question::Verdict,
-        holes: picture.hole.iter().map(drawn).collect(),
+        purpose: PicturePurpose::Verdict,
+        holes: picture.hole.iter().map(drawn_hole).collect(),
         path: picture
             .path
             .iter()
@@ -161,13 +161,13 @@ fn draw(text: &str) -> (Picture, Sheet) {
     (picture, sheet)
 }
 
-fn drawn(case: &HoleCase) -> DrawnHole {
+fn drawn_hole(case: &HoleCase) -> DrawnHole {
     let standing = match case.standing.as_str() {
-        "good" => Standing::Good,
-        "bad" => Standing::Bad,
-        "missing" => Standing::Missing,
-        "extra" => Standing::Extra,
-        "unjudged" => Standing::Unjudged,
+        "good" => HoleStatus::Good,
+        "bad" => HoleStatus::Bad,
+        "missing" => HoleStatus::Missing,
+        "extra" => HoleStatus::Extra,
+        "unjudged" => HoleStatus::Unjudged,
         other => panic!("a hole is good, bad, missing, extra or unjudged, not {other}"),
     };
     let length = case.axis.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -179,14 +179,14 @@ fn drawn(case: &HoleCase) -> DrawnHole {
         diameter: Some(case.diameter),
         from: None,
     };
-    let wanted = matches!(standing, Standing::Good | Standing::Bad | Standing::Missing);
+    let wanted = matches!(standing, HoleStatus::Good | HoleStatus::Bad | HoleStatus::Missing);
     DrawnHole {
         id: case.id.clone(),
         nominal: wanted.then(|| at([0.0; 3])),
-        found: (standing != Standing::Missing).then(|| at(case.off.unwrap_or_default())),
-        standing,
-        phi: case.phi,
-        turn: case.turn,
+        actual: (standing != HoleStatus::Missing).then(|| at(case.off.unwrap_or_default())),
+        status: standing,
+        position_deviation: case.phi,
+        rotary_angle: case.turn,
         remarks: case.remark.iter().cloned().collect(),
     }
 }
@@ -200,7 +200,7 @@ fn words(sheet: &Sheet) -> String {
     lines.join("\n")
 }
 
-fn told(difference: &Difference) -> String {
+fn describe(difference: &Difference) -> String {
     match difference.bounds {
         Some([left, top, right, bottom]) => format!(
             "{} pixels differ, by {} at most, from {left},{top} to {right},{bottom}",
@@ -225,7 +225,7 @@ fn cropped(bytes: &[u8], [left, top, width, height]: [u32; 4]) -> Vec<u8> {
 }
 
 /// `INSTA_UPDATE=always` accepts what is new, as for snapshots.
-fn hold(case: &Case, actual: &[u8]) {
+fn assert_picture(case: &Case, actual: &[u8]) {
     assert!(actual.len() <= MOST_BYTES, "{} bytes are more than {MOST_BYTES}: crop it", actual.len());
     let expected = case.dir.join("expected.png");
     let accepts = std::env::var("INSTA_UPDATE").is_ok_and(|v| v == "always");
@@ -243,5 +243,5 @@ fn hold(case: &Case, actual: &[u8]) {
         panic!("there is no expected.png; what was drawn is in {}", left.display())
     };
     std::fs::write(left.join("difference.png"), difference.png().unwrap()).unwrap();
-    panic!("{}; see {}", told(&difference), left.display());
+    panic!("{}; see {}", describe(&difference), left.display());
 }

@@ -2,7 +2,7 @@
 use gcode_gen::check::check;
 use gcode_gen::families;
 use gcode_gen::sheet::Sheet;
-use gcode_sim::job::{Job, Rates};
+use gcode_part::job::{Job, Rates};
 
 use crate::Case;
 

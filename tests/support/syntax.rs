@@ -1,10 +1,10 @@
 //! Cases of kind `syntax`: what was read of `case.nc` in words, one line a block; grouping shown in round brackets.
-use gcode_sim::source::{SourceId, Sources};
-use gcode_sim::syntax::ast::{
-    BinaryOp, Block, CallForm, CommentMark, Condition, Expr, ExprKind, Item, PrintPart, Program, ProgramName,
-    Statement, Word, WordValue, Written,
+use gcode_lang::source::{SourceId, Sources};
+use gcode_lang::syntax::ast::{
+    BinaryOp, Block, CallForm, CommentMark, Condition, Expr, ExprKind, Item, OperatorSpelling, PrintPart,
+    Program, ProgramName, Statement, Word, WordValue,
 };
-use gcode_sim::syntax::{parse, print::decimal};
+use gcode_lang::syntax::{parse, print::decimal};
 
 use crate::Case;
 
@@ -24,7 +24,7 @@ fn program(program: &Program, sources: &Sources, id: SourceId) -> String {
         ProgramName::Unnamed => "program without a number\n".to_owned(),
     };
     for found in &program.blocks {
-        let line = sources.get(id).place(found.span.start).line;
+        let line = sources.get(id).line_column(found.span.start).line;
         shown.push_str(&format!("  line {line}: {}\n", block(found, sources)));
     }
     shown
@@ -50,7 +50,7 @@ fn block(block: &Block, sources: &Sources) -> String {
             Item::Skip(skip) => parts.push(format!("the rest skipped by switch {}", skip.node)),
             Item::Unreadable(found) => {
                 let row = found.alarm.node.row();
-                let column = sources.place(found.alarm.span).column;
+                let column = sources.line_column(found.alarm.span).column;
                 let help = row.help.map(|help| format!(" ({help})")).unwrap_or_default();
                 parts.push(format!("{} in column {column}: {}{help}", row.code, row.message));
             }
@@ -155,16 +155,16 @@ fn operator(op: BinaryOp) -> &'static str {
     }
 }
 
-fn sign(written: Written) -> &'static str {
+fn sign(written: OperatorSpelling) -> &'static str {
     match written {
-        Written::Letters => "",
-        Written::Sign => " by its sign",
+        OperatorSpelling::Letters => "",
+        OperatorSpelling::Sign => " by its sign",
     }
 }
 
 fn condition(value: &Condition) -> String {
     match value {
-        Condition::Compare { left, relation, written, right, .. } => {
+        Condition::Compare { left, relation, spelling: written, right, .. } => {
             format!("{} {relation:?}{} {}", expr(left), sign(*written), expr(right))
         }
         Condition::Logic(op, written, left, right) => {

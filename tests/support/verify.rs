@@ -1,45 +1,219 @@
-//! Cases of kind `verify`: a program held against a reference, as the inspector's table and the findings say it.
+//! Cases of kind `verify`: a program compared with a reference, and what has to be found, as it was worked out by hand.
 //!
-//! `case.nc` is the program (programs it calls stand in the same file), `reference.toml`, `.csv` or `.json` what is
-//! wanted (holes, or a burr's flutes), `machine.toml`, where there is one, the machine. Where there is no reference the holes are shown.
+//! `case.nc` is the program (programs it calls stand in the same file). `expect.txt` says in the words of
+//! `expected_verdict` which machine and which reference, of those in `suite/verify/`, and what comes out.
+//! A machine or a reference that only one case has stands beside its program: `machine.toml`, `reference.toml` or `.csv`.
+//! Without a reference the holes are listed that the program makes.
 use std::fmt::Write as _;
+use std::path::Path;
 
-use gcode_sim::diag::Diagnostic;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::Call;
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::NoLibrary;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Finding, HoleVerdict, Tolerances, Verdict};
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::{Backtrace, Call};
+use gcode_lang::program::NoLibrary;
+use gcode_part::NominalPart;
+use gcode_session::{GrindingRun, Request, Run, Simulation, grind, simulate};
 use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
-use gcode_sim::session::{Request, Run, Simulation, grind, simulate};
-use gcode_sim::verify::Tolerances;
 
 use crate::Case;
+use crate::expected_verdict::{Expectation, FindingLine, Outcome};
 
 pub(crate) fn run(case: &Case) {
-    let machine =
-        case.optional("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
+    let text = case.text("expect.txt");
+    let expected = Expectation::parse(&text);
+    let machine = machine_of(&case.dir).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
-    let files = ["reference.toml", "reference.csv", "reference.json"];
-    let wanted = files.iter().find_map(|name| case.optional(name)).map(|text| Wanted::parse(&text).unwrap());
-    if let Some(Wanted::Flutes(flutes)) = &wanted {
-        let grinding = grind(&request, &mut NoLibrary, flutes).unwrap();
-        let verdict = grinding.verify();
-        let shown = flute_table::table(&verdict);
-        return case.snapshot("verdict", &with_findings(shown, &verdict.diagnostics, &grinding.run));
-    }
-    let reference = wanted.and_then(Wanted::into_holes);
-    let surface = reference.as_ref().and_then(|reference| reference.surface);
-    request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
-    let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
-    let (shown, findings) = match &reference {
-        Some(reference) => {
-            let verdict = simulation.verify(reference, Tolerances::of(reference, None), &machine);
-            (table(&verdict, Layout::default()), verdict.diagnostics)
+    let wanted = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
+    let (outcome, layout) = match wanted {
+        Some(NominalPart::Flutes(flutes)) => {
+            inspect_flutes(&grind(&request, &mut NoLibrary, &flutes).unwrap())
         }
-        None => (holes(&simulation), simulation.extracted.findings.clone()),
+        Some(wanted) => {
+            let reference = wanted.into_holes().unwrap();
+            request.conduct = reference.process_limits.clone();
+            let simulation = simulate(&request, &mut NoLibrary, reference.surface).unwrap();
+            let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
+            inspect_holes(&verdict, &simulation.run)
+        }
+        None => list_holes(&simulate(&request, &mut NoLibrary, None).unwrap()),
     };
-    case.snapshot("verdict", &with_findings(shown, &findings, &simulation.run));
+    let differences = expected.differences(&outcome);
+    assert!(differences.is_empty(), "{}:\n{}\n{layout}", case.name(), differences.join("\n"));
+    assert!(expected.layout || case.optional("verdict.snap").is_none(), "{}: no line 'layout'", case.name());
+    if expected.layout {
+        case.snapshot("verdict", &layout);
+    }
+}
+
+/// The machine file of a program in `folder`.
+pub fn machine_of(folder: &Path) -> Option<String> {
+    file_of(folder, "machine", &["machine.toml"])
+}
+
+/// The reference of a program in `folder`.
+pub fn reference_of(folder: &Path) -> Option<String> {
+    file_of(folder, "reference", &["reference.toml", "reference.csv", "reference.json"])
+}
+
+/// The file beside the folders of the cases that a line of `expect.txt` names, else the folder's own.
+fn file_of(folder: &Path, word: &str, own: &[&str]) -> Option<String> {
+    let expected = std::fs::read_to_string(folder.join("expect.txt")).unwrap_or_default();
+    let named = expected.lines().find_map(|line| line.strip_prefix(word)?.strip_prefix(' '));
+    if let Some(named) = named {
+        let path = folder.parent().unwrap().join(named);
+        return Some(std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())));
+    }
+    own.iter().find_map(|name| std::fs::read_to_string(folder.join(name)).ok())
+}
+
+fn inspect_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
+    let good = verdict.holes.iter().filter(|hole| hole.ok).count();
+    let mut summary =
+        format!("{} {good} of {}", answer(verdict.verdict), verdict.holes.len() + verdict.missing.len());
+    let folded = verdict.findings.len() - verdict.diagnostics.len();
+    for (count, what) in
+        [(verdict.missing.len(), "missing"), (verdict.extra.len(), "extra"), (folded, "folded")]
+    {
+        if count != 0 {
+            write!(summary, ", {count} {what}").unwrap();
+        }
+    }
+    let mut facts: Vec<_> =
+        verdict.holes.iter().map(|hole| (format!("hole {}", hole.id), deviations(hole))).collect();
+    if let Some(neighbours) = &verdict.neighbours {
+        let distances =
+            [&neighbours.min, &neighbours.max].map(|extreme| extreme.as_ref().map(|found| found.distance));
+        let found = [
+            ("six", Some(neighbours.with_six as f64)),
+            ("inner", Some(neighbours.with_six_nominal as f64)),
+            ("nearest", distances[0]),
+            ("farthest", distances[1]),
+        ];
+        facts.push(("neighbours".to_owned(), known_facts(found)));
+    }
+    let outcome = Outcome {
+        summary: Some(summary),
+        findings: finding_lines(&verdict.diagnostics, &verdict.findings, run),
+        missing: verdict.missing.clone(),
+        not_checked: verdict.not_checked.clone(),
+        facts,
+        made: Vec::new(),
+    };
+    let shown = table(verdict, Layout::default());
+    (outcome, with_findings(shown, &verdict.diagnostics, run))
+}
+
+fn deviations(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
+    let [dx, dy, dz] = [0, 1, 2].map(|i| hole.actual.entry[i] - hole.nominal.entry[i]);
+    vec![
+        ("phi", hole.position_deviation),
+        ("entry", hole.at_entry),
+        ("bottom", hole.at_bottom),
+        ("tilt", hole.tilt),
+        ("depth", hole.depth_error),
+        ("dx", dx),
+        ("dy", dy),
+        ("dz", dz),
+    ]
+}
+
+fn inspect_flutes(grinding: &GrindingRun) -> (Outcome, String) {
+    let verdict = grinding.verify();
+    let found = [
+        ("contact", verdict.surface_deviation),
+        ("helix_min", verdict.helix_min),
+        ("helix_max", verdict.helix_max),
+        ("index", verdict.index_error),
+        ("speed_min", verdict.speed_min),
+        ("speed_max", verdict.speed_max),
+        ("nearest", verdict.nearest),
+        ("passes", Some(verdict.passes as f64)),
+        ("moves", Some(verdict.moves as f64)),
+    ];
+    let outcome = Outcome {
+        summary: Some(format!(
+            "{} {} of {}",
+            answer(verdict.verdict),
+            verdict.flutes,
+            verdict.nominal_flutes
+        )),
+        findings: finding_lines(&verdict.diagnostics, &verdict.findings, &grinding.run),
+        missing: Vec::new(),
+        not_checked: verdict.not_checked.clone(),
+        facts: vec![("burr".to_owned(), known_facts(found))],
+        made: Vec::new(),
+    };
+    let shown = flute_table::table(&verdict);
+    (outcome, with_findings(shown, &verdict.diagnostics, &grinding.run))
+}
+
+/// Of a program without a reference: the holes it makes.
+fn list_holes(simulation: &Simulation) -> (Outcome, String) {
+    let mut text = String::new();
+    let mut made = Vec::new();
+    for hole in simulation.hole_list().holes {
+        let ([x, y, z], [i, j, k]) = (hole.entry.map(|v| v + 0.0), hole.axis.map(|v| v + 0.0));
+        let (depth, from) = (hole.depth, hole.from.unwrap());
+        let tool = from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
+        let line = format!(
+            "hole from {x:.3} {y:.3} {z:.3}, axis {i:.4} {j:.4} {k:.4}, {depth:.3} deep: {} line {}{tool}",
+            from.program, from.line
+        );
+        writeln!(text, "{}", line.replace("-0.000 ", "0.000 ").replace("-0.0000", "0.0000")).unwrap();
+        let by = from.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
+        let at = place_label(&from.program, from.line) + &by;
+        let numbers = [("x", x), ("y", y), ("z", z), ("i", i), ("j", j), ("k", k), ("depth", depth)];
+        made.push((at, numbers.to_vec()));
+    }
+    let findings = &simulation.extracted.findings;
+    let outcome = Outcome {
+        summary: None,
+        findings: finding_lines(findings, &[], &simulation.run),
+        missing: Vec::new(),
+        not_checked: Vec::new(),
+        facts: Vec::new(),
+        made,
+    };
+    (outcome, with_findings(text, findings, &simulation.run))
+}
+
+fn answer(answer: Answer) -> &'static str {
+    match answer {
+        Answer::Pass => "PASS",
+        Answer::Fail => "FAIL",
+    }
+}
+
+fn known_facts<const N: usize>(facts: [(&'static str, Option<f64>); N]) -> Vec<(&'static str, f64)> {
+    facts.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
+}
+
+/// `error hole-depth at O6:13 from O5:6 of r1h0`, and what is said of it.
+fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<FindingLine> {
+    let one = |finding: &Diagnostic| {
+        let mut head = format!("{} {}", finding.severity.name(), finding.code);
+        if let Some(place) = &finding.backtrace {
+            let mut word = " at ";
+            for (program, line, _) in places(run, place) {
+                write!(head, "{word}{}", place_label(&program, line)).unwrap();
+                word = " from ";
+            }
+        }
+        let same = |one: &&Finding| one.code == finding.code && one.message == finding.message;
+        if let Some(hole) = data.iter().find(same).and_then(|one| one.hole.as_ref()) {
+            write!(head, " of {hole}").unwrap();
+        }
+        FindingLine { head, text: format!("{}\n{}", finding.message, finding.notes.join("\n")) }
+    };
+    shown.iter().map(one).collect()
+}
+
+/// `O5:6` of line 6 in O0005.
+fn place_label(program: &str, line: u32) -> String {
+    let number = program.strip_prefix('O').map(|digits| digits.trim_start_matches('0'));
+    number.map_or_else(|| format!("{program}:{line}"), |number| format!("O{number}:{line}"))
 }
 
 /// The table and what was found, with its places.
@@ -47,12 +221,11 @@ fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> Strin
     for finding in findings {
         let severity = finding.severity.name();
         write!(shown, "\n{severity} {}: {}\n", finding.code, finding.message).unwrap();
-        if let Some(place) = &finding.place {
-            writeln!(shown, "  at {}", at(run, place.block)).unwrap();
-            let mut next: Option<&Call> = place.calls.as_deref();
-            while let Some(call) = next {
-                writeln!(shown, "  called from {}", at(run, call.from)).unwrap();
-                next = call.outer.as_deref();
+        if let Some(place) = &finding.backtrace {
+            let mut word = "at";
+            for (program, line, text) in places(run, place) {
+                writeln!(shown, "  {word} {program} line {line}: {text}").unwrap();
+                word = "called from";
             }
         }
         finding.notes.iter().for_each(|note| writeln!(shown, "  {note}").unwrap());
@@ -61,25 +234,13 @@ fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> Strin
     shown
 }
 
-fn at(run: &Run, block: gcode_sim::source::Span) -> String {
-    let (program, line) = run.locate(block);
-    let text = run.control.memory().sources().text(block);
-    format!("{program} line {line}: {}", text.trim())
-}
-
-fn holes(simulation: &Simulation) -> String {
-    let mut text = String::new();
-    for hole in simulation.list().holes {
-        let [x, y, z] = hole.entry.map(|v| format!("{:.3}", v + 0.0));
-        let [i, j, k] = hole.axis.map(|v| format!("{:.4}", v + 0.0));
-        let from = hole.from.unwrap();
-        let tool = from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
-        let depth = hole.depth;
-        let line = format!(
-            "hole from {x} {y} {z}, axis {i} {j} {k}, {depth:.3} deep: {} line {}{tool}",
-            from.program, from.line
-        );
-        writeln!(text, "{}", line.replace("-0.000 ", "0.000 ").replace("-0.0000", "0.0000")).unwrap();
-    }
-    text
+/// Program, line and text of a block, and of the calls that led to it, innermost first.
+fn places(run: &Run, place: &Backtrace) -> Vec<(String, u32, String)> {
+    let calls = std::iter::successors(place.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
+    let blocks = std::iter::once(place.block).chain(calls.map(|call| call.calling_block));
+    let located = blocks.map(|block| {
+        let (program, line) = run.locate(block);
+        (program, line, run.control.memory().sources().text(block).trim().to_owned())
+    });
+    located.collect()
 }

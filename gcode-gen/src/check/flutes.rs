@@ -1,21 +1,20 @@
 //! Runs the programs of a burr and holds the flutes against the job's geometry.
-use gcode_sim::diag::Severity;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::flutes::Flutes;
-use gcode_sim::picture;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::Answer;
+use gcode_lang::diag::Severity;
+use gcode_part::Flutes;
+use gcode_session::{Request, grind};
 use gcode_sim::report::{diagnostic, flute_table, flute_view};
-use gcode_sim::session::{Request, grind};
-use gcode_sim::verify::Answer;
 
-use super::{CheckError, Checked, Judgement, Programs, main_program, told, warnings};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, broken_package, main_program, warnings};
 use crate::package::{Package, file_name, stem};
 
-pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, CheckError> {
-    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<CheckedPackage, CheckError> {
+    let machine = Machine::parse(&package.machine).map_err(|e| broken_package("machine.toml", &e))?;
     let main = main_program(package)?;
     let request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
-    let grinding =
-        grind(&request, &mut Programs(package), wanted).map_err(|e| told("the main program", &e))?;
+    let grinding = grind(&request, &mut Programs(package), wanted)
+        .map_err(|e| broken_package("the main program", &e))?;
     let verdict = grinding.verify();
     let sources = grinding.run.control.memory().sources();
     let failed = verdict.diagnostics.iter().filter(|finding| Severity::Error <= finding.severity);
@@ -24,16 +23,16 @@ pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, Check
         refusals.push("the programs fail the job's reference\n".to_owned());
     }
     let view = flute_view::of(&file_name(main.number), &grinding, &verdict);
-    Ok(Checked {
+    Ok(CheckedPackage {
         refusals,
         warnings: warnings(&verdict.diagnostics, sources),
         seconds: grinding.run.control.seconds().0,
         report: flute_table::table(&verdict),
         pictures: vec![
-            (stem(main.number), picture::side_view(&view)),
-            (format!("{}-tip", stem(main.number)), picture::tip_view(&view)),
-            (format!("{}-helix", stem(main.number)), picture::helix_graph(&view)),
+            (stem(main.number), gcode_draw::side_view(&view)),
+            (format!("{}-tip", stem(main.number)), gcode_draw::tip_view(&view)),
+            (format!("{}-helix", stem(main.number)), gcode_draw::helix_graph(&view)),
         ],
-        judgement: Judgement::Flutes(verdict),
+        verdict: PackageVerdict::Flutes(verdict),
     })
 }

@@ -1,35 +1,38 @@
 //! Runs the programs of a part with holes and holds the holes against the job's geometry.
-use gcode_sim::diag::Severity;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::overlap::overlaps;
-use gcode_sim::part::reference::Reference;
-use gcode_sim::picture;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_lang::diag::Severity;
+use gcode_part::Reference;
+use gcode_part::job::Job;
+use gcode_part::overlaps;
+use gcode_session::{Request, Simulation, simulate};
 use gcode_sim::report::verdict_table::{Layout, table};
 use gcode_sim::report::{diagnostic, top};
-use gcode_sim::session::{Request, Simulation, simulate};
-use gcode_sim::verify::{Answer, Tolerances, Verdict};
 
-use super::{CheckError, Checked, Judgement, Programs, main_program, told, warnings};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, broken_package, main_program, warnings};
 use crate::package::{Package, file_name, stem};
 
-pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Result<Checked, CheckError> {
-    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+pub(super) fn check(
+    job: &Job,
+    package: &Package,
+    reference: &Reference,
+) -> Result<CheckedPackage, CheckError> {
+    let machine = Machine::parse(&package.machine).map_err(|e| broken_package("machine.toml", &e))?;
     let main = main_program(package)?;
     let mut request = Request::new(file_name(main.number), main.text.as_bytes(), machine.clone());
-    request.conduct = reference.conduct.clone();
+    request.conduct = reference.process_limits.clone();
     let simulation = simulate(&request, &mut Programs(package), reference.surface)
-        .map_err(|e| told("the main program", &e))?;
+        .map_err(|e| broken_package("the main program", &e))?;
     let tolerances = Tolerances::of(reference, None);
     let verdict = simulation.verify(reference, tolerances, &machine);
     let top = top::of_verdict(&file_name(main.number), &simulation, reference, &verdict, &machine);
-    Ok(Checked {
+    Ok(CheckedPackage {
         refusals: refusals(job, reference, &simulation, &verdict),
         warnings: warnings(&verdict.diagnostics, simulation.run.control.memory().sources()),
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
-        pictures: vec![(stem(main.number), picture::main_view(&top))],
-        judgement: Judgement::Holes(verdict),
+        pictures: vec![(stem(main.number), gcode_draw::main_view(&top))],
+        verdict: PackageVerdict::Holes(verdict),
     })
 }
 
@@ -44,11 +47,11 @@ fn refusals(job: &Job, reference: &Reference, simulation: &Simulation, verdict: 
         refusals.extend(cut.iter().map(|overlap| format!("error: {}\n", overlap.sentence(&reference.holes))));
     }
     let increment = job.control().increment;
-    for hole in verdict.holes.iter().filter(|hole| hole.phi > verdict.tolerance) {
-        if hole.rounding > verdict.tolerance - (hole.phi - hole.rounding).max(0.0) {
+    for hole in verdict.holes.iter().filter(|hole| hole.position_deviation > verdict.tolerance) {
+        if hole.rounding > verdict.tolerance - (hole.position_deviation - hole.rounding).max(0.0) {
             refusals.push(format!(
-                "hole {}: rounding to the least increment of {} mm and degrees alone can make Φ{:.4} here, {} is allowed; \
-                 a finer increment or a wider tolerance is needed\n",
+                "hole {}: rounding to the least increment of {} mm and degrees alone can cause Φ{:.4} \
+                 here, tolerance Φ{}; use a finer increment or a wider tolerance\n",
                 hole.id,
                 increment.size(),
                 hole.rounding,

@@ -4,15 +4,15 @@ mod alignment;
 mod flutes;
 mod holes;
 
-use gcode_sim::diag::{Diagnostic, Severity};
-use gcode_sim::job::Job;
-use gcode_sim::part::wanted::Wanted;
-use gcode_sim::picture::Scene;
-use gcode_sim::program::Library;
+use gcode_draw::Scene;
+use gcode_inspect::verify::Verdict;
+use gcode_inspect::verify::flutes::FluteVerdict;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::program::Library;
+use gcode_lang::source::Sources;
+use gcode_part::NominalPart;
+use gcode_part::job::Job;
 use gcode_sim::report::diagnostic;
-use gcode_sim::source::Sources;
-use gcode_sim::verify::Verdict;
-use gcode_sim::verify::flutes::FluteVerdict;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ pub enum CheckError {
 
 /// A package that was run.
 #[derive(Debug)]
-pub struct Checked {
+pub struct CheckedPackage {
     /// Why it may not be written: findings with their lines, as text for a terminal. Empty where all is well.
     pub refusals: Vec<String>,
     /// What to look at before it is used: the verdict's warnings, as text for a terminal.
@@ -42,20 +42,20 @@ pub struct Checked {
     pub report: String,
     /// What is drawn of it, each with its file's name without `.png`.
     pub pictures: Vec<(String, Scene)>,
-    pub judgement: Judgement,
+    pub verdict: PackageVerdict,
 }
 
-/// The verdict, by what the part gets.
+/// The verdict, by kind of part.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Judgement {
+pub enum PackageVerdict {
     Holes(Verdict),
     Flutes(FluteVerdict),
-    /// Of a part that is measured and gets nothing.
+    /// For a part that is measured and not machined.
     Measured,
 }
 
-impl Judgement {
+impl PackageVerdict {
     /// Of a part that gets holes.
     pub fn into_holes(self) -> Option<Verdict> {
         match self {
@@ -74,7 +74,7 @@ impl Judgement {
 }
 
 /// Simulates the main programs on the machine of the package's own machine file.
-pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
+pub fn check(job: &Job, package: &Package) -> Result<CheckedPackage, CheckError> {
     if let Job::Alignment(job) = job {
         return alignment::check(job, package);
     }
@@ -83,13 +83,13 @@ pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
     {
         return Err(CheckError::Impossible(why));
     }
-    match Wanted::of_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
-        Wanted::Holes(reference) => holes::check(job, package, &reference),
-        Wanted::Flutes(wanted) => flutes::check(package, &wanted),
+    match NominalPart::from_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
+        NominalPart::Holes(reference) => holes::check(job, package, &reference),
+        NominalPart::Flutes(wanted) => flutes::check(package, &wanted),
     }
 }
 
-pub(crate) fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
+pub(crate) fn broken_package(what: &str, error: &dyn std::fmt::Display) -> CheckError {
     CheckError::Broken(format!("{what}: {error}"))
 }
 

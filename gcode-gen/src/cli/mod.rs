@@ -7,14 +7,14 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use gcode_sim::cli::common::{self, Colours};
 use gcode_sim::cli::format::TextFormat;
-use gcode_sim::cli::front::{self, Colours};
 use gcode_sim::cli::packaging::{self, ManArguments, ShellArguments};
-use gcode_sim::cli::{Refusal, Status, output, schema};
+use gcode_sim::cli::{ExitStatus, UsageError, output, schema};
 
 use crate::report::FORMATS;
 
-/// Emits parametric Fanuc macro programs in which the control itself computes the geometry.
+/// Emits parametric Fanuc macro programs; the control computes the geometry.
 #[derive(Debug, Parser)]
 #[command(name = "gcode-gen", version, max_term_width = 100, after_help = EXIT_CODES)]
 struct Arguments {
@@ -28,18 +28,18 @@ struct Arguments {
 const EXIT_CODES: &str = "\
 Exit codes:
   0  done
-  1  refused: the programs of this job would not hold; nothing is written
-  2  the request can't be used: bad flag, unreadable or malformed job, unwritable folder
+  1  refused: the programs of this job fail verification; nothing is written
+  2  the request is invalid: bad flag, unreadable or malformed job, unwritable folder
 
 Results go to standard output, messages to standard error. --format json writes one document and nothing else; its
 schema is what `gcode-gen schema` prints for the command.
 
-Every program is simulated and held against the job's geometry before a file is written. That is a
+Every program is simulated and verified against the job's geometry before a file is written. That is a
 prediction, not a measurement.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Write a commented job file that works as it is
+    /// Write a commented job file that works unchanged
     #[command(after_help = "\
 Examples:
   gcode-gen new pin-holes
@@ -48,7 +48,7 @@ Examples:
         /// The part family
         #[arg(value_parser = families())]
         family: String,
-        /// Where to write it; without it, standard output
+        /// The file to write [default: standard output]
         #[arg(short, long, value_name = "JOB.toml")]
         output: Option<PathBuf>,
     },
@@ -62,10 +62,10 @@ Examples:
         /// The job file; '-' reads standard input
         #[arg(value_name = "JOB.toml")]
         job: PathBuf,
-        /// The folder for the programs; made if it isn't there
+        /// The folder for the programs; created if it does not exist
         #[arg(short, long, value_name = "DIR")]
         out: PathBuf,
-        /// How the result is written
+        /// Output format
         #[arg(long, value_enum, default_value_t = TextFormat::Text)]
         format: TextFormat,
     },
@@ -76,7 +76,7 @@ Examples:
   gcode-gen sheet job.toml -o setup.html
   gcode-gen sheet job.toml -o setup.html --rates rates.toml
 
-What only people know (part, drawing, minutes, rates) is the job's section [sheet]: see docs/setup-sheet.md.")]
+Part, drawing, minutes and rates come from the job's section [sheet]: see docs/setup-sheet.md.")]
     Sheet {
         /// The job file; '-' reads standard input
         #[arg(value_name = "JOB.toml")]
@@ -84,10 +84,10 @@ What only people know (part, drawing, minutes, rates) is the job's section [shee
         /// The file to write
         #[arg(short, long, value_name = "SHEET.html")]
         output: PathBuf,
-        /// What machine hours cost, instead of the job's [sheet.rates]
+        /// Machine-hour rates, instead of the job's [sheet.rates]
         #[arg(long, value_name = "RATES.toml")]
         rates: Option<PathBuf>,
-        /// How the result is written
+        /// Output format
         #[arg(long, value_enum, default_value_t = TextFormat::Text)]
         format: TextFormat,
     },
@@ -97,16 +97,16 @@ What only people know (part, drawing, minutes, rates) is the job's section [shee
 Example:
   gcode-gen schema emit
 
-Those of job files and of what gcode-sim answers are gcode-sim's: gcode-sim schema job")]
+The schemas of job files and of gcode-sim's results: gcode-sim schema job")]
     Schema(SchemaArguments),
 
-    /// Write the completions of a shell to standard output
+    /// Write shell completions to standard output
     #[command(after_help = "\
 Example:
   gcode-gen completions bash > ~/.local/share/bash-completion/completions/gcode-gen")]
     Completions(ShellArguments),
 
-    /// Write the manual pages into a folder, one a command
+    /// Write the manual pages into a folder, one for each command
     #[command(after_help = "\
 Example:
   gcode-gen man ~/.local/share/man/man1")]
@@ -115,7 +115,7 @@ Example:
 
 #[derive(Debug, Args)]
 struct SchemaArguments {
-    /// What it is of
+    /// The document
     #[arg(value_name = "NAME", value_parser = schema::names(FORMATS))]
     name: String,
 }
@@ -125,12 +125,12 @@ fn families() -> clap::builder::PossibleValuesParser {
 }
 
 /// Does what the command line asks for.
-pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
-    let arguments: Arguments = match front::parse(arguments) {
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let arguments: Arguments = match common::parse(arguments) {
         Ok(arguments) => arguments,
         Err(status) => return status,
     };
-    arguments.colours.obey();
+    arguments.colours.apply();
     let done = match &arguments.command {
         Command::New { family, output } => new::run(family, output.as_deref()),
         Command::Emit { job, out, format } => emit::run(job, out, *format),
@@ -139,8 +139,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Completions(shell) => packaging::completions::<Arguments>(shell),
         Command::Man(folder) => packaging::man::<Arguments>(folder),
     };
-    done.unwrap_or_else(|refusal: Refusal| {
-        output::tell(&format!("error: {refusal}\n"));
-        Status::Refused
+    done.unwrap_or_else(|refusal: UsageError| {
+        output::print_message(&format!("error: {refusal}\n"));
+        ExitStatus::Invalid
     })
 }

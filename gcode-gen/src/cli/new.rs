@@ -1,27 +1,27 @@
 //! `gcode-gen new`: a job file to start from.
 use std::path::Path;
 
-use gcode_sim::cli::{Refusal, Status, input, output};
+use gcode_sim::cli::{ExitStatus, UsageError, input, output};
 
-pub(super) fn run(family: &str, path: Option<&Path>) -> Result<Status, Refusal> {
+pub(super) fn run(family: &str, path: Option<&Path>) -> Result<ExitStatus, UsageError> {
     let known = crate::families::ALL.iter().find(|known| known.name == family);
     let Some(known) = known else {
-        return Err(Refusal::new(format!("no family '{family}'")));
+        return Err(UsageError::new(format!("no family '{family}'")));
     };
     match path {
         None => output::print(known.new_job)?,
         // A job that somebody has filled in is worth more than a new one.
         Some(path) if path.is_file() && !replaceable(path, known.new_job)? => {
             let name = path.display();
-            return Err(Refusal::new(format!("{name} is there already: remove it, or name another file")));
+            return Err(UsageError::new(format!("{name} already exists: remove it, or name another file")));
         }
         Some(path) => output::write(path, known.new_job.as_bytes())?,
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Passed)
 }
 
 /// An empty file, or the same job as it came from here.
-fn replaceable(path: &Path, new_job: &str) -> Result<bool, Refusal> {
+fn replaceable(path: &Path, new_job: &str) -> Result<bool, UsageError> {
     let bytes = input::bytes(path)?;
     Ok(bytes.is_empty() || bytes == new_job.as_bytes())
 }

@@ -1,11 +1,11 @@
 //! `gcode-gen sheet`: the set-up sheet of a job's programs, after they have been run and held against the job.
 use std::path::Path;
 
+use gcode_part::job::Rates;
 use gcode_sim::cli::format::TextFormat;
-use gcode_sim::cli::{Refusal, Status, apart, input, output};
-use gcode_sim::job::Rates;
+use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
 
-use super::emit::{Held, held, pictures};
+use super::emit::{VerifiedPackage, emit_verified, pictures};
 use crate::report::SheetReport;
 use crate::sheet::Sheet;
 
@@ -14,31 +14,31 @@ pub(super) fn run(
     out: &Path,
     rates: Option<&Path>,
     format: TextFormat,
-) -> Result<Status, Refusal> {
-    apart::keep(out, &std::iter::once(path).chain(rates).collect::<Vec<_>>())?;
+) -> Result<ExitStatus, UsageError> {
+    overwrite_guard::check_not_input(out, &std::iter::once(path).chain(rates).collect::<Vec<_>>())?;
     let rates = rates.map(read_rates).transpose()?;
-    let Held { job, package, checked } = match held(path)? {
+    let VerifiedPackage { job, package, checked } = match emit_verified(path)? {
         Ok(held) => held,
         Err(refused) => {
             if format == TextFormat::Json {
                 output::json(&SheetReport::refused(refused.plain()))?;
             }
-            return Ok(Status::Fails);
+            return Ok(ExitStatus::Failed);
         }
     };
     let pictures = pictures(&checked)?;
     let sheet = Sheet::new(&job, &package, &checked, rates.as_ref(), pictures)
-        .map_err(|error| Refusal::new(error.to_string()))?;
+        .map_err(|error| UsageError::new(error.to_string()))?;
     output::write(out, sheet.html().as_bytes())?;
     let (currency, costs) = sheet.costs();
-    let report = SheetReport::new(out.display().to_string(), &sheet.taken(), currency, &costs);
+    let report = SheetReport::new(out.display().to_string(), &sheet.machine_time(), currency, &costs);
     match format {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Passed)
 }
 
-fn read_rates(path: &Path) -> Result<Rates, Refusal> {
-    Rates::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
+fn read_rates(path: &Path) -> Result<Rates, UsageError> {
+    Rates::parse(&input::text(path)?).map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }

@@ -7,7 +7,7 @@ pub mod pin_holes;
 mod resident;
 mod start;
 
-use gcode_sim::job::Job;
+use gcode_part::job::Job;
 
 use crate::package::{Package, Program};
 

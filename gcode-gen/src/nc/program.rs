@@ -1,5 +1,5 @@
 //! A program from its O-number to the `%`: remarks, and blocks with sequence numbers to restart at.
-use gcode_sim::control::Dialect;
+use gcode_lang::control::Dialect;
 
 use super::block::Block;
 use super::text::displayable;

@@ -3,19 +3,19 @@
 //! Everything on it is of the emitted package and of its simulation; what only people know is the job's section `[sheet]`,
 //! and what isn't known stands empty, to be filled in by hand. Results of measurements always do.
 pub mod cost;
-pub mod duty;
 mod html;
 pub mod measure;
 pub mod record;
 pub mod settings;
+pub mod stop_instructions;
 
-use gcode_sim::job::{Job, Rates};
+use gcode_part::job::{Job, Rates};
 
-use crate::check::{CheckError, Checked};
+use crate::check::{CheckError, CheckedPackage};
 use crate::package::Package;
-use cost::{Cost, Taken};
+use cost::{Cost, MachineTime};
 use record::Record;
-use settings::Needed;
+use settings::RequiredSetting;
 
 /// What the whole page says of its numbers, wherever it shows any.
 pub const BASIS: &str = "Predicted by simulation, not measured";
@@ -24,9 +24,9 @@ pub const BASIS: &str = "Predicted by simulation, not measured";
 pub struct Sheet<'a> {
     job: &'a Job,
     package: &'a Package,
-    checked: &'a Checked,
+    checked: &'a CheckedPackage,
     record: Record,
-    needed: Vec<Needed>,
+    required_settings: Vec<RequiredSetting>,
     rates: Option<&'a Rates>,
     /// Names and PNGs.
     pictures: Vec<(String, Vec<u8>)>,
@@ -40,7 +40,7 @@ impl<'a> Sheet<'a> {
     pub fn new(
         job: &'a Job,
         package: &'a Package,
-        checked: &'a Checked,
+        checked: &'a CheckedPackage,
         rates: Option<&'a Rates>,
         pictures: Vec<(String, Vec<u8>)>,
     ) -> Result<Self, CheckError> {
@@ -50,7 +50,7 @@ impl<'a> Sheet<'a> {
             job,
             package,
             checked,
-            needed: settings::needed(job, package, &record.begins)?,
+            required_settings: settings::required_settings(job, package, &record.program_starts)?,
             record,
             rates,
             pictures,
@@ -58,13 +58,14 @@ impl<'a> Sheet<'a> {
     }
 
     /// The time that a part takes.
-    pub fn taken(&self) -> Taken {
-        cost::taken(self.job.sheet(), &self.record)
+    pub fn machine_time(&self) -> MachineTime {
+        cost::machine_time(self.job.sheet(), &self.record)
     }
 
     /// What it costs, on the job's own machine first, and the currency; nothing where no rate was given.
     pub fn costs(&self) -> (&str, Vec<Cost>) {
-        self.rates.map_or(("", Vec::new()), |rates| (&rates.currency, cost::costs(rates, &self.taken())))
+        self.rates
+            .map_or(("", Vec::new()), |rates| (&rates.currency, cost::costs(rates, &self.machine_time())))
     }
 
     /// One self-contained HTML file.

@@ -1,53 +1,62 @@
 //! Which settings of the control the programs depend on: each switch is turned in turn, and the run held against the one
 //! with all of them as the family of controls has them.
-use gcode_sim::control::{ROWS, Row, Settings};
-use gcode_sim::exec::{Limits, Outcome};
-use gcode_sim::job::Job;
-use gcode_sim::motion::{Event, EventKind, Position, Sink, StopKind};
-use gcode_sim::session::{Request, SessionError};
+use gcode_control::{Limits, Outcome};
+use gcode_lang::control::{ROWS, SettingRow, Settings};
+use gcode_lang::motion::{Event, EventKind, EventSink, Position, StopKind};
+use gcode_part::job::Job;
+use gcode_session::{Request, SessionError};
 
-use super::record::{Begin, attended, request};
-use crate::check::{CheckError, told};
+use super::record::{ProgramStart, request, run_with_part};
+use crate::check::{CheckError, broken_package};
 use crate::package::Package;
 
 /// A run is followed so far: loops only repeat blocks that have been seen by then.
-pub const BLOCKS: u64 = 2_000;
+pub const MAX_BLOCKS: u64 = 2_000;
 
 /// A switch that must stand as the simulation had it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Needed {
+pub struct RequiredSetting {
     pub key: &'static str,
     pub meaning: &'static str,
     /// 0 or 1.
     pub value: &'static str,
     /// What happens with the other value.
-    pub otherwise: String,
+    pub consequence: String,
 }
 
 /// Runs the main programs once for every switch; those that end in an alarm with all as it should be say nothing.
 ///
 /// # Errors
 /// A package that contradicts itself.
-pub fn needed(job: &Job, package: &Package, begins: &[Begin]) -> Result<Vec<Needed>, CheckError> {
-    let mut found: Vec<Needed> = Vec::new();
+pub fn required_settings(
+    job: &Job,
+    package: &Package,
+    begins: &[ProgramStart],
+) -> Result<Vec<RequiredSetting>, CheckError> {
+    let mut found: Vec<RequiredSetting> = Vec::new();
     for begin in begins {
         let mut request = request(package, begin)?;
-        request.limits = Limits { blocks: BLOCKS };
+        request.limits = Limits { blocks: MAX_BLOCKS };
         let usual = request.settings.clone();
         let mut trace = |settings: Settings| {
             request.settings = settings;
-            Trace::of(job, package, &request).map_err(|error| told(&request.name, &error))
+            RunTrace::of(job, package, &request).map_err(|error| broken_package(&request.name, &error))
         };
         let wanted = trace(usual.clone())?;
         if wanted.alarm.is_some() {
             continue;
         }
         for row in ROWS {
-            let Some((value, turned)) = turned(row, &usual) else { continue };
+            let Some((value, turned)) = switched(row, &usual) else { continue };
             let other = trace(turned)?;
             if other != wanted && found.iter().all(|known| known.key != row.key) {
-                let otherwise = other.alarm.unwrap_or_else(|| "the machine moves otherwise".to_owned());
-                found.push(Needed { key: row.key, meaning: row.meaning, value, otherwise });
+                let otherwise = other.alarm.unwrap_or_else(|| "the machine moves differently".to_owned());
+                found.push(RequiredSetting {
+                    key: row.key,
+                    meaning: row.meaning,
+                    value,
+                    consequence: otherwise,
+                });
             }
         }
     }
@@ -55,7 +64,7 @@ pub fn needed(job: &Job, package: &Package, begins: &[Begin]) -> Result<Vec<Need
 }
 
 /// The value that a switch has, and the settings with the other one; `None` for what is no switch.
-fn turned(row: &Row, usual: &Settings) -> Option<(&'static str, Settings)> {
+fn switched(row: &SettingRow, usual: &Settings) -> Option<(&'static str, Settings)> {
     ["0", "1"].into_iter().zip(["1", "0"]).find_map(|(value, other)| {
         let mut same = usual.clone();
         same.set(row.key, value).ok()?;
@@ -67,7 +76,7 @@ fn turned(row: &Row, usual: &Settings) -> Option<(&'static str, Settings)> {
 
 /// All that a run tells the machine and the operator.
 #[derive(Debug, Default, PartialEq)]
-struct Trace {
+struct RunTrace {
     moves: Vec<(Position, Option<f64>)>,
     tools: Vec<u32>,
     stops: Vec<(StopKind, String)>,
@@ -75,13 +84,13 @@ struct Trace {
     alarm: Option<String>,
 }
 
-impl Trace {
+impl RunTrace {
     fn of(job: &Job, package: &Package, request: &Request) -> Result<Self, SessionError> {
         let mut trace = Self::default();
-        let run = attended(job, package, request, &mut trace)?;
+        let run = run_with_part(job, package, request, &mut trace)?;
         trace.alarm = match &run.outcome {
             Outcome::Alarm(stopped) => {
-                let (program, line) = run.locate(stopped.place.block);
+                let (program, line) = run.locate(stopped.backtrace.block);
                 Some(format!("the run stops with {} in {program} line {line}", stopped.alarm.row().code))
             }
             Outcome::End | Outcome::Limit => None,
@@ -90,7 +99,7 @@ impl Trace {
     }
 }
 
-impl Sink for Trace {
+impl EventSink for RunTrace {
     fn event(&mut self, event: &Event<'_>) {
         match &event.kind {
             EventKind::Rapid { to } => self.moves.push((*to, None)),
@@ -100,10 +109,10 @@ impl Sink for Trace {
                 self.moves.push((*to, Some(rate.0)));
             }
             EventKind::Dwell { time } => self.dwells.push(time.0),
-            EventKind::Tool { number } => self.tools.push(*number),
+            EventKind::ToolChange { number } => self.tools.push(*number),
             EventKind::Stop { kind, text, .. } => self.stops.push((*kind, text.clone())),
             EventKind::ToolLength { .. }
-            | EventKind::Unplaced { .. }
+            | EventKind::WorkZeroUnknown { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => {}
@@ -122,14 +131,15 @@ mod tests {
         let package = Package { mains: vec![1], programs, machine: String::new() };
         // Any job that isn't touched by a probe.
         let job = Job::parse(families::ALL[0].new_job).unwrap();
-        let needed = needed(&job, &package, &[Begin { main: 1, variables: Vec::new() }]).unwrap();
-        needed.into_iter().map(|one| (one.key, one.value, one.otherwise)).collect()
+        let needed =
+            required_settings(&job, &package, &[ProgramStart { main: 1, variables: Vec::new() }]).unwrap();
+        needed.into_iter().map(|one| (one.key, one.value, one.consequence)).collect()
     }
 
     /// ATAN of the third quadrant is 225, or -135 with NAT; `IF[..]` needs THEN unless PLAIN-IF; X10 is 10 µm or mm.
     #[test]
     fn a_switch_that_changes_what_happens_is_named() {
-        let moves = "the machine moves otherwise".to_owned();
+        let moves = "the machine moves differently".to_owned();
         assert_eq!(found("O1\n#1=ATAN[-1.]/[-1.]\nG0 X#1\nM30\n"), [("NAT", "0", moves.clone())]);
         assert_eq!(found("O1\nG0 X10\nM30\n"), [("DPI", "0", moves)]);
         assert_eq!(found("O1\n#1=POW[2.,3.]\nG0 X#1\nM30\n").len(), 2, "two switches know POW");

@@ -4,10 +4,10 @@ use clap::{Parser, Subcommand};
 
 use super::budget::BudgetArguments;
 use super::check::CheckArguments;
+use super::common::Colours;
 use super::compare::CompareArguments;
 use super::diff::DiffArguments;
 use super::explain::ExplainArguments;
-use super::front::Colours;
 use super::holes::HolesArguments;
 use super::packaging::{ManArguments, ShellArguments};
 use super::readings::ReadingsArguments;
@@ -19,8 +19,8 @@ use super::settings::SettingsArguments;
 use super::test::TestArguments;
 use super::verify::VerifyArguments;
 
-/// Executes Fanuc Custom Macro B programs as the control would, follows the tool on the part, and holds the
-/// holes against a reference.
+/// Executes Fanuc Custom Macro B programs as the control does, follows the tool on the part, and compares the holes
+/// with a reference.
 #[derive(Debug, Parser)]
 #[command(name = "gcode-sim", version, max_term_width = 100, after_help = EXIT_CODES)]
 pub(super) struct Arguments {
@@ -33,9 +33,9 @@ pub(super) struct Arguments {
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  done, and what was asked about holds
-  1  done, and the answer is no: out of tolerance, missing or extra holes, findings, a difference
-  2  the request can't be used: bad flag, unreadable file, malformed job or reference
+  0  done, all checks passed
+  1  done, a check failed: out of tolerance, missing or extra holes, findings, a difference
+  2  the request is invalid: bad flag, unreadable file, malformed job or reference
   3  the control stopped with an alarm, or a limit ended the run
 
 Results go to standard output, messages to standard error. --format json writes one document and nothing else; its
@@ -61,14 +61,14 @@ Examples:
   gcode-sim holes O8100.nc --machine machine.toml --format json > holes.json")]
     Holes(HolesArguments),
 
-    /// Compute the holes the part should get, from a job file's geometry alone
+    /// Compute the nominal holes of a part from a job file's geometry alone
     #[command(after_help = "\
 Examples:
   gcode-sim reference job.toml > reference.json
   gcode-sim reference job.toml --format csv")]
     Reference(ReferenceArguments),
 
-    /// Hold a program's holes against a reference: position (ISO 1101), depth, missing and extra holes
+    /// Verify a program's holes against a reference: position (ISO 1101), depth, missing and extra holes
     #[command(after_help = "\
 Examples:
   gcode-sim verify O8100.nc --reference job.toml
@@ -86,28 +86,28 @@ Examples:
   gcode-sim render O8100.nc --reference job.toml -o top.png --size 1600x1200")]
     Render(RenderArguments),
 
-    /// Tell what an edge finder shows whose ball the program feeds along the part's surface
+    /// Show edge-finder readings along the part surface
     #[command(after_help = "\
 Examples:
   gcode-sim readings O8220.nc --part job.toml --machine machine.toml --picture readings.png
   gcode-sim readings O8220.nc --part job.toml --machine machine.toml --tolerance 0.03
   gcode-sim readings O8220.nc --part job.toml --machine machine.toml --format csv > readings.csv
 
-Above 0 there is a gap between ball and surface, below 0 the ball is pushed in. How the part really stands says [part]
-in the machine file.")]
+Above 0: gap between ball and surface; below 0: stylus deflected. [part] in the machine file gives the actual
+position of the part.")]
     Readings(ReadingsArguments),
 
-    /// Find faults without running: jumps to nowhere, lost points, variables never set, and more
+    /// Find faults without a run: missing sequence numbers, missing decimal points, unset variables, and more
     #[command(after_help = "\
 Examples:
   gcode-sim check O8100.nc
   gcode-sim check O1234.nc --lib macros --format json
   gcode-sim check O1234.nc --format sarif > findings.sarif
 
-A comment (CHECK-OFF DOUBLED-N) on a block silences that rule there, at the head of a program in all of it.")]
+A comment (CHECK-OFF DOUBLED-N) on a block suppresses that rule for the block, at the head of a program for all of it.")]
     Check(CheckArguments),
 
-    /// Compare two revisions of a program by what they do: holes, motion, stops, what they leave behind
+    /// Compare two revisions of a program by their effect: holes, motion, stops, final state
     #[command(after_help = "\
 Examples:
   gcode-sim diff old/O8100.nc new/O8100.nc
@@ -115,13 +115,13 @@ Examples:
   gcode-sim diff old/O8100.nc new/O8100.nc --page review.html --reference job.toml
   git show HEAD:O8100.nc | gcode-sim diff - O8100.nc
 
-Sequence numbers, spaces, comments, names of locals and the way numbers are written make no difference.
+Sequence numbers, spaces, comments, names of locals and the way numbers are written are ignored.
 Called programs come from each revision's own folder first, then from --lib, those of the old one from
---old-lib where it is given.
-Exit code 0: nothing changes; 1: something does; 3: a revision stops with an alarm or a limit.")]
+--old-lib if given.
+Exit code 0: no difference; 1: a difference; 3: a revision stops with an alarm or a limit.")]
     Diff(DiffArguments),
 
-    /// Run a folder of programs and hold each against what was accepted of it
+    /// Run a folder of programs and compare each with its accepted result
     #[command(after_help = "\
 Examples:
   gcode-sim test programs
@@ -130,11 +130,11 @@ Examples:
   gcode-sim test programs --lib macros --format junit > result.xml
   gcode-sim test --merge shard-1.json shard-2.json --format sarif
 
-A case is a folder with a program (main.nc, or the only .nc in it that no other calls) and, where they are wanted, lib/, machine.toml,
+A case is a folder with a program (main.nc, or the only .nc in it that no other calls) and, optionally, lib/, machine.toml,
 control.toml, a reference (reference.json, reference.csv or job.toml), and accepted.json, which --accept writes.")]
     Test(TestArguments),
 
-    /// Tell how far the holes of many parts would be off, on machines and set-ups with errors
+    /// Estimate the position error of each hole over many parts, on machines and set-ups with errors
     #[command(after_help = "\
 Examples:
   gcode-sim budget job.toml --errors errors.toml --samples 200000 --seed 1
@@ -142,14 +142,14 @@ Examples:
   gcode-sim budget job.toml --errors errors.toml --picture shares.png")]
     Budget(BudgetArguments),
 
-    /// List the settings of the control that --control takes
+    /// List the control settings for --control
     #[command(after_help = "\
 Examples:
   gcode-sim settings
   gcode-sim settings --format json")]
     Settings(SettingsArguments),
 
-    /// Tell what an alarm or a finding means, with an example and what to write instead
+    /// Explain an alarm or finding, with an example and a fix
     #[command(after_help = "\
 Examples:
   gcode-sim explain PS0112
@@ -164,22 +164,22 @@ Examples:
   gcode-sim schema job > job.schema.json
   gcode-sim schema verify
 
-The first line of a job file that editors check by it: #:schema ./job.schema.json (see docs/schemas.md)")]
+First line of a job file for editors that check it: #:schema ./job.schema.json (see docs/schemas.md)")]
     Schema(SchemaArguments),
 
-    /// Write the completions of a shell to standard output
+    /// Write shell completions to standard output
     #[command(after_help = "\
 Example:
   gcode-sim completions bash > ~/.local/share/bash-completion/completions/gcode-sim")]
     Completions(ShellArguments),
 
-    /// Write the manual pages into a folder, one a command
+    /// Write the manual pages into a folder, one for each command
     #[command(after_help = "\
 Example:
   gcode-sim man ~/.local/share/man/man1")]
     Man(ManArguments),
 
-    /// Compare two pictures and mark what differs
+    /// Compare two pictures and mark the differences
     #[command(after_help = "\
 Example:
   gcode-sim compare before.png after.png -o differences.png")]

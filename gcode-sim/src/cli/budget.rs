@@ -6,14 +6,14 @@ use std::sync::atomic::AtomicUsize;
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, apart, input, options, output, progress};
-use crate::budget::{MOST_SAMPLES, Question, budget};
-use crate::job::Job;
-use crate::machine::{Machine, error_file};
-use crate::part::wanted::Wanted;
-use crate::picture::Size;
+use super::{ExitStatus, UsageError, input, options, output, overwrite_guard, progress};
 use crate::report::budget::BudgetReport;
-use crate::verify::Tolerances;
+use gcode_draw::Size;
+use gcode_inspect::budget::{BudgetRequest, MAX_SAMPLES, budget};
+use gcode_inspect::machine::{Machine, error_file};
+use gcode_inspect::verify::Tolerances;
+use gcode_part::NominalPart;
+use gcode_part::job::Job;
 
 #[derive(Debug, Args)]
 pub(super) struct BudgetArguments {
@@ -21,19 +21,19 @@ pub(super) struct BudgetArguments {
     #[arg(value_name = "JOB.toml")]
     job: PathBuf,
 
-    /// What set-up and machine are off by
+    /// The set-up and machine errors
     #[arg(long, value_name = "ERRORS.toml")]
     errors: PathBuf,
 
-    /// How many parts are drawn
+    /// Number of simulated parts
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     samples: usize,
 
-    /// Another seed draws other parts
+    /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
 
-    /// The machine, without errors [default: the one that goes with the job]
+    /// The machine, without errors [default: the job's machine]
     #[arg(long, value_name = "MACHINE.toml")]
     machine: Option<PathBuf>,
 
@@ -41,51 +41,51 @@ pub(super) struct BudgetArguments {
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// On how many threads; the answer doesn't depend on it [default: as many as there are processors]
+    /// Number of threads; the result does not depend on it [default: the number of processors]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
 
-    /// Also draw each source's share to this file
+    /// Also draw each error source's share to this file
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError> {
     let named = |path: &std::path::Path, error: &dyn std::fmt::Display| {
-        Refusal::new(format!("{}, {error}", path.display()))
+        UsageError::new(format!("{}, {error}", path.display()))
     };
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
-    if !(1..=MOST_SAMPLES).contains(&arguments.samples) {
-        return Err(Refusal::new(format!("--samples {}: 1 to {MOST_SAMPLES}", arguments.samples)));
+    if !(1..=MAX_SAMPLES).contains(&arguments.samples) {
+        return Err(UsageError::new(format!("--samples {}: 1 to {MAX_SAMPLES}", arguments.samples)));
     }
     if let Some(path) = &arguments.picture {
         let machine = arguments.machine.as_deref();
         let files = [arguments.job.as_path(), arguments.errors.as_path()].into_iter().chain(machine);
-        apart::keep(path, &files.collect::<Vec<_>>())?;
+        overwrite_guard::check_not_input(path, &files.collect::<Vec<_>>())?;
     }
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&arguments.job, &e))?;
-    let reference = Wanted::of_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
+    let reference = NominalPart::from_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
     let Some(reference) = reference else {
-        return Err(named(&arguments.job, &"a budget is of holes, and this family's part gets none"));
+        return Err(named(&arguments.job, &"a budget needs holes, and this family's part has none"));
     };
     let machine = match &arguments.machine {
-        Some(path) => options::machine(path)?,
-        None => Machine::of_job(&job)
-            .ok_or_else(|| named(&arguments.job, &"no machine goes with it: give one with --machine"))?,
+        Some(path) => options::read_machine(path)?,
+        None => Machine::from_job(&job)
+            .ok_or_else(|| named(&arguments.job, &"this job has no machine: give one with --machine"))?,
     };
     if !machine.is_exact() {
         let message =
-            "--machine: it has errors or a misplaced part; a budget takes those from --errors alone";
-        return Err(Refusal::new(message));
+            "--machine: the file has errors or a misplaced part; a budget takes those from --errors alone";
+        return Err(UsageError::new(message));
     }
     let sources = error_file(&input::text(&arguments.errors)?, &machine)
         .map_err(|error| named(&arguments.errors, &error))?;
     let one = NonZeroUsize::MIN;
-    let question = Question {
+    let question = BudgetRequest {
         machine: &machine,
         holes: &reference.holes,
         clearance: job.clearance(),
@@ -97,7 +97,7 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
     };
     let counted = AtomicUsize::new(0);
     let all = arguments.samples.saturating_mul(reference.holes.len());
-    let found = progress::watched(all, &counted, || budget(&question, &counted))
+    let found = progress::with_progress(all, &counted, || budget(&question, &counted))
         .map_err(|error| named(&arguments.job, &error))?;
     let report = BudgetReport::new(&question, &found);
     match arguments.format {
@@ -107,12 +107,12 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
     if let Some(path) = &arguments.picture {
         // As high as its bars are many.
         let height = 120 + 25 * sources.len() as u32;
-        let size = Size::new(1200, height.max(360)).map_err(|error| Refusal::new(error.to_string()))?;
-        let png = report.bars().draw(size).map_err(|error| Refusal::new(error.to_string()))?;
+        let size = Size::new(1200, height.max(360)).map_err(|error| UsageError::new(error.to_string()))?;
+        let png = report.bars().draw(size).map_err(|error| UsageError::new(error.to_string()))?;
         output::write(path, &png)?;
         if arguments.format == TextFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Passed)
 }

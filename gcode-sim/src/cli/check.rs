@@ -5,8 +5,7 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
-use super::{Refusal, Status, options, output, unused_machine};
-use crate::check::check;
+use super::{ExitStatus, UsageError, options, output, unused_machine};
 use crate::report::check::{CheckReport, text};
 use crate::report::sarif::{self, Finding};
 
@@ -28,7 +27,7 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "KEY=VALUE")]
     control: Vec<String>,
 
-    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags go before it
+    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags override it
     #[arg(long, value_name = "CONTROL.toml")]
     control_file: Option<PathBuf>,
 
@@ -40,12 +39,12 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "CODE=PROGRAM")]
     code: Vec<String>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &CheckArguments) -> Result<ExitStatus, UsageError> {
     let conditions = RunConditions {
         libraries: arguments.libraries.clone(),
         dialect: arguments.dialect.clone(),
@@ -57,10 +56,10 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
     };
     let program = conditions.of(&arguments.program);
     let (request, mut folders) = options::request(&program)?;
-    unused_machine::tell_of_control(&program, &request);
-    let checked = check(request.name.clone(), request.bytes, &request.settings, &mut folders);
+    unused_machine::warn_unused_control(&program, &request);
+    let checked = gcode_lint::check(request.name.clone(), request.bytes, &request.settings, &mut folders);
     if checked.programs == 0 {
-        return Err(Refusal::new(format!("{} holds no program", request.name)));
+        return Err(UsageError::new(format!("{} contains no program", request.name)));
     }
     match arguments.format {
         FindingFormat::Text => output::print(&text(&checked))?,
@@ -68,8 +67,8 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
         FindingFormat::Sarif => {
             let sources = checked.memory.sources();
             let findings: Vec<_> = checked.findings.iter().map(|found| Finding::of(found, sources)).collect();
-            output::json(&sarif::log(&findings, &options::started_in()))?;
+            output::json(&sarif::log(&findings, &options::working_folder()))?;
         }
     }
-    Ok(if checked.stands() { Status::Fails } else { Status::Holds })
+    Ok(if checked.has_findings() { ExitStatus::Failed } else { ExitStatus::Passed })
 }

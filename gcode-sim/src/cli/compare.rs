@@ -4,8 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, apart, input, output};
-use crate::picture;
+use super::{ExitStatus, UsageError, input, output, overwrite_guard};
 use crate::report::pictures::CompareReport;
 
 #[derive(Debug, Args)]
@@ -18,26 +17,26 @@ pub(super) struct CompareArguments {
     #[arg(value_name = "B.png")]
     right: PathBuf,
 
-    /// Where to write the picture that marks what differs
+    /// The picture to write, with the differences marked
     #[arg(short, long, value_name = "DIFF.png")]
     output: Option<PathBuf>,
 
-    /// How much a colour value may differ, 0 to 255
+    /// Tolerance of a colour value, 0 to 255
     #[arg(long, value_name = "STEPS", default_value_t = 1)]
     tolerance: u8,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &CompareArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &CompareArguments) -> Result<ExitStatus, UsageError> {
     if let Some(path) = &arguments.output {
-        apart::keep(path, &[&arguments.left, &arguments.right])?;
+        overwrite_guard::check_not_input(path, &[&arguments.left, &arguments.right])?;
     }
     let (left, right) = (input::bytes(&arguments.left)?, input::bytes(&arguments.right)?);
-    let refused = |error: picture::PictureError| Refusal::new(error.to_string());
-    let difference = picture::compare(&left, &right, arguments.tolerance).map_err(refused)?;
+    let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
+    let difference = gcode_draw::compare(&left, &right, arguments.tolerance).map_err(refused)?;
     let picture = arguments.output.as_ref().filter(|_| !difference.is_none());
     if let Some(path) = picture {
         output::write(path, &difference.png().map_err(refused)?)?;
@@ -47,5 +46,5 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<Status, Refusal> {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(if report.same { Status::Holds } else { Status::Fails })
+    Ok(if report.same { ExitStatus::Passed } else { ExitStatus::Failed })
 }

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Refusal, apart};
+use super::{UsageError, overwrite_guard};
 
 /// The program, and everything its run depends on.
 #[derive(Debug, Default, Args)]
@@ -39,7 +39,7 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "KEY=VALUE")]
     pub(super) control: Vec<String>,
 
-    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags go before it
+    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags override it
     #[arg(long, value_name = "CONTROL.toml")]
     pub(super) control_file: Option<PathBuf>,
 
@@ -55,11 +55,11 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "CODE=PROGRAM")]
     pub(super) code: Vec<String>,
 
-    /// G31 stops after this part of its path, 0 to 1
+    /// G31 stops after this fraction of its path, 0 to 1
     #[arg(long, value_name = "PART", allow_negative_numbers = true)]
     pub(super) skip: Option<f64>,
 
-    /// The part that is there to be probed: G31 stops where the ball of the machine's or the job's [probe] touches it
+    /// The part for probing: G31 stops where the ball of the machine's or the job's [probe] touches it
     #[arg(long, value_name = "JOB.toml")]
     pub(super) part: Option<PathBuf>,
 
@@ -70,10 +70,10 @@ pub(super) struct RunConditions {
 
 impl ProgramArguments {
     /// The files that are read, called programs aside; a reference is one more. Standard input is among them once.
-    pub(super) fn files<'a>(&'a self, reference: Option<&'a Path>) -> Result<Vec<&'a Path>, Refusal> {
+    pub(super) fn files<'a>(&'a self, reference: Option<&'a Path>) -> Result<Vec<&'a Path>, UsageError> {
         let files = std::iter::once(self.program.as_path()).chain(self.conditions.files());
         let files: Vec<&Path> = files.chain(reference).collect();
-        apart::one_pipe(&files)?;
+        overwrite_guard::one_pipe(&files)?;
         Ok(files)
     }
 }

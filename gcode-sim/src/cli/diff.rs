@@ -5,17 +5,16 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
-use super::{Refusal, Status, apart, options, output, page, render, unused_machine};
-use crate::changes::{Compared, Revision, unexecuted};
-use crate::part::reference::Reference;
-use crate::part::wanted::Wanted;
-use crate::picture;
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, render, unused_machine};
 use crate::report::changes::{ChangesReport, change_found};
-use crate::report::page::{Difference, Page, Seen};
-use crate::report::sarif::{self, At, Finding};
+use crate::report::page::{Difference, ObservedProgram, Page};
+use crate::report::sarif::{self, FileLocation, Finding};
 use crate::report::{changed_view, diagnostic};
-use crate::session::Trace;
-use crate::verify::Tolerances;
+use gcode_inspect::verify::Tolerances;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
+use gcode_review::{Revision, RevisionDiff, unexecuted};
+use gcode_session::Trace;
 
 #[derive(Debug, Args)]
 pub(super) struct DiffArguments {
@@ -30,11 +29,11 @@ pub(super) struct DiffArguments {
     #[command(flatten)]
     run: RunConditions,
 
-    /// A folder that holds what OLD.nc calls, in the place of --lib (repeatable): a macro of before
+    /// A folder that holds the programs OLD.nc calls, instead of --lib (repeatable)
     #[arg(long = "old-lib", value_name = "DIR")]
     old_libraries: Vec<PathBuf>,
 
-    /// What differs by no more than this is the same, mm or degrees
+    /// Tolerance for equality, mm or degrees
     #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
     tolerance: f64,
 
@@ -42,28 +41,28 @@ pub(super) struct DiffArguments {
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
-    /// Also write a page for the review to this file: both programs side by side, their holes, paths, blocks and
-    /// variables; needs nothing but a browser
+    /// Also write a review page to this file: both programs side by side, their holes, paths, blocks and variables;
+    /// opens in any browser
     #[arg(long, value_name = "OUT.html")]
     page: Option<PathBuf>,
 
-    /// What the part should get, for the page: a hole list (JSON or CSV) or a job file (TOML)
+    /// The reference for the page: a hole list (JSON or CSV) or a job file (TOML)
     #[arg(long, value_name = "REF", requires = "page")]
     reference: Option<PathBuf>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     let programs = [arguments.old.as_path(), arguments.new.as_path()];
     let files: Vec<&Path> =
         programs.into_iter().chain(arguments.run.files()).chain(arguments.reference.as_deref()).collect();
-    apart::one_pipe(&files)?;
+    overwrite_guard::one_pipe(&files)?;
     for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        apart::keep(result, &files)?;
+        overwrite_guard::check_not_input(result, &files)?;
     }
     arguments.page.as_deref().map(page::is_html).transpose()?;
     let mut before = arguments.run.clone();
@@ -72,18 +71,19 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     }
     let (mut old_request, mut old_folders) = options::request(&before.of(&arguments.old))?;
     let (mut new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
-    unused_machine::tell(&arguments.run.of(&arguments.new), &new_request);
-    let reference = arguments.reference.as_deref().map(wanted_holes).transpose()?;
+    unused_machine::warn_unused_machine(&arguments.run.of(&arguments.new), &new_request);
+    let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     for request in [&mut old_request, &mut new_request] {
-        request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
+        request.conduct =
+            reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     }
-    let refused = |error: crate::session::SessionError| Refusal::new(error.to_string());
+    let refused = |error: gcode_session::SessionError| UsageError::new(error.to_string());
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
-    let old = Revision::watched(&old_request, &mut old_folders, surface, &mut old_trace).map_err(refused)?;
-    let new = Revision::watched(&new_request, &mut new_folders, surface, &mut new_trace).map_err(refused)?;
-    let compared = Compared::new(&old.record, &new.record, tolerance);
+    let old = Revision::observed(&old_request, &mut old_folders, surface, &mut old_trace).map_err(refused)?;
+    let new = Revision::observed(&new_request, &mut new_folders, surface, &mut new_trace).map_err(refused)?;
+    let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let unexecuted = unexecuted(&old, &new);
     let report = ChangesReport::new(
         (&old_request.name, &old.record),
@@ -97,7 +97,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         FindingFormat::Text => output::print(&report.text())?,
         FindingFormat::Sarif => {
             let findings = findings(&compared, &new, &new_request.name);
-            output::json(&sarif::log(&findings, &options::started_in()))?
+            output::json(&sarif::log(&findings, &options::working_folder()))?
         }
     }
     if let Some(path) = &arguments.picture {
@@ -111,7 +111,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         let name = format!("{is} against {was}");
         let (machine, reference) = (&new_request.machine, reference.as_ref());
         let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), reference);
-        let scene = picture::top_view(&view);
+        let scene = gcode_draw::top_view(&view);
         render::write(&scene, "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
@@ -126,7 +126,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
             reference.as_ref().map(verify)
         };
         let (old_verdict, new_verdict) = (judged(&old), judged(&new));
-        let seen = |request, revision, trace, verdict| Seen { request, revision, trace, verdict };
+        let seen = |request, revision, trace, verdict| ObservedProgram { request, revision, trace, verdict };
         let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
         let of_old = arguments.old_libraries.iter().map(|folder| format!("--old-lib {}", folder.display()));
         let flags: Vec<String> = page::flags(&arguments.run).into_iter().chain(of_old).collect();
@@ -139,24 +139,24 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
             documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
         };
         page::write(&review, path)?;
-        page::tell(path, arguments.format == FindingFormat::Text)?;
+        page::report_written(path, arguments.format == FindingFormat::Text)?;
     }
-    let mut status = if compared.changes.is_empty() { Status::Holds } else { Status::Fails };
+    let mut status = if compared.changes.is_empty() { ExitStatus::Passed } else { ExitStatus::Failed };
     for revision in [&old, &new] {
         let sources = revision.simulation.run.control.memory().sources();
         for finding in revision.stopped() {
-            output::tell(&diagnostic::render(finding, sources));
-            status = Status::Stopped;
+            output::print_message(&diagnostic::render(finding, sources));
+            status = ExitStatus::Stopped;
         }
     }
     Ok(status)
 }
 
 /// For a code review: what changes, at its place in the new revision, and why that stops if it does.
-fn findings(compared: &Compared, new: &Revision, file: &str) -> Vec<Finding> {
+fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding> {
     let (files, sources) = (new.files(), new.simulation.run.control.memory().sources());
     // A result without a place is taken by none.
-    let first = At { file: file.to_owned(), line: Some(1), column: None };
+    let first = FileLocation { file: file.to_owned(), line: Some(1), column: None };
     let found = |change| {
         let found = change_found(change, "", &files);
         Finding { at: found.at.or_else(|| Some(first.clone())), ..found }
@@ -166,11 +166,11 @@ fn findings(compared: &Compared, new: &Revision, file: &str) -> Vec<Finding> {
 }
 
 /// The page's reference.
-fn wanted_holes(path: &Path) -> Result<Reference, Refusal> {
-    match options::wanted(path)? {
-        Wanted::Holes(reference) => Ok(reference),
-        Wanted::Flutes(_) => Err(Refusal::new(format!(
-            "--reference {}: a page has verdicts on holes, and this is a burr: leave the reference out",
+fn read_reference_holes(path: &Path) -> Result<Reference, UsageError> {
+    match options::read_nominal(path)? {
+        NominalPart::Holes(reference) => Ok(reference),
+        NominalPart::Flutes(_) => Err(UsageError::new(format!(
+            "--reference {}: a page verifies holes, and this is a burr: omit the reference",
             path.display()
         ))),
     }

@@ -2,7 +2,7 @@
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, output};
+use super::{ExitStatus, UsageError, output};
 use crate::report::explained::ExplainReport;
 
 #[derive(Debug, Args)]
@@ -11,21 +11,21 @@ pub(super) struct ExplainArguments {
     #[arg(value_name = "CODE", required_unless_present = "list")]
     code: Option<String>,
 
-    /// Name all codes that can be explained
+    /// List all codes
     #[arg(long, conflicts_with = "code")]
     list: bool,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &ExplainArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitStatus, UsageError> {
     let report = match &arguments.code {
         None => ExplainReport::list(),
         Some(code) => ExplainReport::of(code).ok_or_else(|| {
-            Refusal::new(format!(
-                "{code} is none of this simulator's alarms and findings: gcode-sim explain --list names them"
+            UsageError::new(format!(
+                "{code} is not a code of this simulator: gcode-sim explain --list lists all"
             ))
         })?,
     };
@@ -33,5 +33,5 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<Status, Refusal> {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Passed)
 }

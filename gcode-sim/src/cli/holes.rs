@@ -5,53 +5,54 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{Refusal, Status, apart, options, output, page, progress, unused_machine};
-use crate::part::hole::HoleList;
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, progress, unused_machine};
 use crate::report::holes as report;
-use crate::session::{self, Simulation};
+use gcode_part::HoleList;
+use gcode_session::Simulation;
 
 #[derive(Debug, Args)]
 pub(super) struct HolesArguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// Also write a page to this file: the holes, the path, the blocks and what the variables were; needs nothing but a
-    /// browser
+    /// Also write a page to this file: the holes, the path, the blocks and the values of the variables; opens in
+    /// any browser
     #[arg(long, value_name = "OUT.html")]
     page: Option<PathBuf>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &HolesArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(page) = &arguments.page {
-        apart::keep(page, &files)?;
+        overwrite_guard::check_not_input(page, &files)?;
         page::is_html(page)?;
     }
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     if let Some(path) = &arguments.page {
-        let watched = page::watched(&request, &mut folders, None)?;
+        let watched = page::simulate_traced(&request, &mut folders, None)?;
         page::write_alone(&request, &watched, None, &arguments.program.conditions, path)?;
-        let status = tell(arguments, &watched.0.simulation)?;
-        page::tell(path, arguments.format == ListFormat::Text)?;
+        let status = print_result(arguments, &watched.0.simulation)?;
+        page::report_written(path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }
-    let simulation = progress::of_run(&mut request, |request| session::simulate(request, &mut folders, None))
-        .map_err(|e| Refusal::new(e.to_string()))?;
-    tell(arguments, &simulation)
+    let simulation =
+        progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))
+            .map_err(|e| UsageError::new(e.to_string()))?;
+    print_result(arguments, &simulation)
 }
 
-fn tell(arguments: &HolesArguments, simulation: &Simulation) -> Result<Status, Refusal> {
-    print(&simulation.list(), arguments.format)?;
+fn print_result(arguments: &HolesArguments, simulation: &Simulation) -> Result<ExitStatus, UsageError> {
+    print(&simulation.hole_list(), arguments.format)?;
     Ok(super::findings(&simulation.extracted.findings, &simulation.run))
 }
 
 /// A list of holes in the format asked for.
-pub(super) fn print(list: &HoleList, format: ListFormat) -> Result<(), Refusal> {
+pub(super) fn print(list: &HoleList, format: ListFormat) -> Result<(), UsageError> {
     match format {
         ListFormat::Text => output::print(&report::text(list)),
         ListFormat::Json => output::json(list),

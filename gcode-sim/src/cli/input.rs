@@ -2,29 +2,29 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::Refusal;
+use super::UsageError;
 
 /// Nothing a control could hold is larger.
 const LARGEST: u64 = 1 << 30;
 
 /// A file's bytes; `-` is standard input.
 #[expect(clippy::disallowed_methods, reason = "the command line reads files")]
-pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
+pub fn bytes(path: &Path) -> Result<Vec<u8>, UsageError> {
     if path == Path::new("-") {
         let mut bytes = Vec::new();
         return match std::io::stdin().lock().take(LARGEST).read_to_end(&mut bytes) {
             Ok(_) => Ok(bytes),
-            Err(error) => Err(Refusal::new(format!("standard input can't be read: {error}"))),
+            Err(error) => Err(UsageError::new(format!("standard input cannot be read: {error}"))),
         };
     }
     let unreadable =
-        |error: std::io::Error| Refusal::new(format!("{} can't be read: {error}", path.display()));
+        |error: std::io::Error| UsageError::new(format!("{} cannot be read: {error}", path.display()));
     let about = std::fs::metadata(path).map_err(unreadable)?;
     if about.is_dir() {
-        return Err(Refusal::new(format!("{} is a folder; name a file in it", path.display())));
+        return Err(UsageError::new(format!("{} is a folder; name a file in it", path.display())));
     }
     if about.len() > LARGEST {
-        return Err(Refusal::new(format!("{} is larger than 1 GiB", path.display())));
+        return Err(UsageError::new(format!("{} is larger than 1 GiB", path.display())));
     }
     std::fs::read(path).map_err(unreadable)
 }
@@ -39,24 +39,24 @@ const OTHERS: [(&[u8], &str); 5] = [
 ];
 
 /// A program's bytes; refuses what is plainly something else.
-pub fn program(path: &Path) -> Result<Vec<u8>, Refusal> {
+pub fn program(path: &Path) -> Result<Vec<u8>, UsageError> {
     let bytes = bytes(path)?;
     let name = path.display();
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
-        return Err(Refusal::new(format!("{name} is {what}, not a program")));
+        return Err(UsageError::new(format!("{name} is {what}, not a program")));
     }
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
-        return Err(Refusal::new(format!(
-            "{name} is a job or a machine file, not a program: --reference and --machine take those"
+        return Err(UsageError::new(format!(
+            "{name} is a job or a machine file, not a program: give it with --reference or --machine"
         )));
     }
     Ok(bytes)
 }
 
 /// What is in a folder, by name.
-pub fn folder(path: &Path) -> Result<Vec<PathBuf>, Refusal> {
+pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
     let unreadable =
-        |error: std::io::Error| Refusal::new(format!("{} can't be read: {error}", path.display()));
+        |error: std::io::Error| UsageError::new(format!("{} cannot be read: {error}", path.display()));
     let entries = std::fs::read_dir(path).map_err(unreadable)?;
     let mut paths =
         entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
@@ -65,12 +65,13 @@ pub fn folder(path: &Path) -> Result<Vec<PathBuf>, Refusal> {
 }
 
 /// A folder's one path, whatever links lead to it.
-pub fn canonical(path: &Path) -> Result<PathBuf, Refusal> {
-    path.canonicalize().map_err(|error| Refusal::new(format!("{} can't be read: {error}", path.display())))
+pub fn canonical(path: &Path) -> Result<PathBuf, UsageError> {
+    path.canonicalize()
+        .map_err(|error| UsageError::new(format!("{} cannot be read: {error}", path.display())))
 }
 
 /// A file's text, which must be UTF-8 (jobs, machine files, references; programs are bytes).
-pub fn text(path: &Path) -> Result<String, Refusal> {
+pub fn text(path: &Path) -> Result<String, UsageError> {
     let bytes = bytes(path)?;
     match String::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned)),
@@ -78,7 +79,7 @@ pub fn text(path: &Path) -> Result<String, Refusal> {
             let line =
                 error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count()
                     + 1;
-            Err(Refusal::new(format!("{}, line {line}: not UTF-8 text", path.display())))
+            Err(UsageError::new(format!("{}, line {line}: not UTF-8 text", path.display())))
         }
     }
 }

@@ -2,10 +2,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::{Refusal, input};
-use crate::program::Library;
-use crate::source::SourceId;
-use crate::syntax::{self, Piece, ast::ProgramName};
+use super::{UsageError, input};
+use gcode_lang::program::Library;
+use gcode_lang::source::SourceId;
+use gcode_lang::syntax::{self, FileItem, ast::ProgramName};
 
 /// The folders to look in, the first that has a program wins.
 pub struct Folders {
@@ -25,9 +25,9 @@ struct Contents {
 
 impl Folders {
     /// `folders` must exist: a misspelt one would look like a missing program later.
-    pub fn new(program: &Path, folders: &[PathBuf]) -> Result<Self, Refusal> {
+    pub fn new(program: &Path, folders: &[PathBuf]) -> Result<Self, UsageError> {
         if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
-            return Err(Refusal::new(format!("--lib {}: no such folder", missing.display())));
+            return Err(UsageError::new(format!("--lib {}: no such folder", missing.display())));
         }
         let own = match program.parent() {
             Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
@@ -90,7 +90,7 @@ impl Folders {
         found
     }
 
-    fn holder(&mut self, of: impl Fn(&Contents) -> Option<&PathBuf>) -> Option<PathBuf> {
+    fn find_holder(&mut self, of: impl Fn(&Contents) -> Option<&PathBuf>) -> Option<PathBuf> {
         if self.contents.is_none() {
             self.contents = Some(self.read_contents());
         }
@@ -107,7 +107,7 @@ impl Library for Folders {
         let (bytes, path) = match named.filter(|(bytes, _)| holds(bytes)) {
             Some(found) => found,
             None => {
-                let path = self.holder(|contents| contents.numbers.get(&number))?;
+                let path = self.find_holder(|contents| contents.numbers.get(&number))?;
                 (self.bytes(&path)?, path)
             }
         };
@@ -115,7 +115,7 @@ impl Library for Folders {
     }
 
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
-        let path = match self.holder(|contents| contents.names.get(name)) {
+        let path = match self.find_holder(|contents| contents.names.get(name)) {
             Some(path) => path,
             // A file of this name that says neither name nor number itself.
             None => self.find(|path| path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case(name)))?,
@@ -124,7 +124,7 @@ impl Library for Folders {
         Some((path.display().to_string(), bytes))
     }
 
-    fn unread(&self) -> Option<String> {
+    fn read_error(&self) -> Option<String> {
         let all: Vec<_> = self.unread.iter().map(String::as_str).collect();
         (!all.is_empty()).then(|| all.join("; "))
     }
@@ -132,8 +132,8 @@ impl Library for Folders {
 
 /// The programs in a file that have a number or a name.
 fn programs_in(bytes: &[u8]) -> impl Iterator<Item = ProgramName> + '_ {
-    syntax::Pieces::new(SourceId::default(), bytes).filter_map(|piece| match piece {
-        Piece::Program { name, .. } => Some(name),
+    syntax::FileItems::new(SourceId::default(), bytes).filter_map(|piece| match piece {
+        FileItem::Program { name, .. } => Some(name),
         _ => None,
     })
 }
@@ -163,10 +163,10 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let mut folders = Folders::new(&place.path().join("main.nc"), &[]).unwrap();
         assert!(folders.program(1).is_none());
-        assert_eq!(folders.unread(), None, "an empty folder has been read");
+        assert_eq!(folders.read_error(), None, "an empty folder has been read");
         place.close().unwrap();
         assert!(folders.program(1).is_none());
-        let told = folders.unread().unwrap();
-        assert!(told.contains("can't be read"), "{told}");
+        let told = folders.read_error().unwrap();
+        assert!(told.contains("cannot be read"), "{told}");
     }
 }

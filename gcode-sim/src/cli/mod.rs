@@ -1,19 +1,19 @@
 //! The only place that prints and opens files: arguments in, exit status out.
-pub mod apart;
 mod args;
 mod budget;
 mod check;
+pub mod common;
 mod compare;
 mod conditions;
 mod diff;
 mod explain;
 pub mod format;
-pub mod front;
 mod holes;
 pub mod input;
 pub mod library;
 mod options;
 pub mod output;
+pub mod overwrite_guard;
 pub mod packaging;
 mod page;
 mod progress;
@@ -32,30 +32,30 @@ use std::process::ExitCode;
 
 use args::{Arguments, Command};
 
-use crate::diag::{Diagnostic, Severity};
 use crate::report::diagnostic;
-use crate::session::Run;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_session::Run;
 
 /// How a request ended, the same for both programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum ExitStatus {
     /// Done, and what was asked about holds.
-    Holds,
+    Passed,
     /// Done, and the answer is no.
-    Fails,
+    Failed,
     /// The request can't be used.
-    Refused,
+    Invalid,
     /// The control stopped with an alarm, or a limit ended the run.
     Stopped,
 }
 
-impl From<Status> for ExitCode {
-    fn from(status: Status) -> Self {
+impl From<ExitStatus> for ExitCode {
+    fn from(status: ExitStatus) -> Self {
         Self::from(match status {
-            Status::Holds => 0,
-            Status::Fails => 1,
-            Status::Refused => 2,
-            Status::Stopped => 3,
+            ExitStatus::Passed => 0,
+            ExitStatus::Failed => 1,
+            ExitStatus::Invalid => 2,
+            ExitStatus::Stopped => 3,
         })
     }
 }
@@ -63,21 +63,21 @@ impl From<Status> for ExitCode {
 /// Why a request can't be used, in one sentence with its remedy.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
-pub struct Refusal(String);
+pub struct UsageError(String);
 
-impl Refusal {
+impl UsageError {
     pub fn new(message: impl Into<String>) -> Self {
         Self(message.into())
     }
 }
 
 /// Does what the command line asks for.
-pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
-    let arguments: Arguments = match front::parse(arguments) {
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let arguments: Arguments = match common::parse(arguments) {
         Ok(arguments) => arguments,
         Err(status) => return status,
     };
-    arguments.colours.obey();
+    arguments.colours.apply();
     let done = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Holes(arguments) => holes::run(&arguments),
@@ -97,29 +97,29 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Compare(arguments) => compare::run(&arguments),
     };
     done.unwrap_or_else(|refusal| {
-        output::tell(&format!("error: {refusal}\n"));
-        Status::Refused
+        output::print_message(&format!("error: {refusal}\n"));
+        ExitStatus::Invalid
     })
 }
 
 /// Tells what a run did in silence, and why it stopped before its end, if it did.
-fn stopped(run: &Run) -> Option<Status> {
+fn stopped(run: &Run) -> Option<ExitStatus> {
     let sources = run.control.memory().sources();
-    run.notes().for_each(|note| output::tell(&diagnostic::render(&note, sources)));
-    let finding = run.stopped()?;
-    output::tell(&diagnostic::render(&finding, sources));
-    Some(Status::Stopped)
+    run.note_findings().for_each(|note| output::print_message(&diagnostic::render(&note, sources)));
+    let finding = run.stop_finding()?;
+    output::print_message(&diagnostic::render(&finding, sources));
+    Some(ExitStatus::Stopped)
 }
 
 /// Tells what was found, and what that means for the exit status.
-fn findings(all: &[Diagnostic], run: &Run) -> Status {
+fn findings(all: &[Diagnostic], run: &Run) -> ExitStatus {
     let sources = run.control.memory().sources();
     for finding in all {
-        output::tell(&diagnostic::render(finding, sources));
+        output::print_message(&diagnostic::render(finding, sources));
     }
     match all.iter().map(|finding| finding.severity).max() {
-        Some(Severity::Alarm) => Status::Stopped,
-        Some(Severity::Error) => Status::Fails,
-        _ => Status::Holds,
+        Some(Severity::Alarm) => ExitStatus::Stopped,
+        Some(Severity::Error) => ExitStatus::Failed,
+        _ => ExitStatus::Passed,
     }
 }

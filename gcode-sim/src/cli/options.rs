@@ -3,19 +3,19 @@ use std::path::Path;
 
 use super::conditions::ProgramArguments;
 use super::library::Folders;
-use super::{Refusal, input};
-use crate::exec::Limits;
-use crate::job::{Rotary, control_file};
-use crate::machine::{Machine, Probe};
-use crate::part::probed::Probed;
-use crate::part::wanted::Wanted;
-use crate::session::Request;
+use super::{UsageError, input};
+use gcode_control::Limits;
+use gcode_inspect::machine::{Machine, Probe};
+use gcode_part::NominalPart;
+use gcode_part::ProbedPart;
+use gcode_part::job::{Rotary, control_file};
+use gcode_session::Request;
 
 /// Reads the program and the machine, and resolves every setting.
-pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), Refusal> {
+pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), UsageError> {
     let ProgramArguments { program, conditions: arguments } = program;
     let machine = match &arguments.machine {
-        Some(path) => machine(path)?,
+        Some(path) => read_machine(path)?,
         None => Machine::default(),
     };
     let folders = Folders::new(program, &arguments.libraries)?;
@@ -23,7 +23,7 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     let name = if piped { "standard input".to_owned() } else { program.display().to_string() };
     let mut request = Request::new(name, input::program(program)?, machine);
     if let Some(path) = &arguments.control_file {
-        let refused = |error| Refusal::new(format!("{}, {error}", path.display()));
+        let refused = |error| UsageError::new(format!("{}, {error}", path.display()));
         control_file::apply(&input::text(path)?, &mut request.settings).map_err(refused)?;
     }
     let mut settings: Vec<(&str, String)> = Vec::new();
@@ -36,48 +36,45 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     settings.extend(arguments.skip.iter().map(|part| ("--skip", format!("SKIP={part}"))));
     for (flag, text) in settings {
         let Some((key, value)) = text.split_once('=') else {
-            return Err(Refusal::new(format!("{flag} {text}: write KEY=VALUE, for example NAT=1")));
+            return Err(UsageError::new(format!("{flag} {text}: write KEY=VALUE, for example NAT=1")));
         };
         let taken = request.settings.set(key.trim(), value.trim());
-        taken.map_err(|error| Refusal::new(format!("{flag}: {error}")))?;
+        taken.map_err(|error| UsageError::new(format!("{flag}: {error}")))?;
     }
     for text in &arguments.set {
         request.variables.push(assignment(text)?);
     }
     request.limits = Limits { blocks: arguments.max_blocks };
     if let Some(path) = &arguments.part {
-        probed(&mut request, path, arguments.machine.as_deref())?;
+        apply_part(&mut request, path, arguments.machine.as_deref())?;
     }
     Ok((request, folders))
 }
 
 /// Puts a part on the machine that can be probed; `file` is the machine's.
-fn probed(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), Refusal> {
-    let refused = |why: &dyn std::fmt::Display| Refusal::new(format!("{}, {why}", path.display()));
+fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), UsageError> {
+    let refused = |why: &dyn std::fmt::Display| UsageError::new(format!("{}, {why}", path.display()));
     if request.settings.skip_signal.is_some() {
-        return Err(Refusal::new(
-            "--part: SKIP says already where the skip signal comes: leave one of them out",
-        ));
+        return Err(UsageError::new("--part: SKIP already sets the skip signal: omit one of them"));
     }
-    let part = Probed::parse(&input::text(path)?).map_err(|error| refused(&error))?;
+    let part = ProbedPart::parse(&input::text(path)?).map_err(|error| refused(&error))?;
     match (&request.machine.probe, part.radius) {
         (None, Some(radius)) => request.machine.probe = Some(Probe::new(radius)),
         (None, None) => {
-            let message =
-                "--part: how large is the stylus ball? Give [probe] with its radius in the machine file";
-            return Err(Refusal::new(message));
+            let message = "--part: the radius of the stylus ball is missing: give [probe] with its radius \
+                           in the machine file";
+            return Err(UsageError::new(message));
         }
         (Some(probe), Some(radius)) if probe.radius != radius => {
             return Err(refused(&format!(
-                "key 'probe.radius' is {radius}, and the machine file says {}: make them agree",
+                "key 'probe.radius' is {radius}, and {} in the machine file: make them equal",
                 probe.radius
             )));
         }
         (Some(_), _) => {}
     }
     if let Some(rotary) = part.rotary {
-        let machine =
-            file.map_or("the machine without --machine".to_owned(), |file| file.display().to_string());
+        let machine = file.map_or("the default machine".to_owned(), |file| file.display().to_string());
         same_rotary(rotary, &request.machine, &machine).map_err(|why| refused(&why))?;
     }
     request.part = Some(part.surface);
@@ -87,60 +84,62 @@ fn probed(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(),
 /// Whether the machine turns the part as the job says. Of two signs no fit could tell which is the right one.
 fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), String> {
     let letter = rotary.letter;
-    let turns = machine.axes.find(letter as u8).and_then(|axis| machine.table.turns(axis));
+    let turns = machine.axes.find(letter as u8).and_then(|axis| machine.table.rotary_sign(axis));
     let Some(sign) = turns else {
         return Err(format!(
-            "key 'machine.rotary.letter' is {letter}, and {file} has no [[table]] with such a letter that turns the part: give the \
-             machine file that belongs to the job"
+            "key 'machine.rotary.letter' is {letter}, and {file} has no [[table]] with this letter that \
+             rotates the part: give the job's machine file"
         ));
     };
     if sign == f64::from(rotary.sign) {
         return Ok(());
     }
     Err(format!(
-        "key 'machine.rotary.sign' is {}, and {file} says sign = {sign} in [[table]] {letter}: turn {letter} to 10 at the machine, see \
-         which way the part goes, and correct the one that is wrong",
+        "key 'machine.rotary.sign' is {}, and {file} has sign = {sign} in [[table]] {letter}: command \
+         {letter} 10 at the machine, observe the direction of the part and correct the wrong sign",
         rotary.sign
     ))
 }
 
 /// A machine file.
-pub(super) fn machine(path: &Path) -> Result<Machine, Refusal> {
-    Machine::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
+pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
+    Machine::parse(&input::text(path)?)
+        .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }
 
 /// A hole list or a job file.
-pub(super) fn wanted(path: &Path) -> Result<Wanted, Refusal> {
-    Wanted::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
+pub(super) fn read_nominal(path: &Path) -> Result<NominalPart, UsageError> {
+    NominalPart::parse(&input::text(path)?)
+        .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }
 
 /// The folder that the program was started in, which results name files from.
-pub(super) fn started_in() -> String {
+pub(super) fn working_folder() -> String {
     std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default()
 }
 
 /// A tolerance that somebody asked for.
-pub(super) fn tolerance(flag: &str, value: Option<f64>) -> Result<Option<f64>, Refusal> {
+pub(super) fn tolerance(flag: &str, value: Option<f64>) -> Result<Option<f64>, UsageError> {
     match value {
         Some(mm) if !(mm.is_finite() && mm > 0.0) => {
-            Err(Refusal::new(format!("{flag} {mm}: a length above 0 mm")))
+            Err(UsageError::new(format!("{flag} {mm}: a length above 0 mm")))
         }
         value => Ok(value),
     }
 }
 
 /// `#500=12.5`.
-fn assignment(text: &str) -> Result<(u32, f64), Refusal> {
+fn assignment(text: &str) -> Result<(u32, f64), UsageError> {
     let parsed = text.trim().strip_prefix('#').and_then(|rest| {
         let (number, value) = rest.split_once('=')?;
         let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite())?;
         Some((number.trim().parse().ok()?, value))
     });
-    parsed.ok_or_else(|| Refusal::new(format!("--set {text}: write a variable and a number, '#500=12.5'")))
+    parsed.ok_or_else(|| UsageError::new(format!("--set {text}: write a variable and a number, '#500=12.5'")))
 }
 
 /// `#5041`.
-pub(super) fn variable(text: &str) -> Result<u32, Refusal> {
+pub(super) fn variable(text: &str) -> Result<u32, UsageError> {
     let number = text.trim().strip_prefix('#').and_then(|digits| digits.parse().ok());
-    number.ok_or_else(|| Refusal::new(format!("--show {text}: write a variable, '#5041'")))
+    number.ok_or_else(|| UsageError::new(format!("--show {text}: write a variable, '#5041'")))
 }

@@ -2,45 +2,45 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::Refusal;
+use super::UsageError;
 
 /// Prints a result. A reader that has heard enough (`| head`) is no error.
-pub fn print(text: &str) -> Result<(), Refusal> {
+pub fn print(text: &str) -> Result<(), UsageError> {
     let mut out = anstream::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Refusal::new(format!("standard output can't be written: {error}")))
+            Err(UsageError::new(format!("standard output cannot be written: {error}")))
         }
         _ => Ok(()),
     }
 }
 
 /// Prints one JSON document.
-pub fn json(document: &impl serde::Serialize) -> Result<(), Refusal> {
+pub fn json(document: &impl serde::Serialize) -> Result<(), UsageError> {
     let text = serde_json::to_string_pretty(document);
     print(
-        &(text.map_err(|error| Refusal::new(format!("the result can't be written as JSON: {error}")))?
+        &(text.map_err(|error| UsageError::new(format!("the result cannot be written as JSON: {error}")))?
             + "\n"),
     )
 }
 
 /// Tells something that isn't the result.
-pub fn tell(text: &str) {
+pub fn print_message(text: &str) {
     // Where even standard error is closed there is nobody left to tell.
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }
 
 /// Writes a file by way of a temporary one beside it, so that it is never half-written.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Refusal> {
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), UsageError> {
     write_all(&[(path, bytes)])
 }
 
 /// Writes several files: all are written beside their places before the first is put into its place.
-pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
+pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
     let mut waiting = Vec::new();
     for (path, bytes) in files {
         let unwritable = |error: &dyn std::fmt::Display| {
-            Refusal::new(format!("{} can't be written: {error}", path.display()))
+            UsageError::new(format!("{} cannot be written: {error}", path.display()))
         };
         if path.is_dir() {
             return Err(unwritable(&"it is a folder"));
@@ -55,7 +55,7 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
             _ => Path::new("."),
         };
         if !folder.is_dir() {
-            return Err(unwritable(&format!("there is no folder {}", folder.display())));
+            return Err(unwritable(&format!("folder {} does not exist", folder.display())));
         }
         let mut file = tempfile::Builder::new()
             .prefix(".writing-")
@@ -67,7 +67,7 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
     }
     for (place, file) in waiting {
         file.persist(&place)
-            .map_err(|e| Refusal::new(format!("{} can't be written: {}", place.display(), e.error)))?;
+            .map_err(|e| UsageError::new(format!("{} cannot be written: {}", place.display(), e.error)))?;
     }
     Ok(())
 }

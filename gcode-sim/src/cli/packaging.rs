@@ -5,40 +5,40 @@ use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use super::{Refusal, Status, output};
+use super::{ExitStatus, UsageError, output};
 
 #[derive(Debug, Args)]
 pub struct ShellArguments {
-    /// The shell that is to complete
+    /// The shell
     #[arg(value_enum)]
     shell: Shell,
 }
 
 #[derive(Debug, Args)]
 pub struct ManArguments {
-    /// The folder the pages go into
+    /// The folder for the pages
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }
 
 /// Prints what a shell reads to complete a program's commands and flags.
-pub fn completions<A: CommandFactory>(arguments: &ShellArguments) -> Result<Status, Refusal> {
+pub fn completions<A: CommandFactory>(arguments: &ShellArguments) -> Result<ExitStatus, UsageError> {
     let mut command = A::command();
     let name = command.get_name().to_owned();
     let mut text = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, name, &mut text);
     output::print(&String::from_utf8_lossy(&text))?;
-    Ok(Status::Holds)
+    Ok(ExitStatus::Passed)
 }
 
 /// Writes `gcode-sim.1`, `gcode-sim-run.1` and so on, all or none.
-pub fn man<A: CommandFactory>(arguments: &ManArguments) -> Result<Status, Refusal> {
-    let pages = pages(A::command()).map_err(|error| Refusal::new(format!("no manual page: {error}")))?;
+pub fn man<A: CommandFactory>(arguments: &ManArguments) -> Result<ExitStatus, UsageError> {
+    let pages = pages(A::command()).map_err(|error| UsageError::new(format!("no manual page: {error}")))?;
     let files: Vec<(PathBuf, Vec<u8>)> =
         pages.into_iter().map(|(name, text)| (arguments.folder.join(name), text)).collect();
     let files: Vec<(&Path, &[u8])> = files.iter().map(|(path, text)| (path.as_path(), &text[..])).collect();
     output::write_all(&files)?;
-    Ok(Status::Holds)
+    Ok(ExitStatus::Passed)
 }
 
 /// The page of the program and one for each of its commands, with their names.

@@ -3,23 +3,23 @@ use std::path::Path;
 
 use super::conditions::RunConditions;
 use super::library::Folders;
-use super::{Refusal, input, output};
-use crate::changes::Revision;
-use crate::part::reference::Reference;
-use crate::part::surface::Surface;
-use crate::report::page::{Document, Page, Seen};
-use crate::session::{Request, Trace};
-use crate::verify::Verdict;
+use super::{UsageError, input, output};
+use crate::report::page::{Document, ObservedProgram, Page};
+use gcode_inspect::verify::Verdict;
+use gcode_part::Reference;
+use gcode_part::Surface;
+use gcode_review::Revision;
+use gcode_session::{Request, Trace};
 
 /// A program's run with all that a page shows of it.
-pub(super) fn watched(
+pub(super) fn simulate_traced(
     request: &Request,
     folders: &mut Folders,
     surface: Option<Surface>,
-) -> Result<(Revision, Trace), Refusal> {
+) -> Result<(Revision, Trace), UsageError> {
     let mut trace = Trace::default();
-    let revision = Revision::watched(request, folders, surface, &mut trace);
-    Ok((revision.map_err(|error| Refusal::new(error.to_string()))?, trace))
+    let revision = Revision::observed(request, folders, surface, &mut trace);
+    Ok((revision.map_err(|error| UsageError::new(error.to_string()))?, trace))
 }
 
 /// Writes the page of one program, with the verdict on it where there is a reference.
@@ -29,10 +29,10 @@ pub(super) fn write_alone(
     judged: Option<(&Path, &Reference, &Verdict)>,
     conditions: &RunConditions,
     path: &Path,
-) -> Result<(), Refusal> {
+) -> Result<(), UsageError> {
     let page = Page {
         old: None,
-        new: Seen { request, revision, trace, verdict: judged.map(|(_, _, verdict)| verdict) },
+        new: ObservedProgram { request, revision, trace, verdict: judged.map(|(_, _, verdict)| verdict) },
         machine: &request.machine,
         reference: judged.map(|(_, reference, _)| reference),
         conditions: &flags(conditions),
@@ -42,25 +42,26 @@ pub(super) fn write_alone(
 }
 
 /// A page has no other ending: a program beside it is none.
-pub(super) fn is_html(path: &Path) -> Result<(), Refusal> {
+pub(super) fn is_html(path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| {
         !["html", "htm"].iter().any(|known| extension.eq_ignore_ascii_case(known))
     };
     if path.extension().is_some_and(is_other) {
         let (path, html) = (path.display(), path.with_extension("html"));
-        return Err(Refusal::new(format!("{path}: a page is an HTML file: name it {}", html.display())));
+        return Err(UsageError::new(format!("{path}: a page is an HTML file: name it {}", html.display())));
     }
     Ok(())
 }
 
 /// Writes a page to its file.
-pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), Refusal> {
-    let html = page.html().map_err(|error| Refusal::new(format!("the page can't be written: {error}")))?;
+pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), UsageError> {
+    let html =
+        page.html().map_err(|error| UsageError::new(format!("the page cannot be written: {error}")))?;
     output::write(path, html.as_bytes())
 }
 
 /// Says where the page is, among results that are text.
-pub(super) fn tell(path: &Path, is_text: bool) -> Result<(), Refusal> {
+pub(super) fn report_written(path: &Path, is_text: bool) -> Result<(), UsageError> {
     if is_text { output::print(&format!("page: {}\n", path.display())) } else { Ok(()) }
 }
 
@@ -68,12 +69,12 @@ pub(super) fn tell(path: &Path, is_text: bool) -> Result<(), Refusal> {
 pub(super) fn documents(
     conditions: &RunConditions,
     reference: Option<&Path>,
-) -> Result<Vec<Document>, Refusal> {
+) -> Result<Vec<Document>, UsageError> {
     let RunConditions { machine, control_file, part, .. } = conditions;
     let files = [
         ("machine file", machine.as_deref()),
-        ("settings of the control", control_file.as_deref()),
-        ("part to be probed", part.as_deref()),
+        ("control settings", control_file.as_deref()),
+        ("part for probing", part.as_deref()),
         ("reference", reference),
     ];
     let named = files.into_iter().filter_map(|(role, path)| Some((role, path?)));

@@ -6,14 +6,14 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::output;
-use crate::exec::Progress;
-use crate::session::Request;
+use gcode_control::Progress;
+use gcode_session::Request;
 
 /// Wider than any line shown.
 const WIDTH: usize = 60;
 
 /// Does the work, and meanwhile shows how much of `all` is counted.
-pub(super) fn watched<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() -> T) -> T {
+pub(super) fn with_progress<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() -> T) -> T {
     let bar = || {
         let part = (counted.load(Ordering::Relaxed) as f64 / all.max(1) as f64).min(1.0);
         format!("[{:<40}] {:3.0} %", "#".repeat((part * 40.0) as usize), part * 100.0)
@@ -34,7 +34,7 @@ pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T)
     let watched = Arc::clone(&run);
     // Where no handler can be set, Ctrl-C ends the process as ever.
     _ = ctrlc::set_handler(move || {
-        if watched.stop.swap(true, Ordering::Relaxed) {
+        if watched.cancel.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
     });
@@ -61,11 +61,11 @@ fn show(line: &impl Fn() -> String, done: &AtomicBool) {
     std::thread::park_timeout(Duration::from_secs(1));
     let mut shown = false;
     while !done.load(Ordering::Relaxed) {
-        output::tell(&format!("\r{:<WIDTH$}", line()));
+        output::print_message(&format!("\r{:<WIDTH$}", line()));
         shown = true;
         std::thread::park_timeout(Duration::from_millis(100));
     }
     if shown {
-        output::tell(&format!("\r{:WIDTH$}\r", ""));
+        output::print_message(&format!("\r{:WIDTH$}\r", ""));
     }
 }

@@ -5,22 +5,21 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{Refusal, Status, apart, options, output, render, unused_machine};
-use crate::picture::Size;
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, render, unused_machine};
 use crate::report::readings::ReadingsReport;
-use crate::session;
-use crate::verify::Answer;
+use gcode_draw::Size;
+use gcode_inspect::verify::Answer;
 
 #[derive(Debug, Args)]
 pub(super) struct ReadingsArguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// How far a reading may be from 0, mm [default: nothing is judged]
+    /// Tolerance of a reading either way, mm [default: no verdict]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// Also draw the readings over the way to this file
+    /// Also draw the readings along the path to this file
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
@@ -28,24 +27,24 @@ pub(super) struct ReadingsArguments {
     #[arg(long, value_name = "WxH", default_value = "1600x900")]
     size: String,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(picture) = &arguments.picture {
-        apart::keep(picture, &files)?;
+        overwrite_guard::check_not_input(picture, &files)?;
     }
     let (request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
-        return Err(Refusal::new("readings are of a part: --part JOB.toml says which"));
+        return Err(UsageError::new("readings need a part: give it with --part JOB.toml"));
     };
-    let following = session::follow(&request, &mut folders, surface, probe.radius)
-        .map_err(|e| Refusal::new(e.to_string()))?;
+    let following = gcode_session::read_stylus(&request, &mut folders, surface, probe.radius)
+        .map_err(|e| UsageError::new(e.to_string()))?;
     let report = ReadingsReport::new(&render::name(&request), &following, probe.radius, tolerance);
     match arguments.format {
         ListFormat::Text => output::print(&report.text())?,
@@ -53,25 +52,23 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
         ListFormat::Csv => output::print(&report.csv())?,
     }
     if let Some(path) = &arguments.picture {
-        let refused = |error: crate::picture::PictureError| Refusal::new(error.to_string());
+        let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
         let size: Size = arguments.size.parse().map_err(refused)?;
         output::write(path, &report.plot().draw(size).map_err(refused)?)?;
         if arguments.format == ListFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    let found = super::findings(&following.followed.findings, &following.run);
-    if found != Status::Holds {
+    let found = super::findings(&following.readings.findings, &following.run);
+    if found != ExitStatus::Passed {
         return Ok(found);
     }
     if report.is_empty() {
-        output::tell(
-            "error: no feed of the program goes along the part's surface, at most 5 mm away from it\n",
-        );
-        return Ok(Status::Fails);
+        output::print_message("error: no feed of the program follows the part's surface within 5 mm\n");
+        return Ok(ExitStatus::Failed);
     }
     Ok(match report.verdict() {
-        Some(Answer::Fail) => Status::Fails,
-        Some(Answer::Pass) | None => Status::Holds,
+        Some(Answer::Fail) => ExitStatus::Failed,
+        Some(Answer::Pass) | None => ExitStatus::Passed,
     })
 }

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::format::ListFormat;
-use super::{Refusal, Status, holes, input, output};
-use crate::job::Job;
-use crate::part::wanted::Wanted;
+use super::{ExitStatus, UsageError, holes, input, output};
 use crate::report::flute_table;
-use crate::verify::flutes::WantedFlutes;
+use gcode_inspect::verify::flutes::NominalFlutes;
+use gcode_part::NominalPart;
+use gcode_part::job::Job;
 
 #[derive(Debug, Args)]
 pub(super) struct ReferenceArguments {
@@ -16,28 +16,29 @@ pub(super) struct ReferenceArguments {
     #[arg(value_name = "JOB.toml")]
     job: PathBuf,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Json)]
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &ReferenceArguments) -> Result<Status, Refusal> {
-    let named = |error: &dyn std::fmt::Display| Refusal::new(format!("{}, {error}", arguments.job.display()));
+pub(super) fn run(arguments: &ReferenceArguments) -> Result<ExitStatus, UsageError> {
+    let named =
+        |error: &dyn std::fmt::Display| UsageError::new(format!("{}, {error}", arguments.job.display()));
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&e))?;
-    match Wanted::of_job(&job).map_err(|e| named(&e))? {
-        Wanted::Holes(reference) => holes::print(&reference.list(), arguments.format)?,
-        Wanted::Flutes(wanted) => {
-            let burr = WantedFlutes::of(&wanted);
+    match NominalPart::from_job(&job).map_err(|e| named(&e))? {
+        NominalPart::Holes(reference) => holes::print(&reference.list(), arguments.format)?,
+        NominalPart::Flutes(wanted) => {
+            let burr = NominalFlutes::of(&wanted);
             match arguments.format {
                 ListFormat::Json => output::json(&burr)?,
-                ListFormat::Text => output::print(&flute_table::wanted(&burr))?,
+                ListFormat::Text => output::print(&flute_table::nominal_table(&burr))?,
                 ListFormat::Csv => {
-                    return Err(Refusal::new(
-                        "--format csv is a list of holes, and a burr has none: text or json",
+                    return Err(UsageError::new(
+                        "--format csv lists holes, and a burr has none: use text or json",
                     ));
                 }
             }
         }
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Passed)
 }

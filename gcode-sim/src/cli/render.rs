@@ -5,15 +5,15 @@ use clap::{Args, ValueEnum};
 
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
-use super::{Refusal, Status, apart, options, output, progress, unused_machine};
-use crate::part::flutes::Flutes;
-use crate::part::reference::Reference;
-use crate::part::wanted::Wanted;
-use crate::picture::{self, Scene, Size, TopView};
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
-use crate::session::{self, Request, Simulation};
-use crate::verify::{Tolerances, Verdict};
+use gcode_draw::{Scene, Size, TopView};
+use gcode_inspect::verify::{Tolerances, Verdict};
+use gcode_part::Flutes;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
+use gcode_session::{Request, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArguments {
@@ -24,7 +24,7 @@ pub(super) struct RenderArguments {
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
 
-    /// What the part should get: draws the outline, each hole's verdict and its misfit
+    /// The reference: draws the outline, each hole's verdict and its deviation
     #[arg(long, value_name = "REF")]
     reference: Option<PathBuf>,
 
@@ -32,7 +32,7 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// Which way to look [default: top, or side for a burr]
+    /// The view [default: top, or side for a burr]
     #[arg(long, value_enum)]
     view: Option<View>,
 
@@ -40,22 +40,22 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "WxH", default_value = "1600x1200")]
     size: String,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum View {
-    /// Along the axis of revolution, or along a spindle that stands
+    /// Along the axis of revolution, or along a fixed spindle
     Top,
-    /// A cylinder unrolled, with its seam; needs --reference with a job of a cylinder
+    /// A cylinder unrolled, with its seam; needs --reference with a cylinder job
     Development,
     /// A burr from the side
     Side,
     /// A burr from its tip
     Tip,
-    /// A burr's helix angle along its flutes, with what is allowed
+    /// A burr's helix angle along its flutes, with its tolerance
     Helix,
 }
 
@@ -72,24 +72,27 @@ impl View {
     }
 }
 
-pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
-    apart::keep(&arguments.output, &arguments.program.files(arguments.reference.as_deref())?)?;
-    match arguments.reference.as_deref().map(options::wanted).transpose()? {
-        Some(Wanted::Holes(reference)) => holes(arguments, Some(reference)),
-        Some(Wanted::Flutes(wanted)) => flutes(arguments, wanted),
+pub(super) fn run(arguments: &RenderArguments) -> Result<ExitStatus, UsageError> {
+    overwrite_guard::check_not_input(
+        &arguments.output,
+        &arguments.program.files(arguments.reference.as_deref())?,
+    )?;
+    match arguments.reference.as_deref().map(options::read_nominal).transpose()? {
+        Some(NominalPart::Holes(reference)) => holes(arguments, Some(reference)),
+        Some(NominalPart::Flutes(wanted)) => flutes(arguments, wanted),
         None => holes(arguments, None),
     }
 }
 
-fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Status, Refusal> {
+fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let surface = reference.as_ref().and_then(|r| r.surface);
-    request.conduct = reference.as_ref().map(|r| r.conduct.clone()).unwrap_or_default();
+    request.conduct = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
     let simulation =
-        progress::of_run(&mut request, |request| session::simulate(request, &mut folders, surface))
-            .map_err(|e| Refusal::new(e.to_string()))?;
+        progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, surface))
+            .map_err(|e| UsageError::new(e.to_string()))?;
     let drawn = match &reference {
         Some(reference) => {
             let verdict = simulation.verify(reference, Tolerances::of(reference, asked), &request.machine);
@@ -99,47 +102,48 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
     };
     let asked = arguments.view.unwrap_or(View::Top);
     let scene = match asked {
-        View::Top => picture::top_view(&drawn),
+        View::Top => gcode_draw::top_view(&drawn),
         View::Side | View::Tip | View::Helix => {
             let message =
-                "the views side, tip and helix are of a burr: --reference JOB.toml of that family is needed";
-            return Err(Refusal::new(message));
+                "the views side, tip and helix show a burr: give a burr job with --reference JOB.toml";
+            return Err(UsageError::new(message));
         }
-        View::Development => picture::development(&drawn).ok_or_else(|| {
-            let message = "--view development unrolls a cylinder: it needs --reference with a job of one";
-            Refusal::new(message)
+        View::Development => gcode_draw::development(&drawn).ok_or_else(|| {
+            let message = "--view development unrolls a cylinder: give its job with --reference";
+            UsageError::new(message)
         })?,
     };
     write(&scene, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
-    Ok(super::stopped(&simulation.run).unwrap_or(Status::Holds))
+    Ok(super::stopped(&simulation.run).unwrap_or(ExitStatus::Passed))
 }
 
-fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<Status, Refusal> {
+fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
-    let grinding = progress::of_run(&mut request, |request| session::grind(request, &mut folders, &wanted))
-        .map_err(|e| Refusal::new(e.to_string()))?;
+    let grinding =
+        progress::of_run(&mut request, |request| gcode_session::grind(request, &mut folders, &wanted))
+            .map_err(|e| UsageError::new(e.to_string()))?;
     let verdict = grinding.verify();
     let view = flute_view::of(&name(&request), &grinding, &verdict);
     let asked = arguments.view.unwrap_or(View::Side);
     let scene = match asked {
-        View::Side => picture::side_view(&view),
-        View::Tip => picture::tip_view(&view),
-        View::Helix => picture::helix_graph(&view),
+        View::Side => gcode_draw::side_view(&view),
+        View::Tip => gcode_draw::tip_view(&view),
+        View::Helix => gcode_draw::helix_graph(&view),
         View::Top | View::Development => {
-            return Err(Refusal::new("that view is of holes; a burr has the views side, tip and helix"));
+            return Err(UsageError::new("this view shows holes; a burr has the views side, tip and helix"));
         }
     };
     write(&scene, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
-    Ok(super::stopped(&grinding.run).unwrap_or(Status::Holds))
+    Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Passed))
 }
 
 /// Says what was drawn, and where it is.
-fn tell(arguments: &RenderArguments, view: View) -> Result<(), Refusal> {
+fn tell(arguments: &RenderArguments, view: View) -> Result<(), UsageError> {
     let report = RenderReport { picture: arguments.output.display().to_string(), view: view.name() };
     match arguments.format {
         TextFormat::Text => output::print(&report.text()),
@@ -158,19 +162,19 @@ pub(super) fn view(
 }
 
 /// Draws a scene to a file of exactly the size asked for.
-pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), Refusal> {
+pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
     if path.extension().is_some_and(is_other) {
         let png = path.with_extension("png");
-        return Err(Refusal::new(format!(
+        return Err(UsageError::new(format!(
             "{}: a picture is a PNG file: name it {}",
             path.display(),
             png.display()
         )));
     }
-    let refused = |error: picture::PictureError| Refusal::new(error.to_string());
+    let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
     let size: Size = size.parse().map_err(refused)?;
-    let png = picture::draw(scene, size).map_err(refused)?;
+    let png = gcode_draw::draw(scene, size).map_err(refused)?;
     output::write(path, &png)
 }
 

@@ -5,11 +5,11 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
-use super::{Refusal, Status, apart, options, output, progress, unused_machine};
-use crate::holes::Extractor;
-use crate::report::run::{MOST_MOVES, Moves, RunReport};
-use crate::session::{self, SessionError};
-use crate::stylus::Rapids;
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
+use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport};
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::stylus::RapidChecker;
+use gcode_session::SessionError;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {
@@ -28,39 +28,41 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "#N")]
     show: Vec<String>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(path) = &arguments.output {
-        apart::keep(path, &files)?;
+        overwrite_guard::check_not_input(path, &files)?;
     }
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
-    let mut moves = arguments.moves.then(Moves::default);
+    let mut moves = arguments.moves.then(MoveRecorder::default);
     let done = progress::of_run(&mut request, |request| {
         // Follows the tool only where there is a part that it could touch.
-        let follow = |part| Extractor::new(&request.machine).with_surface(Some(part));
+        let follow = |part| HoleExtractor::new(&request.machine).with_surface(Some(part));
         let mut probe = request.part.map(follow);
         let ball = request.part.zip(request.machine.probe.as_ref());
-        let mut rapids = ball.map(|(part, probe)| Rapids::new(&request.machine, part, probe.radius));
-        let run = session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
-        Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, Rapids::finish)))
+        let mut rapids = ball.map(|(part, probe)| RapidChecker::new(&request.machine, part, probe.radius));
+        let run =
+            gcode_session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
+        Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, RapidChecker::finish)))
     });
-    let (run, rapids) = done.map_err(|error| Refusal::new(error.to_string()))?;
+    let (run, rapids) = done.map_err(|error| UsageError::new(error.to_string()))?;
     let mut system = Vec::new();
     for number in wanted {
         let value = run.control.variable(number);
-        system.push((number, value.map_err(|alarm| Refusal::new(format!("--show '#{number}': {alarm}")))?));
+        system
+            .push((number, value.map_err(|alarm| UsageError::new(format!("--show '#{number}': {alarm}")))?));
     }
     if let Some(path) = &arguments.output {
         // Called programs are known only now.
         let called = run.control.memory().sources().iter().map(|(_, source)| Path::new(&source.name));
-        apart::keep(path, &called.collect::<Vec<_>>())?;
+        overwrite_guard::check_not_input(path, &called.collect::<Vec<_>>())?;
         let lines = run.control.output().iter();
         let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
         output::write(path, &bytes)?;
@@ -72,11 +74,11 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
     }
     let in_part = super::findings(&rapids, &run);
     let stopped = super::stopped(&run);
-    if moves.is_some_and(|moves| moves.too_many) {
-        output::tell(&format!(
-            "error: --moves: more than {MOST_MOVES} moves; those behind aren't in the list\n"
+    if moves.is_some_and(|moves| moves.is_truncated) {
+        output::print_message(&format!(
+            "error: --moves: more than {MAX_MOVES} moves; later ones are not in the list\n"
         ));
-        return Ok(Status::Stopped);
+        return Ok(ExitStatus::Stopped);
     }
     Ok(stopped.unwrap_or(in_part))
 }

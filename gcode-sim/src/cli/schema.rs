@@ -2,12 +2,12 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
-use super::{Refusal, Status, output};
+use super::{ExitStatus, UsageError, output};
 use crate::schema::{FORMATS, Format};
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaArguments {
-    /// What it is of
+    /// The document
     #[arg(value_name = "NAME", value_parser = names(FORMATS))]
     name: String,
 }
@@ -18,14 +18,14 @@ pub fn names(formats: &[Format]) -> PossibleValuesParser {
     formats.iter().map(value).collect::<Vec<_>>().into()
 }
 
-pub(super) fn run(arguments: &SchemaArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &SchemaArguments) -> Result<ExitStatus, UsageError> {
     print(&arguments.name, FORMATS)
 }
 
 /// Prints the schema of one of the formats.
-pub fn print(name: &str, formats: &[Format]) -> Result<Status, Refusal> {
+pub fn print(name: &str, formats: &[Format]) -> Result<ExitStatus, UsageError> {
     let format = formats.iter().find(|format| format.name == name);
-    let format = format.ok_or_else(|| Refusal::new(format!("no schema '{name}'")))?;
+    let format = format.ok_or_else(|| UsageError::new(format!("no schema '{name}'")))?;
     output::json(&format.schema())?;
-    Ok(Status::Holds)
+    Ok(ExitStatus::Passed)
 }

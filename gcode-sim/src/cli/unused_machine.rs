@@ -4,14 +4,14 @@ use std::path::Path;
 
 use super::conditions::ProgramArguments;
 use super::output;
-use crate::control::{Dialect, Increment};
-use crate::session::Request;
+use gcode_lang::control::{Dialect, Increment};
+use gcode_session::Request;
 
 /// The name that the generator gives a machine file.
 const NAME: &str = "machine.toml";
 
 /// Says so where no `--machine` is given and one is at hand, or where the program's own remarks name one.
-pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
+pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_some() {
         return;
     }
@@ -19,17 +19,17 @@ pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
     let piped = arguments.program == Path::new("-");
     let what = if !piped && beside.is_file() {
         let file = beside.display();
-        format!("{file} stands beside the program and isn't used: --machine {file}")
+        format!("{file} next to the program is not used: give --machine {file}")
     } else if head(&request.bytes).is_some() {
-        "the program's remarks name a machine file, and none is used: --machine MACHINE.toml".to_owned()
+        "the program's comments name a machine file, and none is used: give --machine MACHINE.toml".to_owned()
     } else {
         return;
     };
-    output::tell(&format!("note: {what}\n"));
+    output::print_message(&format!("note: {what}\n"));
 }
 
 /// Of a machine `check` needs nothing but its control: says so where the program's head names another one than is assumed.
-pub(super) fn tell_of_control(arguments: &ProgramArguments, request: &Request) {
+pub(super) fn warn_unused_control(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_some() {
         return;
     }
@@ -37,12 +37,12 @@ pub(super) fn tell_of_control(arguments: &ProgramArguments, request: &Request) {
     let settings = &request.settings;
     let mut differ = Vec::new();
     if let Some(dialect) = named(&head, &Dialect::ALL).filter(|dialect| *dialect != settings.dialect) {
-        differ.push(format!("{}, and {} is assumed", dialect.name(), settings.dialect.name()));
+        differ.push(format!("{}, {} is assumed", dialect.name(), settings.dialect.name()));
     }
     if let Some(increment) = named(&head, &Increment::ALL).filter(|named| *named != settings.increment) {
         let assumed = settings.increment;
         differ.push(format!(
-            "{}, and {} is assumed ({} mm and degrees, not {})",
+            "{}, {} is assumed ({} mm and degrees, not {})",
             increment.name(),
             assumed.name(),
             assumed.size(),
@@ -51,7 +51,9 @@ pub(super) fn tell_of_control(arguments: &ProgramArguments, request: &Request) {
     }
     if !differ.is_empty() {
         let differ = differ.join("; ");
-        output::tell(&format!("warning: the program's head says {differ}: give --machine {NAME}\n"));
+        output::print_message(&format!(
+            "warning: the program's head gives {differ}: give --machine {NAME}\n"
+        ));
     }
 }
 

@@ -6,33 +6,34 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::FindingFormat;
 use super::library::Folders;
-use super::{Refusal, Status, apart, options, output, page, progress, render, unused_machine};
-use crate::diag::Diagnostic;
-use crate::part::flutes::Flutes;
-use crate::part::reference::Reference;
-use crate::part::wanted::Wanted;
-use crate::picture;
+use super::{
+    ExitStatus, UsageError, options, output, overwrite_guard, page, progress, render, unused_machine,
+};
 use crate::report::sarif::{self, Finding};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view};
-use crate::session::{self, Request, Run, Simulation};
-use crate::verify::{Answer, Tolerances, Verdict};
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_lang::diag::Diagnostic;
+use gcode_part::Flutes;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
+use gcode_session::{Request, Run, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// What the part should get: a hole list (JSON or CSV) or a job file (TOML)
+    /// The reference: a hole list (JSON or CSV) or a job file (TOML)
     #[arg(long, value_name = "REF")]
     reference: PathBuf,
 
-    /// Diameter of the tolerance zone, or how far a burr's contact may be off its surface, mm [default: the
-    /// job's, or 0.1]
+    /// Diameter of the tolerance zone, or tolerance of a burr's contact from its surface, mm [default: the job's,
+    /// or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// How far a hole's depth may be off, mm [default: the job's, or 0.1]
+    /// Tolerance of a hole's depth either way, mm [default: the job's, or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     depth_tolerance: Option<f64>,
 
@@ -40,7 +41,7 @@ pub(super) struct VerifyArguments {
     #[arg(long)]
     worst_first: bool,
 
-    /// All of an inspector's columns: nominal and actual x y z i j k d l
+    /// All inspection columns: nominal and actual x y z i j k d l
     #[arg(long)]
     full: bool,
 
@@ -48,33 +49,33 @@ pub(super) struct VerifyArguments {
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
-    /// Also write a page to this file: the holes with their deviations, the path, the blocks and what the variables were;
-    /// needs nothing but a browser
+    /// Also write a page to this file: the holes with their deviations, the path, the blocks and the values of the
+    /// variables; opens in any browser
     #[arg(long, value_name = "OUT.html")]
     page: Option<PathBuf>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitStatus, UsageError> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let files = arguments.program.files(Some(&arguments.reference))?;
     for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        apart::keep(result, &files)?;
+        overwrite_guard::check_not_input(result, &files)?;
     }
     arguments.page.as_deref().map(page::is_html).transpose()?;
     let (mut request, folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
-    match options::wanted(&arguments.reference)? {
-        Wanted::Holes(reference) => {
+    unused_machine::warn_unused_machine(&arguments.program, &request);
+    match options::read_nominal(&arguments.reference)? {
+        NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, asked);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
             holes(arguments, &mut request, folders, &reference, tolerances)
         }
-        Wanted::Flutes(mut wanted) => {
+        NominalPart::Flutes(mut wanted) => {
             let of_holes = [
                 ("--depth-tolerance", depth.is_some()),
                 ("--worst-first", arguments.worst_first),
@@ -82,7 +83,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
                 ("--page", arguments.page.is_some()),
             ];
             if let Some((flag, _)) = of_holes.iter().find(|(_, given)| *given) {
-                return Err(Refusal::new(format!("{flag} is about holes, and the reference is a burr")));
+                return Err(UsageError::new(format!("{flag} is for holes, and the reference is a burr")));
             }
             wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
             flutes(arguments, &mut request, folders, &wanted)
@@ -95,9 +96,9 @@ fn flutes(
     request: &mut Request,
     mut folders: Folders,
     wanted: &Flutes,
-) -> Result<Status, Refusal> {
-    let grinding = progress::of_run(request, |request| session::grind(request, &mut folders, wanted))
-        .map_err(|error| Refusal::new(error.to_string()))?;
+) -> Result<ExitStatus, UsageError> {
+    let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, wanted))
+        .map_err(|error| UsageError::new(error.to_string()))?;
     let verdict = grinding.verify();
     match arguments.format {
         FindingFormat::Json => output::json(&verdict)?,
@@ -105,25 +106,25 @@ fn flutes(
         FindingFormat::Sarif => sarif(&verdict.diagnostics, &grinding.run)?,
     }
     if let Some(path) = &arguments.picture {
-        let scene = picture::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
+        let scene = gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
         render::write(&scene, "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    Ok(judged(super::findings(&verdict.diagnostics, &grinding.run), verdict.verdict))
+    Ok(combine_status(super::findings(&verdict.diagnostics, &grinding.run), verdict.verdict))
 }
 
 /// The findings for a code review.
-fn sarif(findings: &[Diagnostic], run: &Run) -> Result<(), Refusal> {
+fn sarif(findings: &[Diagnostic], run: &Run) -> Result<(), UsageError> {
     let sources = run.control.memory().sources();
     let findings: Vec<_> = findings.iter().map(|finding| Finding::of(finding, sources)).collect();
-    output::json(&sarif::log(&findings, &options::started_in()))
+    output::json(&sarif::log(&findings, &options::working_folder()))
 }
 
-fn judged(status: Status, answer: Answer) -> Status {
+fn combine_status(status: ExitStatus, answer: Answer) -> ExitStatus {
     match answer {
-        Answer::Fail if status == Status::Holds => Status::Fails,
+        Answer::Fail if status == ExitStatus::Passed => ExitStatus::Failed,
         _ => status,
     }
 }
@@ -134,32 +135,33 @@ fn holes(
     mut folders: Folders,
     reference: &Reference,
     tolerances: Tolerances,
-) -> Result<Status, Refusal> {
-    request.conduct = reference.conduct.clone();
+) -> Result<ExitStatus, UsageError> {
+    request.conduct = reference.process_limits.clone();
     if let Some(path) = &arguments.page {
-        let watched = page::watched(request, &mut folders, reference.surface)?;
+        let watched = page::simulate_traced(request, &mut folders, reference.surface)?;
         let simulation = &watched.0.simulation;
         let verdict = simulation.verify(reference, tolerances, &request.machine);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
         page::write_alone(request, &watched, judged, &arguments.program.conditions, path)?;
-        let status = tell(arguments, request, reference, simulation, &verdict)?;
-        page::tell(path, arguments.format == FindingFormat::Text)?;
+        let status = print_verdict(arguments, request, reference, simulation, &verdict)?;
+        page::report_written(path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let simulation =
-        progress::of_run(request, |request| session::simulate(request, &mut folders, reference.surface))
-            .map_err(|error| Refusal::new(error.to_string()))?;
+    let simulation = progress::of_run(request, |request| {
+        gcode_session::simulate(request, &mut folders, reference.surface)
+    })
+    .map_err(|error| UsageError::new(error.to_string()))?;
     let verdict = simulation.verify(reference, tolerances, &request.machine);
-    tell(arguments, request, reference, &simulation, &verdict)
+    print_verdict(arguments, request, reference, &simulation, &verdict)
 }
 
-fn tell(
+fn print_verdict(
     arguments: &VerifyArguments,
     request: &Request,
     reference: &Reference,
     simulation: &Simulation,
     verdict: &Verdict,
-) -> Result<Status, Refusal> {
+) -> Result<ExitStatus, UsageError> {
     match arguments.format {
         FindingFormat::Json => output::json(verdict)?,
         FindingFormat::Text => {
@@ -170,10 +172,10 @@ fn tell(
     }
     if let Some(path) = &arguments.picture {
         let view = render::view(request, simulation, reference, verdict);
-        render::write(&picture::main_view(&view), "1600x1200", path)?;
+        render::write(&gcode_draw::main_view(&view), "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    Ok(judged(super::findings(&verdict.diagnostics, &simulation.run), verdict.verdict))
+    Ok(combine_status(super::findings(&verdict.diagnostics, &simulation.run), verdict.verdict))
 }

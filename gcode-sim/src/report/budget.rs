@@ -4,9 +4,9 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::budget::{Budget, Question, Share, Statistics};
-use crate::machine::error::Spread;
-use crate::picture::{Bar, Bars};
+use gcode_draw::{Bar, Bars};
+use gcode_inspect::budget::{Budget, BudgetRequest, ErrorShare, Statistics};
+use gcode_inspect::machine::Distribution;
 
 /// Diameters and lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -17,12 +17,12 @@ pub struct BudgetReport {
     tolerance: f64,
     holes: Vec<HoleRow>,
     /// The worst hole of each part.
-    parts: Row,
+    parts: BudgetRow,
     sources: Vec<SourceRow>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
+struct BudgetRow {
     mean: f64,
     p50: f64,
     p95: f64,
@@ -35,7 +35,7 @@ struct Row {
 struct HoleRow {
     id: String,
     #[serde(flatten)]
-    row: Row,
+    row: BudgetRow,
     /// Without errors.
     nominal: f64,
     sources: Vec<SourceRow>,
@@ -50,20 +50,27 @@ struct SourceRow {
     share: f64,
 }
 
-impl From<Statistics> for Row {
+impl From<Statistics> for BudgetRow {
     fn from(of: Statistics) -> Self {
-        Self { mean: of.mean, p50: of.p50, p95: of.p95, p997: of.p997, max: of.max, within: of.within }
+        Self {
+            mean: of.mean,
+            p50: of.p50,
+            p95: of.p95,
+            p997: of.p997,
+            max: of.max,
+            within: of.share_in_tolerance,
+        }
     }
 }
 
-impl From<&Share> for SourceRow {
-    fn from(of: &Share) -> Self {
-        Self { source: of.source.clone(), spread: None, moves: of.moves, share: of.share }
+impl From<&ErrorShare> for SourceRow {
+    fn from(of: &ErrorShare) -> Self {
+        Self { source: of.source.clone(), spread: None, moves: of.displacement, share: of.share }
     }
 }
 
 impl BudgetReport {
-    pub fn new(question: &Question<'_>, found: &Budget) -> Self {
+    pub fn new(question: &BudgetRequest<'_>, found: &Budget) -> Self {
         let holes = found.holes.iter().map(|hole| HoleRow {
             id: hole.id.clone(),
             row: hole.statistics.into(),
@@ -73,10 +80,10 @@ impl BudgetReport {
         let spread = |name: &str| {
             let source =
                 question.sources.iter().find(|source| source.quantity.name(question.machine) == name)?;
-            Some(match source.spread {
-                Spread::Fixed(value) => format!("fixed {value}"),
-                Spread::Normal(value) => format!("normal {value}"),
-                Spread::Uniform(value) => format!("uniform {value}"),
+            Some(match source.distribution {
+                Distribution::Fixed(value) => format!("fixed {value}"),
+                Distribution::Normal(value) => format!("normal {value}"),
+                Distribution::Uniform(value) => format!("uniform {value}"),
             })
         };
         let sources =
@@ -95,7 +102,7 @@ impl BudgetReport {
     /// For a terminal.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without any error\n\n",
+            "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without errors\n\n",
             if self.holes.len() == 1 { "1 hole".to_owned() } else { format!("{} holes", self.holes.len()) },
             self.samples,
             self.basis,
@@ -107,7 +114,7 @@ impl BudgetReport {
             "{:<wide$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
             "hole", "mean", "50 %", "95 %", "99.7 %", "largest", "within", "exact"
         );
-        let line = |name: &str, row: &Row| {
+        let line = |name: &str, row: &BudgetRow| {
             format!(
                 "{name:<wide$} {:>8.4} {:>8.4} {:>8.4} {:>8.4} {:>8.4} {:>6.1} %",
                 row.mean,
@@ -123,7 +130,7 @@ impl BudgetReport {
         }
         let _ = writeln!(text, "{}\n", line("worst", &self.parts));
         let wide = self.sources.iter().map(|row| row.source.len()).max().unwrap_or(0).max(6);
-        let _ = writeln!(text, "{:<wide$} {:>9} {:>8}  as given", "source", "moves", "share");
+        let _ = writeln!(text, "{:<wide$} {:>9} {:>8}  specified", "source", "moves", "share");
         for row in &self.sources {
             let _ = writeln!(
                 text,
@@ -145,7 +152,7 @@ impl BudgetReport {
             text: format!("{:.1} %, {:.4} mm", row.share * 100.0, row.moves),
         };
         Bars {
-            title: "What moves the holes: share of the mean square".to_owned(),
+            title: "Error sources: share of the mean square".to_owned(),
             notes: vec![
                 format!(
                     "Worst hole of a part: Φ{:.3} at 95 %, Φ{:.3} at 99.7 %; {:.1} % of the parts within Φ{}",

@@ -5,22 +5,22 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::sarif::{At, Finding};
-use crate::changes::{Change, Record, Totals, Unexecuted, Where};
-use crate::diag::Severity;
+use super::sarif::{FileLocation, Finding};
+use gcode_lang::diag::Severity;
+use gcode_review::{BlockLocation, Change, Record, Totals, UnexecutedChange};
 
 /// The document of `diff --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ChangesReport {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
-    /// Nothing changes on the part, nor in what the control is left with, and both ran to their ends.
+    /// No difference on the part or in the control's final state, and both ran to their ends.
     pub same: bool,
     /// mm, and degrees for axes that turn.
     pub tolerance: f64,
     pub changes: Vec<Change>,
-    /// Blocks that are written otherwise and that neither run executed: what they do isn't compared.
-    pub unexecuted: Vec<Unexecuted>,
+    /// Changed blocks that neither run executed: their effect is not compared.
+    pub unexecuted: Vec<UnexecutedChange>,
     pub old: Side,
     pub new: Side,
     /// How a run ended that stopped before its end: behind that nothing could be compared.
@@ -28,7 +28,7 @@ pub struct ChangesReport {
     stopped: Option<String>,
 }
 
-/// One revision in numbers.
+/// Totals of one revision.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Side {
     pub name: String,
@@ -42,7 +42,7 @@ impl ChangesReport {
         old: (&str, &Record),
         new: (&str, &Record),
         changes: &[Change],
-        unexecuted: Vec<Unexecuted>,
+        unexecuted: Vec<UnexecutedChange>,
         tolerance: f64,
     ) -> Self {
         let side = |(name, record): (&str, &Record)| Side {
@@ -66,22 +66,21 @@ impl ChangesReport {
     /// The same for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        entries(&mut text, &self.changes, "");
+        append_entries(&mut text, &self.changes, "");
         let _ = match self.changes.len() {
             0 => match &self.stopped {
-                None => writeln!(text, "nothing changes on the part"),
+                None => writeln!(text, "no difference on the part or in the control's final state"),
                 Some(words) if self.old.totals.moves == 0 => {
                     writeln!(text, "nothing could be compared: both stop before the first move, {words}")
                 }
-                Some(words) => writeln!(
-                    text,
-                    "nothing changes before the stop, what is behind it could not be compared: {words}"
-                ),
+                Some(words) => {
+                    writeln!(text, "no difference before the stop; the rest could not be compared: {words}")
+                }
             },
             1 => writeln!(text, "1 change"),
             n => writeln!(text, "{n} changes"),
         };
-        self.tell_unexecuted(&mut text);
+        self.append_unexecuted(&mut text);
         for (word, Side { name, totals, .. }) in [("old", &self.old), ("new", &self.new)] {
             let _ = writeln!(
                 text,
@@ -97,25 +96,21 @@ impl ChangesReport {
 }
 
 impl ChangesReport {
-    fn tell_unexecuted(&self, text: &mut String) {
+    fn append_unexecuted(&self, text: &mut String) {
         const SHOWN: usize = 6;
         let all = &self.unexecuted;
         if all.is_empty() {
             return;
         }
-        let _ = writeln!(
-            text,
-            "changed blocks that neither run executed, nothing is known of what they do: {}",
-            all.len()
-        );
-        for Unexecuted { old, new } in all.iter().take(SHOWN) {
+        let _ = writeln!(text, "changed blocks that neither run executed (effect unknown): {}", all.len());
+        for UnexecutedChange { old, new } in all.iter().take(SHOWN) {
             for (word, place) in [("old", old), ("new", new)] {
                 let Some(place) = place else { continue };
                 let _ = writeln!(text, "    {word} {}", line(place));
             }
         }
         if SHOWN < all.len() {
-            let _ = writeln!(text, "… and {} more of them: --format json has them all", all.len() - SHOWN);
+            let _ = writeln!(text, "… and {} more of them: --format json lists them all", all.len() - SHOWN);
         }
     }
 }
@@ -126,7 +121,7 @@ pub(super) fn counted(count: u64, what: &str) -> String {
 }
 
 /// The changes with their blocks: of each kind as many as people read, and how many more there are.
-pub(super) fn entries(text: &mut String, changes: &[Change], indent: &str) {
+pub(super) fn append_entries(text: &mut String, changes: &[Change], indent: &str) {
     const SHOWN: usize = 6;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for change in changes {
@@ -138,18 +133,18 @@ pub(super) fn entries(text: &mut String, changes: &[Change], indent: &str) {
         *number += 1;
         let all = counts[&*change.code];
         if *number <= SHOWN {
-            entry(text, change, indent);
+            append_entry(text, change, indent);
         }
         if *number == SHOWN && SHOWN < all {
             let more = all - SHOWN;
             let _ =
-                writeln!(text, "{indent}… and {more} more of {}: --format json has them all", change.code);
+                writeln!(text, "{indent}… and {more} more of {}: --format json lists them all", change.code);
         }
     }
 }
 
 /// One change with its blocks and the calls that led to them.
-fn entry(text: &mut String, change: &Change, indent: &str) {
+fn append_entry(text: &mut String, change: &Change, indent: &str) {
     let _ = writeln!(text, "{indent}{:<14} {}", change.code, change.message);
     for (word, place) in [("old", &change.old), ("new", &change.new)] {
         let Some(place) = place else { continue };
@@ -161,13 +156,13 @@ fn entry(text: &mut String, change: &Change, indent: &str) {
 }
 
 /// `O8101:12  G1 X#11`.
-fn line(place: &Where) -> String {
+fn line(place: &BlockLocation) -> String {
     format!("{}:{}  {}", place.program, place.line, place.block)
 }
 
 /// A change for a code review, at its place in the new revision; `files` are those of the programs by their names.
 pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
-    let Change { code, message, old, new, near } = change;
+    let Change { code, message, old, new, anchor: near } = change;
     // What is gone has no line in the file as it is now: its old one is told in words.
     let was = old.as_ref().filter(|_| new.is_none());
     let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
@@ -185,7 +180,7 @@ pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, Stri
 }
 
 /// The line of a block in its file.
-pub(super) fn place_in(place: &Where, files: &BTreeMap<String, String>) -> Option<At> {
+pub(super) fn place_in(place: &BlockLocation, files: &BTreeMap<String, String>) -> Option<FileLocation> {
     let file = files.get(&place.program)?.clone();
-    Some(At { file, line: Some(place.line), column: None })
+    Some(FileLocation { file, line: Some(place.line), column: None })
 }

@@ -2,15 +2,15 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::check::Checked;
-use crate::diag::{Diagnostic, Severity};
 use crate::report::diagnostic;
-use crate::source::Span;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::source::Span;
+use gcode_lint::CheckResult;
 
 /// The document of `check --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CheckReport {
-    /// How many programs were looked at, the called ones included.
+    /// Number of programs checked, called ones included.
     pub programs: usize,
     pub findings: Vec<FindingReport>,
 }
@@ -28,7 +28,7 @@ pub struct FindingReport {
     /// The block as written.
     pub block: Option<String>,
     pub help: Option<String>,
-    /// Second places: where a loop begins, where a call stands.
+    /// Secondary locations: the start of a loop, a call.
     pub labels: Vec<LabelReport>,
 }
 
@@ -40,15 +40,15 @@ pub struct LabelReport {
 }
 
 impl CheckReport {
-    pub fn new(checked: &Checked) -> Self {
+    pub fn new(checked: &CheckResult) -> Self {
         let findings = checked.findings.iter().map(|finding| report(checked, finding)).collect();
         Self { programs: checked.programs, findings }
     }
 }
 
-fn report(checked: &Checked, finding: &Diagnostic) -> FindingReport {
+fn report(checked: &CheckResult, finding: &Diagnostic) -> FindingReport {
     let sources = checked.memory.sources();
-    let block = finding.place.as_ref().map(|place| place.block);
+    let block = finding.backtrace.as_ref().map(|place| place.block);
     let at = finding.span.or(block);
     let file = |span: Span| sources.get(span.source).name.clone();
     FindingReport {
@@ -57,8 +57,8 @@ fn report(checked: &Checked, finding: &Diagnostic) -> FindingReport {
         message: finding.message.clone(),
         program: block.and_then(|span| checked.program(span)).map(|program| program.label()),
         file: at.map(file),
-        line: at.map(|span| sources.place(span).line),
-        column: at.map(|span| sources.place(span).column),
+        line: at.map(|span| sources.line_column(span).line),
+        column: at.map(|span| sources.line_column(span).column),
         block: block.map(|span| sources.text(span).trim().to_owned()),
         help: finding.help.clone(),
         labels: finding
@@ -66,7 +66,7 @@ fn report(checked: &Checked, finding: &Diagnostic) -> FindingReport {
             .iter()
             .map(|(span, text)| LabelReport {
                 file: file(*span),
-                line: sources.place(*span).line,
+                line: sources.line_column(*span).line,
                 text: text.clone(),
             })
             .collect(),
@@ -74,7 +74,7 @@ fn report(checked: &Checked, finding: &Diagnostic) -> FindingReport {
 }
 
 /// The findings as the terminal shows them, and their count.
-pub fn text(checked: &Checked) -> String {
+pub fn text(checked: &CheckResult) -> String {
     let sources = checked.memory.sources();
     let mut text: String =
         checked.findings.iter().map(|finding| diagnostic::render(finding, sources) + "\n").collect();
@@ -84,7 +84,7 @@ pub fn text(checked: &Checked) -> String {
 }
 
 /// `2 programs checked: 1 error, 2 warnings`.
-fn summary(checked: &Checked) -> String {
+fn summary(checked: &CheckResult) -> String {
     let counted = |count: usize, what: &str| match count {
         1 => format!("1 {what}"),
         count => format!("{count} {what}s"),
@@ -97,6 +97,6 @@ fn summary(checked: &Checked) -> String {
             count => Some(counted(count, severity.name())),
         })
         .collect();
-    let found = if counts.is_empty() { "nothing found".to_owned() } else { counts.join(", ") };
+    let found = if counts.is_empty() { "no findings".to_owned() } else { counts.join(", ") };
     format!("{} checked: {found}", counted(checked.programs, "program"))
 }

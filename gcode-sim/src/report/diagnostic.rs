@@ -1,9 +1,9 @@
 //! A finding or an alarm as text: what, where with the line underlined, the calls that led there, what to do.
 use annotate_snippets::{Annotation, AnnotationKind, Level, Renderer, Snippet};
 
-use crate::diag::{Diagnostic, Severity};
-use crate::motion::{Calls, Place};
-use crate::source::{Sources, Span};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{Backtrace, CallChain};
+use gcode_lang::source::{Sources, Span};
 
 /// How many calls of a chain are shown; the rest is counted.
 const CALLS_SHOWN: usize = 6;
@@ -20,7 +20,7 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
         .primary_title(escape(&diagnostic.message))
         .id(diagnostic.code.clone())
         .elements(Vec::<Snippet<'_, Annotation<'_>>>::new());
-    if let Some(place) = &diagnostic.place {
+    if let Some(place) = &diagnostic.backtrace {
         group = group.element(snippet(sources, diagnostic.span.unwrap_or(place.block)));
         for call in calls(place, sources) {
             group = group.element(Level::NOTE.no_name().message(call));
@@ -47,25 +47,25 @@ fn escape(text: &str) -> String {
 
 /// `O8101.nc:12`.
 pub fn place_name(sources: &Sources, span: Span) -> String {
-    format!("{}:{}", sources.get(span.source).name, sources.place(span).line)
+    format!("{}:{}", sources.get(span.source).name, sources.line_column(span).line)
 }
 
 /// The chain of calls, innermost first, one line each.
-fn calls(place: &Place, sources: &Sources) -> Vec<String> {
+fn calls(place: &Backtrace, sources: &Sources) -> Vec<String> {
     let mut lines = Vec::new();
     let mut left = 0;
-    let mut next: &Calls = &place.calls;
+    let mut next: &CallChain = &place.calls;
     while let Some(call) = next {
         if lines.len() < CALLS_SHOWN {
             lines.push(format!(
                 "called from {}: {}",
-                place_name(sources, call.from),
-                escape(sources.text(call.from).trim())
+                place_name(sources, call.calling_block),
+                escape(sources.text(call.calling_block).trim())
             ));
         } else {
             left += 1;
         }
-        next = &call.outer;
+        next = &call.outer_calls;
     }
     if left > 0 {
         lines.push(format!("… and {left} more calls"));
@@ -76,7 +76,7 @@ fn calls(place: &Place, sources: &Sources) -> Vec<String> {
 /// The line that `span` begins in, with the span underlined.
 fn snippet(sources: &Sources, span: Span) -> Snippet<'static, Annotation<'static>> {
     let source = sources.get(span.source);
-    let at = source.place(span.start);
+    let at = source.line_column(span.start);
     let bytes = &source.bytes;
     let start = (span.start + 1 - at.column) as usize;
     let end =
@@ -98,7 +98,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::motion::Call;
+    use gcode_lang::motion::Call;
 
     #[test]
     fn a_message_names_line_call_and_remedy() {
@@ -108,8 +108,11 @@ mod tests {
         let from = Span { source: main, start: 3, end: 13 };
         let block = Span { source: called, start: 7, end: 18 };
         let mut diagnostic = Diagnostic::new(Severity::Alarm, "PS0112", "division by zero")
-            .at(Place { block, calls: Some(Arc::new(Call { from, outer: None })) })
-            .help("a vacant variable counts as 0 here");
+            .with_backtrace(Backtrace {
+                block,
+                calls: Some(Arc::new(Call { calling_block: from, outer_calls: None })),
+            })
+            .help("check the divisor: a vacant variable counts as 0");
         diagnostic.span = Some(Span { source: called, start: 10, end: 14 });
         let text = anstream::adapter::strip_str(&render(&diagnostic, &sources)).to_string();
         let wanted = "\
@@ -120,7 +123,7 @@ alarm[PS0112]: division by zero
   |    ^^^^
   |
   = called from O0001.nc:2: G65 P2 A1.
-  = help: a vacant variable counts as 0 here
+  = help: check the divisor: a vacant variable counts as 0
 ";
         assert_eq!(text, wanted);
     }

@@ -1,13 +1,13 @@
 //! The verdict on flutes in words, and the helix angle of both laws side by side.
 use std::fmt::Write;
 
-use crate::verify::Answer;
-use crate::verify::flutes::{FluteVerdict, Law, WantedFlutes};
+use gcode_inspect::verify::Answer;
+use gcode_inspect::verify::flutes::{FluteVerdict, LawAngles, NominalFlutes};
 
 /// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
 pub fn table(verdict: &FluteVerdict) -> String {
     let mut text = format!(
-        "Flutes of a burr, law {}: {}\na helix angle is measured over {} mm of the flute; tolerances are either way\n\n",
+        "Flutes of a burr, law {}: {}\na helix angle is measured over {} mm of the flute; tolerances are ±\n\n",
         verdict.law, verdict.basis, verdict.gauge
     );
     let number = |value: Option<f64>, places: usize| match value {
@@ -18,43 +18,43 @@ pub fn table(verdict: &FluteVerdict) -> String {
         let line = format!("{what:<46} {found:>14} {wanted:>16} {tolerance:>10}");
         let _ = writeln!(text, "{}", line.trim_end());
     };
-    let [found, wanted, tolerance] = ["found", "wanted", "tolerance"].map(str::to_owned);
+    let [found, wanted, tolerance] = ["actual", "nominal", "tolerance"].map(str::to_owned);
     row("", found, wanted, tolerance);
-    row("flutes", verdict.flutes.to_string(), verdict.wanted_flutes.to_string(), String::new());
+    row("flutes", verdict.flutes.to_string(), verdict.nominal_flutes.to_string(), String::new());
     row(
-        "contact off the tooth bottom, mm",
+        "contact deviation from the tooth bottom, mm",
         number(verdict.surface_deviation, 4),
         "0".to_owned(),
         verdict.tolerance.to_string(),
     );
     row(
-        "helix angle, least and greatest, degrees",
+        "helix angle, minimum and maximum, degrees",
         format!("{} {}", number(verdict.helix_min, 2), number(verdict.helix_max, 2)),
         format!("{} on cylinder", verdict.helix),
         String::new(),
     );
     row(
-        "helix angle off the law, degrees",
+        "helix angle deviation from the law, degrees",
         number(verdict.helix_error, 3),
         "0".to_owned(),
         verdict.helix_tolerance.to_string(),
     );
     row(
-        "gap between neighbours off an even one, degrees",
+        "index deviation between neighbours, degrees",
         number(verdict.index_error, 4),
         "0".to_owned(),
         verdict.index_tolerance.to_string(),
     );
     row(
-        "speed along the flutes, least and greatest",
+        "speed along the flutes, minimum and maximum",
         format!("{} {}", number(verdict.speed_min, 1), number(verdict.speed_max, 1)),
         verdict.speed.map_or("-".to_owned(), |speed| format!("{speed} mm/min")),
         verdict.speed.map_or(String::new(), |_| format!("{:.0} %", 100.0 * verdict.speed_tolerance)),
     );
     row(
-        "neighbours' least distance, mm",
+        "minimum distance of neighbours, mm",
         number(verdict.nearest, 3),
-        format!("at least {}", verdict.nearest_allowed),
+        format!("at least {}", verdict.min_nearest),
         String::new(),
     );
     row(
@@ -64,10 +64,12 @@ pub fn table(verdict: &FluteVerdict) -> String {
         String::new(),
     );
     laws(&mut text, &verdict.laws);
-    if !verdict.along.is_empty() {
-        let _ = writeln!(text, "measured: on pass {}, the farthest from the law", verdict.along_pass);
+    if !verdict.helix_course.is_empty() {
+        let _ =
+            writeln!(text, "measured: on pass {}, the largest deviation from the law", verdict.course_pass);
         if verdict.laws.iter().any(|law| law.measured.is_none()) {
-            let least = verdict.along.iter().map(|angles| angles.polar.0).fold(f64::INFINITY, f64::min);
+            let least =
+                verdict.helix_course.iter().map(|angles| angles.polar.0).fold(f64::INFINITY, f64::min);
             let _ = writeln!(
                 text,
                 "-: not measured within 2.5 degrees of that theta; the last {} mm of the flute are one measurement, at theta {least:.1}",
@@ -88,9 +90,10 @@ pub fn table(verdict: &FluteVerdict) -> String {
 }
 
 /// What is wanted, in words.
-pub fn wanted(burr: &WantedFlutes) -> String {
+pub fn nominal_table(burr: &NominalFlutes) -> String {
     let mut text = format!(
-        "{} flutes, law {}, from {:.3} mm behind the end of the cylinder to polar angle {}, the pole {:.3} mm before it\n",
+        "{} flutes, law {}, from {:.3} mm behind the end of the cylinder to polar angle {}, the pole {:.3} \
+         mm in front of it\n",
         burr.flutes, burr.law, burr.start, burr.tip_angle, -burr.pole
     );
     laws(&mut text, &burr.laws);
@@ -98,7 +101,7 @@ pub fn wanted(burr: &WantedFlutes) -> String {
 }
 
 /// The helix angle by polar angle θ from the tip: in degrees, as measured, and what each law has there.
-fn laws(text: &mut String, laws: &[Law]) {
+fn laws(text: &mut String, laws: &[LawAngles]) {
     let _ = writeln!(
         text,
         "\n{:>8} {:>10} {:>15} {:>10}   helix angle, degrees",
@@ -109,7 +112,7 @@ fn laws(text: &mut String, laws: &[Law]) {
         let _ = writeln!(
             text,
             "{:>8} {measured:>10} {:>15.2} {:>10.2}",
-            law.theta, law.constant_helix, law.published
+            law.polar, law.constant_helix, law.published
         );
     }
     text.push('\n');

@@ -1,14 +1,18 @@
 //! What is different about a hole of two revisions, in a few words each: pictures and pages say the same.
 use super::figures::with_sign;
-use crate::changes::Paired;
-use crate::holes::Found;
-use crate::units::Deg;
+use gcode_inspect::holes::DrilledHole;
+use gcode_lang::units::Deg;
+use gcode_review::Paired;
 
 /// A hole of one revision, and the tools that make it.
-pub(super) type Made<'a> = (&'a Found, &'a [u32]);
+pub(super) type HoleWithTools<'a> = (&'a DrilledHole, &'a [u32]);
 
 /// Nothing of a hole that is as before, or that is there once only.
-pub(super) fn remarks(pair: &Paired, was: Option<Made<'_>>, is: Option<Made<'_>>) -> Vec<String> {
+pub(super) fn remarks(
+    pair: &Paired,
+    was: Option<HoleWithTools<'_>>,
+    is: Option<HoleWithTools<'_>>,
+) -> Vec<String> {
     let (true, Some((was, before)), Some((is, now))) = (pair.changed, was, is) else { return Vec::new() };
     let mut words = Vec::new();
     let seen = |value: f64| 0.0005 <= value.abs();
@@ -38,10 +42,10 @@ pub(super) fn tools(numbers: &[u32]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::changes::{Compared, Revision};
-    use crate::machine::Machine;
-    use crate::program::NoLibrary;
-    use crate::session::Request;
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::program::NoLibrary;
+    use gcode_review::{Revision, RevisionDiff};
+    use gcode_session::Request;
 
     fn told(old: &str, new: &str) -> Vec<Vec<String>> {
         let made = |text: &str| {
@@ -50,7 +54,7 @@ mod tests {
         };
         let sides = [made(old), made(new)];
         let lists = [0, 1].map(|side: usize| sides[side].record.made_by());
-        let compared = Compared::new(&sides[0].record, &sides[1].record, 1e-4);
+        let compared = RevisionDiff::new(&sides[0].record, &sides[1].record, 1e-4);
         let of = |side: usize, hole: Option<usize>| {
             hole.map(|hole| (&sides[side].simulation.extracted.holes[hole], lists[side][hole].as_slice()))
         };

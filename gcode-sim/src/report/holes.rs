@@ -1,7 +1,7 @@
 //! A list of holes as a table and as CSV.
 use std::fmt::Write;
 
-use crate::part::hole::HoleList;
+use gcode_part::HoleList;
 
 /// One line a hole, lengths in mm.
 pub fn text(list: &HoleList) -> String {

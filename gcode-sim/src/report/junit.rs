@@ -1,7 +1,7 @@
 //! The cases of `test` as JUnit XML, the form that build servers count and show.
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-use super::tested::{Answer, CaseReport, OLDER, TestReport};
+use super::test_report::{CaseAnswer, CaseReport, OLDER_TEXT, TestReport};
 
 /// The document of `test --format junit`: one suite, a test for each case.
 ///
@@ -18,22 +18,23 @@ pub fn document(report: &TestReport) -> Result<String, String> {
 fn case(case: &CaseReport) -> TestCase {
     // A failure is told as it is on the terminal, and in a few words for lists.
     let mut text = String::new();
-    case.tell(&mut text);
+    case.append_text(&mut text);
     let (code, message) = match (case.answer, &case.against, case.changes.first()) {
-        (Answer::Refused, ..) => ("case-refused", case.error.clone().unwrap_or_default()),
-        (Answer::Changed, _, Some(first)) => {
+        (CaseAnswer::Refused, ..) => ("case-refused", case.error.clone().unwrap_or_default()),
+        (CaseAnswer::Changed, _, Some(first)) => {
             let more = case.changes.len() - 1;
             let and = if more == 0 { String::new() } else { format!("; and {more} more") };
             (&*first.code, format!("{}: {}{and}", first.code, first.message))
         }
         (_, Some(against), _) => (&*against.code, format!("{}: {}", against.code, against.message)),
-        (Answer::Older, ..) => ("case-older", format!("{OLDER}; {}", case.left_open())),
-        (Answer::New, ..) => ("case-new", "nothing accepted yet".to_owned()),
-        (Answer::Same | Answer::Changed, None, _) => {
+        (CaseAnswer::Older, ..) => ("case-older", format!("{OLDER_TEXT}; {}", case.unrecorded_text())),
+        (CaseAnswer::New, ..) => ("case-new", "nothing accepted yet".to_owned()),
+        (CaseAnswer::Same | CaseAnswer::Changed, None, _) => {
             return named(case, TestCaseStatus::success());
         }
     };
-    let kind = if case.answer == Answer::Refused { NonSuccessKind::Error } else { NonSuccessKind::Failure };
+    let kind =
+        if case.answer == CaseAnswer::Refused { NonSuccessKind::Error } else { NonSuccessKind::Failure };
     let mut status = TestCaseStatus::non_success(kind);
     status.set_type(code).set_message(message).set_description(text);
     named(case, status)

@@ -20,7 +20,7 @@ pub mod readings;
 pub mod run;
 pub mod sarif;
 pub mod settings;
-pub mod tested;
+pub mod test_report;
 pub mod top;
 mod verdict_summary;
 pub mod verdict_table;

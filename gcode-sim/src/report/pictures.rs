@@ -2,7 +2,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::picture::Difference;
+use gcode_draw::Difference;
 
 /// The document of `render --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -22,17 +22,17 @@ impl RenderReport {
 /// The document of `compare --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CompareReport {
-    /// Nothing differs by more than the tolerance, the sizes neither.
+    /// The pictures have equal sizes and no difference beyond the tolerance.
     pub same: bool,
     /// Width and height of both pictures, pixels.
     pub sizes: [[u32; 2]; 2],
-    /// How many pixels differ.
+    /// Number of different pixels.
     pub pixels: u64,
     /// The largest difference of a colour value, 0 to 255.
     pub largest: u8,
-    /// Left, top, right and bottom of what differs, both ends included.
+    /// Left, top, right and bottom of the differences, both ends included.
     pub bounds: Option<[u32; 4]>,
-    /// The file that marks what differs, where one was written.
+    /// The file with the differences marked, if one was written.
     pub picture: Option<String>,
 }
 
@@ -51,7 +51,7 @@ impl CompareReport {
     /// The same for people.
     pub fn text(&self) -> String {
         if self.same {
-            return "the pictures are alike\n".to_owned();
+            return "no difference between the pictures\n".to_owned();
         }
         let [[w, h], [other_w, other_h]] = self.sizes;
         let mut text = if (w, h) == (other_w, other_h) {

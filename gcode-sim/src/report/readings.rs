@@ -4,13 +4,13 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::diag::Severity;
-use crate::exec::Outcome;
-use crate::picture::{Chart, Curve, Graph, Pen, Plot};
 use crate::report::figures::count;
-use crate::session::Following;
-use crate::stylus::{Gap, Pass, Reading};
-use crate::verify::Answer;
+use gcode_control::Outcome;
+use gcode_draw::{Chart, Curve, Graph, Pen, Plot};
+use gcode_inspect::stylus::{Gap, Reading, ReadingPass};
+use gcode_inspect::verify::Answer;
+use gcode_lang::diag::Severity;
+use gcode_session::StylusRun;
 
 /// Lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -18,9 +18,9 @@ pub struct ReadingsReport {
     basis: &'static str,
     /// Of the ball.
     radius: f64,
-    /// How far a reading may be from 0, where that was asked.
+    /// Tolerance of a reading, either way, if given.
     tolerance: Option<f64>,
-    /// Only of a run to its end, on which the whole path was read, can it be a pass.
+    /// A pass requires a complete run with readings on the whole path.
     verdict: Option<Answer>,
     /// As `run` has it.
     outcome: &'static str,
@@ -32,7 +32,7 @@ pub struct ReadingsReport {
     gaps: Vec<Gap>,
     /// Feeds to the surface and from it.
     #[serde(skip)]
-    ways: [usize; 2],
+    approach_retract_counts: [usize; 2],
     #[serde(skip)]
     name: String,
 }
@@ -52,11 +52,11 @@ struct PassRow {
     length: f64,
     least: f64,
     greatest: f64,
-    readings: Vec<Row>,
+    readings: Vec<ReadingRow>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
+struct ReadingRow {
     along: f64,
     x: f64,
     y: f64,
@@ -68,20 +68,20 @@ struct Row {
 
 impl ReadingsReport {
     /// Of the program `name`, for a ball of this radius.
-    pub fn new(name: &str, following: &Following, radius: f64, tolerance: Option<f64>) -> Self {
-        let row = |pass: &Pass, reading: &Reading| {
-            let (program, line) = following.run.locate(pass.places[reading.place].block);
-            let [x, y, z] = reading.at.coords.into();
-            Row { along: reading.along, x, y, z, reading: reading.value, program, line }
+    pub fn new(name: &str, following: &StylusRun, radius: f64, tolerance: Option<f64>) -> Self {
+        let row = |pass: &ReadingPass, reading: &Reading| {
+            let (program, line) = following.run.locate(pass.backtraces[reading.move_index].block);
+            let [x, y, z] = reading.ball_centre.coords.into();
+            ReadingRow { along: reading.path_length, x, y, z, reading: reading.value, program, line }
         };
         let passes: Vec<_> = following
-            .followed
+            .readings
             .passes
             .iter()
             .filter_map(|pass| {
                 let (least, greatest) = pass.extremes()?;
                 Some(PassRow {
-                    moves: pass.places.len(),
+                    moves: pass.backtraces.len(),
                     length: pass.length(),
                     least: least.value,
                     greatest: greatest.value,
@@ -93,12 +93,12 @@ impl ReadingsReport {
         let greatest = passes.iter().map(|pass| pass.greatest).reduce(f64::max);
         let worst = least.zip(greatest).map(|(least, greatest)| greatest.max(-least));
         let within = |tolerance: f64| worst.is_some_and(|worst| worst <= tolerance);
-        let findings = &following.followed.findings;
+        let findings = &following.readings.findings;
         let ended = matches!(following.run.outcome, Outcome::End);
         let whole = ended && findings.iter().all(|finding| finding.severity < Severity::Error);
         let verdict = tolerance.map(|t| if whole && within(t) { Answer::Pass } else { Answer::Fail });
         let told = findings.iter().map(|finding| {
-            let at = finding.place.as_ref().map(|place| following.run.locate(place.block));
+            let at = finding.backtrace.as_ref().map(|place| following.run.locate(place.block));
             let (program, line) = at.unzip();
             let (code, message) = (finding.code.clone(), finding.message.clone());
             FindingRow { code, severity: finding.severity.name(), message, program, line }
@@ -117,8 +117,8 @@ impl ReadingsReport {
             greatest,
             passes,
             findings: told.collect(),
-            gaps: following.followed.gaps.clone(),
-            ways: following.followed.ways,
+            gaps: following.readings.gaps.clone(),
+            approach_retract_counts: following.readings.approach_retract_counts,
             name: name.to_owned(),
         }
     }
@@ -136,8 +136,8 @@ impl ReadingsReport {
     /// For a terminal: every tenth of each pass.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "Readings of an edge finder, ball of radius {}: {}\n\
-             mm; above 0 a gap between ball and surface, below 0 the ball is pushed in; x y z: its centre\n",
+            "Readings of an edge finder, ball of radius {}: {}\nmm; above 0: gap between ball and surface; \
+             below 0: stylus deflected; x y z: ball centre\n",
             self.radius, self.basis
         );
         for (index, pass) in self.passes.iter().enumerate() {
@@ -146,8 +146,9 @@ impl ReadingsReport {
             let mut shown = f64::NEG_INFINITY;
             for tenth in 0..=10 {
                 let along = pass.length * f64::from(tenth) / 10.0;
-                let distance = |row: &&Row| (row.along - along).abs();
-                let nearest = |one: &&Row, other: &&Row| distance(one).total_cmp(&distance(other));
+                let distance = |row: &&ReadingRow| (row.along - along).abs();
+                let nearest =
+                    |one: &&ReadingRow, other: &&ReadingRow| distance(one).total_cmp(&distance(other));
                 let Some(row) = pass.readings.iter().min_by(nearest) else { continue };
                 if row.along <= shown {
                     continue;
@@ -157,9 +158,9 @@ impl ReadingsReport {
                 let _ = writeln!(text, "{:>10.3}{x:>11.4}{y:>11.4}{z:>11.4}{reading:>10.4}", row.along);
             }
         }
-        if self.ways != [0, 0] {
-            let [to, from] = self.ways.map(|n| count(n, "feed"));
-            let _ = writeln!(text, "\nnot read: {to} to the surface, {from} from it");
+        if self.approach_retract_counts != [0, 0] {
+            let [to, from] = self.approach_retract_counts.map(|n| count(n, "feed"));
+            let _ = writeln!(text, "\nno reading: {to} towards the surface, {from} away from it");
         }
         let _ = writeln!(text, "\n{}", self.sentence());
         text
@@ -168,7 +169,7 @@ impl ReadingsReport {
     /// `reading -0.0012 to 0.0500, spread 0.0512`, and what was asked about it.
     fn sentence(&self) -> String {
         let Some((least, greatest)) = self.least.zip(self.greatest) else {
-            return "no feed goes along the surface".to_owned();
+            return "no feed follows the surface".to_owned();
         };
         let range = format!(
             "reading {:.4} to {:.4}, spread {:.4}",
@@ -183,7 +184,7 @@ impl ReadingsReport {
             }
             (Some(Answer::Fail), Some(_)) if !self.gaps.is_empty() => {
                 format!(
-                    "FAIL: {} in the path without a reading; elsewhere {range}",
+                    "FAIL: {} without a reading in the path; elsewhere {range}",
                     count(self.gaps.len(), "gap")
                 )
             }
@@ -213,47 +214,48 @@ impl ReadingsReport {
         let mut begun = 0.0;
         let (mut curves, mut gaps) = (Vec::new(), Vec::new());
         for behind in 0..=self.passes.len() {
-            for gap in self.gaps.iter().filter(|gap| gap.behind == behind) {
+            for gap in self.gaps.iter().filter(|gap| gap.passes_before == behind) {
                 gaps.push([begun, begun + gap.length]);
                 begun += gap.length;
             }
             if let Some(pass) = self.passes.get(behind) {
                 let points = pass.readings.iter().map(|row| [begun + row.along, row.reading]).collect();
-                curves.push(Curve { points, pen: Pen::Measured, guest: false });
+                curves.push(Curve { points, pen: Pen::Measured, is_clipped: false });
                 begun += pass.length;
             }
         }
         let limit = |limit: f64| [0.0, begun].map(|way| [way, -limit, limit]);
-        let end = |row: Option<&Row>| {
+        let end = |row: Option<&ReadingRow>| {
             row.map(|row| format!("x {:.3}, y {:.3}, z {:.3}", row.x, row.y, plain(row.z, 5e-4)))
         };
         let first = self.passes.first().and_then(|pass| end(pass.readings.first()));
         let last = self.passes.last().and_then(|pass| end(pass.readings.last()));
-        let ends = first.zip(last).map(|(first, last)| {
-            format!("Ball of radius {}, its centre from {first} to {last}", self.radius)
-        });
+        let ends = first
+            .zip(last)
+            .map(|(first, last)| format!("Ball radius {}, centre from {first} to {last}", self.radius));
         Plot {
             title: format!("Edge finder along the surface, {}", self.name),
             notes: [
                 Some(self.sentence()),
-                (!self.gaps.is_empty())
-                    .then(|| "Between dotted lines, a thick line at 0: fed there, but no reading".to_owned()),
+                (!self.gaps.is_empty()).then(|| {
+                    "Between dotted lines, with a thick line at 0: feed without a reading".to_owned()
+                }),
                 ends,
-                Some("Predicted by simulation, not measured; below 0 the ball is pushed in".to_owned()),
+                Some("Predicted by simulation, not measured; below 0 the stylus is deflected".to_owned()),
             ]
             .into_iter()
             .flatten()
             .collect(),
             chart: Chart {
-                across: "Way of the ball's centre, mm".to_owned(),
+                x_label: "Path of the ball centre, mm".to_owned(),
                 guides: Vec::new(),
                 gaps,
                 graphs: vec![Graph {
-                    up: "Reading: distance of the ball from the surface, mm".to_owned(),
+                    y_label: "Reading: distance of the ball from the surface, mm".to_owned(),
                     curves,
                     band: self.tolerance.into_iter().flat_map(limit).collect(),
-                    zero: true,
-                    signs: Vec::new(),
+                    has_zero_line: true,
+                    markers: Vec::new(),
                 }],
             },
         }

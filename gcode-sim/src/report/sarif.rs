@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::explain;
-use crate::diag::{Diagnostic, Severity};
-use crate::source::{Sources, Span};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::source::{Sources, Span};
 
 /// One finding with its place in a file, whatever found it.
 #[derive(Clone, Debug)]
@@ -14,14 +14,14 @@ pub struct Finding {
     pub code: String,
     pub severity: Severity,
     pub message: String,
-    pub at: Option<At>,
+    pub at: Option<FileLocation>,
     /// Second places, each with what is there.
-    pub related: Vec<(At, String)>,
+    pub related: Vec<(FileLocation, String)>,
 }
 
 /// A place in a file; lines and columns count from 1.
 #[derive(Clone, Debug)]
-pub struct At {
+pub struct FileLocation {
     /// The file's name as the user gave it.
     pub file: String,
     pub line: Option<u32>,
@@ -32,15 +32,15 @@ impl Finding {
     /// A finding on a program, the calls that led to it as second places.
     pub fn of(diagnostic: &Diagnostic, sources: &Sources) -> Self {
         let at = |span: Span| {
-            let place = sources.place(span);
+            let place = sources.line_column(span);
             let file = sources.get(span.source).name.clone();
-            At { file, line: Some(place.line), column: Some(place.column) }
+            FileLocation { file, line: Some(place.line), column: Some(place.column) }
         };
-        let place = diagnostic.place.as_ref();
+        let place = diagnostic.backtrace.as_ref();
         let chain = std::iter::successors(place.and_then(|place| place.calls.as_deref()), |call| {
-            call.outer.as_deref()
+            call.outer_calls.as_deref()
         });
-        let calls = chain.map(|call| (at(call.from), "called from here".to_owned()));
+        let calls = chain.map(|call| (at(call.calling_block), "called from here".to_owned()));
         let labels = diagnostic.labels.iter().map(|(span, text)| (at(*span), text.clone()));
         let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
         Self {
@@ -180,13 +180,13 @@ fn rule(code: &str) -> Rule {
         id: code.to_owned(),
         short_description: pages.first().map(|page| Text { text: page.title().to_owned() }),
         help: (!pages.is_empty()).then(|| Help {
-            text: joined(&explain::Page::shown),
+            text: joined(&explain::Page::plain_text),
             markdown: joined(&|page| page.text.to_owned()),
         }),
     }
 }
 
-fn location(at: &At, text: Option<&String>, root: &str) -> Location {
+fn location(at: &FileLocation, text: Option<&String>, root: &str) -> Location {
     let region = at.line.map(|line| Region { start_line: line, start_column: at.column });
     Location {
         physical_location: Physical { artifact_location: Artifact { uri: uri(&at.file, root) }, region },

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::control::{CodeCallKind, FAMILIES, RANGES, ROWS};
+use gcode_lang::control::{CODE_RANGES, CodeCallKind, ROWS, SEQUENTIAL_CODES};
 
 /// The document of `settings --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -14,9 +14,9 @@ pub struct SettingsReport {
 
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct SettingReport {
-    /// What `--control` is given before the `=`; several of a kind are named by the first and the last.
+    /// The key for `--control`, before the `=`; a range is given by its first and last key.
     pub key: String,
-    /// What it decides, with the parameter's number where a control has one.
+    /// Its meaning, with the parameter's number where a control has one.
     pub meaning: String,
     /// The values that it takes, in words.
     pub allowed: String,
@@ -36,14 +36,14 @@ impl SettingsReport {
         settings.push(SettingReport::new("#1000 to #1031", "an input signal", "0 or 1"));
         let (program, kind) = ("a code that calls a program", "the program's number; G-201 is a modal call");
         settings.push(SettingReport::new("G201, M50, T, …", program, kind));
-        for family in FAMILIES {
+        for family in SEQUENTIAL_CODES {
             let (first, last) = (family.first, family.last);
             let (letter, kind) = (char::from(family.letter), word(family.kind));
             let most = family.program + u32::from(last - first);
             let meaning = format!("{letter} codes that call O{} to O{most} as {kind}s", family.program);
             settings.push(SettingReport::new(format!("{first} to {last}"), meaning, "a code, 0 for none"));
         }
-        for range in RANGES {
+        for range in CODE_RANGES {
             let (first, last) = (range.first, range.first + 2);
             let (letter, kind) = (char::from(range.letter), word(range.kind));
             let meaning =

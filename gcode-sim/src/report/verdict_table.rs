@@ -1,7 +1,7 @@
 //! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
-use super::figures::{count, near, signed, signed_to};
-use super::verdict_summary::{made_by, put, summary};
-use crate::verify::{HoleVerdict, Placed, Verdict};
+use super::figures::{count, rounded, signed, signed_to};
+use super::verdict_summary::{append_line, made_by, summary};
+use gcode_inspect::verify::{HoleGeometry, HoleVerdict, Verdict};
 
 /// How much of it, and in which order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,10 +24,10 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
         false => worst(&verdict.holes),
     };
     if layout.worst_first {
-        holes.sort_by(|a, b| b.phi.total_cmp(&a.phi));
+        holes.sort_by(|a, b| b.position_deviation.total_cmp(&a.position_deviation));
     }
     let mut text = format!(
-        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual less nominal\n\n",
+        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual − nominal\n\n",
         count(all, "hole"),
         verdict.tolerance,
         verdict.basis
@@ -37,7 +37,10 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
     } else {
         lines(&mut text, &holes);
         if holes.len() < all {
-            put(&mut text, &format!("the worst {} of {all} holes; --full lists them all\n", holes.len()));
+            append_line(
+                &mut text,
+                &format!("the worst {} of {all} holes; --full lists them all\n", holes.len()),
+            );
         }
     }
     summary(&mut text, verdict);
@@ -50,7 +53,7 @@ fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     if OF_MANY < order.len() {
         order.select_nth_unstable_by(OF_MANY, |one, other| {
             let (a, b) = (&holes[*one], &holes[*other]);
-            a.ok.cmp(&b.ok).then(b.phi.total_cmp(&a.phi)).then(one.cmp(other))
+            a.ok.cmp(&b.ok).then(b.position_deviation.total_cmp(&a.position_deviation)).then(one.cmp(other))
         });
         order.truncate(OF_MANY);
     }
@@ -64,7 +67,7 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
         return;
     }
     let wide = holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(4, 12);
-    put(
+    append_line(
         text,
         &format!(
             "{:<wide$} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  verdict",
@@ -72,20 +75,20 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
         ),
     );
     for hole in holes {
-        let [x, y, z] = hole.nominal.entry.map(|v| near(v, 3));
+        let [x, y, z] = hole.nominal.entry.map(|v| rounded(v, 3));
         let [dx, dy, dz] = off(hole).map(signed);
-        put(
+        append_line(
             text,
             &format!(
                 "{:<wide$} {x:>9} {y:>9} {z:>9} {dx:>8} {dy:>8} {dz:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  {}",
                 hole.id,
-                near(hole.at_entry, 4),
-                near(hole.at_bottom, 4),
-                near(hole.tilt, 4),
+                rounded(hole.at_entry, 4),
+                rounded(hole.at_bottom, 4),
+                rounded(hole.tilt, 4),
                 signed(hole.depth_error),
-                near(hole.phi, 4),
-                near(hole.out_of_tolerance, 4),
-                said(hole)
+                rounded(hole.position_deviation, 4),
+                rounded(hole.out_of_tolerance, 4),
+                remarks_of(hole)
             ),
         );
     }
@@ -95,15 +98,15 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
 /// Every column, a line each for nominal, actual and deviation.
 fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     let head = ["x", "y", "z", "i", "j", "k", "d", "l"].map(|name| format!("{name:>10}")).concat();
-    put(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
-    let columns = |placed: &Placed| {
-        let [x, y, z] = placed.entry.map(|v| near(v, 4));
-        let [i, j, k] = placed.axis.map(|v| near(v, 6));
-        let d = placed.diameter.map_or("-".to_owned(), |d| near(d, 3));
-        [x, y, z, i, j, k, d, near(placed.depth, 4)].map(|column| format!("{column:>10}")).concat()
+    append_line(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
+    let columns = |placed: &HoleGeometry| {
+        let [x, y, z] = placed.entry.map(|v| rounded(v, 4));
+        let [i, j, k] = placed.axis.map(|v| rounded(v, 6));
+        let d = placed.diameter.map_or("-".to_owned(), |d| rounded(d, 3));
+        [x, y, z, i, j, k, d, rounded(placed.depth, 4)].map(|column| format!("{column:>10}")).concat()
     };
-    put(text, &format!("{:<11}{}", " nominal", columns(&hole.nominal)));
-    put(text, &format!("{:<11}{}", " actual", columns(&hole.actual)));
+    append_line(text, &format!("{:<11}{}", " nominal", columns(&hole.nominal)));
+    append_line(text, &format!("{:<11}{}", " actual", columns(&hole.actual)));
     let (nominal, actual) = (&hole.nominal, &hole.actual);
     let axis = [0, 1, 2].map(|i| signed_to(actual.axis[i] - nominal.axis[i], 6));
     let diameter = match (actual.diameter, nominal.diameter) {
@@ -112,22 +115,22 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     };
     let rest = [diameter, signed(hole.depth_error)];
     let all = off(hole).map(signed).into_iter().chain(axis).chain(rest);
-    put(
+    append_line(
         text,
         &format!("{:<11}{}", " deviation", all.map(|column| format!("{column:>10}")).collect::<String>()),
     );
-    put(
+    append_line(
         text,
         &format!(
-            " position   Φ{} of Φ{tolerance}, out of tolerance {} (entry {}, bottom {}, tilt {}°)",
-            near(hole.phi, 4),
-            near(hole.out_of_tolerance, 4),
-            near(hole.at_entry, 4),
-            near(hole.at_bottom, 4),
-            near(hole.tilt, 4)
+            " position   Φ{}, tolerance Φ{tolerance}, out of tolerance by {} (entry {}, bottom {}, tilt {}°)",
+            rounded(hole.position_deviation, 4),
+            rounded(hole.out_of_tolerance, 4),
+            rounded(hole.at_entry, 4),
+            rounded(hole.at_bottom, 4),
+            rounded(hole.tilt, 4)
         ),
     );
-    put(text, &format!(" verdict    {}; made by {}", said(hole), made_by(hole)));
+    append_line(text, &format!(" verdict    {}; made by {}", remarks_of(hole), made_by(hole)));
     text.push('\n');
 }
 
@@ -135,7 +138,7 @@ fn off(hole: &HoleVerdict) -> [f64; 3] {
     [0, 1, 2].map(|i| hole.actual.entry[i] - hole.nominal.entry[i])
 }
 
-fn said(hole: &HoleVerdict) -> String {
+fn remarks_of(hole: &HoleVerdict) -> String {
     let why: Vec<_> = hole.objections.iter().map(|code| code.trim_start_matches("hole-")).collect();
     if hole.ok { "pass".to_owned() } else { format!("FAIL {}", why.join(", ")) }
 }
@@ -143,11 +146,11 @@ fn said(hole: &HoleVerdict) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::part::hole::Origin;
-    use crate::verify::Answer;
+    use gcode_inspect::verify::Answer;
+    use gcode_part::Origin;
 
     fn hole(id: &str, phi: f64, objections: &[&str]) -> HoleVerdict {
-        let placed = |x: f64| Placed {
+        let placed = |x: f64| HoleGeometry {
             entry: [x, 674.93, 0.0],
             axis: [0.0, 1.0, 0.0],
             diameter: Some(6.0),
@@ -155,11 +158,11 @@ mod tests {
         };
         HoleVerdict {
             id: id.into(),
-            phi,
+            position_deviation: phi,
             at_entry: phi / 2.0,
             at_bottom: phi / 2.0,
             depth_error: -0.00002,
-            found: 0,
+            drilled_index: 0,
             ok: objections.is_empty(),
             tilt: 0.0,
             out_of_tolerance: (phi - 0.1).max(0.0),
@@ -196,16 +199,16 @@ mod tests {
     fn one_line_a_hole() {
         insta::assert_snapshot!(table(&verdict(), Layout::default()), @r"
 Position of 2 holes against Φ0.1: predicted by simulation, not measured
-mm and degrees; deviations are actual less nominal
+mm and degrees; deviations are actual − nominal
 
 hole         x         y         z       dx       dy       dz   entry  bottom    tilt    depth       Φ     out  verdict
 1      420.000   674.930     0.000  +0.0001   0.0000   0.0000  0.0001  0.0001  0.0000   0.0000  0.0002  0.0000  pass
 2      420.000   674.930     0.000  +0.0617   0.0000   0.0000  0.0617  0.0617  0.0000   0.0000  0.1234  0.0234  FAIL position
 
-FAIL     1 of 17 wanted holes good, 15 missing
-worst    Φ0.1234 of Φ0.1: hole 2, …
+FAIL     1 of 17 holes in tolerance, 15 missing
+worst    Φ0.1234, tolerance Φ0.1: hole 2, …
          made by O8101 line 31, T2, called from O8100 line 20
-rounding alone, to the control's least increment, can use up Φ0.0211: 21.1 % of the zone
+rounding to the control's least increment alone can cause Φ0.0211: 21.1 % of the tolerance zone
 missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }
@@ -214,26 +217,26 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
     fn every_column_worst_first() {
         insta::assert_snapshot!(table(&verdict(), Layout { worst_first: true, full: true }), @r"
 Position of 2 holes against Φ0.1: predicted by simulation, not measured
-mm and degrees; deviations are actual less nominal
+mm and degrees; deviations are actual − nominal
 
 hole 2              x         y         z         i         j         k         d         l
  nominal     420.0000  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  actual      420.0617  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  deviation    +0.0617    0.0000    0.0000  0.000000  0.000000  0.000000     0.000    0.0000
- position   Φ0.1234 of Φ0.1, out of tolerance 0.0234 (entry 0.0617, bottom 0.0617, tilt 0.0000°)
+ position   Φ0.1234, tolerance Φ0.1, out of tolerance by 0.0234 (entry 0.0617, bottom 0.0617, tilt 0.0000°)
  verdict    FAIL position; made by O8101 line 31, T2, called from O8100 line 20
 
 hole 1              x         y         z         i         j         k         d         l
  nominal     420.0000  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  actual      420.0001  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  deviation    +0.0001    0.0000    0.0000  0.000000  0.000000  0.000000     0.000    0.0000
- position   Φ0.0002 of Φ0.1, out of tolerance 0.0000 (entry 0.0001, bottom 0.0001, tilt 0.0000°)
+ position   Φ0.0002, tolerance Φ0.1, out of tolerance by 0.0000 (entry 0.0001, bottom 0.0001, tilt 0.0000°)
  verdict    pass; made by O8101 line 31, T2, called from O8100 line 20
 
-FAIL     1 of 17 wanted holes good, 15 missing
-worst    Φ0.1234 of Φ0.1: hole 2, …
+FAIL     1 of 17 holes in tolerance, 15 missing
+worst    Φ0.1234, tolerance Φ0.1: hole 2, …
          made by O8101 line 31, T2, called from O8100 line 20
-rounding alone, to the control's least increment, can use up Φ0.0211: 21.1 % of the zone
+rounding to the control's least increment alone can cause Φ0.0211: 21.1 % of the tolerance zone
 missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }
@@ -242,7 +245,7 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
     #[test]
     fn a_zone_smaller_than_rounding_is_warned_of() {
         let told = |tolerance: f64| table(&Verdict { tolerance, ..verdict() }, Layout::default());
-        let warning = "WARNING  this control can't be trusted to hold Φ0.02: a finer increment or a wider tolerance is needed";
+        let warning = "WARNING  this control's least increment is too coarse for Φ0.02: use a finer increment or a wider tolerance";
         assert!(told(0.02).contains(warning));
         assert!(!told(0.0212).contains("WARNING"));
     }

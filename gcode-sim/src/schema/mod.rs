@@ -6,11 +6,6 @@ mod types;
 use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 
-use crate::changes::AcceptedFile;
-use crate::job::control_file::ControlFile;
-use crate::job::{FileRates, JobFile};
-use crate::machine::{ErrorFile, MachineFile};
-use crate::part::hole::HoleList;
 use crate::report::budget::BudgetReport;
 use crate::report::changes::ChangesReport;
 use crate::report::check::CheckReport;
@@ -19,9 +14,14 @@ use crate::report::pictures::{CompareReport, RenderReport};
 use crate::report::readings::ReadingsReport;
 use crate::report::run::RunReport;
 use crate::report::settings::SettingsReport;
-use crate::report::tested::TestReport;
-use crate::verify::Verdict;
-use crate::verify::flutes::{FluteVerdict, WantedFlutes};
+use crate::report::test_report::TestReport;
+use gcode_inspect::machine::{ErrorFile, MachineFile};
+use gcode_inspect::verify::Verdict;
+use gcode_inspect::verify::flutes::{FluteVerdict, NominalFlutes};
+use gcode_part::HoleList;
+use gcode_part::job::control_file::ControlFile;
+use gcode_part::job::{FileRates, JobFile};
+use gcode_review::AcceptedFile;
 
 /// One kind of document.
 pub struct Format {
@@ -38,8 +38,8 @@ pub const FORMATS: &[Format] = &[
     file::<JobFile>("job", "a job file, of any family"),
     file::<MachineFile>("machine", "a machine file: --machine"),
     file::<ControlFile>("control", "settings of the control: --control-file"),
-    file::<ErrorFile>("errors", "what set-up and machine are off by: budget --errors"),
-    file::<FileRates>("rates", "what machine hours cost: gcode-gen sheet --rates"),
+    file::<ErrorFile>("errors", "set-up and machine errors: budget --errors"),
+    file::<FileRates>("rates", "machine-hour rates: gcode-gen sheet --rates"),
     Format {
         name: "reference",
         about: "a list of holes: --reference",
@@ -48,24 +48,24 @@ pub const FORMATS: &[Format] = &[
     },
     Format {
         name: "accepted",
-        about: "what was accepted of a case: accepted.json",
+        about: "an accepted result of a case: accepted.json",
         is_toml: false,
         schema: types::read::<AcceptedFile>,
     },
-    result::<RunReport>("run", "what run answers"),
-    result::<HoleList>("holes", "what holes answers, and reference of a part with holes"),
-    result::<WantedFlutes>("wanted-flutes", "what reference answers of a burr"),
-    result::<Verdict>("verify", "what verify answers of a part with holes"),
-    result::<FluteVerdict>("verify-flutes", "what verify answers of a burr"),
-    result::<ReadingsReport>("readings", "what readings answers"),
-    result::<CheckReport>("check", "what check answers"),
-    result::<ChangesReport>("diff", "what diff answers"),
-    result::<TestReport>("test", "what test answers, and test --merge reads"),
-    result::<BudgetReport>("budget", "what budget answers"),
-    result::<RenderReport>("render", "what render answers besides its picture"),
-    result::<CompareReport>("compare", "what compare answers"),
-    result::<SettingsReport>("settings", "what settings answers"),
-    result::<ExplainReport>("explain", "what explain answers"),
+    result::<RunReport>("run", "the result of run"),
+    result::<HoleList>("holes", "the result of holes, and of reference for a part with holes"),
+    result::<NominalFlutes>("wanted-flutes", "the result of reference for a burr"),
+    result::<Verdict>("verify", "the result of verify for a part with holes"),
+    result::<FluteVerdict>("verify-flutes", "the result of verify for a burr"),
+    result::<ReadingsReport>("readings", "the result of readings"),
+    result::<CheckReport>("check", "the result of check"),
+    result::<ChangesReport>("diff", "the result of diff"),
+    result::<TestReport>("test", "the result of test, which test --merge reads"),
+    result::<BudgetReport>("budget", "the result of budget"),
+    result::<RenderReport>("render", "the result of render, in addition to the picture"),
+    result::<CompareReport>("compare", "the result of compare"),
+    result::<SettingsReport>("settings", "the result of settings"),
+    result::<ExplainReport>("explain", "the result of explain"),
 ];
 
 const fn file<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {

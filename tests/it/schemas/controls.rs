@@ -1,6 +1,6 @@
 //! The schema of the control's settings against what the control takes, key by key and value by value.
-use gcode_sim::control::{ROWS, Settings, Values};
-use gcode_sim::job::control_file;
+use gcode_lang::control::{ROWS, SettingValues, Settings};
+use gcode_part::job::control_file;
 use serde_json::{Value, json};
 
 use super::validator;
@@ -65,7 +65,7 @@ fn each_setting_takes_what_its_schema_says() {
         let mut taken = 0;
         for value in &values {
             // The reader takes a number for a text as well: BDT = 1.
-            let is_text = matches!(row.values, Values::Text(..));
+            let is_text = matches!(row.values, SettingValues::Text(..));
             // … and a number in quotes.
             let is_quoted = value.as_str().is_some_and(|text| text.parse::<f64>().is_ok());
             if if is_text { value.is_number() } else { is_quoted } {

@@ -1,10 +1,10 @@
 //! Schemas of files against their readers: files that are there, and each of them changed in every place.
 use std::path::{Path, PathBuf};
 
-use gcode_sim::control::Settings;
-use gcode_sim::job::control_file;
-use gcode_sim::job::{Job, Rates};
-use gcode_sim::machine::{Machine, error_file};
+use gcode_inspect::machine::{Machine, error_file};
+use gcode_lang::control::Settings;
+use gcode_part::job::control_file;
+use gcode_part::job::{Job, Rates};
 use gcode_tests::workspace;
 use serde_json::Value as Json;
 use toml::{Table, Value};
@@ -211,37 +211,37 @@ fn changed(root: &Value, numbers: &[f64]) -> Vec<(String, Value)> {
 /// What a schema can't say: the words of the readers that compare one key with another.
 const ACROSS: [&str; 32] = [
     "which is not in [[tool]]",
-    "names tools of [[tool]], and there are none",
-    "no tool of [[tool]] is as small",
+    "names tools of [[tool]], but there are none",
+    "every [[tool]] is larger",
     "the last tool of hole",
-    "is there twice",
+    "is used twice",
     "(the clearance) to",
     "from the diameter of",
     "to the diameter of",
-    "above the drill's diameter",
+    "above the drill diameter",
     "fewer than two rows fit round",
     "below the radius of",
-    "which is 'on' too",
+    "the same as 'on'",
     "(half the diameter)",
     "(the radius)",
     "(the nose alone) to",
-    "for they end on a circle",
+    "because they end on a circle",
     "(the least increment) to",
     "rounding to the least increment",
     "to the equatorial radius a =",
     "each less than b =",
     "from, to and the number of readings",
     "all its blocks together",
-    "comes nearer to it than none",
-    "0 has to be among them",
+    "lower than any stack of",
+    "it must include 0",
     "one of the control's axes",
-    "doesn't go with",
-    "whose direction isn't known",
-    "needs one axis that turns",
+    "does not match",
+    "whose direction is unknown",
+    "needs exactly one axis that rotates",
     "needs a [probe]",
     "an eighth of 'probe.search'",
     "round E and F",
-    "too steep to be touched along y",
+    "too steep for a touch along y",
 ];
 
 #[test]

@@ -57,7 +57,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
     (
         "verify-flutes",
-        "gcode-sim verify tests/suite/verify/an_uneven_index_is_measured/case.nc --machine tests/suite/verify/an_uneven_index_is_measured/machine.toml --reference tests/suite/verify/an_uneven_index_is_measured/reference.toml --format json",
+        "gcode-sim verify tests/suite/verify/an_uneven_index_is_measured/case.nc --machine tests/suite/verify/grinder.toml --reference tests/suite/verify/burr.toml --format json",
     ),
     (
         "readings",
@@ -194,12 +194,12 @@ fn results_that_stand_in_the_repository_are_as_their_schemas_say() {
 /// What is wrong with a list of holes is refused by its reader, and by the schema where it can say so.
 #[test]
 fn lists_of_holes_are_refused_alike() {
-    use gcode_sim::part::wanted::Wanted;
+    use gcode_part::NominalPart;
     let text = std::fs::read_to_string(workspace().join("tests/complete/reference.json")).unwrap();
     let validator = validator("reference");
     let both = |text: &str| {
         let document: Value = serde_json::from_str(text).unwrap();
-        (Wanted::parse(text).is_ok(), validator.is_valid(&document))
+        (NominalPart::parse(text).is_ok(), validator.is_valid(&document))
     };
     assert_eq!(both(&text), (true, true));
     for (from, to) in [

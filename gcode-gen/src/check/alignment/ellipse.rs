@@ -1,27 +1,27 @@
 //! The ellipse program on a part that stands where it should: the ball has to keep its distance from the surface all the way,
 //! between the programmed points too.
-use gcode_sim::diag::Severity;
-use gcode_sim::machine::Placement;
-use gcode_sim::part::surface::Surface;
+use gcode_inspect::machine::Placement;
+use gcode_inspect::stylus::{Reading, ReadingPass};
+use gcode_lang::diag::Severity;
+use gcode_part::Surface;
+use gcode_session::read_stylus;
 use gcode_sim::report::diagnostic;
-use gcode_sim::session::follow;
-use gcode_sim::stylus::{Pass, Reading};
 
-use super::{Bench, CheckError, Tried};
+use super::{CheckError, TrialProgram, TrialResult};
 
-pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
+pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let job = bench.job;
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
     let request = bench.request(Placement::default())?;
-    let following =
-        follow(&request, &mut bench.programs(), surface, job.probe_radius).map_err(|e| bench.broken(&e))?;
-    let mut tried = Tried { seconds: following.run.control.seconds().0, ..Tried::default() };
+    let following = read_stylus(&request, &mut bench.programs(), surface, job.probe_radius)
+        .map_err(|e| bench.broken(&e))?;
+    let mut tried = TrialResult { seconds: following.run.control.seconds().0, ..TrialResult::default() };
     let sources = following.run.control.memory().sources();
-    let findings = following.followed.findings.iter().filter(|finding| Severity::Warning <= finding.severity);
+    let findings = following.readings.findings.iter().filter(|finding| Severity::Warning <= finding.severity);
     tried.refusals.extend(findings.map(|finding| diagnostic::render(finding, sources)));
-    let passes = following.followed.passes.as_slice();
+    let passes = following.readings.passes.as_slice();
     let [pass] = passes else {
-        let message = format!("{} ways along the surface, and one is wanted", passes.len());
+        let message = format!("{} passes along the surface, 1 specified", passes.len());
         tried.refusals.push(format!("{}: {message}\n", bench.name()));
         return Ok(tried);
     };
@@ -29,29 +29,32 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
     let worst = greatest.value.max(-least.value);
     if worst > job.ellipse.chord_error {
         let message = format!(
-            "the ball is up to {worst:.4} mm off its distance from the surface, and the chord error is {}",
+            "the distance of the ball from the surface is off by up to {worst:.4} mm; the chord error is {}",
             job.ellipse.chord_error
         );
         tried.refusals.push(format!("{}: {message}\n", bench.name()));
     }
     for (reading, wanted) in ends(pass).into_iter().zip([job.ellipse.from, job.ellipse.to]) {
         // The ball touches where the normal from its centre meets the surface.
-        let x = reading.at.x - surface.nearest(&reading.at).normal.x * (job.probe_radius + reading.value);
+        let x = reading.ball_centre.x
+            - surface.nearest(&reading.ball_centre).normal.x * (job.probe_radius + reading.value);
         // Rounding moves the centre by half an increment in x and y each, and the foot of the normal no farther than twice that.
-        if (x - wanted).abs() > 2.0 * job.control.increment.size() || reading.at.z != 0.0 {
-            let message = format!("an end is at {}, and x = {wanted} on the ellipse is wanted", reading.at);
+        if (x - wanted).abs() > 2.0 * job.control.increment.size() || reading.ball_centre.z != 0.0 {
+            let message =
+                format!("an end is at {}; x = {wanted} on the ellipse is specified", reading.ball_centre);
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
     }
     tried.report = format!(
-        "{}  {} moves along {:.1} mm; the ball is at most {worst:.4} mm off its distance from the surface, between programmed points too\n",
+        "{}  {} moves along {:.1} mm; the distance of the ball from the surface is off by at most \
+         {worst:.4} mm, between programmed points too\n",
         bench.name(),
-        pass.places.len(),
+        pass.backtraces.len(),
         pass.length()
     );
     Ok(tried)
 }
 
-fn ends(pass: &Pass) -> Vec<Reading> {
+fn ends(pass: &ReadingPass) -> Vec<Reading> {
     pass.readings.first().into_iter().chain(pass.readings.last()).copied().collect()
 }

@@ -6,22 +6,22 @@ mod runout;
 mod search;
 mod sine;
 
-use gcode_sim::diag::Severity;
-use gcode_sim::exec::{Outcome, Value};
-use gcode_sim::holes::Extractor;
-use gcode_sim::job::Alignment;
-use gcode_sim::machine::{Machine, Placement};
-use gcode_sim::part::surface::Surface;
+use gcode_control::{Outcome, Value};
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::{Machine, Placement};
+use gcode_lang::diag::Severity;
+use gcode_part::Surface;
+use gcode_part::job::Alignment;
+use gcode_session::{Request, Run, run};
 use gcode_sim::report::diagnostic;
-use gcode_sim::session::{Request, Run, run};
 
-use super::{CheckError, Checked, Judgement, Programs, told};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, broken_package};
 use crate::families::alignment;
 use crate::package::{Package, file_name};
 
 /// What one program was found to do.
 #[derive(Default)]
-struct Tried {
+struct TrialResult {
     /// A paragraph for the terminal.
     report: String,
     refusals: Vec<String>,
@@ -31,29 +31,29 @@ struct Tried {
     seconds: f64,
 }
 
-type Trial = fn(&Bench<'_>) -> Result<Tried, CheckError>;
+type Trial = fn(&TrialProgram<'_>) -> Result<TrialResult, CheckError>;
 
 /// What each main program has to find.
 const TRIALS: &[(u32, Trial)] = &[
-    (alignment::RUNOUT, runout::tried),
-    (alignment::SINE_TABLE, sine::tried),
-    (alignment::CHORD, chord::tried),
-    (alignment::ELLIPSE, ellipse::tried),
+    (alignment::RUNOUT, runout::run_trial),
+    (alignment::SINE_TABLE, sine::run_trial),
+    (alignment::CHORD, chord::run_trial),
+    (alignment::ELLIPSE, ellipse::run_trial),
 ];
 
-pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, CheckError> {
-    let mut checked = Checked {
+pub(super) fn check(job: &Alignment, package: &Package) -> Result<CheckedPackage, CheckError> {
+    let mut checked = CheckedPackage {
         refusals: Vec::new(),
         warnings: Vec::new(),
         seconds: 0.0,
         report: String::new(),
         pictures: Vec::new(),
-        judgement: Judgement::Measured,
+        verdict: PackageVerdict::Measured,
     };
     for main in &package.mains {
         let trial = TRIALS.iter().find(|(number, _)| number == main);
-        let (_, trial) = trial.ok_or_else(|| told(&file_name(*main), &"nothing says what it has to find"))?;
-        let tried = trial(&Bench { job, package, main: *main })?;
+        let (_, trial) = trial.ok_or_else(|| broken_package(&file_name(*main), &"it has no trial"))?;
+        let tried = trial(&TrialProgram { job, package, main: *main })?;
         checked.refusals.extend(tried.refusals);
         checked.warnings.extend(tried.warnings);
         checked.seconds += tried.seconds;
@@ -63,24 +63,24 @@ pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, Check
 }
 
 /// One main program of a package, to be run on parts that stand this way and that.
-struct Bench<'p> {
+struct TrialProgram<'p> {
     job: &'p Alignment,
     package: &'p Package,
     main: u32,
 }
 
-impl Bench<'_> {
+impl TrialProgram<'_> {
     fn name(&self) -> String {
         file_name(self.main)
     }
 
     fn broken(&self, error: &dyn std::fmt::Display) -> CheckError {
-        told(&self.name(), error)
+        broken_package(&self.name(), error)
     }
 
     /// The machine of the package's own machine file.
     fn machine(&self) -> Result<Machine, CheckError> {
-        Machine::parse(&self.package.machine).map_err(|e| told("machine.toml", &e))
+        Machine::parse(&self.package.machine).map_err(|e| broken_package("machine.toml", &e))
     }
 
     /// The program, to be run on that machine with the part misplaced.
@@ -99,24 +99,24 @@ impl Bench<'_> {
         let mut request = self.request(part)?;
         request.variables = variables;
         let surface = Surface::Ellipsoid { a: self.job.surface.a, b: self.job.surface.b };
-        let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
+        let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
         run(&request, &mut self.programs(), &mut probe).map_err(|e| self.broken(&e))
     }
 
     /// Why a run is none, as for a terminal: an alarm, a limit, or what the control did without a word.
-    fn stopped(&self, run: &Run) -> Vec<String> {
+    fn stop_messages(&self, run: &Run) -> Vec<String> {
         let sources = run.control.memory().sources();
-        let warned = run.notes().filter(|finding| Severity::Warning <= finding.severity);
+        let warned = run.note_findings().filter(|finding| Severity::Warning <= finding.severity);
         let mut told: Vec<_> = warned.map(|finding| diagnostic::render(&finding, sources)).collect();
         if !matches!(run.outcome, Outcome::End) {
-            told.extend(run.stopped().map(|finding| diagnostic::render(&finding, sources)));
+            told.extend(run.stop_finding().map(|finding| diagnostic::render(&finding, sources)));
         }
         told
     }
 }
 
 /// A variable as a run left it; a vacant one is not a number.
-fn common(run: &Run, number: u32) -> f64 {
+fn common_variable(run: &Run, number: u32) -> f64 {
     match run.control.variable(number) {
         Ok(Value::Number(value)) => value,
         Ok(Value::Vacant) | Err(_) => f64::NAN,

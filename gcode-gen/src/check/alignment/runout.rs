@@ -1,38 +1,38 @@
 //! The run-out program on parts whose shift and tilt are known: it has to find them by probing alone.
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Alignment;
-use gcode_sim::machine::Placement;
-use gcode_sim::part::surface::Surface;
-use gcode_sim::part::touched::{PassedOn, Touches, Untold};
+use gcode_control::Outcome;
+use gcode_inspect::machine::Placement;
+use gcode_lang::units::Deg;
+use gcode_part::Surface;
+use gcode_part::job::Alignment;
+use gcode_part::{FitError, FitUncertainty, TouchPlan};
+use gcode_session::Run;
 use gcode_sim::report::figures::short;
-use gcode_sim::session::Run;
-use gcode_sim::units::Deg;
 
 use crate::families::alignment::ALARMS;
 
-use super::{Bench, CheckError, Tried, common, search};
+use super::{CheckError, TrialProgram, TrialResult, common_variable, search};
 
 /// What has to be found to within this: mm, degrees.
-const ALLOWED: [f64; 2] = [0.01, 0.004];
+const TOLERANCES: [f64; 2] = [0.01, 0.004];
 
 /// TOUCHES V BEFORE SURFACE and NO CONTACT of O8211.
-const MISSED: [u32; 2] = [154, 155];
+const MISSED_ALARMS: [u32; 2] = [154, 155];
 
 /// Shift in mm and tilt in degrees about x, y and z. Neither a shift in y nor a turn about y is asked for; the others
 /// have to be found in spite of them.
-const STANDS: [[[f64; 3]; 2]; 4] = [
+const TRIAL_PLACEMENTS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
     [[0.3, 0.0, -0.3], [0.3, 0.0, 0.3]],
     [[-0.3, 0.2, 0.25], [-0.3, 0.0, 0.2]],
     [[0.2, -0.3, 0.3], [0.2, 0.3, -0.3]],
 ];
 
-pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
-    let mut tried = Tried::default();
-    let noise = match passed_on(bench.job) {
-        Ok(passed) => Noise::of(bench.job, passed),
+pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
+    let mut tried = TrialResult::default();
+    let noise = match fit_uncertainty(bench.job) {
+        Ok(passed) => NoiseEstimate::of(bench.job, passed),
         Err(why) => {
-            tried.refusals.push(format!("{}: {}\n", bench.name(), untold(bench.job, why)));
+            tried.refusals.push(format!("{}: {}\n", bench.name(), describe_fit_error(bench.job, why)));
             return Ok(tried);
         }
     };
@@ -43,37 +43,38 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
         ..Placement::default()
     };
     let mut missed = false;
-    for [shift, tilt] in STANDS {
+    for [shift, tilt] in TRIAL_PLACEMENTS {
         let part = placed([shift, tilt]);
         let run = bench.run(part, Vec::new())?;
-        let stopped = bench.stopped(&run);
+        let stopped = bench.stop_messages(&run);
         tried.seconds = run.control.seconds().0;
         if !stopped.is_empty() {
             let stands =
                 format!("{}: with the part shifted by {shift:?} and tilted by {tilt:?}\n", bench.name());
             tried.refusals.push(stands);
             tried.refusals.extend(stopped);
-            missed |= not_met(&run);
+            missed |= is_contact_missed(&run);
             continue;
         }
         for (number, real, kind) in
             [(580, shift[0], 0), (581, shift[2], 0), (582, tilt[0], 1), (583, tilt[2], 1)]
         {
-            let off = (common(&run, number) - real).abs();
+            let off = (common_variable(&run, number) - real).abs();
             worst[kind] = worst[kind].max(off);
-            if off.is_nan() || off > ALLOWED[kind] {
-                let message = format!("#{number} is {} where it is {real}", common(&run, number));
+            if off.is_nan() || off > TOLERANCES[kind] {
+                let message = format!("#{number} is {}, nominal {real}", common_variable(&run, number));
                 tried.refusals.push(format!("{}: {message}\n", bench.name()));
             }
         }
     }
     if missed {
-        tried.refusals.extend(search::advice(bench, &STANDS.map(placed)));
+        tried.refusals.extend(search::advice(bench, &TRIAL_PLACEMENTS.map(placed)));
     }
     let [shift, tilt] = worst;
     tried.warnings.extend(noise.warning().map(|warning| format!("warning: {}: {warning}\n", bench.name())));
     tried.report = format!(
-        "{}  shifts of up to 0.3 mm and tilts of up to 0.3 degrees are found to {shift:.4} mm and {tilt:.4} degrees; {}\n",
+        "{}  shifts of up to 0.3 mm and tilts of up to 0.3 degrees are determined to {shift:.4} mm and \
+         {tilt:.4} degrees; {}\n",
         bench.name(),
         noise.sentence()
     );
@@ -81,42 +82,40 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
 }
 
 /// Whether the run ended because a touch met the part too early or not at all.
-fn not_met(run: &Run) -> bool {
-    let text = |text: &str| ALARMS.iter().any(|alarm| MISSED.contains(&alarm.number) && alarm.text == text);
+fn is_contact_missed(run: &Run) -> bool {
+    let text =
+        |text: &str| ALARMS.iter().any(|alarm| MISSED_ALARMS.contains(&alarm.number) && alarm.text == text);
     matches!(&run.outcome, Outcome::Alarm(stopped) if text(&stopped.alarm.row().message))
 }
 
 /// What the noise of one touch becomes in the results, by the job's own angles and heights.
-fn passed_on(job: &Alignment) -> Result<PassedOn, Untold> {
+fn fit_uncertainty(job: &Alignment) -> Result<FitUncertainty, FitError> {
     let runout = &job.runout;
     let sign = f64::from(job.machine.rotary.sign);
     let step = (runout.to - runout.from) / f64::from(runout.readings - 1);
-    let touches = Touches {
+    let touches = TouchPlan {
         surface: Surface::Ellipsoid { a: job.surface.a, b: job.surface.b },
         radius: job.probe_radius,
         heights: runout.heights.into(),
         azimuths: (0..runout.readings).map(|n| Deg(sign * (runout.from + step * f64::from(n)))).collect(),
     };
-    touches.passed_on()
+    touches.uncertainty()
 }
 
-fn untold(job: &Alignment, why: Untold) -> String {
+fn describe_fit_error(job: &Alignment, why: FitError) -> String {
     let runout = &job.runout;
     let [low, high] = runout.heights.map(short);
     match why {
-        Untold::Missed { height } => {
-            format!(
-                "key 'runout.heights': at y {} the ball passes the part and touches nothing",
-                short(height)
-            )
+        FitError::NoContact { height } => {
+            format!("key 'runout.heights': at y {} the ball passes the part without contact", short(height))
         }
-        Untold::Alike if job.surface.a == job.surface.b => {
-            "keys 'surface.a' and 'surface.b' are alike: a sphere has no tilt that touches could find"
-                .to_owned()
+        FitError::Degenerate if job.surface.a == job.surface.b => {
+            "keys 'surface.a' and 'surface.b' are equal: the tilt of a sphere cannot be measured".to_owned()
         }
-        Untold::Alike => format!(
-            "tilt can't be told from shift at y {low} and {high} over {} {} to {} (keys 'runout.heights', 'runout.angles'): noise of a \
-             touch would come out more than 300 times as large; take heights farther apart, or wider angles",
+        FitError::Degenerate => format!(
+            "tilt cannot be distinguished from shift at y {low} and {high} over {} {} to {} (keys \
+             'runout.heights', 'runout.angles'): the noise of a touch would be amplified more than 300 \
+             times; use heights farther apart, or wider angles",
             job.machine.rotary.letter,
             short(runout.from),
             short(runout.to)
@@ -125,15 +124,15 @@ fn untold(job: &Alignment, why: Untold) -> String {
 }
 
 /// What the job's own noise of a touch leaves in the results.
-struct Noise {
+struct NoiseEstimate {
     /// Of a touch, mm.
     touch: f64,
     /// The largest standard deviations for noise of 1 mm: of #580 and #581 in mm, of #582 and #583 in degrees.
     factors: [f64; 2],
 }
 
-impl Noise {
-    fn of(job: &Alignment, passed: PassedOn) -> Self {
+impl NoiseEstimate {
+    fn of(job: &Alignment, passed: FitUncertainty) -> Self {
         let [x, _, z] = passed.shift;
         let [about_x, about_z] = passed.tilt;
         Self { touch: job.probe_noise, factors: [x.max(z), about_x.max(about_z)] }
@@ -146,7 +145,7 @@ impl Noise {
     fn sentence(&self) -> String {
         let [shift, tilt] = self.deviations();
         format!(
-            "noise of {} mm a touch leaves standard deviations of {shift:.4} mm and {tilt:.4} degrees",
+            "noise of {} mm per touch gives standard deviations of {shift:.4} mm and {tilt:.4} degrees",
             short(self.touch)
         )
     }
@@ -154,14 +153,15 @@ impl Noise {
     /// Where two standard deviations are more than what is promised: one pass in twenty is off by more than they are.
     fn warning(&self) -> Option<String> {
         let twice = self.deviations().map(|deviation| 2.0 * deviation);
-        (twice[0] > ALLOWED[0] || twice[1] > ALLOWED[1]).then(|| {
+        (twice[0] > TOLERANCES[0] || twice[1] > TOLERANCES[1]).then(|| {
             format!(
-                "noise of {} mm a touch ('probe.noise') doesn't allow {} mm and {} degrees: one pass in twenty is off by more than \
-                 {:.4} mm or {:.4} degrees (two standard deviations, {:.2} mm and {:.3} degrees for 1 mm of noise); take wider \
-                 'runout.angles', heights farther apart, more readings, or a better probe",
+                "noise of {} mm per touch ('probe.noise') does not allow {} mm and {} degrees: one pass in \
+                 twenty is off by more than {:.4} mm or {:.4} degrees (two standard deviations, {:.2} mm \
+                 and {:.3} degrees for 1 mm of noise); use wider 'runout.angles', heights farther apart, \
+                 more readings, or a better probe",
                 short(self.touch),
-                ALLOWED[0],
-                ALLOWED[1],
+                TOLERANCES[0],
+                TOLERANCES[1],
                 twice[0],
                 twice[1],
                 self.factors[0],
@@ -173,7 +173,7 @@ impl Noise {
 
 #[cfg(test)]
 mod tests {
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     use super::*;
     use crate::families;
@@ -189,7 +189,7 @@ mod tests {
 
     fn warned(change: (&str, &str)) -> Option<String> {
         let job = job(change);
-        Noise::of(&job, passed_on(&job).unwrap()).warning()
+        NoiseEstimate::of(&job, fit_uncertainty(&job).unwrap()).warning()
     }
 
     /// By the table of docs/methods/alignment.md a touch's 0.001 makes 0.0018 mm and 0.00087 degrees over ±25: 0.002 is allowed, for
@@ -200,7 +200,7 @@ mod tests {
         assert!(
             warned(("radius = 3.0", "radius = 3.0\nnoise = 0.003"))
                 .unwrap()
-                .contains("noise of 0.003 mm a touch")
+                .contains("noise of 0.003 mm per touch")
         );
         assert!(warned(("[-25.0, 25.0, 11]", "[-15.0, 15.0, 11]")).is_some());
         assert_eq!(warned(("[-25.0, 25.0, 11]", "[-40.0, 40.0, 11]")), None);
@@ -211,13 +211,13 @@ mod tests {
         for (change, wanted) in [
             (
                 ("[150.0, 420.0]", "[150.0, 151.0]"),
-                "tilt can't be told from shift at y 150 and 151 over B -25 to 25",
+                "tilt cannot be distinguished from shift at y 150 and 151 over B -25 to 25",
             ),
             (("[-25.0, 25.0, 11]", "[-1.0, 1.0, 11]"), "wider angles"),
-            (("b = 724.3", "b = 1158.8"), "a sphere has no tilt"),
+            (("b = 724.3", "b = 1158.8"), "the tilt of a sphere cannot be measured"),
         ] {
             let job = job(change);
-            let told = untold(&job, passed_on(&job).unwrap_err());
+            let told = describe_fit_error(&job, fit_uncertainty(&job).unwrap_err());
             assert!(told.contains(wanted), "{told}");
         }
     }

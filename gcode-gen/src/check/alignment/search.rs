@@ -1,21 +1,21 @@
 //! How far before the surface a touch has to begin, where the job's search is too short for a part that stands as wrong as the run-out
 //! has to find.
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Alignment;
-use gcode_sim::machine::Placement;
+use gcode_control::Outcome;
+use gcode_inspect::machine::Placement;
+use gcode_part::job::Alignment;
 use gcode_sim::report::figures::short;
 
-use super::{Bench, common};
+use super::{TrialProgram, common_variable};
 use crate::families::alignment::emit;
 
 /// O8211's own margin at both ends of a touch, and what rounding takes.
 const MARGIN: f64 = 0.05;
 
 /// A sentence with the search that would do for parts that stand so; `None` where no search helps.
-pub(super) fn advice(bench: &Bench<'_>, parts: &[Placement]) -> Option<String> {
+pub(super) fn advice(bench: &TrialProgram<'_>, parts: &[Placement]) -> Option<String> {
     let job = Alignment { probe_search: bench.job.surface.a.min(1000.0), ..bench.job.clone() };
     let package = emit(&job);
-    let wide = Bench { job: &job, package: &package, main: bench.main };
+    let wide = TrialProgram { job: &job, package: &package, main: bench.main };
     let mut farthest = 0.0_f64;
     for part in parts {
         let run = wide.run(*part, Vec::new()).ok()?;
@@ -24,20 +24,20 @@ pub(super) fn advice(bench: &Bench<'_>, parts: &[Placement]) -> Option<String> {
         }
         for (first, height) in [600, 800].into_iter().zip(job.runout.heights) {
             let expected = expected(&job, height);
-            let readings =
-                (first..first + job.runout.readings).map(|number| (common(&run, number) - expected).abs());
+            let readings = (first..first + job.runout.readings)
+                .map(|number| (common_variable(&run, number) - expected).abs());
             farthest = readings.fold(farthest, f64::max);
         }
     }
-    too_short(bench, "the surfaces of these parts are", farthest)
+    search_advice(bench, "the surfaces of these parts are", farthest)
 }
 
 /// A sentence with the search that would do for what is met so far from its place; `None` where the job's own does.
-pub(super) fn too_short(bench: &Bench<'_>, what: &str, farthest: f64) -> Option<String> {
+pub(super) fn search_advice(bench: &TrialProgram<'_>, what: &str, farthest: f64) -> Option<String> {
     let enough = ((farthest + MARGIN) * 10.0).ceil() / 10.0;
     (enough > bench.job.probe_search && enough <= 1000.0).then(|| {
         format!(
-            "{}: {what} up to {} mm from where they should be, and key 'probe.search' is {}: {} would do\n",
+            "{}: {what} up to {} mm from their nominal position, key 'probe.search' is {}: use {}\n",
             bench.name(),
             short((farthest * 100.0).ceil() / 100.0),
             short(bench.job.probe_search),
@@ -56,7 +56,7 @@ fn expected(job: &Alignment, height: f64) -> f64 {
 mod tests {
     use crate::check::check;
     use crate::families;
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     fn refusals(search: &str) -> String {
         let text = families::alignment::FAMILY
@@ -73,9 +73,9 @@ mod tests {
     fn a_search_that_is_too_short_is_told_with_one_that_does() {
         let told = refusals("2.0");
         let advised: Vec<f64> = told
-            .split("'probe.search' is 2: ")
+            .split("'probe.search' is 2: use ")
             .skip(1)
-            .map(|rest| rest.split(" would do").next().unwrap().parse().unwrap())
+            .map(|rest| rest.split('\n').next().unwrap().parse().unwrap())
             .collect();
         assert!(advised.len() == 2 && advised.iter().all(|value| (3.4..6.0).contains(value)), "{told}");
         let most = advised.into_iter().fold(0.0, f64::max);

@@ -1,20 +1,20 @@
 //! The sine table's program for tilts either way: the height has to make the angle that takes the tilt away.
-use gcode_sim::gauge::Thickness;
-use gcode_sim::job::SineTable;
-use gcode_sim::machine::Placement;
+use gcode_inspect::machine::Placement;
+use gcode_lang::units::Deg;
+use gcode_part::gauge::Thickness;
+use gcode_part::job::SineTable;
 use gcode_sim::report::figures::short;
-use gcode_sim::units::Deg;
 
-use super::{Bench, CheckError, Tried, common};
+use super::{CheckError, TrialProgram, TrialResult, common_variable};
 use crate::families::alignment::{LARGEST_TILT, STEEPEST, gap};
 
 /// Tilts of the part about z, degrees.
 const TILTS: [f64; 3] = [0.0, 0.08, -0.031];
 
-pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
+pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let table = &bench.job.sine_table;
     let step = table.gauge_blocks.step().mm();
-    let mut tried = Tried::default();
+    let mut tried = TrialResult::default();
     let mut worst = 0.0_f64;
     // After the first run-out the table stands at the job's angle; after another one as the stop before has left it.
     let set = [None, Some(table.phi + 0.05)];
@@ -29,9 +29,9 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
             Placement::default(),
             [(583, tilt), (585, 0.0)].into_iter().chain(set.map(|set| (596, set))).collect(),
         )?;
-        tried.refusals.extend(bench.stopped(&run));
+        tried.refusals.extend(bench.stop_messages(&run));
         tried.seconds = run.control.seconds().0;
-        let [angle, height, change, left] = [586, 587, 588, 589].map(|number| common(&run, number));
+        let [angle, height, change, left] = [586, 587, 588, 589].map(|number| common_variable(&run, number));
         // Half a step, and what doubles round off.
         let off = (height - table.length * Deg(wanted).sin()).abs();
         worst = worst.max(off);
@@ -40,18 +40,19 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
             && (angle - wanted).abs() < 1e-9
             && ((made.0 - wanted) * 3600.0 - left).abs() < 1e-3
             && (height - change - table.length * Deg(stands).sin()).abs() < 1e-9
-            && (common(&run, 596) - made.0).abs() < 1e-9
-            && common(&run, 583).is_nan();
+            && (common_variable(&run, 596) - made.0).abs() < 1e-9
+            && common_variable(&run, 583).is_nan();
         if !holds {
             let message = format!(
-                "for a tilt of {tilt} degrees on a table at {stands} it tells PHI {angle}, H {height}, {change} more, {left} seconds left; PHI {wanted} is wanted"
+                "for a tilt of {tilt} degrees on a table at {stands} the program gives PHI {angle}, H \
+                 {height}, {change} more, {left} seconds left; nominal PHI {wanted}"
             );
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
     }
     tried.warnings.extend(warnings(table).map(|told| format!("warning: {}: {told}\n", bench.name())));
     tried.report = format!(
-        "{}  the sine table's height for each tilt to within {worst:.4} mm, half a step of {} being {}\n",
+        "{}  the sine table's height for each tilt within {worst:.4} mm; half a step of {} is {}\n",
         bench.name(),
         table.gauge_blocks.name,
         step / 2.0
@@ -66,15 +67,16 @@ fn warnings(table: &SineTable) -> impl Iterator<Item = String> {
     let side = if table.phi < LARGEST_TILT { "0" } else { "45" };
     let edge = (room < LARGEST_TILT).then(|| {
         format!(
-            "key 'sine_table.phi' is {phi}: a tilt of more than {} degrees one way takes it beyond {side}, which O8230 refuses (PHI BEYOND \
-             0. TO 45.); a part that is tilted so is set by hand",
+            "key 'sine_table.phi' is {phi}: a tilt of more than {} degrees in one direction takes it \
+             beyond {side}, which O8230 refuses (PHI BEYOND 0. TO 45.); set a part with such a tilt by hand",
             short(room)
         )
     });
     let stack = gap(table).map(|Thickness(half_microns)| {
         format!(
-            "key 'sine_table.phi' is {phi}: within {} degree of it the set '{}' has gaps, the lowest at {:.4} mm; where O8230 tells a height without a \
-             stack, put blocks under both rollers that differ by it",
+            "key 'sine_table.phi' is {phi}: within {} degree of it the set '{}' has gaps, the lowest at \
+             {:.4} mm; where O8230 gives a height without a stack, put blocks with this difference under \
+             both rollers",
             short(LARGEST_TILT),
             table.gauge_blocks.name,
             f64::from(half_microns) / 2000.0
@@ -85,7 +87,7 @@ fn warnings(table: &SineTable) -> impl Iterator<Item = String> {
 
 #[cfg(test)]
 mod tests {
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     use super::*;
     use crate::families::alignment::FAMILY;
@@ -103,8 +105,8 @@ mod tests {
     #[test]
     fn a_table_that_some_tilts_cannot_be_set_on_is_warned_of() {
         for (phi, edge, lowest) in [
-            ("0.5", Some("0.5 degrees one way takes it beyond 0"), true),
-            ("44.9", Some("0.1 degrees one way takes it beyond 45"), false),
+            ("0.5", Some("0.5 degrees in one direction takes it beyond 0"), true),
+            ("44.9", Some("0.1 degrees in one direction takes it beyond 45"), false),
             ("38.5", None, false),
             ("5.0", None, false),
         ] {

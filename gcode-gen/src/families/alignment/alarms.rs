@@ -14,10 +14,13 @@ const fn alarm(number: u32, text: &'static str, remedy: &'static str) -> MacroAl
     MacroAlarm { number, text, remedy }
 }
 
-const SHIFT: &str = "Cancel what was left in force: G52 X0 Y0 Z0 or G92.1. See that G54 is the work zero of this sheet; start again.";
-const CHANGED: &str = "Cancel what was left in force, in MDI: G15, G50, G50.1 and G69, whichever of them the control has. Start again.";
-const START: &str = "The way to the part would lead through it. Take the ball up above the part's pole, or to X+; start again.";
-const NEEDS: &str = "Somebody has changed the program's second block or the call: load the programs anew.";
+const SHIFT: &str = "Cancel the offset left in force: G52 X0 Y0 Z0 or G92.1. Check that G54 is the work \
+                     zero of this sheet; start again.";
+const CHANGED: &str = "Cancel the modes left in force, in MDI: G15, G50, G50.1 and G69, as far as the \
+                       control has them. Start again.";
+const START: &str = "The path to the part would lead through it. Move the ball up above the part's pole, \
+                     or to X+; start again.";
+const NEEDS: &str = "The program's second block or the call has been changed: load the programs again.";
 
 /// In the order of the work.
 pub const ALARMS: &[MacroAlarm] = &[
@@ -28,47 +31,52 @@ pub const ALARMS: &[MacroAlarm] = &[
     alarm(
         154,
         "TOUCHES V BEFORE SURFACE",
-        "The part stands out too far, or the probe signals all the time. Take the ball away towards X+; try the probe by hand; set the part \
-         up nearer.",
+        "The part protrudes too far, or the probe signals all the time. Move the ball away towards X+; \
+         check the probe by hand; set the part up more accurately.",
     ),
     alarm(
         155,
         "NO CONTACT",
-        "The ball went as far behind the surface as it begins before it. Is the probe on, is the part there, is G54 right? Take the ball away towards \
-         X+, then start again.",
+        "The ball went as far behind the surface as it started in front of it. Check that the probe is on, \
+         that the part is there, and G54. Move the ball away towards X+, then start again.",
     ),
     alarm(
         156,
         "TILT NOT TOLD FROM SHIFT",
-        "The readings are too near to each other: wider angles or heights farther apart in the job, and programs emitted anew.",
+        "The readings are too close to each other: use wider angles or heights farther apart in the job, \
+         and emit the programs again.",
     ),
     alarm(
         157,
         "READINGS DO NOT FIT",
-        "#585 is what the fit leaves. Look for a touch on dirt or a loose probe and repeat; if it stays, the ball's radius, a or b of the job or G54 are not \
-         those of the part. No result is left; don't move the part.",
+        "#585 is the residual of the fit. Look for a touch on dirt or a loose probe and repeat; if it \
+         stays, the ball's radius, a or b of the job or G54 do not match the part. No result is left; do \
+         not move the part.",
     ),
     alarm(
         158,
         "Y SHIFT #584 TOO LARGE",
-        "The part seems to stand so much too high: is Y of G54 right, and are the ball's radius and b? No result is left; don't move the part.",
+        "The part appears to be this much too high: check Y of G54, the ball's radius and b. No result is \
+         left; do not move the part.",
     ),
-    alarm(165, "NO TILT IN #583, RUN O8210", "The tilt was used up already: O8210 first."),
+    alarm(165, "NO TILT IN #583, RUN O8210", "The tilt is already used up: run O8210 first."),
     alarm(
         167,
         "RUN-OUT NOT ENDED, #585",
-        "O8210 was broken off or ended in an alarm: run it to its end first.",
+        "O8210 was interrupted or ended in an alarm: run it to its end first.",
     ),
-    alarm(168, "TILT #583 BEYOND 1 DEGREE", "Set the part up nearer by hand, then O8210 again."),
+    alarm(168, "TILT #583 BEYOND 1 DEGREE", "Set the part up more accurately by hand, then run O8210 again."),
     alarm(
         166,
         "PHI BEYOND 0. TO 45.",
-        "The corrected angle is none that a sine table is set to: does #596 say how it stands, and is the sense of the table right?",
+        "The corrected angle is out of the sine table's range: check that #596 is the table's angle, and \
+         the direction of the table.",
     ),
     alarm(
         169,
         "SET #596, PHI OF THE TABLE",
-        "RESET came while #596 was changed. Write the angle to it that the blocks under the table make, asin(height/L); start again.",
+        "RESET came while #596 was changed. Write the angle of the blocks under the table to it, \
+         asin(height/L); start again.",
     ),
     alarm(137, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
     alarm(120, "G16 G51 G51.1 G68 IN FORCE", CHANGED),
@@ -76,24 +84,26 @@ pub const ALARMS: &[MacroAlarm] = &[
     alarm(
         133,
         "TOUCHES V ABOVE SURFACE",
-        "As TOUCHES V BEFORE SURFACE, with the ball taken up, towards Y+. The points are gone.",
+        "As TOUCHES V BEFORE SURFACE, with the ball moved up, towards Y+. The points are lost.",
     ),
-    alarm(134, "NO CONTACT", "As in O8210, with the ball taken up, towards Y+. The points are gone."),
+    alarm(134, "NO CONTACT", "As in O8210, with the ball moved up, towards Y+. The points are lost."),
     alarm(
         135,
         "TOUCH BROKEN OFF, SET #578",
-        "RESET came while it touched. Write 0. to #578 to touch all points anew; or make it vacant and enter all candidates by hand.",
+        "RESET came during a touch. Write 0. to #578 to touch all points again; or make it vacant and \
+         enter all candidates by hand.",
     ),
     alarm(
         136,
         "#578 NOT VACANT, 0. OR 1.",
-        "Write 0. to it to touch all points anew; make it vacant where marks were entered.",
+        "Write 0. to it to touch all points again; make it vacant if marks were entered.",
     ),
     alarm(132, "TOO STEEP TO TOUCH ALONG Y", "Measure the candidates by hand and enter them."),
     alarm(
         68,
         "A CANDIDATE IS MISSING",
-        "Enter x, y and z of all candidates: E's from #501 on, F's from #531 on; or make all of them vacant, and they are touched.",
+        "Enter x, y and z of all candidates: E's from #501 on, F's from #531 on; or make all of them \
+         vacant, so that they are touched.",
     ),
     alarm(
         73,
@@ -108,17 +118,20 @@ pub const ALARMS: &[MacroAlarm] = &[
     alarm(
         75,
         "E F UNEVEN, O8210 FIRST",
-        "The part stands higher over one of E and F than a part that the run-out has set right: O8210 and O8230 first. The points are gone.",
+        "The part is higher over one of E and F than a part set right by the run-out: O8210 and O8230 \
+         first. The points are lost.",
     ),
     alarm(
         72,
         "E AND F TOO NEAR FOR Y",
-        "Touched points so near to each other don't tell y: take E and F farther apart in the job, or enter marks by hand.",
+        "Touched points this close to each other do not determine y: move E and F farther apart in the \
+         job, or enter marks by hand.",
     ),
     alarm(
         71,
         "POINTS ARE FAR FROM E F",
-        "No correction of a part that the run-out has set right: O8210 first; are the marks those of E and F, not exchanged?",
+        "No correction of a part set right by the run-out: O8210 first; check that the marks are those of \
+         E and F, not exchanged.",
     ),
     alarm(69, "NEEDS G21 AND G54 TO G59", NEEDS),
     alarm(112, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
@@ -131,7 +144,7 @@ pub const ALARMS: &[MacroAlarm] = &[
 mod tests {
     use super::super::emit;
     use super::*;
-    use gcode_sim::job::{Alignment, Job};
+    use gcode_part::job::{Alignment, Job};
 
     fn job() -> Alignment {
         match Job::parse(super::super::FAMILY.new_job) {

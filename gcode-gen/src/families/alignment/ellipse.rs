@@ -1,5 +1,5 @@
 //! The ellipse in the plane z = 0: an edge finder's ball is fed along it, and its reading tells what is left of all errors.
-use gcode_sim::job::Alignment;
+use gcode_part::job::Alignment;
 
 use super::writes::Writes;
 use super::{Macro, Measurement, begin, common_remarks};

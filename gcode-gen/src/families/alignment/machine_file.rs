@@ -1,7 +1,7 @@
 //! The machine file of an alignment job: what `gcode-sim --machine` needs to follow the emitted programs.
 use std::fmt::Write;
 
-use gcode_sim::job::Alignment;
+use gcode_part::job::Alignment;
 
 use crate::families::control;
 

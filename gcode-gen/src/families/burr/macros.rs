@@ -1,6 +1,6 @@
 //! The resident macro of the burrs: NC text with marks for what differs between machines and controls.
-use gcode_sim::control::{Dialect, Increment};
-use gcode_sim::job::{AxisSigns, Burr};
+use gcode_lang::control::{Dialect, Increment};
+use gcode_part::job::{AxisSigns, Burr};
 
 use crate::families::resident::fill;
 use crate::nc::number::number;
@@ -54,7 +54,7 @@ pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::families::resident::hold;
+    use crate::families::resident::assert_displayable;
 
     fn all() -> Vec<Resident> {
         let mut all = Vec::new();
@@ -71,6 +71,6 @@ mod tests {
 
     #[test]
     fn every_control_can_show_every_text() {
-        all().iter().flat_map(Resident::programs).for_each(|program| hold(&program.text));
+        all().iter().flat_map(Resident::programs).for_each(|program| assert_displayable(&program.text));
     }
 }

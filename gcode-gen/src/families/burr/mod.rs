@@ -2,18 +2,18 @@
 //! written out move by move.
 //!
 //! The method is that of *Machining Rotary Burrs on 5-Axis Grinding Machine*; see `docs/methods/burr.md`.
+mod helix_error;
 mod law;
-mod lean;
 mod machine_file;
 pub mod macros;
 mod nose;
 mod path;
 
-use gcode_sim::job::{Burr, FluteLaw, Nose, ProgramForm};
+use gcode_part::job::{Burr, FluteLaw, Nose, ProgramForm};
 
 use self::macros::{FLUTE, Resident};
 use self::nose::cylinder;
-use self::path::{Point, clear, points, stand_off};
+use self::path::{Point, clearance_y, points, stand_off};
 use super::start::Start;
 use super::{Family, control};
 use crate::nc::block::Block;
@@ -38,7 +38,7 @@ pub fn emit(job: &Burr) -> Package {
 
 /// Why no program grinds the job's burr within its tolerances, and what would do.
 pub fn refusal(job: &Burr) -> Option<String> {
-    lean::refusal(job)
+    helix_error::refusal(job)
 }
 
 struct Main<'j> {
@@ -51,10 +51,15 @@ struct Main<'j> {
 
 impl<'j> Main<'j> {
     fn new(job: &'j Burr) -> Self {
-        let chord_error = lean::chord_error(job).unwrap_or(job.chord_error);
+        let chord_error = helix_error::chord_error(job).unwrap_or(job.chord_error);
         // Not A, which turns all flutes alike. What axis the number 3 is on a grinder isn't known.
-        let start =
-            Start { control: job.control, changed: 97, shifted: 98, axes: "XY", cancelled: "BC".to_owned() };
+        let start = Start {
+            control: job.control,
+            changed_alarm: 97,
+            shifted_alarm: 98,
+            axes: "XY",
+            cancelled_rotaries: "BC".to_owned(),
+        };
         Self { job, chord_error, start, text: Text::new(MAIN, "BALL-END ROTARY BURR", job.control.dialect) }
     }
 
@@ -156,7 +161,7 @@ impl<'j> Main<'j> {
     fn moves(&mut self) {
         let job = self.job;
         let points = points(job, self.chord_error);
-        let (signs, clear, stand_off) = (job.grinder.signs, clear(job), stand_off(job));
+        let (signs, clear, stand_off) = (job.grinder.signs, clearance_y(job), stand_off(job));
         // Rounded here: a control cuts off what a number in the program has beyond the increment.
         let increment = job.control.increment;
         let along = |letter: char, sign: i8, value: f64| {
@@ -186,7 +191,11 @@ impl<'j> Main<'j> {
             self.block(format!("G01 Y0. F{}", number(job.program.plunge)));
             self.block("G93");
             for point in rest {
-                self.block(format!("{} F{}", axes(point), number(rate(job.program.speed, point.way))));
+                self.block(format!(
+                    "{} F{}",
+                    axes(point),
+                    number(rate(job.program.speed, point.path_length))
+                ));
             }
             self.block(format!("G94 G00 {}", along('Y', signs.y, clear)));
         }
@@ -205,14 +214,14 @@ fn signs(job: &Burr) -> String {
     let turned: Vec<String> =
         all.iter().filter(|(_, sign)| *sign < 0).map(|(letter, _)| letter.to_string()).collect();
     match turned.is_empty() {
-        true => "ALL AXES RUN AS THE FORMULAS HAVE THEM".to_owned(),
-        false => format!("TURNED ROUND AGAINST THE FORMULAS {}", turned.join(" ")),
+        true => "ALL AXES RUN AS IN THE FORMULAS".to_owned(),
+        false => format!("REVERSED AGAINST THE FORMULAS {}", turned.join(" ")),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     use super::*;
 

@@ -3,8 +3,8 @@
 //! At C the contact's normal stands 90° − C from the burr's axis. While C turns through an arc, that arc's centre has
 //! to stay where it is: (X, Y) = e − Rot(C)·e with e from the C axis to the centre. This is what equations (3) and (4)
 //! mean, the fourth with its sign and its constant put right.
-use gcode_sim::job::{Burr, BurrShape, Nose};
-use gcode_sim::units::Deg;
+use gcode_lang::units::Deg;
+use gcode_part::job::{Burr, BurrShape, Nose};
 
 /// One arc of the meridian, gone along with C.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! The machine file of a honeycomb job: what `gcode-sim --machine` needs to follow the emitted programs.
 use std::fmt::Write;
 
-use gcode_sim::job::Honeycomb;
+use gcode_part::job::Honeycomb;
 
 use crate::families::control;
 
@@ -12,7 +12,7 @@ pub(super) fn machine_file(job: &Honeycomb) -> String {
     let _ = write!(
         text,
         "\n\
-         # The spindle stands along z.\n\
+         # The spindle is along z.\n\
          [head]\n\
          kind = \"fixed\"\n\
          direction = [0.0, 0.0, 1.0]\n\

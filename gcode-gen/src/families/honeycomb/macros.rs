@@ -1,6 +1,6 @@
 //! The resident macro of the honeycomb: NC text with marks for what differs between machines and controls.
-use gcode_sim::control::Dialect;
-use gcode_sim::job::{Clamp, Honeycomb};
+use gcode_lang::control::Dialect;
+use gcode_part::job::{Clamp, Honeycomb};
 
 use crate::families::resident::fill;
 use crate::nc::program::name;
@@ -47,7 +47,7 @@ pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::families::resident::hold;
+    use crate::families::resident::assert_displayable;
 
     fn all() -> Vec<Program> {
         let clamps = [None, Some(Clamp { on: 10, off: 11 })];
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn every_control_can_show_every_text() {
-        all().into_iter().for_each(|program| hold(&program.text));
+        all().into_iter().for_each(|program| assert_displayable(&program.text));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The machine file of a pin-hole job: what `gcode-sim --machine` needs to follow the emitted programs.
 use std::fmt::Write;
 
-use gcode_sim::job::{HeadKind, PinHoles};
+use gcode_part::job::{HeadKind, PinHoles};
 
 use crate::families::control;
 

@@ -1,6 +1,6 @@
 //! What only a part that is set up has: lines to write its readings into, and what to do when a measurement ends in an alarm.
-use gcode_sim::job::{Alignment, Job};
-use gcode_sim::report::figures::{near, short};
+use gcode_part::job::{Alignment, Job};
+use gcode_sim::report::figures::{rounded, short};
 use maud::{Markup, html};
 
 use super::zero::on_surface;
@@ -21,25 +21,25 @@ fn lines(job: &Alignment) -> Vec<(String, &'static str, String)> {
         ("#581".to_owned(), "shift in Z, mm", shift),
         ("#582".to_owned(), "tilt about X, °", tilt.clone()),
         ("#583".to_owned(), "tilt about Z, °", tilt),
-        line("#584", "shift in Y, mm, less sure"),
-        ("#585".to_owned(), "what the fit leaves, mm", format!("at most {}", short(2.0 * job.probe_noise))),
-        line("#596", "angle at which the table is taken to stand, °"),
+        line("#584", "shift in Y, mm, less accurate"),
+        ("#585".to_owned(), "residual of the fit, mm", format!("at most {}", short(2.0 * job.probe_noise))),
+        line("#596", "assumed angle of the table, °"),
         line("#586", "angle to set, °"),
         line("#587", "height of the gauge blocks for it, mm"),
-        line("#588", "how much higher than now, mm"),
-        line("#589", "what #587 makes too much, ″"),
+        line("#588", "change of the height, mm"),
+        line("#589", "error of #587, ″"),
     ];
     let offset =
         |when: &'static str| ["X", "Y", "Z"].map(|axis| (format!("G54 {axis}"), when, String::new()));
     all.extend(offset("before O8200, mm"));
     all.push((format!("G54 {rotary}"), "before O8200, °", String::new()));
     all.extend([
-        line("#570", "number of the point taken for E"),
-        line("#571", "number of the point taken for F"),
-        line("#572", "chord less the model's, mm"),
-        line("#573", "chord aside in X, mm, not added"),
+        line("#570", "number of the point used for E"),
+        line("#571", "number of the point used for F"),
+        line("#572", "chord minus model chord, mm"),
+        line("#573", "chord offset in X, mm, not added"),
         line("#574", "added to Y, mm"),
-        line("#575", "chord aside in Z, mm, not added"),
+        line("#575", "chord offset in Z, mm, not added"),
         line("#576", "added to the rotary, °"),
         line("#577", "tilt of the chord, °"),
     ]);
@@ -62,28 +62,28 @@ pub(super) fn readings(sheet: &Sheet<'_>) -> Markup {
         let [x, y, across, up] =
             on_surface(job.surface, path.from + (path.to - path.from) * f64::from(n) / f64::from(PLACES - 1));
         let ball = [x + job.probe_radius * across, y + job.probe_radius * up];
-        let [x, y] = ball.map(|value| cell(near(value, 2)));
+        let [x, y] = ball.map(|value| cell(rounded(value, 2)));
         vec![x, y, cell("0"), blank(), blank()]
     });
     html! {
         div.together {
             h2 { "Readings" }
             p {
-                "As the control shows them at the stops. A simulation is no measurement: nothing is filled in. The limits are the job's "
+                "As the control shows them at the stops. Nothing is filled in: a simulation is not a measurement. The limits are the job's "
                 code { "[limits]" } ", those of #580 to #583 for the last pass. " b { "Write #596 down: " }
-                "after a RESET at the wrong moment (alarm " (alarm_thousands(job.control.dialect)) "169) it is typed in again. Once the blocks are "
+                "after a RESET at the wrong moment (alarm " (alarm_thousands(job.control.dialect)) "169) it must be entered again. Once the blocks are "
                 "changed it is asin(#587/L), within #589 of #586."
             }
-            div.fill { (table(&["place", "what it is", "limit", "first pass", "second pass", "third pass"], variables)) }
+            div.fill { (table(&["place", "meaning", "limit", "first pass", "second pass", "third pass"], variables)) }
         }
         div.together {
             h3 { "Dial along the ellipse, O8220" }
             p {
-                "Where the centre of the ball is; above 0 a gap. On a part in its true place the dial shows 0 all the way; "
-                code { "gcode-sim readings" } " predicts it for a misplaced one. "
-                b { "Limit: ±" (short(job.limits.dial)) " mm" } " at every place."
+                "Position of the ball centre; above 0 a gap. On a part in its nominal position the dial shows 0 all the way; "
+                code { "gcode-sim readings" } " predicts it for a misplaced part. "
+                b { "Limit: ±" (short(job.limits.dial)) " mm" } " at every position."
             }
-            div.fill { (table(&["#X", "#Y", "#true place", "reading", "after correction"], places)) }
+            div.fill { (table(&["#X", "#Y", "#nominal", "reading", "after correction"], places)) }
         }
     }
 }
@@ -101,26 +101,26 @@ pub(super) fn alarms(sheet: &Sheet<'_>) -> Markup {
         .filter(|(index, alarm)| !before(*index).any(|other| alike(alarm, other)))
         .map(|(_, alarm)| row(alarm));
     html! {
-        h2 { "Alarms, and what to do" }
+        h2 { "Alarms and remedies" }
         ul {
             li {
-                b { "RESET and any alarm " } "leave results that are whole or none. Take the ball clear of the part by hand before the next start: away "
+                b { "RESET and any alarm " } "leave complete results or none. Take the ball clear of the part by hand before the next start: away "
                 "towards X+ in O8210, up towards Y+ in O8200 and O8220."
             }
             li {
-                b { "The ball touches in rapid, " } "or the machine stops with its own alarm of the probe: the part stands out by more than the search of "
-                (short(job.probe_search)) " mm, or G54 is wrong. RESET, take the ball clear, look at ball and stylus and calibrate them anew, set the "
-                "part up nearer; then O8210 from its beginning. Watch the first touch of each height at reduced rapid."
+                b { "The ball touches in rapid, " } "or the machine stops with its own alarm of the probe: the part protrudes by more than the search of "
+                (short(job.probe_search)) " mm, or G54 is wrong. RESET, take the ball clear, check ball and stylus and calibrate them again, set the "
+                "part up more accurately; then O8210 from its beginning. Watch the first touch of each height at reduced rapid."
             }
             li {
-                b { "A touch is broken off " } "(RESET, emergency stop, power): O8210 starts from its beginning. O8200 refuses to go on until #578 is set: 0. touches "
-                "all points anew."
+                b { "A touch is interrupted " } "(RESET, emergency stop, power): O8210 starts from its beginning. O8200 does not continue until #578 is set: 0. touches "
+                "all points again."
             }
             li {
-                "Any other alarm of " (k) "061 to " (k) "076, " (k) "101 to " (k) "169: an argument of a call is not what was emitted. Load the programs anew."
+                "Any other alarm of " (k) "061 to " (k) "076, " (k) "101 to " (k) "169: an argument of a call differs from the emitted program. Load the programs again."
             }
         }
-        (table(&["alarm", "the control shows", "what to do"], rows))
+        (table(&["alarm", "the control shows", "remedy"], rows))
     }
 }
 
@@ -143,8 +143,8 @@ pub(super) fn overwritten_variables(job: &Alignment) -> Markup {
         overwritten().map(|(main, named)| format!("{}: {}", stem(main), named.to_lowercase())).collect();
     html! {
         li {
-            b { "Common variables " } "that are overwritten, and kept when the control is switched off: " (all.join("; ")) ". What other cycles of the "
-            "shop keep there is saved first. A local shift of " (job.machine.rotary.letter) " by G52 is cancelled."
+            b { "Common variables " } "that are overwritten, and kept when the control is switched off: " (all.join("; ")) ". Save what other cycles of the "
+            "shop keep there first. A local shift of " (job.machine.rotary.letter) " by G52 is cancelled."
         }
     }
 }

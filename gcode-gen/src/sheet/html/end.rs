@@ -2,21 +2,21 @@
 use maud::{Markup, html};
 
 use super::table;
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
 
 /// What no simulation here looks at, whatever the part.
 const NEVER: &[&str] = &[
-    "the machine's own errors: positioning, run-out of the rotary axis, how well the head is set",
-    "chips, clamps, fixtures, the tool's shank and holder, the machine's travel: only the tool against the part's surface",
-    "acceleration and the time of operator stops and tool changes: run times are paths over feeds and rapid rates",
+    "the machine's own errors: positioning, run-out of the rotary axis, accuracy of the head setting",
+    "chips, clamps, fixtures, the tool's shank and holder, the machine's travel: only the tool against the part's surface is simulated",
+    "acceleration and the time of operator stops and tool changes: run times are paths divided by feeds and rapid rates",
 ];
 
 pub(super) fn unknown(sheet: &Sheet<'_>) -> Markup {
-    let own = match &sheet.checked.judgement {
-        Judgement::Holes(verdict) => verdict.not_checked.as_slice(),
-        Judgement::Flutes(verdict) => verdict.not_checked.as_slice(),
-        Judgement::Measured => &[],
+    let own = match &sheet.checked.verdict {
+        PackageVerdict::Holes(verdict) => verdict.not_checked.as_slice(),
+        PackageVerdict::Flutes(verdict) => verdict.not_checked.as_slice(),
+        PackageVerdict::Measured => &[],
     };
     html! {
         div.together {

@@ -1,8 +1,8 @@
 //! The gauge blocks under the sine table, from the thickest to the thinnest; only a part that is set up has them.
-use gcode_sim::gauge;
-use gcode_sim::job::Job;
-use gcode_sim::report::figures::{near, short, signed_to};
-use gcode_sim::units::{Deg, Mm};
+use gcode_lang::units::{Deg, Mm};
+use gcode_part::gauge;
+use gcode_part::job::Job;
+use gcode_sim::report::figures::{rounded, short, signed_to};
 use maud::{Markup, html};
 
 use super::{cell, table};
@@ -11,18 +11,20 @@ use crate::sheet::Sheet;
 /// Which way the part turns when the blocks get higher.
 fn sense(sign: i8) -> &'static str {
     if sign < 0 {
-        "Sense: higher blocks turn the part back, from Y towards X (sine_table.sign -1). A tilt #583 above 0 is taken away by higher blocks. If \
-         the run-out afterwards shows twice the tilt, the sense is the other one."
+        "Direction: higher blocks rotate the part back, from Y towards X (sine_table.sign -1). A tilt #583 \
+         above 0 is corrected by higher blocks. If the run-out afterwards shows twice the tilt, the \
+         direction is the opposite."
     } else {
-        "Sense: higher blocks turn the part from X towards Y (sine_table.sign 1). A tilt #583 above 0 is taken away by lower blocks. If the \
-         run-out afterwards shows twice the tilt, the sense is the other one."
+        "Direction: higher blocks rotate the part from X towards Y (sine_table.sign 1). A tilt #583 above \
+         0 is corrected by lower blocks. If the run-out afterwards shows twice the tilt, the direction is \
+         the opposite."
     }
 }
 
 pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
     let Job::Alignment(job) = sheet.job else { return html! {} };
     let sine = &job.sine_table;
-    let setting = gauge::setting(Mm(sine.length), Deg(sine.phi), &sine.gauge_blocks);
+    let setting = gauge::sine_setting(Mm(sine.length), Deg(sine.phi), &sine.gauge_blocks);
     let rows = setting.stack.blocks.iter().enumerate();
     let rows = rows
         .map(|(index, block)| vec![html! { (index + 1) }, cell(block.to_string()), html! { span.tick {} }]);
@@ -33,16 +35,16 @@ pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
         div.together {
             h2 { "Gauge blocks under the sine table" }
             p {
-                "Rollers " (short(sine.length)) " mm apart, angle " (short(sine.phi)) "°: H = L·sin φ = " (near(setting.height.0, 5))
-                " mm, with the fewest blocks of the set " (sine.gauge_blocks.name) " that come nearest. They leave "
-                (signed_to(setting.left, 2)) "″ (seconds of arc)."
+                "Rollers " (short(sine.length)) " mm apart, angle " (short(sine.phi)) "°: H = L·sin φ = " (rounded(setting.height.0, 5))
+                " mm, with the fewest blocks of the set " (sine.gauge_blocks.name) " that come nearest. The remaining error is "
+                (signed_to(setting.remainder, 2)) "″ (seconds of arc)."
             }
             @if setting.stack.blocks.is_empty() {
-                p { "No blocks: the table lies flat." }
+                p { "No blocks: the table is flat." }
             } @else {
                 (table(&["#block", "#mm", "wrung"], rows.chain([sum])))
             }
-            p.note { "To turn the part by one minute of arc more the stack gets " (near(minute, 4)) " mm higher." }
+            p.note { "For one minute of arc more the stack is " (rounded(minute, 4)) " mm higher." }
             p { (sense(sine.sign)) }
         }
     }
@@ -56,10 +58,10 @@ mod tests {
     #[test]
     fn the_sense_of_the_table_is_that_of_its_sign() {
         assert!(sense(1).contains(
-            "from X towards Y (sine_table.sign 1). A tilt #583 above 0 is taken away by lower blocks"
+            "from X towards Y (sine_table.sign 1). A tilt #583 above 0 is corrected by lower blocks"
         ));
         assert!(sense(-1).contains(
-            "from Y towards X (sine_table.sign -1). A tilt #583 above 0 is taken away by higher blocks"
+            "from Y towards X (sine_table.sign -1). A tilt #583 above 0 is corrected by higher blocks"
         ));
     }
 }

@@ -1,10 +1,10 @@
 //! The head of the sheet: what part, on what machine, which programs, and what the simulation says of them.
 use gcode_sim::report::encode::sha256;
-use gcode_sim::report::figures::{count, near};
+use gcode_sim::report::figures::{count, rounded};
 use maud::{Markup, html};
 
 use super::{blank, cell, kind, mains, table};
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::sheet::{BASIS, Sheet};
 
 pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
@@ -25,7 +25,7 @@ pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
             }
             tr { th { "serial number of the part" } td { (blank()) } th { "order" } td { (blank()) } }
         } } }
-        p.note { "Lengths in mm, angles in degrees, feeds in mm/min. Lines that are empty are filled in by hand." }
+        p.note { "Lengths in mm, angles in degrees, feeds in mm/min. Fill in empty lines by hand." }
     }
 }
 
@@ -33,24 +33,24 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
     html! {
         div.verdict {
             b { "PASS. " (BASIS) ". " }
-            @match &sheet.checked.judgement {
-                Judgement::Holes(verdict) => {
-                    (count(verdict.holes.len(), "hole")) ", all within tolerance"
+            @match &sheet.checked.verdict {
+                PackageVerdict::Holes(verdict) => {
+                    (count(verdict.holes.len(), "hole")) ", all in tolerance"
                     @if let Some(worst) = verdict.worst {
-                        "; the worst position is Φ" (near(worst, 4)) " of Φ" (verdict.tolerance)
+                        "; the worst position is Φ" (rounded(worst, 4)) ", tolerance Φ" (verdict.tolerance)
                     }
                     "."
                 }
-                Judgement::Flutes(verdict) => {
+                PackageVerdict::Flutes(verdict) => {
                     (verdict.sentence())
                     @if let Some(off) = verdict.surface_deviation {
-                        "; the contact is at most " (near(off, 4)) " mm off the tooth bottom, " (verdict.tolerance)
-                        " is allowed"
+                        "; contact deviation from the tooth bottom at most " (rounded(off, 4)) " mm, tolerance " (verdict.tolerance)
+                        " mm"
                     }
                     "."
                 }
-                Judgement::Measured => {
-                    "On simulated parts that stand in known wrong places:"
+                PackageVerdict::Measured => {
+                    "On simulated parts in known wrong positions:"
                     @for line in sheet.checked.report.lines() { p { (line) } }
                     @for warning in &sheet.checked.warnings { p { b { (warning.trim_end()) } } }
                 }
@@ -69,11 +69,11 @@ pub(super) fn programs(sheet: &Sheet<'_>) -> Markup {
     let first = sheet.package.files().into_iter().map(|(name, _)| name).next().unwrap_or_default();
     html! {
         h2 { "Programs" }
-        (table(&["file", "what it is", "SHA-256"], rows))
+        (table(&["file", "content", "SHA-256"], rows))
         p.note {
             "The hash is that of the file as " code { "gcode-gen emit" } " writes it. Before it goes to the control: "
             code { "certutil -hashfile " (first) " SHA256" } " (Windows) or "
-            code { "sha256sum " (first) } ". What was edited since is not what was simulated."
+            code { "sha256sum " (first) } ". An edited file is not the simulated one."
         }
     }
 }

@@ -1,23 +1,23 @@
 //! What to measure: requirements, room for results, and beside them what the simulation says.
+use gcode_inspect::verify::{HoleVerdict, Verdict};
 use gcode_sim::report::encode::base64;
-use gcode_sim::report::figures::{near, signed, signed_to};
-use gcode_sim::verify::{HoleVerdict, Verdict};
+use gcode_sim::report::figures::{rounded, signed, signed_to};
 use maud::{Markup, html};
 
 use super::{cell, table};
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::sheet::measure::{LISTED, characteristics};
 use crate::sheet::{BASIS, Sheet};
 
 /// In the manner of form 3 of AS9102: requirements are filled in, results are the inspector's.
 pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
-    let all = characteristics(sheet.job, &sheet.checked.judgement);
+    let all = characteristics(sheet.job, &sheet.checked.verdict);
     html! {
-        h2 { "What to measure" }
+        h2 { "Inspection" }
         p {
-            "In the manner of AS9102, form 3. The columns for results are the inspector's and stay empty here: "
+            "In the manner of AS9102, form 3. The columns for results are for the inspector and are empty here: "
             "a simulation is not a measurement. "
-            @if let Judgement::Holes(_) = sheet.checked.judgement { "Nominal places stand in the tables of holes below." }
+            @if let PackageVerdict::Holes(_) = sheet.checked.verdict { "Nominal positions are in the tables of holes below." }
         }
         div.wide { table {
             thead { tr {
@@ -43,23 +43,23 @@ pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
 
 /// Nominal and predicted places; of many holes the worst ones.
 pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
-    let Judgement::Holes(verdict) = &sheet.checked.judgement else { return html! {} };
+    let PackageVerdict::Holes(verdict) = &sheet.checked.verdict else { return html! {} };
     let shown = shown(verdict);
     let nominal = shown.iter().map(|hole| {
         let placed = &hole.nominal;
-        let diameter = placed.diameter.map_or("-".to_owned(), |d| near(d, 3));
-        let place = placed.entry.map(|v| near(v, 3)).into_iter().chain(placed.axis.map(|v| near(v, 6)));
-        let all = std::iter::once(hole.id.clone()).chain(place).chain([near(placed.depth, 3), diameter]);
+        let diameter = placed.diameter.map_or("-".to_owned(), |d| rounded(d, 3));
+        let place = placed.entry.map(|v| rounded(v, 3)).into_iter().chain(placed.axis.map(|v| rounded(v, 6)));
+        let all = std::iter::once(hole.id.clone()).chain(place).chain([rounded(placed.depth, 3), diameter]);
         all.map(cell).collect()
     });
     let predicted = shown.iter().map(|hole| {
         let off = std::array::from_fn::<_, 3, _>(|i| signed(hole.actual.entry[i] - hole.nominal.entry[i]));
         let rest = [
-            near(hole.tilt, 4),
+            rounded(hole.tilt, 4),
             signed_to(hole.depth_error, 4),
-            format!("Φ{}", near(hole.phi, 4)),
+            format!("Φ{}", rounded(hole.position_deviation, 4)),
             format!("Φ{}", verdict.tolerance),
-            near(hole.out_of_tolerance, 4),
+            rounded(hole.out_of_tolerance, 4),
         ];
         std::iter::once(hole.id.clone()).chain(off).chain(rest).map(cell).collect()
     });
@@ -76,8 +76,8 @@ pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
             (table(&["hole", "#x", "#y", "#z", "#i", "#j", "#k", "#depth", "#diameter"], nominal))
         }
         div.together {
-            h3 { (BASIS) ": deviations (actual less nominal) where the axis enters, tilt, depth, position as ISO 1101 has it" }
-            (table(&["hole", "#dx", "#dy", "#dz", "#tilt", "#depth", "#position", "#tolerance", "#out of it"], predicted))
+            h3 { (BASIS) ": deviations (actual − nominal) where the axis enters, tilt, depth, position as in ISO 1101" }
+            (table(&["hole", "#dx", "#dy", "#dz", "#tilt", "#depth", "#position", "#tolerance", "#out"], predicted))
         }
     }
 }
@@ -85,7 +85,7 @@ pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
 fn shown(verdict: &Verdict) -> Vec<&HoleVerdict> {
     let mut all: Vec<&HoleVerdict> = verdict.holes.iter().collect();
     if all.len() > LISTED {
-        all.sort_by(|a, b| b.phi.total_cmp(&a.phi));
+        all.sort_by(|a, b| b.position_deviation.total_cmp(&a.position_deviation));
         all.truncate(24);
     }
     all
@@ -97,7 +97,7 @@ pub(super) fn pictures(sheet: &Sheet<'_>) -> Markup {
         return html! {};
     }
     html! {
-        h2 { "The part as the simulated program makes it" }
+        h2 { "The part as made by the simulated program" }
         @for (name, png) in &sheet.pictures {
             figure {
                 img src={ "data:image/png;base64," (base64(png)) } alt=(name);

@@ -1,17 +1,17 @@
 //! What stands in the machine: the tools, the head's angles in their order, the settings of the control.
-use gcode_sim::job::{HeadKind, Job, PinHoles};
+use gcode_inspect::verify::Verdict;
+use gcode_lang::units::Deg;
+use gcode_part::job::{HeadKind, Job, PinHoles};
 use gcode_sim::report::figures::short;
-use gcode_sim::units::Deg;
-use gcode_sim::verify::Verdict;
 use maud::{Markup, html};
 
 use super::alignment::overwritten_variables;
 use super::{blank, cell, table};
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::order::passes;
 use crate::sheet::Sheet;
-use crate::sheet::duty::tip_is_programmed;
-use crate::sheet::settings::BLOCKS;
+use crate::sheet::settings::MAX_BLOCKS;
+use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
     let row = |number: String, name: &str, diameter: f64, length: Markup, speed: f64, feed: String| {
@@ -50,18 +50,18 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
                 vec![cell(tool), cell(name), cell(&ball), cell("measured"), speed, cell(feed), blank()]
             };
             let touch = format!(
-                "{} a touch, within {} of the surface",
+                "{} per touch, within {} of the surface",
                 short(job.probe_feed),
                 short(job.probe_search)
             );
             let along = format!(
-                "{} from {} before the surface on and along it",
+                "{} from {} in front of the surface on and along it",
                 short(job.ellipse.feed),
                 short(job.machine.clearance)
             );
             vec![
                 row("O8210, O8200", "TOUCH PROBE, stylus ball", html! { "stands" }, touch),
-                row("O8220", "3D EDGE FINDER, ball", html! { "stands (M05)" }, along),
+                row("O8220", "3D EDGE FINDER, ball", html! { "stopped (M05)" }, along),
             ]
         }
         Job::Burr(job) => {
@@ -82,18 +82,18 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
     html! {
         div.together {
             h2 { "Tools" }
-            (table(&["tool", "name", "#diameter", "#length", "#r/min", "feed", "holder, remark"], rows))
+            (table(&["tool", "name", "#diameter", "#length", "#r/min", "feed", "holder, note"], rows))
             @if let Job::Alignment(job) = sheet.job {
                 p.note {
-                    "Both balls have the job's diameter, " (short(2.0 * job.probe_radius)) " mm: a smaller or larger one is found as a shift and a tilt that aren't there. "
-                    "What counts is the ball's centre: the probe is calibrated so that #5061 to #5063 are its centre when it touches. No length offset: G49."
+                    "Both balls have the job's diameter, " (short(2.0 * job.probe_radius)) " mm: a smaller or larger one appears as a shift and a tilt that do not exist. "
+                    "The ball's centre is the reference: calibrate the probe so that #5061 to #5063 are its centre at the touch. No length offset: G49."
                 }
             }
             @if let Job::PinHoles(job) = sheet.job {
                 @if tip_is_programmed(job) {
-                    p.note { "No tool lengths in this job: X and Y are the tip, whose place is set again after each turn of the head." }
+                    p.note { "No tool lengths in this job: X and Y are the tip, whose position is set again after each rotation of the head." }
                 } @else {
-                    p.note { "Lengths are from the spindle's gauge line to the tip; the head's pivot is " (short(job.machine.head.pivot)) " mm from the gauge line. The program counts with them itself: no G43." }
+                    p.note { "Lengths are from the spindle's gauge line to the tip; the head's pivot is " (short(job.machine.head.pivot)) " mm from the gauge line. The program includes them: no G43." }
                 }
             }
         }
@@ -102,7 +102,7 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
 
 /// The order in which the head is set, and the holes made with each setting; only pin holes have it.
 pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
-    let (Job::PinHoles(job), Judgement::Holes(verdict)) = (sheet.job, &sheet.checked.judgement) else {
+    let (Job::PinHoles(job), PackageVerdict::Holes(verdict)) = (sheet.job, &sheet.checked.verdict) else {
         return html! {};
     };
     let by = match job.machine.head.kind {
@@ -120,7 +120,7 @@ pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
     });
     html! {
         div.together {
-            h2 { "Head angles in their order" }
+            h2 { "Head angles in order" }
             p { "The head's angle counts from X towards Y; 90 is parallel to Y. It is " (by) "." }
             (table(&["#setting", "tool", "#head angle, °", "#radius of the holes", "holes, in their order"], rows))
         }
@@ -160,17 +160,17 @@ fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
 /// What the control must be set to for the numbers of this sheet.
 pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
     let [slide, turn] = sheet.record.rapids;
-    let codes: Vec<String> = sheet.record.passed_on.iter().map(|code| format!("M{code:02}")).collect();
+    let codes: Vec<String> = sheet.record.auxiliary_codes.iter().map(|code| format!("M{code:02}")).collect();
     html! {
         div.together {
-            h2 { "What the control must be like" }
+            h2 { "Control requirements" }
             ul {
-                li { "The family of controls and the least increment stand at the head of this sheet." }
-                li { "Rapid rates (1420) are taken as " (short(slide)) " mm/min and " (short(turn)) " degrees/min; only the run time depends on them." }
+                li { "The control family and the least increment are at the head of this sheet." }
+                li { "Rapid rates (1420) are assumed as " (short(slide)) " mm/min and " (short(turn)) " degrees/min; only the run time depends on them." }
                 (needed(sheet))
                 @if let Job::Alignment(job) = sheet.job { (overwritten_variables(job)) }
                 @if !codes.is_empty() {
-                    li { (codes.join(", ")) ": M codes of the machine builder. What they do here isn't simulated; try them by MDI before the run." }
+                    li { (codes.join(", ")) ": M codes of the machine builder. Their effect here is not simulated; try them by MDI before the run." }
                 }
             }
         }
@@ -179,20 +179,20 @@ pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
 
 /// The switches that the programs depend on.
 fn needed(sheet: &Sheet<'_>) -> Markup {
-    let (needed, waiting) = (&sheet.needed, &sheet.record.waiting);
+    let (needed, waiting) = (&sheet.required_settings, &sheet.record.alarmed_programs);
     html! {
         @for one in needed {
             li {
-                b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.otherwise) "."
+                b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.consequence) "."
             }
         }
         @if sheet.package.mains.len() > waiting.len() {
           li {
-            "All switches in which controls differ (" code { "gcode-sim settings" } " lists them) were turned one by one: "
+            "All settings in which controls differ (" code { "gcode-sim settings" } " lists them) were changed one by one: "
             @if needed.is_empty() { "none" } @else { "no other" }
-            " changes what the first " (BLOCKS) " blocks of a run do."
+            " changes what the first " (MAX_BLOCKS) " blocks of a run do."
             @if !waiting.is_empty() {
-                " Not tried with " (waiting.join(", ")) ", which ends in an alarm on a part that stands right."
+                " Not tried with " (waiting.join(", ")) ", which ends in an alarm on a part in its nominal position."
             }
           }
         }

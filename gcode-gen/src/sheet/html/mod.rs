@@ -10,7 +10,7 @@ mod stops;
 mod time;
 mod zero;
 
-use gcode_sim::job::Job;
+use gcode_part::job::Job;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{BASIS, Sheet};

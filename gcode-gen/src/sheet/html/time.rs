@@ -1,25 +1,25 @@
 //! Run time, and where rates are given the cost, beside the same part on other machines.
-use gcode_sim::report::figures::{near, short, signed_to};
+use gcode_sim::report::figures::{rounded, short, signed_to};
 use maud::{Markup, html};
 
 use super::{cell, table};
-use crate::sheet::cost::{Cost, Taken, costs, taken};
+use crate::sheet::cost::{Cost, MachineTime, costs, machine_time};
 use crate::sheet::{BASIS, Sheet};
 
 pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
     let times = sheet.record.times;
-    let own = taken(sheet.job.sheet(), &sheet.record);
-    let minutes = |seconds: f64| near(seconds / 60.0, 1);
+    let own = machine_time(sheet.job.sheet(), &sheet.record);
+    let minutes = |seconds: f64| rounded(seconds / 60.0, 1);
     html! {
         div.together {
             h2 { "Run time and cost" }
-            @if sheet.record.waiting.len() < sheet.package.mains.len() { p {
-                "The program runs " b { (minutes(times.all())) " min" } ": feed " (minutes(times.feed)) ", rapid "
-                (minutes(times.rapid)) ", dwell " (minutes(times.dwell)) ". " (BASIS) ": paths over feeds and rapid rates, "
+            @if sheet.record.alarmed_programs.len() < sheet.package.mains.len() { p {
+                "The program runs " b { (minutes(times.total())) " min" } ": feed " (minutes(times.feed)) ", rapid "
+                (minutes(times.rapid)) ", dwell " (minutes(times.dwell)) ". " (BASIS) ": paths divided by feeds and rapid rates, "
                 "without acceleration, which makes it longer at the machine."
             } }
-            @if !sheet.record.waiting.is_empty() {
-                p { "Not in it: " (sheet.record.waiting.join(", ")) ", which ends in an alarm on a part that stands right." }
+            @if !sheet.record.alarmed_programs.is_empty() {
+                p { "Without " (sheet.record.alarmed_programs.join(", ")) ", which ends in an alarm on a part in its nominal position." }
             }
             @match sheet.rates {
                 Some(rates) => {
@@ -30,8 +30,8 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
                 }
                 None => {
                     (time_table(&own))
-                    p { b { "No rate was given: " } "the sheet shows time only. A rate a machine hour, with its currency, goes into the job as "
-                        code { "[sheet.rates]" } " or into the file of " code { "--rates" } "." }
+                    p { b { "No rate given: " } "the sheet shows time only. Give a rate per machine hour, with its currency, in the job as "
+                        code { "[sheet.rates]" } " or in the file of " code { "--rates" } "." }
                 }
             }
             (uncounted(&own))
@@ -43,15 +43,15 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
 fn times(count: usize, each: Option<f64>, all: Option<f64>) -> String {
     match (count, each, all) {
         (0, ..) => "none".to_owned(),
-        (_, Some(each), Some(all)) => format!("{} ({count} × {})", near(all, 1), short(each)),
+        (_, Some(each), Some(all)) => format!("{} ({count} × {})", rounded(all, 1), short(each)),
         _ => format!("not given ({count})"),
     }
 }
 
-fn parts(taken: &Taken) -> [String; 4] {
+fn parts(taken: &MachineTime) -> [String; 4] {
     [
-        taken.minutes.setup.map_or("not given".to_owned(), |minutes| near(minutes, 1)),
-        near(taken.run, 1),
+        taken.minutes.setup.map_or("not given".to_owned(), |minutes| rounded(minutes, 1)),
+        rounded(taken.run, 1),
         times(taken.stops, taken.minutes.stop, taken.all_stops()),
         times(taken.tool_changes, taken.minutes.tool_change, taken.all_tool_changes()),
     ]
@@ -59,8 +59,8 @@ fn parts(taken: &Taken) -> [String; 4] {
 
 const PARTS: [&str; 4] = ["set-up, min", "run, min", "operator stops, min", "tool changes, min"];
 
-fn time_table(own: &Taken) -> Markup {
-    let sum = (near(own.all(), 1), near(own.all() / 60.0, 2));
+fn time_table(own: &MachineTime) -> Markup {
+    let sum = (rounded(own.total(), 1), rounded(own.total() / 60.0, 2));
     let rows = PARTS.iter().zip(parts(own)).map(|(name, value)| vec![cell(name), cell(value)]);
     let last = vec![html! { b { "machine time, min" } }, html! { b { (sum.0) " (" (sum.1) " h)" } }];
     table(&["", "#this job"], rows.chain([last]))
@@ -72,16 +72,16 @@ fn cost_table(all: &[Cost], currency: &str) -> Markup {
         .iter()
         .enumerate()
         .map(|(row, name)| {
-            let values = all.iter().map(|cost| cell(&parts(&cost.taken)[row]));
+            let values = all.iter().map(|cost| cell(&parts(&cost.time)[row]));
             std::iter::once(cell(name)).chain(values).collect()
         })
         .collect();
     let mut row = |name: String, value: &dyn Fn(&Cost) -> Markup| {
         rows.push(std::iter::once(cell(name)).chain(all.iter().map(value)).collect());
     };
-    row("machine time, h".to_owned(), &|cost| cell(near(cost.taken.all() / 60.0, 2)));
+    row("machine time, h".to_owned(), &|cost| cell(rounded(cost.time.total() / 60.0, 2)));
     row(format!("rate, {currency} a machine hour"), &|cost| cell(short(cost.rate)));
-    row(format!("cost of one part, {currency}"), &|cost| html! { b { (near(cost.cost(), 2)) } });
+    row(format!("cost of one part, {currency}"), &|cost| html! { b { (rounded(cost.cost(), 2)) } });
     let columns: Vec<String> =
         std::iter::once(String::new()).chain(names.map(|name| format!("#{name}"))).collect();
     table(&columns.iter().map(String::as_str).collect::<Vec<_>>(), rows)
@@ -94,9 +94,9 @@ fn beside(own: &Cost, other: &Cost) -> Markup {
             "Against " (other.machine.as_deref().unwrap_or("")) ": "
             @match own.change(other) {
                 Some(change) => b { (signed_to(change, 1)) " %" },
-                None => "not compared, because a time is given for one of them only",
+                None => "not compared: a time is given for one of them only",
             }
-            " (" (near(own.cost(), 2)) " beside " (near(other.cost(), 2)) ")."
+            " (" (rounded(own.cost(), 2)) " beside " (rounded(other.cost(), 2)) ")."
         }
     }
 }
@@ -105,16 +105,16 @@ fn assumed(all: &[Cost]) -> Markup {
     html! {
         @if all.len() > 1 {
             p.note {
-                "Assumed, not simulated: on the other machines the numbers of stops and tool changes are the same, and so is every "
-                "time that wasn't given for them"
-                @if all.iter().skip(1).any(|cost| !cost.run_given) { ", the run time too" }
+                "Assumed, not simulated: the other machines have the same numbers of stops and tool changes, and the same "
+                "times where none are given"
+                @if all.iter().skip(1).any(|cost| !cost.is_run_specified) { ", the run time too" }
                 ". Rates and minutes are the user's."
             }
         }
     }
 }
 
-fn uncounted(own: &Taken) -> Markup {
+fn uncounted(own: &MachineTime) -> Markup {
     let keys = own.not_counted();
     html! {
         @if !keys.is_empty() {

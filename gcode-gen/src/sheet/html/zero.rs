@@ -1,27 +1,30 @@
 //! Where the zero is: a picture of each family, and the offsets and signs in words.
-use gcode_sim::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
-use gcode_sim::part::flutes::Flutes;
+use gcode_inspect::verify::Verdict;
+use gcode_part::Flutes;
+use gcode_part::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
 use gcode_sim::report::figures::short;
-use gcode_sim::verify::Verdict;
 use maud::{Markup, html};
 
 use super::drawing::{Anchor, Paper, WIDTH, arrow, centre_line, drawing, line, path, text, thin, zero_sign};
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
-use crate::sheet::duty::tip_is_programmed;
+use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn zero(sheet: &Sheet<'_>) -> Markup {
-    let (picture, words) = match (sheet.job, &sheet.checked.judgement) {
-        (Job::PinHoles(job), Judgement::Holes(verdict)) => (of_pin_holes(job, verdict), pin_holes(job)),
+    let (picture, words) = match (sheet.job, &sheet.checked.verdict) {
+        (Job::PinHoles(job), PackageVerdict::Holes(verdict)) => (of_pin_holes(job, verdict), pin_holes(job)),
         (Job::Honeycomb(job), _) => (of_honeycomb(job), honeycomb(job)),
         (Job::Burr(job), _) => (of_burr(job), burr(job)),
-        (Job::PinHoles(job), Judgement::Flutes(_) | Judgement::Measured) => (html! {}, pin_holes(job)),
+        (Job::PinHoles(job), PackageVerdict::Flutes(_) | PackageVerdict::Measured) => {
+            (html! {}, pin_holes(job))
+        }
         (Job::Alignment(job), _) => (of_alignment(job), alignment(job)),
     };
     html! {
         div.together {
-            h2 { "Where the zero is" }
-            figure { (picture) figcaption { "Drawn to scale but for tools and arrows; the sign with two black quarters is the work zero G54." } }
+            h2 { "Work zero" }
+            figure { (picture) figcaption { "Drawn to scale except tools and arrows; the symbol with two \
+                                             black quarters is the work zero G54." } }
         }
         ul { @for sentence in words { li { (sentence) } } }
     }
@@ -41,15 +44,18 @@ fn pin_holes(job: &PinHoles) -> Vec<String> {
             if minus.is_empty() { "+1" } else { "−1" }
         ),
         format!(
-            "Check the sign before the first cut: with {letter} at {minus}10 the place of azimuth +10 must stand in the plane Z0. \
-             On the other side the sign is wrong, and all holes come out mirrored."
+            "Check the sign before the first cut: with {letter} at {minus}10 the position of azimuth +10 \
+             must be in the plane Z0. If it is on the other side the sign is wrong, and all holes are \
+             mirrored."
         ),
     ];
     all.push(match tip_is_programmed(job) {
         true => "X and Y are the tip of the tool.".to_owned(),
-        false => "X and Y are the pivot of the head; the program counts with the pivot's distance and the tool's length.".to_owned(),
+        false => "X and Y are the pivot of the head; the program includes the pivot's distance and the \
+                  tool's length."
+            .to_owned(),
     });
-    all.push("Start with the tool clear of the part, above or beside it.".to_owned());
+    all.push("Start with the tool clear of the part, above or next to it.".to_owned());
     all
 }
 
@@ -83,33 +89,38 @@ fn alignment(job: &Alignment) -> Vec<String> {
     let (letter, minus) = (job.machine.rotary.letter, if job.machine.rotary.sign < 0 { "−" } else { "" });
     vec![
         format!(
-            "G54: X0 Z0 on the axis of {letter}, Y0 at the centre of the ellipsoid, {} mm below its pole. What counts is the centre of \
-             the stylus ball.",
+            "G54: X0 Z0 on the axis of {letter}, Y0 at the centre of the ellipsoid, {} mm below its pole. \
+             The reference point is the centre of the stylus ball.",
             short(job.surface.b)
         ),
         format!(
-            "{letter} = {minus}azimuth (sign {}); the azimuth counts from X towards Z. The head does not turn.",
+            "{letter} = {minus}azimuth (sign {}); the azimuth counts from X towards Z. The head does not rotate.",
             if minus.is_empty() { "+1" } else { "−1" }
         ),
         format!(
-            "Check the sign before the first touch: turn {letter} from 0 to +10. The side of the part at X+ must go towards Z{}. If it \
-             goes the other way the sign is wrong, and the run-out tells #581 and #582 with the wrong sign, which no fit can see.",
+            "Check the sign before the first touch: rotate {letter} from 0 to +10. The side of the part at \
+             X+ must move towards Z{}. If it moves in the opposite direction the sign is wrong, and the \
+             run-out gives #581 and #582 with the wrong sign, which no fit can detect.",
             if minus.is_empty() { "−" } else { "+" }
         ),
         format!(
-            "Set X and Z of G54 on something that turns with {letter}, the bore of the table or a ground ring, not on the part: turn it by 180 and \
-             halve what the indicator shows. A zero that is off in X is found as a shift and a tilt of the part, one in Z by nothing; one in Y \
-             is corrected by O8200."
+            "Set X and Z of G54 on a surface that rotates with {letter}, the bore of the table or a ground \
+             ring, not on the part: rotate it by 180 and halve the indicator reading. A zero that is off \
+             in X appears as a shift and a tilt of the part, one in Z is not detected; one in Y is \
+             corrected by O8200."
         ),
-        "No shift by G52 or G92 in X, Y or Z and no G16, G51, G51.1 or G68 is left from before: the programs refuse them.".to_owned(),
+        "Cancel any shift by G52 or G92 in X, Y or Z and any G16, G51, G51.1 or G68 left in force: the \
+         programs refuse them."
+            .to_owned(),
         format!(
             "E and F are points of the surface in the plane Z0, at X{} and X{}.",
             short(job.chord.e_radius),
             short(job.chord.f_radius)
         ),
         format!(
-            "Start every program with the ball above the pole of the part or clear of it at X+, and {letter} free to turn. O8210 goes out to X{} first, \
-             O8200 up; O8220 turns {letter} to 0 where the ball stands.",
+            "Start every program with the ball above the pole of the part or clear of it at X+, and \
+             {letter} free to rotate. O8210 moves out to X{} first, O8200 up; O8220 rotates {letter} to 0 \
+             at the ball's position.",
             short(job.surface.a + job.probe_radius + job.probe_search)
         ),
     ]
@@ -177,17 +188,15 @@ fn honeycomb(job: &Honeycomb) -> Vec<String> {
             short(job.cylinder.outer)
         ),
         format!(
-            "{letter} turns about X; row by row {letter} = {minus}row·180/N (sign {}). {letter}0 is the first row: put a seam or a mark \
-             there.",
+            "{letter} rotates about X; row by row {letter} = {minus}row·180/N (sign {}). {letter}0 is the \
+             first row: put a seam or a mark there.",
             if minus.is_empty() { "+1" } else { "−1" }
         ),
-        format!("Tool length: H{0} holds that of T{0}, called by G43.", job.drill.number),
+        format!("Tool length: H{0} is that of T{0}, called by G43.", job.drill.number),
     ];
-    all.extend(
-        job.machine.clamp.map(|clamp| {
-            format!("M{} lets the rotary go before it turns, M{} holds it.", clamp.off, clamp.on)
-        }),
-    );
+    all.extend(job.machine.clamp.map(|clamp| {
+        format!("M{} releases the rotary before it rotates, M{} clamps it.", clamp.off, clamp.on)
+    }));
     all.push("Start with the tool clear of the part.".to_owned());
     all
 }
@@ -235,16 +244,16 @@ fn burr(job: &Burr) -> Vec<String> {
         .filter_map(|(letter, sign)| (sign < 0).then_some(letter))
         .collect();
     let turned = match turned.is_empty() {
-        true => "All axes run as the method has them (signs +1).".to_owned(),
-        false => format!("These axes run the other way round (sign −1): {}.", turned.join(", ")),
+        true => "All axes run as in the method (signs +1).".to_owned(),
+        false => format!("These axes run in the opposite direction (sign −1): {}.", turned.join(", ")),
     };
     vec![
-        "G54 X0 Y0 at C0: the burr lies along X, its tip towards X−, and the wheel, which comes from Y−, touches the tooth \
-         bottom where the cylinder ends."
+        "G54 X0 Y0 at C0: the burr is along X, its tip towards X−, and the wheel, which comes from Y−, \
+         touches the tooth bottom at the end of the cylinder."
             .to_owned(),
         format!(
-            "From the axis of C to the end of the cylinder, in the middle of the burr: X{x} Y{y} at C0. These two are measured at the machine; \
-             a wrong one spoils the nose."
+            "From the axis of C to the end of the cylinder, in the middle of the burr: X{x} Y{y} at C0. \
+             Measure these two at the machine; a wrong value spoils the nose."
         ),
         format!("B swivels the wheel to the helix angle {}°; A0 is the first flute.", short(job.helix)),
         turned,
@@ -254,7 +263,7 @@ fn burr(job: &Burr) -> Vec<String> {
 
 /// The burr at C0, X0 and Y0, the wheel touching it.
 fn of_burr(job: &Burr) -> Markup {
-    let flutes = Flutes::of_job(job);
+    let flutes = Flutes::from_job(job);
     let (radius, pole, start) = (flutes.profile.radius(), flutes.profile.pole(), flutes.start);
     let [ex, ey] = job.grinder.c_offset;
     let shank = start + 0.6 * radius;

@@ -3,15 +3,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::main_program;
-use crate::changes::{Change, Record, Revision, Where, changes};
 use crate::cli::conditions::RunConditions;
-use crate::cli::{Refusal, input, options};
-use crate::diag::{Diagnostic, Severity};
-use crate::exec::Limits;
-use crate::part::wanted::Wanted;
-use crate::report::tested::{Against, Answer, CaseReport};
-use crate::session::{self, Run, SessionError};
-use crate::verify::{self, Tolerances};
+use crate::cli::{UsageError, input, options};
+use crate::report::test_report::{CaseAnswer, CaseReport, FirstFailure};
+use gcode_control::Limits;
+use gcode_inspect::verify::{self, Tolerances};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_part::NominalPart;
+use gcode_review::{BlockLocation, Change, Record, Revision, changes};
+use gcode_session::{Run, SessionError};
 
 /// The file that holds what was accepted.
 pub(super) const ACCEPTED: &str = "accepted.json";
@@ -26,7 +26,7 @@ pub(super) struct Case {
 }
 
 /// What came of a case.
-pub(super) struct Tried {
+pub(super) struct CaseResult {
     pub report: CaseReport,
     /// To be accepted; `None` where nothing could be run.
     pub record: Option<Record>,
@@ -34,15 +34,15 @@ pub(super) struct Tried {
 
 impl Case {
     /// Runs the case and holds it against what was accepted.
-    pub(super) fn run(&self, libraries: &[PathBuf], tolerance: f64) -> Tried {
+    pub(super) fn run(&self, libraries: &[PathBuf], tolerance: f64) -> CaseResult {
         let main = self.lost().map_or_else(|| main_program::of(&self.folder, &self.programs), Err);
         let unclear = || self.programs.first().cloned().unwrap_or_else(|| self.accepted());
         let file = Some(main.as_ref().map_or_else(|_| unclear(), PathBuf::clone).display().to_string());
         let empty = |answer| CaseReport::new(self.name.clone(), file.clone(), answer);
-        let tried = main.and_then(|program| self.tried(&program, libraries, tolerance, empty));
+        let tried = main.and_then(|program| self.evaluate(&program, libraries, tolerance, empty));
         tried.unwrap_or_else(|refusal| {
             let error = Some(refusal.to_string());
-            Tried { report: CaseReport { error, ..empty(Answer::Refused) }, record: None }
+            CaseResult { report: CaseReport { error, ..empty(CaseAnswer::Refused) }, record: None }
         })
     }
 
@@ -52,24 +52,24 @@ impl Case {
     }
 
     /// Why there is nothing to run.
-    fn lost(&self) -> Option<Refusal> {
+    fn lost(&self) -> Option<UsageError> {
         let folder = self.folder.display();
         if self.folder.is_symlink() && !self.folder.exists() {
-            return Some(Refusal::new(format!("{folder} is a link to what isn't there")));
+            return Some(UsageError::new(format!("{folder} is a broken link")));
         }
         self.programs.is_empty().then(|| {
-            let remedy = "put the program back, or delete the folder where the part is no longer made";
-            Refusal::new(format!("{folder} has {ACCEPTED} and no program (.nc): {remedy}"))
+            let remedy = "restore the program, or delete the folder if the part is no longer made";
+            UsageError::new(format!("{folder} has {ACCEPTED} and no program (.nc): {remedy}"))
         })
     }
 
-    fn tried(
+    fn evaluate(
         &self,
         program: &Path,
         libraries: &[PathBuf],
         tolerance: f64,
-        empty: impl Fn(Answer) -> CaseReport,
-    ) -> Result<Tried, Refusal> {
+        empty: impl Fn(CaseAnswer) -> CaseReport,
+    ) -> Result<CaseResult, UsageError> {
         // A link to nothing is there: that it can't be read is told.
         let there =
             |name: &str| Some(self.folder.join(name)).filter(|path| path.exists() || path.is_symlink());
@@ -83,50 +83,50 @@ impl Case {
         let (mut request, mut folders) = options::request(&conditions.of(program))?;
         if let (Some(one), Some(other)) = (there("reference.json"), there("reference.csv")) {
             let both = format!("{} and {}", one.display(), other.display());
-            return Err(Refusal::new(format!("{both}: which of them says what is wanted? delete the other")));
+            return Err(UsageError::new(format!("{both}: both are references; delete one")));
         }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
-        let wanted = reference.as_deref().map(options::wanted).transpose()?;
+        let wanted = reference.as_deref().map(options::read_nominal).transpose()?;
         let surface = match &wanted {
-            Some(Wanted::Holes(reference)) => {
-                request.conduct = reference.conduct.clone();
+            Some(NominalPart::Holes(reference)) => {
+                request.conduct = reference.process_limits.clone();
                 reference.surface
             }
-            Some(Wanted::Flutes(_)) | None => None,
+            Some(NominalPart::Flutes(_)) | None => None,
         };
-        let refused = |error: SessionError| Refusal::new(error.to_string());
+        let refused = |error: SessionError| UsageError::new(error.to_string());
         let revision = Revision::of(&request, &mut folders, surface).map_err(refused)?;
         if revision.is_cut_off() {
             return Err(cut_off(&revision));
         }
         let against = match &wanted {
             None => None,
-            Some(Wanted::Holes(reference)) => {
+            Some(NominalPart::Holes(reference)) => {
                 let tolerances = Tolerances::of(reference, None);
                 let verdict = revision.simulation.verify(reference, tolerances, &request.machine);
                 fails(verdict.verdict, &verdict.diagnostics, &revision.simulation.run)
             }
-            Some(Wanted::Flutes(flutes)) => {
-                let grinding = session::grind(&request, &mut folders, flutes);
-                let grinding = grinding.map_err(|error| Refusal::new(error.to_string()))?;
+            Some(NominalPart::Flutes(flutes)) => {
+                let grinding = gcode_session::grind(&request, &mut folders, flutes);
+                let grinding = grinding.map_err(|error| UsageError::new(error.to_string()))?;
                 let verdict = grinding.verify();
                 fails(verdict.verdict, &verdict.diagnostics, &grinding.run)
             }
         };
         let mut not_compared = Vec::new();
         let (answer, changes) = match there(ACCEPTED) {
-            None => (Answer::New, Vec::new()),
+            None => (CaseAnswer::New, Vec::new()),
             Some(path) => {
-                let unusable = |error| Refusal::new(format!("{}: {error}", path.display()));
+                let unusable = |error| UsageError::new(format!("{}: {error}", path.display()));
                 let accepted = Record::from_json(&input::text(&path)?).map_err(|error| {
-                    unusable(format!("{error}; delete it, run with --accept, and look at what was accepted"))
+                    unusable(format!("{error}; delete it, run with --accept, and review what was accepted"))
                 })?;
-                not_compared = accepted.not_noted().into_iter().map(str::to_owned).collect();
-                let found = changes(&accepted, &revision.record.noted_as(&accepted), tolerance);
-                let answer = match (found.is_empty(), accepted.is_older()) {
-                    (false, _) => Answer::Changed,
-                    (true, true) => Answer::Older,
-                    (true, false) => Answer::Same,
+                not_compared = accepted.unrecorded_aspects().into_iter().map(str::to_owned).collect();
+                let found = changes(&accepted, &revision.record.reduced_to(&accepted), tolerance);
+                let answer = match (found.is_empty(), accepted.is_legacy()) {
+                    (false, _) => CaseAnswer::Changed,
+                    (true, true) => CaseAnswer::Older,
+                    (true, false) => CaseAnswer::Same,
                 };
                 (answer, found)
             }
@@ -141,34 +141,39 @@ impl Case {
             ending: Some(record.words().to_owned()),
             ..empty(answer)
         };
-        Ok(Tried { report, record: Some(revision.record) })
+        Ok(CaseResult { report, record: Some(revision.record) })
     }
 }
 
 /// Where the run was when it had no end.
-fn cut_off(revision: &Revision) -> Refusal {
-    let place = revision.stopped().find_map(|finding| finding.place.as_ref());
-    let place = place.map(|place| Where::of(&revision.simulation.run, place));
-    let place = place.map(|Where { program, line, block, .. }| format!(" at {program}:{line} {block}"));
+fn cut_off(revision: &Revision) -> UsageError {
+    let place = revision.stopped().find_map(|finding| finding.backtrace.as_ref());
+    let place = place.map(|place| BlockLocation::of(&revision.simulation.run, place));
+    let place =
+        place.map(|BlockLocation { program, line, block, .. }| format!(" at {program}:{line} {block}"));
     let place = place.unwrap_or_default();
-    Refusal::new(format!("the run was cut off by a limit{place}: what lies behind it can't be compared"))
+    UsageError::new(format!("the run was cut off by a limit{place}: the rest cannot be compared"))
 }
 
 /// The first thing that a failed verdict has against the program.
-fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<Against> {
+fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<FirstFailure> {
     if answer != verify::Answer::Fail {
         return None;
     }
     let first = findings.iter().find(|finding| Severity::Error <= finding.severity);
-    let place = first.and_then(|first| Some(Where::of(run, first.place.as_ref()?)));
-    let (code, message) =
-        first.map_or(("verdict", "not what it wants"), |first| (first.code.as_str(), first.message.as_str()));
-    Some(Against { code: code.to_owned(), message: message.to_owned(), place })
+    let place = first.and_then(|first| Some(BlockLocation::of(run, first.backtrace.as_ref()?)));
+    let (code, message) = first
+        .map_or(("verdict", "verification failed"), |first| (first.code.as_str(), first.message.as_str()));
+    Some(FirstFailure { code: code.to_owned(), message: message.to_owned(), place })
 }
 
 /// The files of the programs that are named by what is told.
-fn files(revision: &Revision, changes: &[Change], against: Option<&Against>) -> BTreeMap<String, String> {
-    let places = changes.iter().filter_map(|change| change.new.as_ref().or(change.near.as_ref()));
+fn files(
+    revision: &Revision,
+    changes: &[Change],
+    against: Option<&FirstFailure>,
+) -> BTreeMap<String, String> {
+    let places = changes.iter().filter_map(|change| change.new.as_ref().or(change.anchor.as_ref()));
     let places = places.chain(against.and_then(|against| against.place.as_ref()));
     let named: BTreeSet<&str> = places
         .flat_map(|place| std::iter::once(place).chain(&place.calls))

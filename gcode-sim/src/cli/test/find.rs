@@ -3,17 +3,17 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::case::{ACCEPTED, Case};
-use crate::cli::{Refusal, input};
+use crate::cli::{UsageError, input};
 
 /// Called programs of the case that it is in; a folder in it is a case where something was accepted of it.
 const LIBRARY: &str = "lib";
 
 /// The cases in folders and below them, by name within each folder that was asked for. A folder that is reached twice,
 /// by a link or because it was named twice, counts once, and by a name without links where it has one.
-pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, Refusal> {
+pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, UsageError> {
     let mut search = Search::default();
     for (root, folder) in roots.iter().enumerate() {
-        search.look(Place { root, folder: folder.clone(), name: String::new(), in_library: false })?;
+        search.look(CaseFolder { root, folder: folder.clone(), name: String::new(), in_library: false })?;
     }
     while let Some(place) = search.links.pop() {
         search.look(place)?;
@@ -31,7 +31,7 @@ pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, Refusal> {
 }
 
 /// A folder to look into.
-struct Place {
+struct CaseFolder {
     /// Which of the folders that were asked for it is below.
     root: usize,
     folder: PathBuf,
@@ -44,13 +44,13 @@ struct Place {
 struct Search {
     found: Vec<(usize, Case)>,
     /// Folders behind links: looked into last.
-    links: Vec<Place>,
+    links: Vec<CaseFolder>,
     seen: BTreeSet<PathBuf>,
 }
 
 impl Search {
     /// Everything below a folder but for what links lead to.
-    fn look(&mut self, from: Place) -> Result<(), Refusal> {
+    fn look(&mut self, from: CaseFolder) -> Result<(), UsageError> {
         let mut places = vec![from];
         while let Some(place) = places.pop() {
             if self.seen.insert(input::canonical(&place.folder)?) {
@@ -60,8 +60,8 @@ impl Search {
         Ok(())
     }
 
-    fn folder(&mut self, place: Place, places: &mut Vec<Place>) -> Result<(), Refusal> {
-        let Place { root, folder, name, in_library } = place;
+    fn folder(&mut self, place: CaseFolder, places: &mut Vec<CaseFolder>) -> Result<(), UsageError> {
+        let CaseFolder { root, folder, name, in_library } = place;
         let entries = input::folder(&folder)?;
         let has_accepted = entries.iter().any(|path| path.file_name().is_some_and(|name| name == ACCEPTED));
         let programs: Vec<PathBuf> =
@@ -72,7 +72,7 @@ impl Search {
             let below = if name.is_empty() { own.clone() } else { format!("{name}/{own}") };
             if path.is_dir() {
                 let in_library = in_library || is_case && own == LIBRARY;
-                let place = Place { root, folder: path.clone(), name: below, in_library };
+                let place = CaseFolder { root, folder: path.clone(), name: below, in_library };
                 let list = if path.is_symlink() { &mut self.links } else { &mut *places };
                 list.push(place);
             } else if path.is_symlink() && !path.exists() && !own.starts_with('.') && !is_program(&path) {

@@ -1,14 +1,14 @@
 //! Which program of a case's folder is the one to run.
 use std::path::{Path, PathBuf};
 
-use crate::check::{CalledAs, called};
-use crate::cli::{Refusal, input};
-use crate::control::Settings;
-use crate::program::Memory;
-use crate::syntax::ast::ProgramName;
+use crate::cli::{UsageError, input};
+use gcode_lang::control::Settings;
+use gcode_lang::program::Memory;
+use gcode_lang::syntax::ast::ProgramName;
+use gcode_lint::{CalledProgramName, called};
 
 /// `main.nc`, the only program, or the only one that no other calls: where a main program stands with its macros.
-pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, Refusal> {
+pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageError> {
     let is_main = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem == "main");
     if let Some(main) = programs.iter().find(is_main) {
         return Ok(main.clone());
@@ -22,29 +22,29 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, Refusal
     }
     let names: Vec<_> = candidates.iter().filter_map(|path| path.file_name()?.to_str()).collect();
     let which = if names.is_empty() {
-        "programs that call one another".to_owned()
+        "only programs that call one another".to_owned()
     } else {
         format!("several programs that no other calls, {}", names.join(", "))
     };
-    Err(Refusal::new(format!("{} holds {which}: name the one to run main.nc", folder.display())))
+    Err(UsageError::new(format!("{} contains {which}: name the main program main.nc", folder.display())))
 }
 
 /// The programs that none of the others calls.
-fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, Refusal> {
+fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
     let settings = Settings::default();
     let mut files = Vec::with_capacity(programs.len());
     for path in programs {
         let mut memory = Memory::default();
         memory.load(path.display().to_string(), input::bytes(path)?);
-        let calls: Vec<CalledAs> =
-            memory.ids().flat_map(|id| called(memory.lowered(id), &settings)).collect();
+        let calls: Vec<CalledProgramName> =
+            memory.ids().flat_map(|id| called(memory.lower_program(id), &settings)).collect();
         let names: Vec<ProgramName> = memory.programs().iter().map(|p| p.name.clone()).collect();
         files.push((path, names, calls));
     }
-    let is_called = |names: &[ProgramName], call: &CalledAs| match call {
-        CalledAs::Number(number) => names.contains(&ProgramName::Number(*number)),
-        CalledAs::Name(name) => names.contains(&ProgramName::of(name.clone())),
-        CalledAs::Computed | CalledAs::Nothing => false,
+    let is_called = |names: &[ProgramName], call: &CalledProgramName| match call {
+        CalledProgramName::Number(number) => names.contains(&ProgramName::Number(*number)),
+        CalledProgramName::Name(name) => names.contains(&ProgramName::of(name.clone())),
+        CalledProgramName::Computed | CalledProgramName::Missing => false,
     };
     let from_others = |path: &PathBuf, names: &[ProgramName]| {
         let others = files.iter().filter(|(other, ..)| *other != path);
@@ -87,12 +87,12 @@ mod tests {
         let hole = ("O9002.nc", "O9002\nM99\n");
         assert_eq!(
             chosen(&[("O1.nc", "O1\nM98 P#1\nM30\n"), hole]),
-            Err("part holds several programs that no other calls, O1.nc, O9002.nc: name the one to run main.nc"
+            Err("part contains several programs that no other calls, O1.nc, O9002.nc: name the main program main.nc"
                 .to_owned())
         );
         assert_eq!(
             chosen(&[("O1.nc", "O1\nM98 P9002\nM30\n"), ("O9002.nc", "O9002\nM98 P1\nM99\n")]),
-            Err("part holds programs that call one another: name the one to run main.nc".to_owned())
+            Err("part contains only programs that call one another: name the main program main.nc".to_owned())
         );
     }
 }

@@ -2,19 +2,19 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use crate::cli::{Refusal, input};
-use crate::report::tested::TestReport;
+use crate::cli::{UsageError, input};
+use crate::report::test_report::TestReport;
 
 /// All results as one, the cases in the order of their names. A missing shard would look like cases that hold, so it is
 /// refused, and so is a case that stands twice.
-pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, Refusal> {
+pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, UsageError> {
     let mut reports = Vec::with_capacity(files.len());
     for file in files {
-        let refused = |why: &dyn std::fmt::Display| Refusal::new(format!("{}: {why}", file.display()));
+        let refused = |why: &dyn std::fmt::Display| UsageError::new(format!("{}: {why}", file.display()));
         let report: TestReport =
             serde_json::from_str(&input::text(file)?).map_err(|error| refused(&error))?;
         if report.shard.is_some_and(|shard| !(1..=shard.of).contains(&shard.number)) {
-            return Err(refused(&"a shard counts from 1 to the number of shards"));
+            return Err(refused(&"a shard number is 1 to the number of shards"));
         }
         reports.push(report);
     }
@@ -24,17 +24,17 @@ pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, Refusal> {
     let cases = reports.into_iter().flat_map(|report| report.cases).collect();
     let report = TestReport::new(None, tolerance, cases, accepted);
     if let Some([first, _]) = report.cases.array_windows().find(|[a, b]| a.name == b.name) {
-        return Err(Refusal::new(format!("case {} is in two of the results", first.name)));
+        return Err(UsageError::new(format!("case {} is in two of the results", first.name)));
     }
     Ok(report)
 }
 
 /// The tolerance of all results: what is the same by one and a change by another has no answer.
-fn same_tolerance(reports: &[TestReport]) -> Result<f64, Refusal> {
+fn same_tolerance(reports: &[TestReport]) -> Result<f64, UsageError> {
     let first = reports.first().map_or(0.0, |report| report.tolerance);
     match reports.iter().find(|report| report.tolerance != first) {
         None => Ok(first),
-        Some(other) => Err(Refusal::new(format!(
+        Some(other) => Err(UsageError::new(format!(
             "--merge: some results were made with --tolerance {first} and some with {}: run all shards with one",
             other.tolerance
         ))),
@@ -42,18 +42,19 @@ fn same_tolerance(reports: &[TestReport]) -> Result<f64, Refusal> {
 }
 
 /// All shards are there, of one collection.
-fn complete(reports: &[TestReport]) -> Result<(), Refusal> {
+fn complete(reports: &[TestReport]) -> Result<(), UsageError> {
     let shards: Vec<_> = reports.iter().filter_map(|report| report.shard).collect();
     let Some(first) = shards.first() else { return Ok(()) };
-    let is_alike = |shard: &crate::report::tested::Shard| (shard.of, shard.cases) == (first.of, first.cases);
+    let is_alike =
+        |shard: &crate::report::test_report::Shard| (shard.of, shard.cases) == (first.of, first.cases);
     if shards.len() < reports.len() || !shards.iter().all(is_alike) {
-        return Err(Refusal::new("--merge: these aren't shards of one collection of cases"));
+        return Err(UsageError::new("--merge: these are not shards of one collection of cases"));
     }
     let there: BTreeSet<usize> = shards.iter().map(|shard| shard.number).collect();
     let missing: Vec<String> =
         (1..=first.of).filter(|k| !there.contains(k)).map(|k| format!("{k}/{}", first.of)).collect();
     if !missing.is_empty() {
-        return Err(Refusal::new(format!(
+        return Err(UsageError::new(format!(
             "--merge: the results of --shard {} are missing",
             missing.join(", ")
         )));
@@ -61,8 +62,8 @@ fn complete(reports: &[TestReport]) -> Result<(), Refusal> {
     let cases: usize = reports.iter().map(|report| report.cases.len()).sum();
     if cases != first.cases {
         let message =
-            format!("--merge: {cases} cases of {}: a shard is incomplete or twice there", first.cases);
-        return Err(Refusal::new(message));
+            format!("--merge: {cases} cases of {}: a shard is incomplete or duplicated", first.cases);
+        return Err(UsageError::new(message));
     }
     Ok(())
 }

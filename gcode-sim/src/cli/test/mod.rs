@@ -10,12 +10,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 
-use self::case::{ACCEPTED, Case, Tried};
+use self::case::{ACCEPTED, Case, CaseResult};
 use super::format::TestFormat;
-use super::{Refusal, Status, options, output, progress};
-use crate::changes::Record;
-use crate::report::tested::{Answer, Shard, TestReport};
+use super::{ExitStatus, UsageError, options, output, progress};
+use crate::report::test_report::{CaseAnswer, Shard, TestReport};
 use crate::report::{junit, sarif};
+use gcode_review::Record;
 
 #[derive(Debug, Args)]
 pub(super) struct TestArguments {
@@ -27,7 +27,7 @@ pub(super) struct TestArguments {
     #[arg(long = "lib", value_name = "DIR")]
     libraries: Vec<PathBuf>,
 
-    /// Only cases with this in their names (repeatable)
+    /// Only cases with this text in their names (repeatable)
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
 
@@ -35,62 +35,62 @@ pub(super) struct TestArguments {
     #[arg(long, value_name = "K/N")]
     shard: Option<String>,
 
-    /// Put the JSON results of all shards together instead of running or accepting anything
+    /// Merge the JSON results of all shards instead of running or accepting anything
     #[arg(long, value_name = "RESULT.json", num_args = 1.., conflicts_with_all = ["folders", "libraries", "only", "shard", "accept"])]
     merge: Vec<PathBuf>,
 
-    /// Accept what came of the cases: write their accepted.json; not of a run whose called program isn't found
+    /// Accept the current results: write accepted.json for each case, except where a called program is not found
     #[arg(long)]
     accept: bool,
 
-    /// Run again what a saved file concerns, until Ctrl-C; tells text, and accepts nothing
+    /// Re-run affected cases when a file is saved, until Ctrl-C; writes text, and accepts nothing
     #[arg(long, conflicts_with_all = ["accept", "format", "merge"])]
     watch: bool,
 
-    /// What differs by no more than this is the same, mm or degrees
+    /// Tolerance for equality, mm or degrees
     #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
     tolerance: f64,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TestFormat::Text)]
     format: TestFormat,
 }
 
-pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &TestArguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     if arguments.watch {
         return watch::run(arguments, tolerance);
     }
     let report = match arguments.merge.as_slice() {
-        [] => tested(arguments, tolerance)?,
+        [] => run_cases(arguments, tolerance)?,
         files => merge::merged(files)?,
     };
     print(&report, arguments.format)?;
     if arguments.format != TestFormat::Text {
         // A build server keeps the document in a file: its log has to say why it stops.
-        report.refused().for_each(|why| output::tell(&format!("error: {why}\n")));
+        report.refused().for_each(|why| output::print_message(&format!("error: {why}\n")));
     }
-    let is_refused = report.cases.iter().any(|case| case.answer == Answer::Refused);
+    let is_refused = report.cases.iter().any(|case| case.answer == CaseAnswer::Refused);
     Ok(match report.cases.iter().all(|case| case.is_good()) {
-        true => Status::Holds,
-        false if is_refused => Status::Refused,
-        false => Status::Fails,
+        true => ExitStatus::Passed,
+        false if is_refused => ExitStatus::Invalid,
+        false => ExitStatus::Failed,
     })
 }
 
-fn print(report: &TestReport, format: TestFormat) -> Result<(), Refusal> {
+fn print(report: &TestReport, format: TestFormat) -> Result<(), UsageError> {
     match format {
         TestFormat::Json => output::json(report),
         TestFormat::Text => output::print(&report.text()),
         TestFormat::Junit => {
             let document = junit::document(report);
-            output::print(&document.map_err(|why| Refusal::new(format!("no JUnit XML: {why}")))?)
+            output::print(&document.map_err(|why| UsageError::new(format!("no JUnit XML: {why}")))?)
         }
-        TestFormat::Sarif => output::json(&sarif::log(&report.findings(), &options::started_in())),
+        TestFormat::Sarif => output::json(&sarif::log(&report.findings(), &options::working_folder())),
     }
 }
 
-fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Refusal> {
+fn run_cases(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, UsageError> {
     let (shard, cases) = cases(arguments)?;
     let mut tried = all(&cases, &arguments.libraries, tolerance);
     let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };
@@ -98,15 +98,18 @@ fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Refus
 }
 
 /// The cases that are asked for, and which part of them these are.
-fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), Refusal> {
+fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), UsageError> {
     let mut cases = find::cases(&arguments.folders)?;
     if cases.is_empty() {
-        return Err(Refusal::new("no cases: a case is a folder with a program (.nc)"));
+        return Err(UsageError::new("no cases: a case is a folder with a program (.nc)"));
     }
     if !arguments.only.is_empty() {
         cases.retain(|case| arguments.only.iter().any(|part| case.name.contains(part.as_str())));
         if cases.is_empty() {
-            return Err(Refusal::new(format!("no case has a name with '{}'", arguments.only.join("' or '"))));
+            return Err(UsageError::new(format!(
+                "no case has '{}' in its name",
+                arguments.only.join("' or '")
+            )));
         }
     }
     let Some(text) = &arguments.shard else { return Ok((None, cases)) };
@@ -116,16 +119,16 @@ fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), Refusa
 }
 
 /// `2/4`: the second of four parts.
-fn shard(text: &str) -> Result<(usize, usize), Refusal> {
+fn shard(text: &str) -> Result<(usize, usize), UsageError> {
     let parts =
         text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
     parts
         .filter(|(number, of)| (1..=*of).contains(number))
-        .ok_or_else(|| Refusal::new(format!("--shard {text}: write K/N, the second of four parts is 2/4")))
+        .ok_or_else(|| UsageError::new(format!("--shard {text}: write K/N; the second of four parts is 2/4")))
 }
 
 /// Runs the cases on all cores; the answers are in the order of the cases.
-fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<Tried> {
+fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<CaseResult> {
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     progress::of_cases(cases.len(), &done, || all_of(cases, libraries, tolerance, &next, &done))
 }
@@ -137,7 +140,7 @@ fn all_of(
     tolerance: f64,
     next: &AtomicUsize,
     counted: &AtomicUsize,
-) -> Vec<Tried> {
+) -> Vec<CaseResult> {
     let work = || {
         let mut done = Vec::new();
         loop {
@@ -148,9 +151,9 @@ fn all_of(
         }
     };
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
-    let mut tried: Vec<(usize, Tried)> = std::thread::scope(|scope| {
+    let mut tried: Vec<(usize, CaseResult)> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<(usize, Tried)>>| match worker.join() {
+        let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<(usize, CaseResult)>>| match worker.join() {
             Ok(done) => done,
             Err(panic) => std::panic::resume_unwind(panic),
         };
@@ -161,17 +164,17 @@ fn all_of(
 }
 
 /// Writes what came of the cases as what is accepted of them, all files or none.
-fn accept(cases: &[Case], tried: &mut [Tried]) -> Result<Vec<String>, Refusal> {
+fn accept(cases: &[Case], tried: &mut [CaseResult]) -> Result<Vec<String>, UsageError> {
     let mut files = Vec::new();
     let mut names = Vec::new();
-    for (case, Tried { report, record }) in cases.iter().zip(tried.iter_mut()) {
-        let is_other = report.answer != Answer::Same;
+    for (case, CaseResult { report, record }) in cases.iter().zip(tried.iter_mut()) {
+        let is_other = report.answer != CaseAnswer::Same;
         let is_taken = |record: &&Record| is_other && !record.lacks_program();
         let Some(record) = record.as_ref().filter(is_taken) else { continue };
-        let text = record.to_json().map_err(|error| Refusal::new(error.to_string()))?;
+        let text = record.to_json().map_err(|error| UsageError::new(error.to_string()))?;
         files.push((case.folder.join(ACCEPTED), text.into_bytes()));
         names.push(report.name.clone());
-        report.answer = Answer::Same;
+        report.answer = CaseAnswer::Same;
         report.changes.clear();
         report.not_compared.clear();
     }

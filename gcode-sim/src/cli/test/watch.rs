@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use super::{TestArguments, all, case, cases};
-use crate::cli::{Refusal, Status, output};
-use crate::report::tested::TestReport;
+use crate::cli::{ExitStatus, UsageError, output};
+use crate::report::test_report::TestReport;
 
 /// How often the files are looked at.
 const PAUSE: Duration = Duration::from_millis(250);
@@ -14,7 +14,7 @@ const PAUSE: Duration = Duration::from_millis(250);
 type Stamps = BTreeMap<PathBuf, (Option<SystemTime>, u64)>;
 
 /// Tells what came of all cases, then of those that each saved file concerns; comes back only where nothing can be told.
-pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<ExitStatus, UsageError> {
     let folders = || arguments.folders.iter().chain(&arguments.libraries);
     let mut stamps = stamps(folders());
     let mut changed: Option<Vec<PathBuf>> = None;
@@ -24,7 +24,7 @@ pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<Status, R
         match round(arguments, tolerance, changed.as_deref()) {
             Ok(text) => output::print(&text)?,
             // A folder may be away while it is replaced.
-            Err(refusal) => output::tell(&format!("error: {refusal}\n")),
+            Err(refusal) => output::print_message(&format!("error: {refusal}\n")),
         }
         let now = next(&stamps, || self::stamps(folders()));
         changed = Some(differing(&stamps, &now));
@@ -33,7 +33,11 @@ pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<Status, R
 }
 
 /// The cases that the changed files concern: those in whose folders they are, or all where one is elsewhere.
-fn round(arguments: &TestArguments, tolerance: f64, changed: Option<&[PathBuf]>) -> Result<String, Refusal> {
+fn round(
+    arguments: &TestArguments,
+    tolerance: f64,
+    changed: Option<&[PathBuf]>,
+) -> Result<String, UsageError> {
     let (shard, mut cases) = cases(arguments)?;
     let mut text = String::new();
     if let Some(changed) = changed {

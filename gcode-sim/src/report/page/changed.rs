@@ -3,19 +3,19 @@ use maud::{Markup, html};
 
 use super::lines::Lines;
 use super::words::shown;
-use super::{Difference, MOST_CHANGES, Side, listed};
-use crate::changes::{Unexecuted, Where};
+use super::{Difference, MOST_CHANGES, ReviewSide, listed};
+use gcode_review::{BlockLocation, UnexecutedChange};
 
-pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup {
+pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let all = &difference.compared.changes;
     html! {
         @if all.is_empty() {
-            p { "Nothing changes on the part, nor in what the control is left with." }
+            p { "No difference on the part or in the control's final state." }
         }
         @if MOST_CHANGES < all.len() {
             p.note {
                 "The first " (MOST_CHANGES) " of " (all.len()) " changes are listed; "
-                code { "gcode-sim diff --format json" } " has them all."
+                code { "gcode-sim diff --format json" } " lists them all."
             }
         }
         ol.changes {
@@ -28,9 +28,9 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
         }
         @if !difference.unexecuted.is_empty() {
             h3 #unexecuted { "Changed blocks that neither run executed" }
-            p.note { "Nothing is known of what they do: a guard that wasn't needed, a way that wasn't gone." }
+            p.note { "Their effect is unknown: for example a guard that did not trigger or a branch not taken." }
             ol.changes {
-                @for Unexecuted { old, new } in listed(difference.unexecuted) {
+                @for UnexecutedChange { old, new } in listed(difference.unexecuted) {
                     li { (both(old, new, sides)) }
                 }
             }
@@ -42,7 +42,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
 }
 
 /// The block before and now.
-fn both(old: &Option<Where>, new: &Option<Where>, sides: &[Side<'_>]) -> Markup {
+fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[ReviewSide<'_>]) -> Markup {
     let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {
         @for (word, place) in [("old", old), ("new", new)] {
@@ -54,14 +54,14 @@ fn both(old: &Option<Where>, new: &Option<Where>, sides: &[Side<'_>]) -> Markup 
 }
 
 /// A block and the calls that led to it, each a link to its line.
-pub(super) fn chain(place: &Where, lines: &Lines) -> Markup {
+pub(super) fn chain(place: &BlockLocation, lines: &Lines) -> Markup {
     html! {
         (block(place, lines))
         @for call in &place.calls { div.call { "called from " (block(call, lines)) } }
     }
 }
 
-fn block(place: &Where, lines: &Lines) -> Markup {
+fn block(place: &BlockLocation, lines: &Lines) -> Markup {
     let name = format!("{}:{}", shown(&place.program), place.line);
     html! {
         @match lines.of_place(place) {

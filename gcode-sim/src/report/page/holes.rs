@@ -3,9 +3,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 
-use super::rows::{Row, State, found_rows, judged_rows, paired_rows, tools_of};
+use super::rows::{HoleRowState, HoleTableRow, found_rows, judged_rows, paired_rows, tools_of};
 use super::words::count;
-use super::{Page, Side};
+use super::{Page, ReviewSide};
 
 /// So many rows of holes that are as they should be are shown at first, and printed; the others at a button.
 const SHOWN: usize = 200;
@@ -18,15 +18,15 @@ const MOST_ROWS: usize = 5_000;
 #[derive(Debug)]
 pub(super) struct HoleTable {
     columns: Vec<String>,
-    rows: Vec<Row>,
+    rows: Vec<HoleTableRow>,
     /// Rows that aren't on the page.
     cut: usize,
 }
 
 impl HoleTable {
-    pub(super) fn new(page: &Page<'_>, sides: &[Side<'_>]) -> Self {
+    pub(super) fn new(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Self {
         let verdicts: Option<Vec<_>> =
-            sides.iter().map(|side| side.seen.verdict.map(|verdict| (*side, verdict))).collect();
+            sides.iter().map(|side| side.observed.verdict.map(|verdict| (*side, verdict))).collect();
         let tools = tools_of(sides);
         let pairs = page.old.map_or(&[][..], |(_, difference)| &difference.compared.holes);
         let (columns, mut rows) = match (page.reference, verdicts, page.old) {
@@ -37,25 +37,25 @@ impl HoleTable {
         let cut = rows.len().saturating_sub(MOST_ROWS);
         if cut > 0 {
             // Those worth a look first, else in their order.
-            rows.sort_by_key(|row| !row.state.is_worth_a_look());
+            rows.sort_by_key(|row| !row.state.needs_attention());
             rows.truncate(MOST_ROWS);
         }
         Self { columns, rows, cut }
     }
 
     /// Which row a hole of a side stands in, its name and its state.
-    pub(super) fn of_side(&self, place: usize) -> BTreeMap<usize, (usize, &str, State)> {
+    pub(super) fn of_side(&self, place: usize) -> BTreeMap<usize, (usize, &str, HoleRowState)> {
         let rows = self.rows.iter().enumerate();
         rows.filter_map(|(number, row)| Some((row.holes[place]?, (number, row.id.as_str(), row.state))))
             .collect()
     }
 
     pub(super) fn markup(&self, page: &Page<'_>) -> Markup {
-        let calm = self.rows.iter().enumerate().filter(|(_, row)| !row.state.is_worth_a_look());
+        let calm = self.rows.iter().enumerate().filter(|(_, row)| !row.state.needs_attention());
         let hidden: BTreeSet<usize> = calm.skip(SHOWN).map(|(number, _)| number).collect();
         let seen = self.rows.len() - hidden.len();
         html! {
-            @if self.rows.is_empty() { p { "No hole is made." } } @else {
+            @if self.rows.is_empty() { p { "The program makes no holes." } } @else {
                 p.note {
                     "Lengths in mm, in the part's frame. "
                     @if page.reference.is_some() {
@@ -63,14 +63,14 @@ impl HoleTable {
                     } @else {
                         "Without a reference a hole begins where the cutting feed begins, and its depth counts from there. "
                     }
-                    "A row leads to the block that made the hole; column heads sort."
+                    "Click a row to go to the block that made the hole, a column head to sort."
                 }
                 @if self.cut > 0 {
-                    p.note { (count(self.cut as u64)) " rows are left out: a page holds " (MOST_ROWS) ", those worth a look first." }
+                    p.note { (count(self.cut as u64)) " rows are omitted: a page holds " (MOST_ROWS) ", the most relevant first." }
                 }
                 @if PRINTED < seen {
                     p.note.paper {
-                        "The first " (PRINTED) " of " (count(seen as u64)) " rows are printed, as they were sorted; the others are on the screen."
+                        "The first " (PRINTED) " of " (count(seen as u64)) " rows are printed, in the order of the screen; the others are on the screen only."
                     }
                 }
                 div.scroll {
@@ -89,7 +89,7 @@ impl HoleTable {
                 }
                 @if !hidden.is_empty() {
                     p.note #hidden-rows {
-                        (count(hidden.len() as u64)) " more holes aren't shown, nor printed; those that differ or are wrong all are shown. "
+                        (count(hidden.len() as u64)) " more holes are neither shown nor printed; all holes with a difference or a fault are shown. "
                         button type="button" #show-rows { "Show all" }
                     }
                 }
@@ -98,7 +98,7 @@ impl HoleTable {
     }
 }
 
-impl Row {
+impl HoleTableRow {
     fn markup(&self, number: usize, more: bool) -> Markup {
         let to = self.cells.iter().rev().find_map(|cell| cell.links.first()).map(|(anchor, _)| anchor);
         html! {

@@ -2,9 +2,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::words::shown;
-use crate::changes::Where;
-use crate::session::Run;
-use crate::source::{SourceId, Span};
+use gcode_lang::source::{SourceId, Span};
+use gcode_review::BlockLocation;
+use gcode_session::Run;
 
 /// One text.
 #[derive(Clone, Debug)]
@@ -51,11 +51,11 @@ impl Lines {
     }
 
     pub(super) fn of_span(&self, run: &Run, span: Span) -> String {
-        self.anchor(span.source, run.control.memory().sources().place(span).line)
+        self.anchor(span.source, run.control.memory().sources().line_column(span).line)
     }
 
     /// The line that a place means, and whose text holds the block: two files without an O number are both `MAIN`.
-    pub(super) fn of_place(&self, place: &Where) -> Option<(SourceId, u32)> {
+    pub(super) fn of_place(&self, place: &BlockLocation) -> Option<(SourceId, u32)> {
         let block = shown(&place.block);
         let holds = |source: &&SourceId| {
             let text = self.texts.iter().find(|text| text.source == **source);

@@ -6,21 +6,21 @@ mod facts;
 mod holes;
 mod lines;
 mod listing;
+mod messages;
 mod path;
 mod proof;
 mod rows;
 mod stops;
-mod told;
 mod words;
 
 use maud::{Markup, html};
 
-use crate::changes::{Compared, Revision, Unexecuted};
-use crate::machine::Machine;
-use crate::part::reference::Reference;
-use crate::session::{Request, Trace};
-use crate::verify::Verdict;
 use document::document;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::Verdict;
+use gcode_part::Reference;
+use gcode_review::{Revision, RevisionDiff, UnexecutedChange};
+use gcode_session::{Request, Trace};
 use holes::HoleTable;
 use lines::Lines;
 
@@ -29,7 +29,7 @@ const MOST_CHANGES: usize = 500;
 
 /// One program with all that was seen of its run.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+pub struct ObservedProgram<'a> {
     pub request: &'a Request,
     pub revision: &'a Revision,
     pub trace: &'a Trace,
@@ -49,8 +49,8 @@ pub struct Document {
 /// What two revisions do differently, and what counts as the same, mm or degrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Difference<'a> {
-    pub compared: &'a Compared,
-    pub unexecuted: &'a [Unexecuted],
+    pub compared: &'a RevisionDiff,
+    pub unexecuted: &'a [UnexecutedChange],
     pub tolerance: f64,
 }
 
@@ -58,8 +58,8 @@ pub struct Difference<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Page<'a> {
     /// The old revision, where two are compared.
-    pub old: Option<(Seen<'a>, Difference<'a>)>,
-    pub new: Seen<'a>,
+    pub old: Option<(ObservedProgram<'a>, Difference<'a>)>,
+    pub new: ObservedProgram<'a>,
     pub machine: &'a Machine,
     pub reference: Option<&'a Reference>,
     /// The flags that the run depends on, as they were given.
@@ -69,10 +69,10 @@ pub struct Page<'a> {
 
 /// One side of the page.
 #[derive(Clone, Copy, Debug)]
-struct Side<'a> {
+struct ReviewSide<'a> {
     /// `old` and `new`; a program alone is `new`.
     word: &'static str,
-    seen: Seen<'a>,
+    observed: ObservedProgram<'a>,
     lines: &'a Lines,
 }
 
@@ -83,14 +83,14 @@ impl Page<'_> {
     /// Data that can't be written as JSON.
     pub fn html(&self) -> Result<String, serde_json::Error> {
         let mut lines: Vec<Lines> = Vec::new();
-        for (word, seen) in self.seen() {
+        for (word, seen) in self.observed_programs() {
             lines.push(Lines::new(word, &seen.revision.simulation.run));
         }
-        let sides: Vec<Side<'_>> = self
-            .seen()
+        let sides: Vec<ReviewSide<'_>> = self
+            .observed_programs()
             .into_iter()
             .zip(&lines)
-            .map(|((word, seen), lines)| Side { word, seen, lines })
+            .map(|((word, seen), lines)| ReviewSide { word, observed: seen, lines })
             .collect();
         let difference = self.old.map(|(_, difference)| difference);
         let table = HoleTable::new(self, &sides);
@@ -107,28 +107,28 @@ impl Page<'_> {
             main {
                 (section("summary", "Summary", facts::summary(self, &sides)))
                 @if let Some(difference) = difference {
-                    (section("changes", "What changes", changed::changes(&difference, &sides)))
+                    (section("changes", "Changes", changed::changes(&difference, &sides)))
                 }
                 (section("holes", "Holes", table.markup(self)))
                 (section("path", "Path and program", html! {
                     (path::viewer(&sides, &data))
                     (listing::listing(self, &sides))
                 }))
-                (section("told", "Stops, alarms and findings", told::told(self, &sides)))
-                (section("proof", "What this rests on", proof::proof(self, &sides)))
+                (section("told", "Stops, alarms and findings", messages::messages(self, &sides)))
+                (section("proof", "Basis of the results", proof::proof(self, &sides)))
                 (section("signatures", "Signatures", proof::signatures()))
             }
         };
         document(&self.title(), &body, &data)
     }
 
-    fn seen(&self) -> Vec<(&'static str, Seen<'_>)> {
+    fn observed_programs(&self) -> Vec<(&'static str, ObservedProgram<'_>)> {
         let old = self.old.map(|(seen, _)| ("old", seen));
         old.into_iter().chain([("new", self.new)]).collect()
     }
 
     fn title(&self) -> String {
-        let name = |seen: &Seen<'_>| words::shown(&seen.request.name);
+        let name = |seen: &ObservedProgram<'_>| words::shown(&seen.request.name);
         match &self.old {
             Some((old, _)) => format!("Review of {} against {}", name(&self.new), name(old)),
             None => format!("Review of {}", name(&self.new)),
@@ -158,7 +158,7 @@ fn section(id: &str, name: &str, inside: Markup) -> Markup {
 }
 
 /// What the columns of two sides are called.
-fn heading(side: &Side<'_>, sides: &[Side<'_>]) -> &'static str {
+fn heading(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> &'static str {
     match (sides.len(), side.word) {
         (1, _) => "Program",
         (_, "old") => "Old",

@@ -6,12 +6,12 @@ use serde::Serialize;
 
 use super::holes::HoleTable;
 use super::lines::Lines;
-use super::rows::State;
+use super::rows::HoleRowState;
 use super::words::{count, shown};
-use super::{Page, Side, heading};
-use crate::changes::Where;
-use crate::machine::HeadKind;
-use crate::part::hole::Hole;
+use super::{Page, ReviewSide, heading};
+use gcode_inspect::machine::HeadKind;
+use gcode_part::Hole;
+use gcode_review::BlockLocation;
 
 /// More moves than this aren't drawn, nor more points: the page must turn without a wait.
 const MOST_MOVES: usize = 40_000;
@@ -24,12 +24,12 @@ const MOST_HOLES: usize = 10_000;
 pub(super) struct Data {
     /// Which axis of the part points up.
     up: char,
-    sides: Vec<Drawn>,
+    sides: Vec<SidePath>,
 }
 
 /// One side. Lists of moves have one entry a move.
 #[derive(Debug, Serialize)]
-struct Drawn {
+struct SidePath {
     word: &'static str,
     /// `r`apid, `f`eed, `a`rc, `p`robing move.
     kinds: String,
@@ -62,11 +62,11 @@ struct DrawnHole {
     state: &'static str,
     /// The row of the table.
     row: Option<usize>,
-    /// As in [`Drawn::lines`], the block and the call.
+    /// As in [`SidePath::lines`], the block and the call.
     lines: Vec<usize>,
 }
 
-pub(super) fn data(page: &Page<'_>, sides: &[Side<'_>], table: &HoleTable) -> Data {
+pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable) -> Data {
     let up = match page.machine.head.kind {
         HeadKind::Fixed(out) if out.z > 0.99 => 'z',
         _ => 'y',
@@ -77,13 +77,13 @@ pub(super) fn data(page: &Page<'_>, sides: &[Side<'_>], table: &HoleTable) -> Da
 
 /// Lines by what they are, each once.
 #[derive(Default)]
-struct Known {
+struct LineIndex {
     lines: Vec<(Option<String>, String, String)>,
     numbers: BTreeMap<(String, u32, String), usize>,
 }
 
-impl Known {
-    fn number(&mut self, place: &Where, lines: &Lines) -> usize {
+impl LineIndex {
+    fn number(&mut self, place: &BlockLocation, lines: &Lines) -> usize {
         let key = (place.program.clone(), place.line, place.block.clone());
         *self.numbers.entry(key).or_insert_with(|| {
             let anchor = lines.of_place(place).map(|(source, line)| lines.anchor(source, line));
@@ -93,15 +93,15 @@ impl Known {
         })
     }
 
-    fn numbers(&mut self, place: &Where, lines: &Lines) -> Vec<usize> {
+    fn numbers(&mut self, place: &BlockLocation, lines: &Lines) -> Vec<usize> {
         std::iter::once(place).chain(&place.calls).map(|place| self.number(place, lines)).collect()
     }
 }
 
-fn drawn(page: &Page<'_>, place: usize, side: &Side<'_>, table: &HoleTable, sides: usize) -> Drawn {
-    let record = &side.seen.revision.record;
+fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable, sides: usize) -> SidePath {
+    let record = &side.observed.revision.record;
     let legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
-    let mut known = Known::default();
+    let mut known = LineIndex::default();
     let holes = holes(page, place, side, table, &mut known);
     let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
     let mut places = Vec::new();
@@ -118,7 +118,7 @@ fn drawn(page: &Page<'_>, place: usize, side: &Side<'_>, table: &HoleTable, side
     };
     let is_different = |step: &usize| different.binary_search(step).is_ok();
     let coordinates = legs.iter().flat_map(|leg| &leg.points).flat_map(|p| [p.x, p.y, p.z]);
-    Drawn {
+    SidePath {
         word: side.word,
         kinds: legs.iter().filter_map(|leg| leg.kind.chars().next()).collect(),
         counts: legs.iter().map(|leg| leg.points.len() as u32).collect(),
@@ -130,36 +130,38 @@ fn drawn(page: &Page<'_>, place: usize, side: &Side<'_>, table: &HoleTable, side
         places,
         holes,
         moves: record.moves(),
-        all_holes: side.seen.revision.simulation.extracted.holes.len(),
+        all_holes: side.observed.revision.simulation.extracted.holes.len(),
     }
 }
 
 fn holes(
     page: &Page<'_>,
     place: usize,
-    side: &Side<'_>,
+    side: &ReviewSide<'_>,
     table: &HoleTable,
-    known: &mut Known,
+    known: &mut LineIndex,
 ) -> Vec<DrawnHole> {
-    let simulation = &side.seen.revision.simulation;
+    let simulation = &side.observed.revision.simulation;
     let rows = table.of_side(place);
     let mut all = Vec::new();
     for (number, found) in simulation.extracted.holes.iter().enumerate().take(MOST_HOLES) {
         let row = rows.get(&number);
-        let lines = known.numbers(&Where::of(&simulation.run, &found.place), side.lines);
+        let lines = known.numbers(&BlockLocation::of(&simulation.run, &found.backtrace), side.lines);
         let hole = found.hole(|_| (String::new(), 0));
         let id = row.map_or_else(|| (number + 1).to_string(), |(_, id, _)| (*id).to_owned());
-        let state = row.map_or(State::Unjudged, |(_, _, state)| *state);
+        let state = row.map_or(HoleRowState::Unjudged, |(_, _, state)| *state);
         all.push(DrawnHole { lines, row: row.map(|(row, ..)| *row), ..hole_of(&hole, id, state) });
     }
-    let missing = side.seen.verdict.iter().flat_map(|verdict| &verdict.missing);
+    let missing = side.observed.verdict.iter().flat_map(|verdict| &verdict.missing);
     let wanted = page.reference.iter().flat_map(|reference| &reference.holes);
     let wanted: BTreeMap<_, _> = wanted.map(|hole| (hole.id.as_deref().unwrap_or_default(), hole)).collect();
-    all.extend(missing.filter_map(|id| Some(hole_of(wanted.get(id.as_str())?, shown(id), State::Missing))));
+    all.extend(
+        missing.filter_map(|id| Some(hole_of(wanted.get(id.as_str())?, shown(id), HoleRowState::Missing))),
+    );
     all
 }
 
-fn hole_of(hole: &Hole, id: String, state: State) -> DrawnHole {
+fn hole_of(hole: &Hole, id: String, state: HoleRowState) -> DrawnHole {
     let bottom = std::array::from_fn(|i| hole.entry[i] - hole.axis[i] * hole.depth);
     let round = |point: [f64; 3]| point.map(|mm| (mm * 1000.0).round() / 1000.0);
     DrawnHole {
@@ -173,7 +175,7 @@ fn hole_of(hole: &Hole, id: String, state: State) -> DrawnHole {
     }
 }
 
-pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
+pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
     let tools = [
         ("top", "Top"),
         ("front", "Front"),
@@ -189,7 +191,7 @@ pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
                     button type="button" data-view=(action) aria-label=[label(action)] { (name) }
                 }
                 label { input #rapids type="checkbox" checked; " Rapids" }
-                @if sides.len() == 2 { label { input #changed-only type="checkbox"; " What changes only" } }
+                @if sides.len() == 2 { label { input #changed-only type="checkbox"; " Changes only" } }
             }
             div.canvases {
                 @for side in sides {
@@ -208,16 +210,16 @@ pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
                 li.probe { "probing move" }
                 @if sides.len() == 2 { li.changed { "different from the other program" } }
                 li.hole { "hole" }
-                li.wrong { "hole that differs, or is wrong" }
+                li.wrong { "hole that differs or has a fault" }
                 li.absent { "missing hole" }
             }
             details.note #keys {
                 summary { "Mouse, touch and keys" }
-                "Drag, or the arrow keys, turn; the wheel, two fingers, + and − zoom; Shift and drag moves. "
-                "N and P go from move to move, Enter to the block of what is picked, 0 is the first view."
+                "Drag, or use the arrow keys, to rotate; the wheel, two fingers, + and − zoom; Shift and drag moves. "
+                "N and P go from move to move, Enter to the block of the selected move, 0 resets the view."
             }
             @for (side, drawn) in sides.iter().zip(&data.sides) { (left_out(side, sides, drawn)) }
-            noscript { p { "The drawing needs scripts; all else on this page doesn't." } }
+            noscript { p { "The drawing needs scripts; everything else on this page works without them." } }
         }
     }
 }
@@ -226,15 +228,15 @@ fn label(action: &str) -> Option<&'static str> {
     match action {
         "in" => Some("Zoom in"),
         "out" => Some("Zoom out"),
-        "top" => Some("Seen from above"),
-        "front" => Some("Seen from the front"),
-        "side" => Some("Seen from the side"),
+        "top" => Some("View from above"),
+        "front" => Some("View from the front"),
+        "side" => Some("View from the side"),
         _ => None,
     }
 }
 
 /// What isn't in the drawing.
-fn left_out(side: &Side<'_>, sides: &[Side<'_>], drawn: &Drawn) -> Markup {
+fn left_out(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>], drawn: &SidePath) -> Markup {
     let shown = drawn.counts.len();
     html! {
         @if shown < drawn.moves {

@@ -2,17 +2,17 @@
 use std::collections::BTreeMap;
 
 use super::words::shown;
-use super::{Side, heading};
-use crate::changes::Paired;
-use crate::holes::Found;
-use crate::part::reference::Reference;
-use crate::report::figures::{near, signed};
+use super::{ReviewSide, heading};
+use crate::report::figures::{rounded, signed};
 use crate::report::hole_changes::{self, remarks};
-use crate::verify::{Extra, HoleVerdict, Verdict};
+use gcode_inspect::holes::DrilledHole;
+use gcode_inspect::verify::{ExtraHole, HoleVerdict, Verdict};
+use gcode_part::Reference;
+use gcode_review::Paired;
 
 /// What is to be said of a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum State {
+pub(super) enum HoleRowState {
     Bad,
     Missing,
     Extra,
@@ -24,7 +24,7 @@ pub(super) enum State {
     Unjudged,
 }
 
-impl State {
+impl HoleRowState {
     /// As a class of the page's style and a word of its data.
     pub(super) fn class(self) -> &'static str {
         match self {
@@ -39,7 +39,7 @@ impl State {
         }
     }
 
-    pub(super) fn is_worth_a_look(self) -> bool {
+    pub(super) fn needs_attention(self) -> bool {
         !matches!(self, Self::Good | Self::Same | Self::Unjudged)
     }
 }
@@ -55,10 +55,10 @@ pub(super) struct Cell {
 
 impl Cell {
     fn number(value: f64, decimals: usize) -> Self {
-        Self { text: near(value, decimals), value: Some(value), links: Vec::new() }
+        Self { text: rounded(value, decimals), value: Some(value), links: Vec::new() }
     }
 
-    fn maybe(value: Option<f64>, decimals: usize) -> Self {
+    fn optional(value: Option<f64>, decimals: usize) -> Self {
         value.map_or_else(Self::default, |value| Self::number(value, decimals))
     }
 
@@ -68,9 +68,9 @@ impl Cell {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Row {
+pub(super) struct HoleTableRow {
     pub id: String,
-    pub state: State,
+    pub state: HoleRowState,
     pub words: String,
     pub cells: Vec<Cell>,
     /// The hole of each side, counted from 0.
@@ -78,11 +78,11 @@ pub(super) struct Row {
 }
 
 /// The block that finished a hole and the one that called its program.
-fn made_by(side: &Side<'_>, found: &Found) -> Cell {
-    let run = &side.seen.revision.simulation.run;
+fn block_cell(side: &ReviewSide<'_>, found: &DrilledHole) -> Cell {
+    let run = &side.observed.revision.simulation.run;
     let mut links = Vec::new();
-    let calls = found.place.calls.as_ref().map(|call| call.from);
-    for span in std::iter::once(found.place.block).chain(calls) {
+    let calls = found.backtrace.calls.as_ref().map(|call| call.calling_block);
+    for span in std::iter::once(found.backtrace.block).chain(calls) {
         let (program, line) = run.locate(span);
         links.push((side.lines.of_span(run, span), format!("{}:{line}", shown(&program))));
     }
@@ -90,12 +90,12 @@ fn made_by(side: &Side<'_>, found: &Found) -> Cell {
     Cell { text, value: None, links }
 }
 
-fn found<'a>(side: &Side<'a>, hole: usize) -> &'a Found {
-    &side.seen.revision.simulation.extracted.holes[hole]
+fn drilled_hole<'a>(side: &ReviewSide<'a>, hole: usize) -> &'a DrilledHole {
+    &side.observed.revision.simulation.extracted.holes[hole]
 }
 
 /// `Block`, or `Old block` and `New block`.
-fn titled(name: &str, side: &Side<'_>, sides: &[Side<'_>]) -> String {
+fn side_title(name: &str, side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> String {
     if sides.len() == 1 {
         name.to_owned()
     } else {
@@ -104,10 +104,10 @@ fn titled(name: &str, side: &Side<'_>, sides: &[Side<'_>]) -> String {
 }
 
 /// The tools that make each hole of each side; where one only makes another again, its own.
-pub(super) fn tools_of(sides: &[Side<'_>]) -> Vec<Vec<Vec<u32>>> {
-    let of = |side: &Side<'_>| {
-        let holes = &side.seen.revision.simulation.extracted.holes;
-        let made = side.seen.revision.record.made_by().into_iter().zip(holes);
+pub(super) fn tools_of(sides: &[ReviewSide<'_>]) -> Vec<Vec<Vec<u32>>> {
+    let of = |side: &ReviewSide<'_>| {
+        let holes = &side.observed.revision.simulation.extracted.holes;
+        let made = side.observed.revision.record.made_by().into_iter().zip(holes);
         made.map(|(tools, hole)| if tools.is_empty() { hole.tool.into_iter().collect() } else { tools })
             .collect()
     };
@@ -115,14 +115,14 @@ pub(super) fn tools_of(sides: &[Side<'_>]) -> Vec<Vec<Vec<u32>>> {
 }
 
 /// What a hole is: where, how deep, how wide, by which tools.
-fn described(found: Option<&Found>, tools: &[u32]) -> Vec<Cell> {
-    let entry = |axis: usize| Cell::maybe(found.map(|found| found.entry[axis]), 3);
+fn description_cells(found: Option<&DrilledHole>, tools: &[u32]) -> Vec<Cell> {
+    let entry = |axis: usize| Cell::optional(found.map(|found| found.entry[axis]), 3);
     vec![
         entry(0),
         entry(1),
         entry(2),
-        Cell::maybe(found.map(|found| found.depth), 3),
-        Cell::maybe(found.and_then(|found| found.diameter), 2),
+        Cell::optional(found.map(|found| found.depth), 3),
+        Cell::optional(found.and_then(|found| found.diameter), 2),
         Cell {
             text: hole_changes::tools(tools),
             value: tools.last().copied().map(f64::from),
@@ -131,61 +131,73 @@ fn described(found: Option<&Found>, tools: &[u32]) -> Vec<Cell> {
     ]
 }
 
-const DESCRIBED: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tools"];
+const DESCRIPTION_COLUMNS: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tools"];
 
 /// Which of them are the tools.
 const TOOL: usize = 5;
 
-pub(super) fn found_rows(sides: &[Side<'_>], tools: &[Vec<Vec<u32>>]) -> (Vec<String>, Vec<Row>) {
+pub(super) fn found_rows(
+    sides: &[ReviewSide<'_>],
+    tools: &[Vec<Vec<u32>>],
+) -> (Vec<String>, Vec<HoleTableRow>) {
     let Some(side) = sides.last() else { return (Vec::new(), Vec::new()) };
-    let holes = side.seen.revision.simulation.extracted.holes.iter().enumerate();
+    let holes = side.observed.revision.simulation.extracted.holes.iter().enumerate();
     let rows = holes.map(|(number, hole)| {
-        let mut cells = described(Some(hole), tools.last().map_or(&[], |tools| &tools[number]));
-        cells.push(made_by(side, hole));
-        let words = "not judged".to_owned();
-        Row { id: (number + 1).to_string(), state: State::Unjudged, words, cells, holes: vec![Some(number)] }
+        let mut cells = description_cells(Some(hole), tools.last().map_or(&[], |tools| &tools[number]));
+        cells.push(block_cell(side, hole));
+        let words = "not verified".to_owned();
+        HoleTableRow {
+            id: (number + 1).to_string(),
+            state: HoleRowState::Unjudged,
+            words,
+            cells,
+            holes: vec![Some(number)],
+        }
     });
-    (DESCRIBED.map(str::to_owned).into_iter().chain(["Block".to_owned()]).collect(), rows.collect())
+    (DESCRIPTION_COLUMNS.map(str::to_owned).into_iter().chain(["Block".to_owned()]).collect(), rows.collect())
 }
 
 /// Two revisions against one another.
 pub(super) fn paired_rows(
     pairs: &[Paired],
-    sides: &[Side<'_>],
+    sides: &[ReviewSide<'_>],
     tools: &[Vec<Vec<u32>>],
-) -> (Vec<String>, Vec<Row>) {
+) -> (Vec<String>, Vec<HoleTableRow>) {
     let [old, new] = sides else { return (Vec::new(), Vec::new()) };
-    let mut columns = DESCRIBED.map(str::to_owned).to_vec();
+    let mut columns = DESCRIPTION_COLUMNS.map(str::to_owned).to_vec();
     columns.extend(["Moved", "Tilted °", "Deeper"].map(str::to_owned));
-    columns.extend([titled("Block", old, sides), titled("Block", new, sides)]);
+    columns.extend([side_title("Block", old, sides), side_title("Block", new, sides)]);
     let row = |pair: &Paired| {
-        let (was, is) = (pair.old.map(|hole| found(old, hole)), pair.new.map(|hole| found(new, hole)));
+        let (was, is) =
+            (pair.old.map(|hole| drilled_hole(old, hole)), pair.new.map(|hole| drilled_hole(new, hole)));
         let both = pair.old.is_some() && pair.new.is_some();
         let made = |side: usize, hole: Option<usize>| hole.map_or(&[][..], |hole| &tools[side][hole]);
         let (before, now) = (made(0, pair.old), made(1, pair.new));
-        let mut cells = described(is.or(was), if is.is_some() { now } else { before });
+        let mut cells = description_cells(is.or(was), if is.is_some() { now } else { before });
         if both && before != now {
             let [before, now] = [before, now].map(hole_changes::tools);
             cells[TOOL].text = format!("{before} → {now}");
         }
         cells.extend([
-            Cell::maybe(both.then_some(pair.moved), 4),
-            Cell::maybe(both.then_some(pair.tilted.0), 4),
+            Cell::optional(both.then_some(pair.moved), 4),
+            Cell::optional(both.then_some(pair.tilted.0), 4),
             Cell::signed(both.then_some(pair.deeper)),
-            was.map_or_else(Cell::default, |hole| made_by(old, hole)),
-            is.map_or_else(Cell::default, |hole| made_by(new, hole)),
+            was.map_or_else(Cell::default, |hole| block_cell(old, hole)),
+            is.map_or_else(Cell::default, |hole| block_cell(new, hole)),
         ]);
         let remarks = remarks(pair, was.zip(Some(before)), is.zip(Some(now))).join("; ");
         let (id, state, words) = match (pair.old, pair.new) {
-            (Some(hole), None) => (format!("{}", hole + 1), State::Missing, "lost".to_owned()),
-            (None, Some(hole)) => (format!("new {}", hole + 1), State::Extra, "added".to_owned()),
-            (Some(hole), Some(_)) if pair.changed => (format!("{}", hole + 1), State::Changed, remarks),
+            (Some(hole), None) => (format!("{}", hole + 1), HoleRowState::Missing, "lost".to_owned()),
+            (None, Some(hole)) => (format!("new {}", hole + 1), HoleRowState::Extra, "added".to_owned()),
+            (Some(hole), Some(_)) if pair.changed => {
+                (format!("{}", hole + 1), HoleRowState::Changed, remarks)
+            }
             (hole, _) => {
                 let id = hole.map_or_else(String::new, |hole| (hole + 1).to_string());
-                (id, State::Same, "same".to_owned())
+                (id, HoleRowState::Same, "same".to_owned())
             }
         };
-        Row { id, state, words, cells, holes: vec![pair.old, pair.new] }
+        HoleTableRow { id, state, words, cells, holes: vec![pair.old, pair.new] }
     };
     (columns, pairs.iter().map(row).collect())
 }
@@ -193,56 +205,59 @@ pub(super) fn paired_rows(
 /// Each wanted hole with the deviations on each side, and the holes nobody asked for.
 pub(super) fn judged_rows(
     reference: &Reference,
-    judged: &[(Side<'_>, &Verdict)],
-    sides: &[Side<'_>],
+    judged: &[(ReviewSide<'_>, &Verdict)],
+    sides: &[ReviewSide<'_>],
     (pairs, tools): (&[Paired], &[Vec<Vec<u32>>]),
-) -> (Vec<String>, Vec<Row>) {
+) -> (Vec<String>, Vec<HoleTableRow>) {
     let changed: BTreeMap<usize, &Paired> =
         pairs.iter().filter(|pair| pair.changed).filter_map(|pair| Some((pair.new?, pair))).collect();
     // What is different about a hole of the new side.
     let different = |hole: &HoleVerdict| {
-        let pair = changed.get(&hole.found)?;
+        let pair = changed.get(&hole.drilled_index)?;
         let [old, new] = sides else { return None };
-        let made = |side, number: usize, place: usize| (found(side, number), tools[place][number].as_slice());
+        let made =
+            |side, number: usize, place: usize| (drilled_hole(side, number), tools[place][number].as_slice());
         let was = pair.old.map(|hole| made(old, hole, 0));
         Some(remarks(pair, was, pair.new.map(|hole| made(new, hole, 1)))).filter(|words| !words.is_empty())
     };
     let by_id: Vec<BTreeMap<&str, &HoleVerdict>> =
         judged.iter().map(|(_, v)| v.holes.iter().map(|hole| (hole.id.as_str(), hole)).collect()).collect();
-    let mut columns: Vec<String> = sides.iter().map(|side| titled("φ", side, sides)).collect();
+    let mut columns: Vec<String> = sides.iter().map(|side| side_title("φ", side, sides)).collect();
     columns.extend((sides.len() == 2).then(|| "Change of φ".to_owned()));
-    columns.extend(["Off at entry", "Off at bottom", "Depth error", "Tilt °"].map(str::to_owned));
-    columns.extend(sides.iter().map(|side| titled("Block", side, sides)));
+    columns.extend(["Deviation at entry", "Deviation at bottom", "Depth error", "Tilt °"].map(str::to_owned));
+    columns.extend(sides.iter().map(|side| side_title("Block", side, sides)));
     let wanted = reference.holes.iter().map(|hole| {
         let id = hole.id.as_deref().unwrap_or_default();
         let found_by: Vec<Option<&HoleVerdict>> = by_id.iter().map(|holes| holes.get(id).copied()).collect();
         let is = found_by.last().copied().flatten();
         let mut cells: Vec<Cell> =
-            found_by.iter().map(|hole| Cell::maybe(hole.map(|hole| hole.phi), 4)).collect();
+            found_by.iter().map(|hole| Cell::optional(hole.map(|hole| hole.position_deviation), 4)).collect();
         if let [was, is] = found_by.as_slice() {
-            cells.push(Cell::signed(was.zip(*is).map(|(was, is)| is.phi - was.phi)));
+            cells.push(Cell::signed(
+                was.zip(*is).map(|(was, is)| is.position_deviation - was.position_deviation),
+            ));
         }
         cells.extend([
-            Cell::maybe(is.map(|hole| hole.at_entry), 4),
-            Cell::maybe(is.map(|hole| hole.at_bottom), 4),
+            Cell::optional(is.map(|hole| hole.at_entry), 4),
+            Cell::optional(is.map(|hole| hole.at_bottom), 4),
             Cell::signed(is.map(|hole| hole.depth_error)),
-            Cell::maybe(is.map(|hole| hole.tilt), 4),
+            Cell::optional(is.map(|hole| hole.tilt), 4),
         ]);
         cells.extend(judged.iter().zip(&found_by).map(|((side, _), hole)| {
-            hole.map_or_else(Cell::default, |hole| made_by(side, found(side, hole.found)))
+            hole.map_or_else(Cell::default, |hole| block_cell(side, drilled_hole(side, hole.drilled_index)))
         }));
         let (state, words) = match (is, is.and_then(different)) {
-            (None, _) => (State::Missing, "missing".to_owned()),
+            (None, _) => (HoleRowState::Missing, "missing".to_owned()),
             (Some(hole), Some(words)) if hole.ok => {
-                (State::Altered, format!("in tolerance, but: {}", words.join("; ")))
+                (HoleRowState::Altered, format!("in tolerance, but: {}", words.join("; ")))
             }
-            (Some(hole), None) if hole.ok => (State::Good, "in tolerance".to_owned()),
-            (Some(hole), _) => (State::Bad, hole.objections.join(", ")),
+            (Some(hole), None) if hole.ok => (HoleRowState::Good, "in tolerance".to_owned()),
+            (Some(hole), _) => (HoleRowState::Bad, hole.objections.join(", ")),
         };
-        let holes = found_by.iter().map(|hole| hole.map(|hole| hole.found)).collect();
-        Row { id: shown(id), state, words, cells, holes }
+        let holes = found_by.iter().map(|hole| hole.map(|hole| hole.drilled_index)).collect();
+        HoleTableRow { id: shown(id), state, words, cells, holes }
     });
-    let mut rows: Vec<Row> = wanted.collect();
+    let mut rows: Vec<HoleTableRow> = wanted.collect();
     for (place, (side, verdict)) in judged.iter().enumerate() {
         rows.extend(extra_rows(place, side, verdict, columns.len(), sides));
     }
@@ -252,21 +267,27 @@ pub(super) fn judged_rows(
 /// The holes nobody asked for.
 fn extra_rows(
     place: usize,
-    side: &Side<'_>,
+    side: &ReviewSide<'_>,
     verdict: &Verdict,
     columns: usize,
-    sides: &[Side<'_>],
-) -> Vec<Row> {
+    sides: &[ReviewSide<'_>],
+) -> Vec<HoleTableRow> {
     let of_old = sides.len() == 2 && place == 0;
-    let row = |(number, extra): (usize, &Extra)| {
+    let row = |(number, extra): (usize, &ExtraHole)| {
         let mut cells = vec![Cell::default(); columns - sides.len()];
-        let block = made_by(side, found(side, extra.found));
+        let block = block_cell(side, drilled_hole(side, extra.drilled_index));
         cells.extend((0..sides.len()).map(|at| if at == place { block.clone() } else { Cell::default() }));
         let mut holes = vec![None; sides.len()];
-        holes[place] = Some(extra.found);
+        holes[place] = Some(extra.drilled_index);
         let (of, words) = if of_old { ("old ", "extra in the old") } else { ("", "extra") };
         let id = format!("{of}extra {}", number + 1);
-        Row { id, state: State::Extra, words: format!("{words}: {}", shown(&extra.why)), cells, holes }
+        HoleTableRow {
+            id,
+            state: HoleRowState::Extra,
+            words: format!("{words}: {}", shown(&extra.why)),
+            cells,
+            holes,
+        }
     };
     verdict.extra.iter().enumerate().map(row).collect()
 }

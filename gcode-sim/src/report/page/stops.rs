@@ -1,26 +1,26 @@
 //! The operator stops of a side, those marked that the other side doesn't make in the same way.
-use super::{Page, Side};
-use crate::changes::Where;
+use super::{Page, ReviewSide};
+use gcode_review::BlockLocation;
 
 /// Where a program waited for the operator.
 pub(super) struct Stop<'a> {
-    pub place: &'a Where,
+    pub place: &'a BlockLocation,
     /// What the other program does instead.
     pub mark: Option<&'static str>,
 }
 
 /// In the order in which they were made.
-pub(super) fn stops<'a>(page: &Page<'_>, side: &Side<'a>) -> Vec<Stop<'a>> {
+pub(super) fn stops<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> Vec<Stop<'a>> {
     let compared = page.old.map(|(_, difference)| difference.compared);
     let (place, [alone, changed]) = match side.word {
-        "old" => (0, ["not made here by the new program", "made otherwise by the new program"]),
-        _ => (1, ["not made here by the old program", "made otherwise by the old program"]),
+        "old" => (0, ["not executed here by the new program", "executed differently by the new program"]),
+        _ => (1, ["not executed here by the old program", "executed differently by the old program"]),
     };
     let mark = |step: usize| {
         let compared = compared?;
         let is_of = |steps: &[Vec<usize>; 2]| steps[place].binary_search(&step).is_ok();
-        if is_of(&compared.alone) { Some(alone) } else { is_of(&compared.steps).then_some(changed) }
+        if is_of(&compared.unpaired_steps) { Some(alone) } else { is_of(&compared.steps).then_some(changed) }
     };
-    let all = side.seen.revision.record.stops();
+    let all = side.observed.revision.record.stops();
     all.map(|(step, place)| Stop { place, mark: mark(step) }).collect()
 }

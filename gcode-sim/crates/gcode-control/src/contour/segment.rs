@@ -1,0 +1,218 @@
+//! Straight lines and arcs, and the points beside them.
+use super::crossing::Curve;
+use super::{Point, cross, left_normal};
+use gcode_lang::units::Deg;
+
+/// Less than this is no length.
+const MIN_LENGTH: f64 = 1e-9;
+
+/// A piece of a contour. An arc's end may be a little off its radius, as an arc's end may be on a control.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Segment {
+    Line {
+        from: Point,
+        to: Point,
+    },
+    Arc {
+        from: Point,
+        to: Point,
+        centre: Point,
+        /// Positive is counterclockwise.
+        sweep: Deg,
+    },
+}
+
+impl Segment {
+    pub(crate) fn start(&self) -> Point {
+        match *self {
+            Self::Line { from, .. } | Self::Arc { from, .. } => from,
+        }
+    }
+
+    pub(crate) fn end(&self) -> Point {
+        match *self {
+            Self::Line { to, .. } | Self::Arc { to, .. } => to,
+        }
+    }
+
+    pub(crate) fn is_arc(&self) -> bool {
+        matches!(self, Self::Arc { .. })
+    }
+
+    /// The direction in which it begins, of length 1.
+    pub(crate) fn start_direction(&self) -> Point {
+        self.direction(self.start())
+    }
+
+    /// The direction in which it ends.
+    pub(crate) fn end_direction(&self) -> Point {
+        self.direction(self.end())
+    }
+
+    fn direction(&self, at: Point) -> Point {
+        match *self {
+            Self::Line { from, to } => (to - from).normalize(),
+            Self::Arc { centre, sweep, .. } => left_normal(at - centre).normalize() * sweep.0.signum(),
+        }
+    }
+
+    /// The point at a distance to the left of where it begins.
+    pub(crate) fn parallel_start(&self, distance: f64) -> Point {
+        self.start() + left_normal(self.start_direction()) * distance
+    }
+
+    /// The point at a distance to the left of where it ends.
+    pub(crate) fn parallel_end(&self, distance: f64) -> Point {
+        self.end() + left_normal(self.end_direction()) * distance
+    }
+
+    /// Whether the arc is too small for a parallel at this distance.
+    pub(crate) fn is_too_small(&self, distance: f64) -> bool {
+        let Self::Arc { from, to, centre, sweep } = *self else { return false };
+        [from, to].into_iter().any(|at| parallel_radius(centre, sweep, at, distance) < -MIN_LENGTH)
+    }
+
+    /// Whether a point lies on the parallel of an arc where the arc begins; all points do for a line.
+    pub(crate) fn is_parallel_start(&self, point: Point, distance: f64) -> bool {
+        match *self {
+            Self::Line { .. } => true,
+            Self::Arc { centre, from, sweep, .. } => {
+                let radius = parallel_radius(centre, sweep, from, distance);
+                ((point - centre).norm() - radius).abs() < 1e-6
+            }
+        }
+    }
+
+    /// The whole line or circle that the parallel is a part of, where the segment begins.
+    pub(super) fn curve_at_start(&self, distance: f64) -> Curve {
+        self.curve(self.start(), distance)
+    }
+
+    pub(super) fn curve_at_end(&self, distance: f64) -> Curve {
+        self.curve(self.end(), distance)
+    }
+
+    fn curve(&self, at: Point, distance: f64) -> Curve {
+        match *self {
+            Self::Line { .. } => {
+                let direction = self.start_direction();
+                Curve::Line { point: at + left_normal(direction) * distance, direction }
+            }
+            // No arc that is followed is smaller than that by more than rounding: see [`Segment::is_too_small`].
+            Self::Arc { centre, sweep, .. } => {
+                let radius = parallel_radius(centre, sweep, at, distance).max(0.0);
+                Curve::Circle { centre, radius }
+            }
+        }
+    }
+
+    /// Whether the way from `start` to `end` runs against the segment, of which it is to be the parallel.
+    pub(crate) fn is_reversed(&self, start: Point, end: Point, distance: f64) -> bool {
+        match *self {
+            Self::Line { .. } => self.start_direction().dot(end - start) < -MIN_LENGTH,
+            Self::Arc { sweep, .. } => self.sweep_between(start, end, distance).0 * sweep.0.signum() < -1e-7,
+        }
+    }
+
+    /// The sweep of an arc's parallel that begins and ends elsewhere than beside the arc's own ends; a line has none.
+    pub(crate) fn sweep_between(&self, start: Point, end: Point, distance: f64) -> Deg {
+        let Self::Arc { centre, sweep, from, to } = *self else { return Deg::ZERO };
+        let lost = |own: Point, new: Point| {
+            // A parallel that is a point turns through the angle of its arc.
+            if parallel_radius(centre, sweep, own, distance) < MIN_LENGTH {
+                return 0.0;
+            }
+            let (own, new) = (own - centre, new - centre);
+            Deg::atan2(cross(own, new), own.dot(new)).0
+        };
+        let first = lost(from, start);
+        let last = lost(to, end);
+        Deg(sweep.0 - first + last)
+    }
+
+    /// The segment up to a point on it, or `None` where that is not within it. A length of 0 is within it.
+    pub(super) fn ending_at(&self, end: Point) -> Option<Self> {
+        match *self {
+            Self::Line { from, to } => {
+                let along = self.start_direction().dot(end - from);
+                (-MIN_LENGTH..=(to - from).norm() + MIN_LENGTH)
+                    .contains(&along)
+                    .then_some(Self::Line { from, to: end })
+            }
+            Self::Arc { from, centre, sweep, .. } => {
+                let new = self.sweep_between(from, end, 0.0);
+                (new.0 * sweep.0 >= 0.0).then_some(Self::Arc { from, to: end, centre, sweep: new })
+            }
+        }
+    }
+
+    /// The segment from a point on it.
+    pub(super) fn beginning_at(&self, start: Point) -> Option<Self> {
+        self.reversed().ending_at(start).map(|segment| segment.reversed())
+    }
+
+    fn reversed(&self) -> Self {
+        match *self {
+            Self::Line { from, to } => Self::Line { from: to, to: from },
+            Self::Arc { from, to, centre, sweep } => Self::Arc { from: to, to: from, centre, sweep: -sweep },
+        }
+    }
+
+    /// Whether it leads anywhere.
+    pub(crate) fn has_length(&self) -> bool {
+        match *self {
+            Self::Line { from, to } => (to - from).norm() > MIN_LENGTH,
+            Self::Arc { from, centre, sweep, .. } => {
+                (from - centre).norm() * sweep.abs().to_rad() > MIN_LENGTH
+            }
+        }
+    }
+}
+
+/// The radius of an arc's parallel where it begins or ends: negative where the arc is too small to have one.
+fn parallel_radius(centre: Point, sweep: Deg, at: Point, distance: f64) -> f64 {
+    (at - centre).norm() - distance * sweep.0.signum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quarter(sweep: f64) -> Segment {
+        // From (10, 0) about the origin.
+        let to = if sweep > 0.0 { Point::new(0.0, 10.0) } else { Point::new(0.0, -10.0) };
+        Segment::Arc { from: Point::new(10.0, 0.0), to, centre: Point::zeros(), sweep: Deg(sweep) }
+    }
+
+    #[test]
+    fn left_of_a_counterclockwise_arc_is_inside() {
+        assert!((quarter(90.0).parallel_start(3.0) - Point::new(7.0, 0.0)).norm() < 1e-12);
+        assert!((quarter(90.0).parallel_end(3.0) - Point::new(0.0, 7.0)).norm() < 1e-12);
+        assert!((quarter(-90.0).parallel_start(3.0) - Point::new(13.0, 0.0)).norm() < 1e-12);
+        assert!((quarter(-90.0).parallel_end(-3.0) - Point::new(0.0, -7.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn an_arc_is_too_small_inside_only() {
+        assert!(quarter(90.0).is_too_small(10.1) && !quarter(90.0).is_too_small(10.0));
+        assert!(!quarter(90.0).is_too_small(-99.0) && quarter(-90.0).is_too_small(-10.1));
+    }
+
+    #[test]
+    fn a_shortened_parallel_sweeps_less() {
+        let start = Point::new(7.0 * Deg(30.0).cos(), 7.0 * Deg(30.0).sin());
+        let end = Point::new(0.0, 7.0);
+        assert!((quarter(90.0).sweep_between(start, end, 3.0).0 - 60.0).abs() < 1e-9);
+        assert!(!quarter(90.0).is_reversed(start, end, 3.0));
+        let before = Point::new(7.0 * Deg(20.0).cos(), 7.0 * Deg(20.0).sin());
+        assert!(quarter(90.0).is_reversed(start, before, 3.0));
+    }
+
+    #[test]
+    fn a_whole_circle_stays_whole() {
+        let (from, centre) = (Point::new(10.0, 0.0), Point::zeros());
+        let circle = Segment::Arc { from, to: from, centre, sweep: Deg(-360.0) };
+        let at = circle.parallel_start(-4.0);
+        assert!((circle.sweep_between(at, at, -4.0).0 + 360.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,244 @@
+//! A drilling block, checked: where its holes are, and its moves one by one, the steps of the cycle at every hole.
+use super::Executor;
+use super::patterns::BoltHolePattern;
+use super::state::{PolarPoint, State};
+use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
+use gcode_lang::program::cycles::{Cycle, CycleStep};
+use gcode_lang::program::modes::ReturnTo;
+use gcode_lang::units::{Deg, MmPerMin, Rpm, Seconds};
+
+/// A drilling block, checked: telling it can't fail.
+#[derive(Clone, Debug)]
+pub(super) struct CyclePlan {
+    pub(super) cycle: &'static Cycle,
+    /// Where the block begins; after it the plan's state stands where it ends.
+    pub(super) start_state: State,
+    /// The first hole, as programmed, and from hole to hole.
+    pub(super) first_hole: Position,
+    pub(super) hole_step: Position,
+    pub(super) polar_repeats: Option<PolarRepeats>,
+    pub(super) pattern: Option<BoltHolePattern>,
+    pub(super) repeats: u32,
+    pub(super) axis: AxisIndex,
+    pub(super) shift: (AxisIndex, f64),
+    pub(super) rate: MmPerMin,
+    /// Seconds.
+    pub(super) dwell: f64,
+    /// What G51 makes of a millimetre along the drilling axis; Q, 5114 and 5115 are not scaled.
+    pub(super) stretch: f64,
+}
+
+/// Holes that K repeats in polar coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PolarRepeats {
+    pub(super) plane: (AxisIndex, AxisIndex),
+    pub(super) first: PolarPoint,
+    /// Degrees from hole to hole.
+    pub(super) angle_step: f64,
+}
+
+impl Executor {
+    /// Tells a drilling block move by move.
+    pub(super) fn expand_cycle(&self, drill: &CyclePlan, tell: &mut impl FnMut(EventKind, f64)) {
+        let state = &drill.start_state;
+        let mut way = CycleMotion {
+            executor: self,
+            at: state.machine,
+            unknown_axes: state.work_zero_unknown,
+            rate: drill.rate,
+            emit: tell,
+        };
+        let data = &state.cycle;
+        let (r, z) = (data.r_level(), data.z_level());
+        let mut hole = drill.first_hole;
+        for turn in 0..drill.repeats {
+            drill.move_to_hole(self, turn, &mut hole);
+            let level = |value: f64| {
+                let mut point = hole;
+                point[drill.axis] = value;
+                self.to_machine(state, &point)
+            };
+            let mut over = level(r);
+            over[drill.axis] = way.at[drill.axis];
+            way.rapid(over);
+            if drill.cycle.starts_at_r {
+                way.set_work_zero(drill.axis, data.is_r_unknown());
+                way.rapid(level(r));
+            }
+            for step in drill.cycle.steps {
+                self.drill_step(*step, drill, &level, (r, z), &mut way);
+            }
+        }
+    }
+
+    fn drill_step<T: FnMut(EventKind, f64)>(
+        &self,
+        step: CycleStep,
+        drill: &CyclePlan,
+        level: &impl Fn(f64) -> Position,
+        (r, z): (f64, f64),
+        way: &mut CycleMotion<'_, T>,
+    ) {
+        let state = &drill.start_state;
+        let initial = state.cycle.initial;
+        let to_initial = state.modal.return_to == ReturnTo::Initial;
+        let turning = |turning| EventKind::Spindle { direction: turning, speed: Rpm(state.codes.s) };
+        let goes_back = match step {
+            CycleStep::RapidBack | CycleStep::RapidToInitial => to_initial,
+            CycleStep::RapidToInitialAlways => true,
+            _ => false,
+        };
+        if goes_back {
+            way.set_work_zero(drill.axis, state.cycle.is_initial_unknown);
+        }
+        match step {
+            CycleStep::FeedToBottom => way.feed(level(z)),
+            CycleStep::PeckFull => {
+                self.for_each_peck((r, z), &state.cycle.unscaled(drill.stretch), |last, next, done| {
+                    if last != r {
+                        let clearance = (self.settings.g83_clearance / drill.stretch).min((r - last).abs());
+                        way.rapid(level(last + clearance.copysign(r - z)));
+                    }
+                    way.feed(level(next));
+                    if !done {
+                        way.rapid(level(r + self.settings.g83_above_r.copysign(r - z)));
+                    }
+                });
+            }
+            CycleStep::PeckShort => {
+                let retract = (self.settings.g73_retract / drill.stretch).copysign(r - z);
+                self.for_each_peck((r, z), &state.cycle.unscaled(drill.stretch), |_, next, done| {
+                    way.feed(level(next));
+                    if !done {
+                        way.rapid(level(next + retract));
+                    }
+                });
+            }
+            CycleStep::Dwell => way.dwell(drill.dwell),
+            CycleStep::DwellAtR if self.settings.undocumented.tap_dwells_at_r => way.dwell(drill.dwell),
+            CycleStep::DwellAtR => {}
+            CycleStep::FeedToR => way.feed(level(r)),
+            CycleStep::RapidBack => {
+                way.rapid_along_axis(level(if to_initial { initial } else { r }), drill.axis)
+            }
+            CycleStep::RapidToInitial if to_initial => way.rapid(level(initial)),
+            CycleStep::RapidToInitial => {}
+            CycleStep::RapidToInitialAlways => way.rapid_along_axis(level(initial), drill.axis),
+            CycleStep::RapidToR => way.rapid_along_axis(level(r), drill.axis),
+            CycleStep::Shift => {
+                let mut to = way.at;
+                to[drill.shift.0] = self.remove_residue(to[drill.shift.0] + drill.shift.1);
+                way.rapid(to);
+            }
+            CycleStep::ShiftBack => {
+                let mut to = way.at;
+                to[drill.shift.0] = self.remove_residue(to[drill.shift.0] - drill.shift.1);
+                way.rapid(to);
+            }
+            CycleStep::SpindleStop => (way.emit)(turning(SpindleDirection::Off), 0.0),
+            CycleStep::SpindleForward => (way.emit)(turning(SpindleDirection::Clockwise), 0.0),
+            CycleStep::SpindleReverse => (way.emit)(turning(SpindleDirection::Counterclockwise), 0.0),
+            CycleStep::ManualRetract => {
+                let stop = EventKind::Stop {
+                    kind: StopKind::M00,
+                    text: "retract by hand to R".into(),
+                    variables: Vec::new(),
+                };
+                (way.emit)(stop, 0.0);
+                way.rapid(level(r));
+            }
+        }
+    }
+}
+
+impl CyclePlan {
+    /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
+    fn move_to_hole(&self, core: &Executor, turn: u32, hole: &mut Position) {
+        if let Some(BoltHolePattern { radius, start, angle_step: angle, .. }) = self.pattern {
+            let angle = Deg(start + f64::from(turn) * angle);
+            hole[0] = core.remove_residue(self.first_hole[0] + radius * angle.cos());
+            hole[1] = core.remove_residue(self.first_hole[1] + radius * angle.sin());
+            return;
+        }
+        if turn == 0 {
+            return;
+        }
+        let from = *hole;
+        for (place, _) in core.settings.axes.iter() {
+            hole[place] =
+                core.remove_residue(self.first_hole[place] + f64::from(turn) * self.hole_step[place]);
+        }
+        if let Some(PolarRepeats { plane, first, angle_step: angle }) = self.polar_repeats {
+            (hole[plane.0], hole[plane.1]) = (from[plane.0], from[plane.1]);
+            let here = PolarPoint { angle: first.angle + f64::from(turn) * angle, ..first };
+            core.polar_point(&here, plane, hole);
+        }
+    }
+
+    /// The axes whose place on the part isn't known when it begins.
+    pub(super) fn unknown_axes(&self) -> u8 {
+        self.start_state.work_zero_unknown
+    }
+
+    /// The tool comes from here.
+    pub(super) fn set_start(&mut self, machine: Position) {
+        self.start_state.machine = machine;
+    }
+
+    /// Where the last hole is.
+    pub(super) fn last_hole(&self, core: &Executor) -> Position {
+        let mut hole = self.first_hole;
+        for turn in 0..self.repeats {
+            self.move_to_hole(core, turn, &mut hole);
+        }
+        hole
+    }
+}
+
+/// The tool on its way through a cycle, in machine coordinates.
+struct CycleMotion<'c, T> {
+    executor: &'c Executor,
+    at: Position,
+    unknown_axes: u8,
+    rate: MmPerMin,
+    emit: &'c mut T,
+}
+
+impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
+    /// From the next move's end on the axis stands where its place on the part is known, or isn't.
+    fn set_work_zero(&mut self, axis: AxisIndex, unplaced: bool) {
+        let axes = self.unknown_axes & !(1 << axis) | u8::from(unplaced) << axis;
+        if axes != self.unknown_axes {
+            self.unknown_axes = axes;
+            (self.emit)(EventKind::WorkZeroUnknown { axes }, 0.0);
+        }
+    }
+
+    fn rapid(&mut self, to: Position) {
+        if to != self.at {
+            (self.emit)(EventKind::Rapid { to }, self.executor.rapid_seconds(&self.at, &to));
+            self.at = to;
+        }
+    }
+
+    /// Along the drilling axis only: the plane keeps its shift.
+    fn rapid_along_axis(&mut self, to: Position, axis: AxisIndex) {
+        let mut there = self.at;
+        there[axis] = to[axis];
+        self.rapid(there);
+    }
+
+    fn feed(&mut self, to: Position) {
+        if to != self.at {
+            let squares: f64 = (0..to.0.len()).map(|a| (to[a] - self.at[a]) * (to[a] - self.at[a])).sum();
+            (self.emit)(EventKind::Feed { to, rate: self.rate }, squares.sqrt() / self.rate.0 * 60.0);
+            self.at = to;
+        }
+    }
+
+    fn dwell(&mut self, seconds: f64) {
+        if seconds > 0.0 {
+            (self.emit)(EventKind::Dwell { time: Seconds(seconds) }, seconds);
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! Evaluates expressions and conditions.
+use std::cell::Cell;
+
+use super::Executor;
+use super::functions::{angle, atan2, binary, compare, function_alarm, function_value, is_finite, power};
+use super::notes::Note;
+use super::variables::{Accumulator, Value, VariableClass};
+use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::program::{
+    ComputedSource, Instruction, Operand, OperandSource, Operation, STACK, Slot, UncommonOp,
+};
+use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::{BinaryOp, Function};
+use gcode_lang::units::round;
+
+pub(super) type ExecResult<T> = Result<T, LocatedAlarm>;
+
+/// The values that wait for their operators, in as many places as [`gcode_lang::program`] lets an expression need. They
+/// are part of the control, so that an evaluation has none to clear. Going round in them saves the question at every
+/// step whether there is a place, and what an alarm has left behind.
+#[derive(Clone, Debug)]
+pub(super) struct OperandStack {
+    values: [Cell<Value>; STACK],
+    depth: Cell<usize>,
+}
+
+impl Default for OperandStack {
+    fn default() -> Self {
+        Self { values: [const { Cell::new(Value::Vacant) }; STACK], depth: Cell::new(0) }
+    }
+}
+
+impl OperandStack {
+    fn push(&self, value: Value) {
+        let used = self.depth.get();
+        self.values[used % STACK].set(value);
+        self.depth.set(used.wrapping_add(1));
+    }
+
+    #[inline]
+    fn pop(&self) -> Value {
+        let used = self.depth.get().wrapping_sub(1);
+        self.depth.set(used);
+        self.values[used % STACK].get()
+    }
+}
+
+/// What ROUND in a word rounds to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum RoundingTarget {
+    Increment,
+    Whole,
+}
+
+impl Executor {
+    #[inline]
+    pub(super) fn operand(&self, operand: &Operand) -> ExecResult<Value> {
+        match operand {
+            Operand::Number(number) => Ok(Value::Number(*number)),
+            Operand::Variable { slot, span } => self.load(*slot, span),
+            Operand::Code(code) => self.run_code(code, RoundingTarget::Increment),
+        }
+    }
+
+    /// Whether a condition holds; most are one comparison.
+    #[inline]
+    pub(super) fn evaluate_condition(&self, condition: &[Instruction]) -> ExecResult<bool> {
+        match self.evaluate_comparison(condition) {
+            Some(holds) => Ok(holds),
+            None => self.run_code(condition, RoundingTarget::Whole).map(is_true),
+        }
+    }
+
+    /// Whether a condition of one comparison holds; `None` of others.
+    #[inline(never)]
+    fn evaluate_comparison(&self, condition: &[Instruction]) -> Option<bool> {
+        let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition else {
+            return None;
+        };
+        let left = self.fetch(left, Accumulator::VACANT);
+        Some(compare(*relation, left, self.fetch(right, Accumulator::VACANT)))
+    }
+
+    /// A value that an operator needs; `last` is what the instruction before has given.
+    #[inline(always)]
+    fn fetch(&self, source: &OperandSource, last: Accumulator) -> Value {
+        match source {
+            OperandSource::Number(number) => Value::Number(*number),
+            OperandSource::Free(place) => self.vars.get_free(*place),
+            OperandSource::Computed(ComputedSource::Last) => last.into(),
+            OperandSource::Computed(ComputedSource::Waiting) => self.operand_stack.pop(),
+        }
+    }
+
+    /// As [`Executor::fetch`], where only the number is asked for.
+    #[inline(always)]
+    fn fetch_number(&self, source: &OperandSource, last: Accumulator) -> f64 {
+        match source {
+            OperandSource::Free(place) => self.vars.free_number(*place),
+            OperandSource::Number(number) => *number,
+            OperandSource::Computed(ComputedSource::Last) => last.number,
+            OperandSource::Computed(ComputedSource::Waiting) => self.operand_stack.pop().number(),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn load(&self, slot: Slot, span: &Span) -> ExecResult<Value> {
+        match slot {
+            Slot::Free(place) => Ok(self.vars.get_free(place)),
+            Slot::Other(number) => locate(self.read_variable(number), *span),
+        }
+    }
+
+    /// The value of a variable of any kind.
+    pub(super) fn read_variable(&self, number: u32) -> Result<Value, Alarm> {
+        match self.vars.classify(number) {
+            VariableClass::Local(place) | VariableClass::Common(place) => Ok(self.vars.get(place)),
+            VariableClass::Vacant => Ok(Value::Vacant),
+            VariableClass::System => self.read_system(number),
+        }
+    }
+
+    /// What code gives; `rounds` is what ROUND in it rounds to: in a word to the increment of its address, in statements and
+    /// arguments to whole numbers.
+    #[inline(never)]
+    pub(super) fn run_code(&self, code: &[Instruction], rounds: RoundingTarget) -> ExecResult<Value> {
+        self.evaluate(code, rounds).map(Value::from)
+    }
+
+    /// As [`Executor::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
+    #[inline(always)]
+    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundingTarget) -> ExecResult<Accumulator> {
+        let mut last = Accumulator::VACANT;
+        for Instruction { operation, span } in code {
+            last = Accumulator::of(match operation {
+                Operation::Add(values) => self.binary(BinaryOp::Add, values, last, span)?,
+                Operation::Subtract(values) => self.binary(BinaryOp::Sub, values, last, span)?,
+                Operation::Multiply(values) => self.binary(BinaryOp::Mul, values, last, span)?,
+                Operation::Divide(values) => self.binary(BinaryOp::Div, values, last, span)?,
+                Operation::Compare(relation, [left, right]) => {
+                    let left = self.fetch(left, last);
+                    truth(compare(*relation, left, self.fetch(right, last)))
+                }
+                Operation::Function(name, argument) => {
+                    self.evaluate_function(*name, self.fetch_number(argument, last), span)?
+                }
+                Operation::Atan2([y, x]) => {
+                    let y = self.fetch_number(y, last);
+                    self.atan(y, self.fetch_number(x, last), span)?
+                }
+                Operation::Uncommon(rare) => {
+                    last = locate(self.uncommon_op(rare, last, rounds), *span)?.into();
+                    continue;
+                }
+            });
+        }
+        Ok(last)
+    }
+
+    /// + − * /. Where there is no value, it is worked out why.
+    #[inline(always)]
+    fn binary(
+        &self,
+        op: BinaryOp,
+        [left, right]: &[OperandSource; 2],
+        last: Accumulator,
+        span: &Span,
+    ) -> ExecResult<f64> {
+        let left = self.fetch_number(left, last);
+        let right = self.fetch_number(right, last);
+        let value = match op {
+            BinaryOp::Add => left + right,
+            BinaryOp::Sub => left - right,
+            BinaryOp::Mul => left * right,
+            _ => left / right,
+        };
+        if !is_finite(value) {
+            return locate(binary(op, left, right, &self.settings.undocumented), *span);
+        }
+        Ok(value)
+    }
+
+    #[inline(always)]
+    fn evaluate_function(&self, name: Function, argument: f64, span: &Span) -> ExecResult<f64> {
+        let value = function_value(name, argument, &self.settings);
+        if !is_finite(value) {
+            return Err(function_alarm(name, argument).located_at(*span));
+        }
+        if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
+            self.block_effects.record_note(Note::TangentOf90);
+        }
+        Ok(value)
+    }
+
+    /// ATAN of two values.
+    #[inline(always)]
+    fn atan(&self, y: f64, x: f64, span: &Span) -> ExecResult<f64> {
+        let value = angle(y, x, &self.settings);
+        if !is_finite(value) {
+            return locate(atan2(y, x, &self.settings), *span);
+        }
+        if y == 0.0 && x == 0.0 {
+            self.block_effects.record_note(Note::AtanOf0);
+        }
+        Ok(value)
+    }
+
+    /// What only some expressions contain. It stands apart so that the others needn't carry it.
+    #[inline(never)]
+    fn uncommon_op(
+        &self,
+        operation: &UncommonOp,
+        before: Accumulator,
+        rounds: RoundingTarget,
+    ) -> Result<Value, Alarm> {
+        let (last, unsure) = (Value::from(before), &self.settings.undocumented);
+        Ok(match *operation {
+            UncommonOp::Load(ref source) => self.fetch(source, before),
+            UncommonOp::Push => {
+                self.operand_stack.push(last);
+                last
+            }
+            UncommonOp::Plus => last,
+            UncommonOp::Read(number) => self.read_variable(number)?,
+            UncommonOp::LoadIndirect => self.read_variable(variable_number(last)?)?,
+            UncommonOp::Negate => match last {
+                Value::Vacant if unsure.minus_keeps_vacancy => Value::Vacant,
+                value => Value::Number(-value.number()),
+            },
+            UncommonOp::NegateWord => match last {
+                Value::Vacant => Value::Vacant,
+                Value::Number(number) => Value::Number(-number),
+            },
+            UncommonOp::Bracket => match last {
+                Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
+                value => value,
+            },
+            UncommonOp::Whole(op, [ref left, ref right]) => {
+                let left = self.fetch_number(left, before);
+                Value::Number(binary(op, left, self.fetch_number(right, before), unsure)?)
+            }
+            UncommonOp::Power([ref base, ref exponent]) => {
+                let base = self.fetch_number(base, before);
+                Value::Number(power(base, self.fetch_number(exponent, before))?)
+            }
+            UncommonOp::RoundTo(_) if rounds == RoundingTarget::Whole => Value::Number(round(last.number())),
+            UncommonOp::RoundTo(letter) => Value::Number(self.round_to_address(letter, last.number())),
+            UncommonOp::Logic(op) => {
+                let (left, right) = (is_true(self.operand_stack.pop()), is_true(last));
+                let holds = match op {
+                    BinaryOp::And => left && right,
+                    BinaryOp::Xor => left != right,
+                    _ => left || right,
+                };
+                Value::Number(truth(holds))
+            }
+            UncommonOp::Parameter { bit, axis } => {
+                let mut part = last;
+                let mut wait = |is_there: bool| {
+                    is_there.then(|| std::mem::replace(&mut part, self.operand_stack.pop()).number())
+                };
+                let (axis, bit) = (wait(axis), wait(bit));
+                Value::Number(self.read_parameter(part.number(), bit, axis)?)
+            }
+            UncommonOp::AxisNumber(letter) => {
+                let axis = self.settings.axes.find(letter);
+                let unknown = || Alarm::AxisAddress { text: char::from(letter).into() };
+                Value::Number(axis.ok_or_else(unknown)? as f64 + 1.0)
+            }
+            UncommonOp::AddPoint => {
+                let number = variable_number(last)?;
+                match self.vars.classify(number) {
+                    VariableClass::Local(local) => Value::Number(self.vars.value_with_point(local)),
+                    _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
+                }
+            }
+            UncommonOp::NameNumber(ref name) => Value::Number(f64::from(self.named_variable(name)?)),
+            UncommonOp::SystemNumber(row) => {
+                let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };
+                let place = match row.suffix {
+                    None => 0,
+                    Some((from, to)) => {
+                        let suffix = integer(last.number())?;
+                        if !(i64::from(from)..=i64::from(to)).contains(&suffix) {
+                            return Err(Alarm::Suffix { name: row.name.into() });
+                        }
+                        suffix as u32 - from
+                    }
+                };
+                Value::Number(f64::from(number + place))
+            }
+        })
+    }
+}
+
+/// What a condition is to an instruction.
+fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+/// Whether a condition holds that was evaluated.
+#[inline]
+pub(super) fn is_true(condition: Value) -> bool {
+    condition.number() != 0.0
+}
+
+/// A variable's number by an expression: rounded, never negative; vacant is #0.
+pub(super) fn variable_number(value: Value) -> Result<u32, Alarm> {
+    let number = value.number();
+    let whole = number as u32;
+    if f64::from(whole) == number {
+        return Ok(whole);
+    }
+    let number = round(number);
+    if (0.0..=f64::from(u32::MAX)).contains(&number) {
+        return Ok(number as u32);
+    }
+    Err(Alarm::NoSuchVariable { number: number as i64 })
+}
+
+/// A value as the integer that an index, a code or a count is: the nearest one.
+pub(super) fn integer(value: f64) -> Result<i64, Alarm> {
+    let rounded = round(value);
+    if rounded.abs() <= 999_999_999_999.0 { Ok(rounded as i64) } else { Err(Alarm::IntegerOverflow) }
+}
+
+/// Where a value of a computed word stands.
+pub(super) fn locate<T>(result: Result<T, Alarm>, span: Span) -> ExecResult<T> {
+    result.map_err(|alarm| alarm.located_at(span))
+}

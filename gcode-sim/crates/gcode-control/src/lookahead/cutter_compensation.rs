@@ -1,0 +1,257 @@
+//! Cutter compensation: from the programmed path to the path of the tool's centre.
+//!
+//! After the operator's manual, "Details of cutter compensation": a block moves from the vector at its start to the
+//! vector at its end, and the vector at its end depends on the next block that moves in the plane. Where a corner has
+//! several vectors, the moves between them belong to the latter block.
+use super::path_move::PendingItem;
+use super::{Lookahead, LookaheadRequest, PathMove};
+use crate::Executor;
+use crate::contour::{self, Point, Segment};
+use crate::evaluation::ExecResult;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::{Backtrace, EventKind, PlanarArc};
+use gcode_lang::units::{Deg, MmPerMin};
+
+/// A move whose end isn't known yet.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct PendingMove {
+    pub(super) path_move: PathMove,
+    segment: Segment,
+    /// The points it begins with: where the centre stands, and the rest of the way round the corner.
+    start_points: Vec<Point>,
+    /// Of the centre to the left of the path.
+    distance: f64,
+    is_start_up: bool,
+}
+
+/// G39 without a direction: an arc at the corner, up to beside the next move.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct PendingCornerArc {
+    backtrace: Backtrace,
+    rate: MmPerMin,
+    distance: f64,
+}
+
+/// G39: its direction, if it has one, and its feed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CornerArc {
+    pub(super) direction: Option<Point>,
+    pub(super) rate: MmPerMin,
+}
+
+impl PendingMove {
+    fn beside_end(&self) -> Point {
+        self.segment.parallel_end(self.distance)
+    }
+}
+
+impl Lookahead {
+    /// Takes the next move of the shaped path.
+    pub(super) fn compensate(
+        &mut self,
+        executor: &Executor,
+        path_move: PathMove,
+        request: &LookaheadRequest,
+    ) -> ExecResult<()> {
+        let Some(segment) = path_move.segment else {
+            self.defer_behind_move(executor, PendingItem::Move(path_move));
+            return Ok(());
+        };
+        let restated = std::mem::take(&mut self.is_restated) || request.is_restated;
+        self.blocks_without_move = 0;
+        let block = path_move.backtrace.block;
+        if segment.is_arc()
+            && (self.is_compensating != request.distance.is_some()
+                || !self.is_compensating && self.is_offset())
+        {
+            return Err(Alarm::ArcAtStartOrEnd.located_at(block));
+        }
+        let Some(distance) = request.distance else {
+            return self.cancel_compensation(executor, &path_move, segment, request);
+        };
+        if segment.is_too_small(distance) {
+            return Err(Alarm::Interference.located_at(block));
+        }
+        let start_up = !std::mem::replace(&mut self.is_compensating, true);
+        let near = self.pending_move.as_ref().map_or(distance, |open| open.distance.abs().copysign(distance));
+        let mut starts = match self.pending_move.take() {
+            None => vec![self.plane_point(&self.tool_centre)],
+            Some(open) => {
+                let ends = if restated {
+                    vec![open.beside_end()]
+                } else if open.is_start_up
+                    && !(executor.settings.starts_up_by_type_b && is_outside_corner(&open, &segment))
+                {
+                    vec![segment.parallel_start(near)]
+                } else {
+                    let met = contour::corner_points(&open.segment, &segment, open.distance, near);
+                    met.map_err(|_| Alarm::NoIntersection.located_at(block))?
+                };
+                self.close_move(executor, open, &ends)?
+            }
+        };
+        if let Some(rounding) = self.pending_corner_arc.take() {
+            let end = segment.parallel_start(distance);
+            self.emit_corner_arc(executor, &rounding, segment.start(), end)?;
+            starts = vec![end];
+        }
+        let begins_on_parallel =
+            starts.last().is_some_and(|start| segment.is_parallel_start(*start, distance));
+        if !begins_on_parallel {
+            let what = "an arc that begins off its own parallel (a new D or G41, or blocks without a move)";
+            return Err(Alarm::NotSimulated { what: what.into() }.located_at(block));
+        }
+        self.set_offset(segment.parallel_end(distance) - segment.end());
+        self.pending_move =
+            Some(PendingMove { path_move, segment, start_points: starts, distance, is_start_up: start_up });
+        Ok(())
+    }
+
+    /// A move without compensation: the one that cancels it, that takes up the vector of G40 alone, or any other.
+    fn cancel_compensation(
+        &mut self,
+        executor: &Executor,
+        path_move: &PathMove,
+        segment: Segment,
+        request: &LookaheadRequest,
+    ) -> ExecResult<()> {
+        if let Some(open) = self.pending_move.take() {
+            let ends = match request.wall_direction {
+                Some(direction) => vec![contour::wall_corner(&open.segment, direction, open.distance)],
+                None if executor.settings.starts_up_by_type_b
+                    && !open.is_start_up
+                    && is_outside_corner(&open, &segment) =>
+                {
+                    let met = contour::corner_points(&open.segment, &segment, open.distance, open.distance);
+                    met.map_err(|_| Alarm::NoIntersection.located_at(path_move.backtrace.block))?
+                }
+                None => vec![open.beside_end()],
+            };
+            let rest = self.close_move(executor, open, &ends)?;
+            self.emit_corner(executor, path_move, &rest);
+        }
+        if let Some(rounding) = self.pending_corner_arc.take() {
+            let what = "G39 followed by the end of cutter compensation".into();
+            return Err(Alarm::NotSimulated { what }.located_at(rounding.backtrace.block));
+        }
+        self.is_compensating = false;
+        self.set_offset(Point::zeros());
+        self.emit_along(executor, path_move, segment.end(), 0.0);
+        Ok(())
+    }
+
+    /// A move of G28, G53 and the like: in the plane it takes the vector away, and the next move starts up anew.
+    pub(super) fn suspend(&mut self, executor: &Executor, piece: &PathMove) {
+        if piece.segment.is_none() {
+            return self.emit_pending(executor, PendingItem::Move(piece.clone()));
+        }
+        self.is_compensating = false;
+        self.set_offset(Point::zeros());
+        self.emit_straight(executor, piece, piece.end_position());
+    }
+
+    /// Ends the open move with the centre beside its end, as where nothing follows.
+    pub(super) fn close_pending_move(&mut self, executor: &Executor) -> ExecResult<()> {
+        self.blocks_without_move = 0;
+        if let Some(pending_move) = self.pending_move.take() {
+            let end = pending_move.beside_end();
+            self.set_offset(end - pending_move.segment.end());
+            self.close_move(executor, pending_move, &[end])?;
+        }
+        Ok(())
+    }
+
+    /// Tells the open move, now that the points at its end are known, and what waited behind it. The answer is where
+    /// the next move begins. A way against the programmed one would cut into the part (operator's manual,
+    /// interference check).
+    fn close_move(
+        &mut self,
+        executor: &Executor,
+        open: PendingMove,
+        ends: &[Point],
+    ) -> ExecResult<Vec<Point>> {
+        if let (Some(start), Some(end)) = (open.start_points.last(), ends.first()) {
+            if !open.is_start_up && open.segment.is_reversed(*start, *end, open.distance) {
+                return Err(Alarm::Interference.located_at(open.path_move.backtrace.block));
+            }
+            self.emit_corner(executor, &open.path_move, &open.start_points);
+            self.emit_along(executor, &open.path_move, *end, open.distance);
+        }
+        for item in std::mem::take(&mut self.pending_items) {
+            self.emit_pending(executor, item);
+        }
+        Ok(ends.to_vec())
+    }
+
+    /// The moves from point to point of a corner; the first is where the centre stands.
+    fn emit_corner(&mut self, executor: &Executor, piece: &PathMove, points: &[Point]) {
+        for point in points.iter().skip(1) {
+            let to = self.with_plane_point(self.tool_centre, *point);
+            self.emit_straight(executor, piece, to);
+        }
+    }
+
+    fn defer_behind_move(&mut self, executor: &Executor, held: PendingItem) {
+        if self.pending_move.is_some() {
+            self.pending_items.push(held);
+        } else {
+            self.emit_pending(executor, held);
+        }
+    }
+
+    /// G39: round the corner to beside a direction at once, or to beside the next move when that is read.
+    pub(super) fn start_corner_arc(
+        &mut self,
+        executor: &Executor,
+        arc: &CornerArc,
+        order: &LookaheadRequest,
+    ) -> ExecResult<()> {
+        self.close_pending_move(executor)?;
+        let Some(distance) = order.distance else {
+            let what = "G39 without an offset of the cutter (D0)".into();
+            return Err(Alarm::NotSimulated { what }.located_at(order.backtrace.block));
+        };
+        let corner_arc = PendingCornerArc { backtrace: order.backtrace.clone(), rate: arc.rate, distance };
+        let Some(direction) = arc.direction else {
+            self.pending_corner_arc = Some(corner_arc);
+            return Ok(());
+        };
+        let corner = self.plane_point(&self.programmed_position);
+        let end = Segment::Line { from: corner, to: corner + direction }.parallel_start(distance);
+        self.emit_corner_arc(executor, &corner_arc, corner, end)?;
+        self.set_offset(end - corner);
+        Ok(())
+    }
+
+    fn emit_corner_arc(
+        &mut self,
+        core: &Executor,
+        rounding: &PendingCornerArc,
+        corner: Point,
+        end: Point,
+    ) -> ExecResult<()> {
+        let (from, to) = (self.plane_point(&self.tool_centre) - corner, end - corner);
+        let turn = Deg::atan2(from.x * to.y - from.y * to.x, from.dot(to));
+        // Round the outside of a corner the tool turns to the side that it isn't on.
+        let outside = -rounding.distance.signum();
+        let sweep = if turn.abs().0 > 180.0 - 1e-6 { Deg(180.0 * outside) } else { turn };
+        if sweep.0 * outside < -1e-6 {
+            return Err(Alarm::Interference.located_at(rounding.backtrace.block));
+        }
+        let to = self.with_plane_point(self.tool_centre, end);
+        let arc = PlanarArc { plane: self.plane, centre: (corner.x, corner.y), sweep };
+        let segment =
+            Segment::Arc { from: self.plane_point(&self.tool_centre), to: end, centre: corner, sweep };
+        let piece = PathMove {
+            kind: EventKind::Arc { to, arc, rate: rounding.rate },
+            segment: Some(segment),
+            backtrace: rounding.backtrace.clone(),
+        };
+        self.emit_along(core, &piece, end, 0.0);
+        Ok(())
+    }
+}
+
+fn is_outside_corner(open: &PendingMove, next: &Segment) -> bool {
+    contour::is_outside(&open.segment, next, open.distance)
+}

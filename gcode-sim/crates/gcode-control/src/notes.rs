@@ -1,0 +1,229 @@
+//! What a control does without a word and a programmer hardly means: told once for each kind, with its first block.
+use super::Control;
+use gcode_lang::program::g_codes::spelled;
+use gcode_lang::source::Span;
+
+/// A thing worth telling that is no alarm on a control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Note {
+    /// G53 in G91 is ignored, and with it the block's motion.
+    MachineMoveIgnored,
+    /// A block had another M code after this one, and only the last counts.
+    MCodeLost { code: u32 },
+    /// P or Q in cycle mode, in a block that names no axis and no R: it drills nothing and stores nothing.
+    CycleDataLost,
+    /// M96 lets a signal call a macro, and no signal comes in a run.
+    InterruptNotSimulated,
+    /// G31, and nothing gives a skip signal: no part to touch and no place where it comes.
+    NoSkipSignal,
+    /// A word beside an M code of the machine builder that nothing else in the block reads.
+    WordsPassedOn { code: u32, letter: char },
+    /// `,R` or `,C` in a block that is no cutting move is ignored.
+    CornerIgnored,
+    /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
+    /// gone to differs between controls.
+    CycleRepeatsZero,
+    /// A call with L0 calls nothing.
+    CallRepeatsZero,
+    /// A code that acts on axes, in a block that names none. G53 so only waits.
+    NoAxis { code: u32 },
+    /// G51 or G68 without axes: about the point where the program stands.
+    CentreDefaulted { code: u32 },
+    /// G68 without R: it turns by nothing, or by 5410 where that is set.
+    NoAngle,
+    /// GOTO or M99 P found one of several blocks with this number.
+    DuplicateNumber { number: u32 },
+    /// A jump into a loop, whose END will have no DO.
+    JumpIntoLoop { number: u8 },
+    /// TAN of 90 degrees answers a large number.
+    TangentOf90,
+    /// ATAN of 0 and 0 answers 0.
+    AtanOf0,
+    /// G10 L52 has written a parameter that nothing here depends on.
+    ParameterWithoutEffect { number: u16 },
+    /// The program has letters in lower case, which some controls refuse.
+    LowerCase,
+    /// An M code of more than four digits that is left to the machine builder: M981000 was M98 P1000.
+    LongMCode { code: u32 },
+    /// #5001… are read behind a switch of G51.1, G51 or G68, when the program's coordinates of the tool are others.
+    EndPointBeforeTransform,
+    /// The first move behind such a switch leaves out an axis whose coordinate it has changed.
+    AxisLeftOut,
+    /// DPRNT has printed the lower digits of a number only.
+    DigitsLost,
+    /// A drilling cycle drills though its R or its depth was never commanded.
+    CycleLevelMissing { letter: char },
+    /// G43 or G44 with H0, which is no offset.
+    LengthOffsetZero { code: u32 },
+    /// A block, or the rest of one, behind `/`, which a switch of block skip leaves out.
+    BlockSkip { switch: u8, is_on: bool },
+    /// A drilling cycle goes along Z while G18 or G19 has another plane's normal, as FXY 5101#0 = 0 has it.
+    DrillsAlongZ { code: u32 },
+    /// `#3000=n` with a number beyond those that the manual names.
+    LargeAlarmNumber { number: u16, max: u16 },
+}
+
+impl Note {
+    /// A stable name, what happened, and what to do.
+    pub fn describe(self) -> (&'static str, String, &'static str) {
+        match self {
+            Self::MachineMoveIgnored => {
+                let message = "G53 in G91 is ignored: the axes of the block do not move".to_owned();
+                ("g53-ignored", message, "command G90 with G53")
+            }
+            Self::MCodeLost { code } => {
+                let message = format!("M{code} is lost: of several M codes in a block only the last counts");
+                (
+                    "m-code-lost",
+                    message,
+                    "write each M code in a block of its own, or set M3B=1 if the control accepts three",
+                )
+            }
+            Self::CycleDataLost => {
+                let message = "P or Q is not stored: the block drills nothing".to_owned();
+                ("cycle-data-lost", message, "write P and Q in the block of a hole")
+            }
+            Self::InterruptNotSimulated => {
+                let message = "the macro of M96 is never called: a run has no UINT signal".to_owned();
+                ("no-interrupt", message, "call the macro with G65 to simulate it")
+            }
+            Self::NoSkipSignal => {
+                let message = "no skip signal is simulated: G31 moves to its end point".to_owned();
+                (
+                    "no-signal",
+                    message,
+                    "give the part with --part, or SKIP, the fraction of the path where the signal comes",
+                )
+            }
+            Self::WordsPassedOn { code, letter } => {
+                let message = format!("{letter} is passed to the machine builder's logic with M{code:02}");
+                ("words-passed-on", message, "see the machine's manual for the words of this M code")
+            }
+            Self::CornerIgnored => {
+                let message = ",R and ,C are ignored: the block is not a cutting move".to_owned();
+                ("corner-ignored", message, "write them in a block of G01, G02 or G03")
+            }
+            Self::CycleRepeatsZero => {
+                let message = "K0 stores the cycle without a move to the block's X and Y".to_owned();
+                ("no-repeats", message, "use K0-MOVES=1 for a control that moves there")
+            }
+            Self::CallRepeatsZero => {
+                ("no-pass", "L0: the program is not called".to_owned(), "omit L to call it once")
+            }
+            Self::NoAxis { code } => {
+                let message = format!("G{} without an axis: nothing moves or is set", spelled(code));
+                ("no-axis", message, "name the axes")
+            }
+            Self::CentreDefaulted { code } => {
+                let message =
+                    format!("G{} without an axis: the programmed position is its centre", spelled(code));
+                ("centre-here", message, "name the axes of the centre")
+            }
+            Self::NoAngle => {
+                let message = "G68 without R rotates by 0; a control may have an angle in 5410".to_owned();
+                ("no-angle", message, "write R")
+            }
+            Self::DuplicateNumber { number } => {
+                let message = format!(
+                    "N{number} is defined more than once: the control decides which one a jump takes"
+                );
+                ("doubled-number", message, "give each block a number of its own")
+            }
+            Self::JumpIntoLoop { number } => {
+                let message = format!("a jump into the loop DO{number}: its END raises PS1124");
+                ("into-loop", message, "jump to the block of its DO or WHILE")
+            }
+            Self::TangentOf90 => {
+                let message =
+                    "TAN of 90 degrees is undefined: some controls raise an alarm, here the result is a \
+                     large number"
+                        .to_owned();
+                (
+                    "tangent-of-90",
+                    message,
+                    "test the angle first; TAN-90-ALARM=1 is for a control that raises the alarm",
+                )
+            }
+            Self::AtanOf0 => {
+                let message =
+                    "ATAN of 0 and 0 is undefined: some controls raise an alarm, here the result is 0"
+                        .to_owned();
+                (
+                    "atan-of-0",
+                    message,
+                    "test both values first; ATAN-0-ALARM=1 is for a control that raises the alarm",
+                )
+            }
+            Self::ParameterWithoutEffect { number } => {
+                let message = format!("parameter {number} is stored for PRM and has no other effect here");
+                ("parameter-without-effect", message, "see docs/control.md for what is not simulated")
+            }
+            Self::LowerCase => {
+                let message = "lower case is read as capitals; some controls refuse it".to_owned();
+                ("lower-case", message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
+            }
+            Self::LongMCode { code } => {
+                let message =
+                    format!("M{code} calls no program: it is one M code, left to the machine builder");
+                ("long-m-code", message, "write P before the program number: M98 P1000")
+            }
+            Self::EndPointBeforeTransform => {
+                let message =
+                    "#5001 and following are the end point of the last move as programmed, before the \
+                     change of G51.1, G51 or G68"
+                        .to_owned();
+                ("end-before-switch", message, "read them after the next move, or before the change")
+            }
+            Self::AxisLeftOut => {
+                let message =
+                    "an omitted axis keeps its position here; after a change of G51.1, G51 or G68 a \
+                     control may move it"
+                        .to_owned();
+                ("axis-left-out", message, "name every axis in the first move after the change")
+            }
+            Self::DigitsLost => {
+                let message = "DPRNT prints only the lower digits: the format has too few places".to_owned();
+                (
+                    "digits-lost",
+                    message,
+                    "give the format more places; PRINT-EXPANDS=1 is for a control that expands it",
+                )
+            }
+            Self::CycleLevelMissing { letter } => {
+                let message = format!("the cycle drills with {letter} at 0: no value was commanded");
+                ("level-missing", message, "write R and the depth in the block that begins the cycle")
+            }
+            Self::LengthOffsetZero { code } => {
+                let message = format!("G{} with H0 applies no tool length compensation", spelled(code));
+                ("length-of-nothing", message, "write H with the number of the tool's offset")
+            }
+            Self::BlockSkip { switch, is_on } => {
+                let (is, does) = if is_on { ("on", "skipped") } else { ("off", "executed") };
+                let message = format!(
+                    "the rest of the block after / is {does}: block skip {switch} is {is}; all results \
+                     assume this setting"
+                );
+                ("block-skip", message, "use --control BDT=1 to switch block skip 1 on")
+            }
+            Self::DrillsAlongZ { code } => {
+                let message = format!(
+                    "the cycle drills along Z while G{} is in force: a control may drill along the normal \
+                     of that plane",
+                    spelled(code)
+                );
+                ("drill-plane", message, "write G17, or set FXY=1 if the control drills along the normal")
+            }
+            Self::LargeAlarmNumber { number, max: most } => {
+                let message = format!("#3000={number}: the manuals give numbers up to {most}");
+                ("large-alarm-number", message, "use a smaller number")
+            }
+        }
+    }
+}
+
+impl Control {
+    /// Each note with the first block it is about.
+    pub fn notes(&self) -> impl Iterator<Item = (Note, Span)> + '_ {
+        self.executor.notes.iter().map(|(note, block)| (*note, *block))
+    }
+}

@@ -1,0 +1,224 @@
+//! What a block does instead of moving by its modal codes, code by code: dwell, coordinate systems, G53, G60.
+use super::Executor;
+
+use super::evaluation::ExecResult;
+use super::modal_codes::{AxisWordUse, not_simulated};
+use super::notes::Note;
+use super::plan::BlockPlan;
+use super::state::State;
+use super::words::BlockWords;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::{EventKind, Position};
+use gcode_lang::program::g_codes::OneShot;
+use gcode_lang::program::modes::{Distance, WorkSystem};
+use gcode_lang::source::Span;
+use gcode_lang::units::Seconds;
+
+impl Executor {
+    /// 4. What a block does instead of moving by its modal codes.
+    pub(super) fn execute_axis_use(
+        &self,
+        act: AxisWordUse,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<()> {
+        if !self.names_axis(given) {
+            plan.notes.extend(note_without_axis(act));
+        }
+        match act {
+            AxisWordUse::OneShot(one) => self.execute_one_shot(one, given, plan, span),
+            AxisWordUse::AdditionalWork => {
+                let number = given.count(b'P')?.unwrap_or(1);
+                if number == 0 || number as usize > self.offsets.additional.len() {
+                    return Err(Alarm::OffsetNumber { number: i64::from(number) }.located_at(span));
+                }
+                plan.state.modal.work = WorkSystem::Additional(number as u16);
+                self.recompute_position(&mut plan.state);
+                self.plan_motion(given, plan, false, span)
+            }
+            AxisWordUse::Scale => self.plan_scaling(given, plan, span),
+            AxisWordUse::Rotate => self.plan_rotation(given, plan, span),
+            AxisWordUse::Tilt => self.plan_tilt(given, plan, span),
+            AxisWordUse::MirrorOn | AxisWordUse::MirrorOff => {
+                self.plan_mirror(act == AxisWordUse::MirrorOn, given, plan)
+            }
+        }
+    }
+
+    fn execute_one_shot(
+        &self,
+        one: OneShot,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<()> {
+        let cycle = plan.state.modal.cycle.is_some();
+        match one {
+            OneShot::Dwell => self.plan_dwell(given, plan),
+            OneShot::DataInput => self.plan_data_input(given, plan, span),
+            OneShot::DataInputEnd => Ok(()),
+            OneShot::CheckReference
+            | OneShot::Reference
+            | OneShot::FromReference
+            | OneShot::SecondReference
+                if cycle =>
+            {
+                Err(Alarm::ReferenceReturnInCycle.located_at(span))
+            }
+            OneShot::CheckReference => self.plan_reference_check(given, plan, span),
+            OneShot::Reference if self.settings.homes_all_axes && !self.names_axis(given) => {
+                self.plan_home_all(plan);
+                Ok(())
+            }
+            OneShot::Reference => self.plan_reference_return(given, plan, Position::default()),
+            OneShot::SecondReference => {
+                let p = given.count(b'P')?.unwrap_or(2);
+                match p {
+                    2..=4 => self.plan_reference_return(
+                        given,
+                        plan,
+                        self.settings.reference_positions[p as usize - 2],
+                    ),
+                    _ => Err(Alarm::ReferenceReturnP { p: i64::from(p) }.located_at(span)),
+                }
+            }
+            OneShot::FromReference => self.plan_return_from_reference(given, plan, span),
+            OneShot::Skip => self.plan_skip(given, plan, span),
+            OneShot::LocalSystem => {
+                self.for_each_axis(given, plan, |_, state, axis, value| state.local_offset[axis] = value)?;
+                self.recompute_position(&mut plan.state);
+                Ok(())
+            }
+            OneShot::SetSystem => {
+                // The point where the program stands gets these coordinates; the length offset stays out of it, and
+                // G52 ends on these axes.
+                self.for_each_axis(given, plan, |core, state, axis, value| {
+                    let work = state.transform.forward(state.programmed)[axis];
+                    state.coordinate_shift[axis] = core.remove_residue(
+                        state.coordinate_shift[axis] + state.local_offset[axis] + work - value,
+                    );
+                    state.local_offset[axis] = 0.0;
+                })?;
+                self.recompute_position(&mut plan.state);
+                Ok(())
+            }
+            OneShot::PresetSystem => {
+                self.for_each_axis(given, plan, |_, state, axis, _| {
+                    state.coordinate_shift[axis] = 0.0;
+                    state.local_offset[axis] = 0.0;
+                })?;
+                self.recompute_position(&mut plan.state);
+                Ok(())
+            }
+            OneShot::OneSide if cycle => Err(not_simulated(600, "in a drilling cycle").located_at(span)),
+            OneShot::OneSide => self.plan_one_side(given, plan),
+            OneShot::CirclePocket(turn) => self.plan_circle_pocket(turn, given, plan, span),
+            OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, given, plan, span),
+            OneShot::MachineSystem => self.plan_machine_move(given, plan),
+            OneShot::CornerArc if self.lookahead.is_on() => Ok(()),
+            OneShot::CornerArc => {
+                Err(Alarm::NotSimulated { what: "G39 without cutter compensation".into() }.located_at(span))
+            }
+        }
+    }
+
+    /// Every axis the block names, with its value.
+    fn for_each_axis(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        mut with: impl FnMut(&Self, &mut State, usize, f64),
+    ) -> ExecResult<()> {
+        for (axis, letter) in self.settings.axes.iter() {
+            if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
+                with(self, &mut plan.state, axis, value);
+            }
+        }
+        Ok(())
+    }
+
+    fn plan_dwell(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+        self.check_skip_signal_set(given, b'Q')?;
+        if given.has(b'Q') {
+            return Err(not_simulated(40, "dwell until a skip signal").located_at(given.span(b'Q')));
+        }
+        let seconds = if let Some(seconds) = self.dwell_seconds(given)? {
+            seconds
+        } else if self.settings.dwell_in_seconds {
+            0.0
+        } else {
+            let x = self.seconds(given, b'X')?;
+            let u = if x.is_none() { self.seconds(given, b'U')? } else { None };
+            x.or(u).unwrap_or(0.0)
+        };
+        if seconds > 0.0 {
+            plan.events.push((EventKind::Dwell { time: Seconds(seconds) }, seconds));
+        }
+        Ok(())
+    }
+
+    /// G60: by rapid to a point before the end by 5440, whose sign is the side, and on to the end.
+    fn plan_one_side(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+        let goal = self.resolve_endpoint(given, &mut plan.state)?;
+        let mut before = goal.machine;
+        for (axis, letter) in self.settings.axes.iter() {
+            if given.has(letter as u8) {
+                before[axis] = self.remove_residue(before[axis] - self.settings.one_side_overrun[axis]);
+            }
+        }
+        self.push_rapid(plan, &before);
+        self.push_rapid(plan, &goal.machine);
+        plan.state.programmed = goal.programmed;
+        plan.commands_axes = self.names_axis(given);
+        Ok(())
+    }
+
+    /// G53: by rapid to machine coordinates, without the length offset.
+    fn plan_machine_move(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+        let mut to = plan.state.machine;
+        let incremental = plan.state.modal.distance == Distance::Incremental;
+        if incremental && !self.settings.undocumented.g53_moves_in_g91 {
+            given.mark_read(b"ABCUVWXYZ");
+            plan.notes.push(Note::MachineMoveIgnored);
+            return Ok(());
+        }
+        let mut named = 0;
+        for (axis, letter) in self.settings.axes.iter() {
+            if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
+                named |= u8::from(!incremental) << axis;
+                to[axis] = match incremental {
+                    true => self.remove_residue(to[axis] + value),
+                    false => self.rollover_target(axis, to[axis], value),
+                };
+            }
+        }
+        self.note_unknown_work_zero(plan, named);
+        self.push_rapid(plan, &to);
+        self.recompute_position(&mut plan.state);
+        plan.commands_axes = true;
+        Ok(())
+    }
+}
+
+/// What there is to tell of a code in a block that names no axis.
+fn note_without_axis(act: AxisWordUse) -> Option<Note> {
+    let code = match act {
+        AxisWordUse::Scale => return Some(Note::CentreDefaulted { code: 510 }),
+        AxisWordUse::Rotate => return Some(Note::CentreDefaulted { code: 680 }),
+        AxisWordUse::MirrorOn => 511,
+        AxisWordUse::OneShot(one) => match one {
+            OneShot::CheckReference => 270,
+            OneShot::FromReference => 290,
+            OneShot::Skip => 310,
+            OneShot::LocalSystem => 520,
+            OneShot::MachineSystem => 530,
+            OneShot::OneSide => 600,
+            OneShot::SetSystem => 920,
+            OneShot::PresetSystem => 921,
+            _ => return None,
+        },
+        AxisWordUse::AdditionalWork | AxisWordUse::MirrorOff | AxisWordUse::Tilt => return None,
+    };
+    Some(Note::NoAxis { code })
+}

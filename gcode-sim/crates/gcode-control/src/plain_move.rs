@@ -1,0 +1,280 @@
+//! A plain move: a block of axis words, G00 or G01 and F while nothing is in force that makes more of them. Most steps
+//! of a block have nothing to do for it, and of the state it changes little.
+use std::hint::cold_path;
+
+use super::Executor;
+use super::linear_motion::{CoordinateBasis, SquaredTravel};
+use super::variables::Value;
+use super::words::G_CODES;
+use gcode_lang::motion::{AxisIndex, EventKind, EventSink, MAX_AXES, Position};
+use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::modes::{CutterSide, Motion, Polar};
+use gcode_lang::program::{LoweredWord, Op, Slot, WordOperand, Words};
+use gcode_lang::units::MmPerMin;
+
+/// The axes that a block names.
+#[derive(Clone, Copy)]
+struct AxisSet {
+    /// As bits, axis 1 the lowest.
+    axes: u8,
+    /// Behind the last of them.
+    end: AxisIndex,
+    /// They stand in their order.
+    is_ascending: bool,
+}
+
+impl AxisSet {
+    const NONE: Self = Self { axes: 0, end: 0, is_ascending: true };
+
+    /// Notes an axis; `None` where it is named twice.
+    #[inline(always)]
+    fn add(&mut self, axis: AxisIndex) -> Option<()> {
+        if axis < self.end {
+            cold_path();
+            if self.axes >> axis & 1 == 1 {
+                return None;
+            }
+            self.is_ascending = false;
+        } else {
+            self.end = axis + 1;
+        }
+        self.axes |= 1 << axis;
+        Some(())
+    }
+
+    fn iter(self) -> impl Iterator<Item = AxisIndex> {
+        (0..MAX_AXES).filter(move |axis| self.axes >> axis & 1 == 1)
+    }
+}
+
+/// What the words of a plain move say.
+struct PlainMove {
+    motion: Motion,
+    /// F, where it is commanded.
+    f: Option<f64>,
+    named: AxisSet,
+    travel: SquaredTravel,
+}
+
+/// Where they lead the axes that they name. It stands apart, so that the compiler keeps the rest in registers.
+#[derive(Default)]
+struct PlainEndpoint {
+    programmed: Position,
+    machine: Position,
+}
+
+impl Executor {
+    /// Does a block that is a plain move; `None` where it isn't one, and nothing has changed. A block that alarms is none:
+    /// the steps of a block know where and why.
+    #[inline(never)]
+    pub(super) fn plain_move<S: EventSink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
+        let basis = self.plain_basis.as_ref()?;
+        if !words.is_plain() || words.list.len() > G_CODES || !self.modal_calls.is_empty() {
+            return None;
+        }
+        let state = &*self.state;
+        let mut endpoint = PlainEndpoint::default();
+        let mut resolved_move = PlainMove {
+            motion: state.modal.motion,
+            f: None,
+            named: AxisSet::NONE,
+            travel: SquaredTravel::default(),
+        };
+        self.resolve_plain(words, basis, &mut resolved_move, &mut endpoint)?;
+        if !resolved_move.named.is_ascending {
+            // A sum depends on its order, a way must not on that of the words.
+            resolved_move.travel =
+                self.squared_travel(resolved_move.named.iter(), &state.machine, &endpoint.machine);
+        }
+        let f = resolved_move.f.unwrap_or(state.codes.f);
+        let (rate, seconds) = match resolved_move.motion {
+            Motion::Rapid => (
+                MmPerMin::ZERO,
+                self.rapid_seconds_of(resolved_move.named.iter(), &state.machine, &endpoint.machine),
+            ),
+            Motion::Linear => {
+                self.travel_time(state, f, resolved_move.travel, resolved_move.f.is_some()).ok()?
+            }
+            _ => return None,
+        };
+
+        let state = &mut *self.state;
+        for axis in resolved_move.named.iter() {
+            (state.programmed[axis], state.machine[axis]) =
+                (endpoint.programmed[axis], endpoint.machine[axis]);
+        }
+        (state.modal.motion, state.codes.f) = (resolved_move.motion, f);
+        state.codes.n = op.number.unwrap_or(state.codes.n);
+        self.record_work_use(self.state.modal.work, true);
+        let to = &self.state.machine;
+        match resolved_move.motion {
+            _ if !resolved_move.travel.is_some() => {}
+            _ if !sink.is_active() => self.count_move(seconds),
+            Motion::Rapid => self.emit(&EventKind::Rapid { to: *to }, seconds, sink),
+            _ => self.emit(&EventKind::Feed { to: *to, rate }, seconds, sink),
+        }
+        Some(())
+    }
+
+    /// Goes where the words of a block lead; `None` where it isn't a plain move, or alarms.
+    #[inline(always)]
+    fn resolve_plain(
+        &self,
+        words: &Words,
+        basis: &CoordinateBasis,
+        resolved_move: &mut PlainMove,
+        endpoint: &mut PlainEndpoint,
+    ) -> Option<()> {
+        let state = &*self.state;
+        for word in &words.list {
+            if word.comma {
+                return None;
+            }
+            let Some(axis) = self.settings.axes.find(word.letter) else {
+                match &word.value {
+                    WordOperand::G(_, found) => match found.row_for(self.settings.codes)?.effect {
+                        Effect::Motion(code) => resolved_move.motion = code,
+                        _ => return None,
+                    },
+                    _ if word.letter != b'F' || resolved_move.f.is_some() => return None,
+                    _ => resolved_move.f = self.evaluate_feed(words, word)?,
+                }
+                continue;
+            };
+            let value = match &word.value {
+                WordOperand::Literal(number) => {
+                    self.literal_dimension(number, word.letter, &basis.measure)?
+                }
+                value => {
+                    let value = match value {
+                        WordOperand::Variable { slot: Slot::Free(place), .. } => self.vars.get_free(*place),
+                        value => self.evaluate_axis_value(words, value)?,
+                    };
+                    let Value::Number(value) = value else { continue };
+                    self.computed_dimension(value, word.letter, &basis.measure)?
+                }
+            };
+            resolved_move.named.add(axis)?;
+            let to = &mut endpoint.machine[axis];
+            (endpoint.programmed[axis], *to) = self.axis_end(axis, value, state, basis);
+            if to.abs() > basis.max_coordinate {
+                return None;
+            }
+            resolved_move.travel.add(*to - state.machine[axis], self.settings.axes.is_rotary(axis));
+        }
+        (resolved_move.named.axes != 0).then_some(())
+    }
+
+    /// What is behind the address of an axis that is neither a literal nor any control's variable; `None` where it alarms.
+    #[inline(never)]
+    fn evaluate_axis_value(&self, words: &Words, value: &WordOperand) -> Option<Value> {
+        self.evaluate_operand(words, value).ok()
+    }
+
+    /// F, if it isn't vacant; `None` where it alarms.
+    #[inline(never)]
+    fn evaluate_feed(&self, words: &Words, word: &LoweredWord) -> Option<Option<f64>> {
+        match self.evaluate_word(words, word).ok()? {
+            Some(raw) => self.feed_of(&raw, &self.state).ok().map(Some),
+            None => Some(None),
+        }
+    }
+
+    /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
+    /// count from.
+    pub(super) fn update_is_plain(&mut self) {
+        self.plain_basis = self.is_plain().then(|| self.coordinate_basis(&self.state));
+    }
+
+    /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
+    fn is_plain(&self) -> bool {
+        let modal = &self.state.modal;
+        modal.cycle.is_none()
+            && !self.state.is_in_parameter_input
+            && self.state.work_zero_unknown == 0
+            && modal.cutter == CutterSide::Off
+            && modal.polar == Polar::Off
+            && self.state.last_end_point.is_none()
+            && self.lookahead.is_idle()
+            && self.settings.code_calls.is_empty()
+            && self.settings.stroke_limits.is_none()
+            && self.is_at_programmed_point()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use crate::{Control, Limits};
+    use gcode_lang::control::{Settings, StrokeLimits};
+    use gcode_lang::motion::{Event, EventSink, MAX_AXES};
+    use gcode_lang::program::{Memory, NoLibrary};
+
+    /// All that the machine is told.
+    struct Told(Vec<String>);
+
+    impl EventSink for Told {
+        fn event(&mut self, event: &Event<'_>) {
+            self.0.push(format!("{:?} {:?} {:?}", event.kind, event.seconds, event.block));
+        }
+    }
+
+    fn run(text: &str, settings: Settings) -> (Vec<String>, bool) {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", text.as_bytes().to_vec());
+        let mut control = Control::new(memory, settings);
+        let mut told = Told(Vec::new());
+        let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
+        told.0.push(format!("{outcome:?} {:?} {:?}", control.executor.state, control.executor.notes));
+        (told.0, control.executor.plain_basis.is_some())
+    }
+
+    fn settings() -> Settings {
+        let mut settings = Settings::default();
+        settings.rolls_over[4] = false;
+        settings
+    }
+
+    /// A control that looks at strokes without an end, for which no move is plain.
+    fn never_plain() -> Settings {
+        let no = [None; MAX_AXES];
+        Settings { stroke_limits: Some(StrokeLimits { max: no, min: no }), ..settings() }
+    }
+
+    fn block() -> impl Strategy<Value = String> {
+        let number = "-?[0-9]{1,2}(\\.[0-9]{0,5})?|#[1-3]|#500[13]";
+        // Mostly in their order and once each.
+        let axes = format!(
+            "(X({number}))?(Y({number}))?(Z({number}))?(A({number}))?(B({number}))?([XYZAB]({number}))?"
+        );
+        let moves = format!("(N[0-9]{{1,3}} )?(G0?[01]|G9[01]|G0|G1)?{axes}(F[1-9][0-9]{{1,2}})?");
+        let others = "G9[01]|G2[01]|G5[45]|G52X[1-9]Y2\\.|G92X[0-9]\\.|G43H1|G49|G28Z0|G53X[0-9]|G10L2P1X0\\.[1-9]5|G10L10P1R1\\.5\
+            |G81X1\\.Z-2\\.R1\\.F50|G80|G15|G16|G68X0Y0R30\\.|G69|G51X0Y0P2000|G50|G51\\.1X0|G50\\.1X0|G41D1|G40|G31Z-1\\.F50\
+            |G0[23]X[1-9]\\.R20\\.|G9[345]|G17|G18|M3S900|M5|S500|#[1-3]=[0-9]\\.[0-9]{1,6}|#5221=[0-9]\\.5|#5203=1\\.5|G1X9\\.,R1\\.";
+        let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();
+        prop_oneof![4 => of(&moves), 1 => of(others)]
+    }
+
+    proptest! {
+        #[test]
+        fn a_plain_move_is_what_the_steps_of_a_block_make_of_it(blocks in vec(block(), 1..40)) {
+            let text = format!("O1\nG21 G90 G94 F100.\n{}\nM30\n", blocks.join("\n"));
+            prop_assert_eq!(run(&text, settings()).0, run(&text, never_plain()).0, "{}", text);
+        }
+    }
+
+    #[test]
+    fn what_makes_more_of_axis_words_than_a_move_is_seen() {
+        let is_plain = |text: &str| run(text, settings()).1;
+        assert!(is_plain("G90 G0 X1.\n"));
+        for more in
+            ["G81 Z-1. R1. F50", "G16", "G68 X0 Y0 R30.", "G51 X0 Y0 P2000", "G51.1 X0", "G41 D1 G1 X5. F50"]
+        {
+            assert!(!is_plain(&format!("G90 G0 X1.\n{more}\n")), "{more}");
+        }
+        assert!(is_plain("G81 Z-1. R1. F50\nG80\n"), "over again");
+        assert!(!run("G90 G0 X1.\n", never_plain()).1);
+    }
+}

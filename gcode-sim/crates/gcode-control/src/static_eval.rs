@@ -1,0 +1,40 @@
+//! What a run would say whatever has gone before: the arithmetic of numbers, and which variables there are.
+pub use super::functions::{atan2, binary, function, power};
+use super::system_variables;
+use super::variables::{VariableClass, Vars};
+use gcode_lang::alarm::Alarm;
+use gcode_lang::control::Settings;
+
+/// Which variables a control has.
+#[derive(Debug)]
+pub struct VariableTable<'a> {
+    settings: &'a Settings,
+    vars: Vars,
+}
+
+impl<'a> VariableTable<'a> {
+    pub fn new(settings: &'a Settings) -> Self {
+        Self { settings, vars: Vars::new(settings.extra_commons, settings.aliases_commons) }
+    }
+
+    /// The alarm of reading a variable, whatever it holds.
+    pub fn read(&self, number: u32) -> Result<(), Alarm> {
+        match self.vars.classify(number) {
+            VariableClass::System if number != 3100 => {
+                system_variables::check_readable(number, self.settings.offset_variables)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The alarm of writing a variable, whatever is written; #3000 and #3006 stop, which is what they are for.
+    pub fn write(&self, number: u32) -> Result<(), Alarm> {
+        match self.vars.classify(number) {
+            VariableClass::Vacant => Err(Alarm::WriteProtected { number }),
+            VariableClass::Local(_) | VariableClass::Common(_) => Ok(()),
+            VariableClass::System if matches!(number, 3000 | 3006) => Ok(()),
+            VariableClass::System if number == 3100 => Err(Alarm::WriteProtected { number }),
+            VariableClass::System => system_variables::check_writable(number, self.settings.offset_variables),
+        }
+    }
+}

@@ -1,0 +1,386 @@
+//! The system variables: one row per range, how it is read and how it is written.
+use super::Executor;
+use super::notes::Note;
+use super::offsets::Register;
+use super::variables::Value;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::control::OffsetVariables;
+use gcode_lang::motion::AxisIndex;
+use gcode_lang::program::g_codes;
+use gcode_lang::program::modes::WorkSystem;
+
+type ReadVariable = fn(&Executor, u32) -> Result<f64, Alarm>;
+type WriteVariable = fn(&mut Executor, u32, f64) -> Result<(), Alarm>;
+
+/// A range of variables; reading and writing take the place in the range, counted from 0.
+struct VariableRow {
+    from: u32,
+    to: u32,
+    read: Option<ReadVariable>,
+    write: Option<WriteVariable>,
+}
+
+const fn row(from: u32, to: u32, read: Option<ReadVariable>, write: Option<WriteVariable>) -> VariableRow {
+    VariableRow { from, to, read, write }
+}
+
+/// All ranges in ascending order. A number in none of them is PS0115; without a way to read PS1115, to write PS0116.
+#[rustfmt::skip]
+const ROWS: &[VariableRow] = &[
+    // Interface signals.
+    row(1000, 1031, Some(|c, n| Ok(f64::from(c.settings.inputs >> n & 1))), None),
+    row(1032, 1035, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.settings.inputs as i32))), None),
+    row(1100, 1131, Some(|c, n| Ok(f64::from(c.outputs >> n & 1))), Some(|c, n, v| { c.set_output(n, v != 0.0); Ok(()) })),
+    row(1132, 1135, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.outputs as i32))), Some(|c, n, v| c.set_outputs(n, v))),
+    // Tool offsets, memory C.
+    row(2001, 2200, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
+    row(2201, 2400, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
+    // Work offsets by axis: EXT, G54 to G59 of axis 1, 2, 3, 4.
+    row(2500, 2506, Some(|c, n| c.work_offset(n as usize, 0)), Some(|c, n, v| c.set_work_offset(n as usize, 0, v))),
+    row(2600, 2606, Some(|c, n| c.work_offset(n as usize, 1)), Some(|c, n, v| c.set_work_offset(n as usize, 1, v))),
+    row(2700, 2706, Some(|c, n| c.work_offset(n as usize, 2)), Some(|c, n, v| c.set_work_offset(n as usize, 2, v))),
+    row(2800, 2806, Some(|c, n| c.work_offset(n as usize, 3)), Some(|c, n, v| c.set_work_offset(n as usize, 3, v))),
+    // Alarm, clocks, switches, message.
+    row(3000, 3000, None, None),
+    row(3001, 3001, Some(|c, _| Ok(c.millisecond_clock())), Some(|c, _, v| { c.clocks.0 = v - (c.seconds + c.idle_seconds) * 1000.0; Ok(()) })),
+    row(3002, 3002, Some(|c, _| Ok(c.clocks.1 + c.clock_seconds() / 3600.0)), Some(|c, _, v| { c.clocks.1 = v - (c.seconds + c.idle_seconds) / 3600.0; Ok(()) })),
+    row(3003, 3004, Some(|c, n| Ok(c.control_switches[n as usize])), Some(|c, n, v| c.set_switch(n, v))),
+    // Setting data: of its bits only INI (2), inch input, has an effect here.
+    row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == gcode_lang::program::modes::Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
+    row(3006, 3006, None, None),
+    // Mirror image by setting or signal: there is none; G51.1 is none of them.
+    row(3007, 3007, Some(|_, _| Ok(0.0)), None),
+    row(3008, 3008, Some(|_, _| Ok(0.0)), None),
+    row(3011, 3011, Some(|c, _| Ok(f64::from(c.settings.date))), None),
+    row(3012, 3012, Some(|c, _| Ok(c.time_of_day())), None),
+    row(3101, 3101, Some(|_, _| Ok(std::f64::consts::PI)), None),
+    row(3102, 3102, Some(|_, _| Ok(std::f64::consts::E)), None),
+    row(3901, 3902, Some(|c, n| Ok(c.part_counters[n as usize])), Some(|c, n, v| c.set_parts(n, v))),
+    // Modal information: of the block before, and of the block at work. Here they are the same.
+    row(4001, 4130, Some(|c, n| c.modal_information(n + 1)), None),
+    row(4201, 4330, Some(|c, n| c.modal_information(n + 1)), None),
+    // Positions.
+    row(5001, 5020, Some(|c, n| c.position(n, |c, axis| c.end_point()[axis])), None),
+    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.wrap_angle(axis, c.tool_centre(axis)))), None),
+    row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.work_coordinate(axis, c.tool_centre(axis)))), None),
+    row(5061, 5080, Some(|c, n| c.position(n, |c, axis| c.work_coordinate(axis, c.state.skip_position[axis]))), None),
+    row(5081, 5100, Some(|c, n| c.position(n, |c, axis| c.state.length_offset[axis])), None),
+    row(5101, 5140, Some(|c, n| c.position(n % 20, |_, _| 0.0)), None),
+    row(5181, 5200, Some(|c, n| c.position(n, |_, _| 0.0)), None),
+    // Work offsets.
+    row(5201, 5340, Some(|c, n| c.work_offset((n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((n / 20) as usize, n % 20, v))),
+    row(7001, 7960, Some(|c, n| c.work_offset((7 + n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((7 + n / 20) as usize, n % 20, v))),
+    row(10001, 10999, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
+    row(11001, 11999, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
+    row(12001, 12999, Some(|c, n| c.tool_offset(Register::DWear, n)), Some(|c, n, v| c.set_tool_offset(Register::DWear, n, v))),
+    row(13001, 13999, Some(|c, n| c.tool_offset(Register::DGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v))),
+    row(14001, 20000, Some(|c, n| c.work_offset((7 + n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((7 + n / 20) as usize, n % 20, v))),
+];
+
+/// What a control may have and this one has not: better than to say that there is no such variable.
+const NOT_SIMULATED: &[(u32, u32, &str)] = &[
+    (4401, 4530, "the codes of a block that a macro interrupted"),
+    (8000, 8999, "tool management"),
+    (100_001, 100_200, "positions of more than 20 axes"),
+];
+
+/// What a Haas has elsewhere: its tool offsets, whose diameters are radii here, and the offset of G52.
+#[rustfmt::skip]
+const HAAS: &[VariableRow] = &[
+    row(2001, 2200, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
+    row(2201, 2400, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
+    row(2401, 2600, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DGeometry, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v / 2.0))),
+    row(2601, 2800, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DWear, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DWear, n, v / 2.0))),
+    row(5201, 5220, Some(|c, n| c.position(n, |c, axis| c.state.local_offset[axis])), Some(|c, n, v| c.set_local(n, v))),
+];
+
+/// What a Haas has and this one has not, where a Fanuc has something else or nothing.
+const HAAS_NOT_SIMULATED: &[(u32, u32, &str)] = &[
+    (1032, 1099, "inputs and loads of a Haas"),
+    (1132, 1299, "outputs and loads of a Haas"),
+    (1601, 2000, "flutes and vibrations of tools"),
+    (3020, 3299, "timers and switches of a Haas"),
+    (3300, 3600, "tools of a Haas"),
+    (5401, 6999, "tool life, settings and parameters of a Haas"),
+    (7401, 7960, "pallets of a Haas"),
+    (8500, 8599, "tool management"),
+    (11_000, 13_999, "inputs and outputs of a Haas"),
+    (20_000, 39_999, "settings and parameters of a Haas"),
+    (50_001, 59_999, "tools of a Haas"),
+];
+
+fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
+    let (.., what) = of.iter().find(|(from, to, _)| (*from..=*to).contains(&number))?;
+    Some(Alarm::NotSimulated { what: format!("#{number} ({what})") })
+}
+
+fn find(number: u32, offsets: OffsetVariables) -> Result<&'static VariableRow, Alarm> {
+    let unknown = Alarm::NoSuchVariable { number: i64::from(number) };
+    if offsets == OffsetVariables::Haas {
+        if let Some(row) = HAAS.iter().find(|row| (row.from..=row.to).contains(&number)) {
+            return Ok(row);
+        }
+        if let Some(alarm) = not_simulated(number, HAAS_NOT_SIMULATED) {
+            return Err(alarm);
+        }
+        if matches!(number, 2500..=2899 | 3100..=3199 | 10_001..=10_999) {
+            return Err(unknown);
+        }
+    }
+    let place = ROWS.partition_point(|row| row.to < number);
+    let found = ROWS.get(place).filter(|row| row.from <= number);
+    found.ok_or_else(|| not_simulated(number, NOT_SIMULATED).unwrap_or(unknown))
+}
+
+/// The alarm of reading a number on any control with these offsets.
+pub(super) fn check_readable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
+    find(number, offsets)?.read.map(|_| ()).ok_or(Alarm::ReadProtected { number })
+}
+
+/// The alarm of writing a number on any control with these offsets.
+pub(super) fn check_writable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
+    find(number, offsets)?.write.map(|_| ()).ok_or(Alarm::WriteProtected { number })
+}
+
+/// A control may have up to 128 signals each way; here are the first 32.
+fn check_signal_word(word: u32) -> Result<(), Alarm> {
+    if word > 0 {
+        return Err(Alarm::NotSimulated { what: "more than 32 interface signals".into() });
+    }
+    Ok(())
+}
+
+/// An axis that the control doesn't have has no variables.
+fn variable_alarm(alarm: Alarm, number: u32) -> Alarm {
+    match alarm {
+        Alarm::AxisNumber { .. } => Alarm::NoSuchVariable { number: i64::from(number) },
+        other => other,
+    }
+}
+
+impl Executor {
+    pub(super) fn read_system(&self, number: u32) -> Result<Value, Alarm> {
+        if number == 3100 {
+            return Ok(Value::Vacant);
+        }
+        let row = find(number, self.settings.offset_variables)?;
+        let read = row.read.ok_or(Alarm::ReadProtected { number })?;
+        read(self, number - row.from).map(Value::Number).map_err(|alarm| variable_alarm(alarm, number))
+    }
+
+    pub(super) fn write_system(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
+        if number == 3100 {
+            return Err(Alarm::WriteProtected { number });
+        }
+        let row = find(number, self.settings.offset_variables)?;
+        let write = row.write.ok_or(Alarm::WriteProtected { number })?;
+        write(self, number - row.from, value).map_err(|alarm| variable_alarm(alarm, number))
+    }
+
+    fn set_output(&mut self, bit: u32, on: bool) {
+        self.outputs = if on { self.outputs | 1 << bit } else { self.outputs & !(1 << bit) };
+    }
+
+    fn set_outputs(&mut self, word: u32, value: f64) -> Result<(), Alarm> {
+        let bits = super::evaluation::integer(value)?;
+        check_signal_word(word)?;
+        // 32 bits, signed or not.
+        if !(i64::from(i32::MIN)..=i64::from(u32::MAX)).contains(&bits) {
+            return Err(Alarm::OutOfRange { function: "#1132".into(), value });
+        }
+        self.outputs = bits as u32;
+        Ok(())
+    }
+
+    /// Seconds since the start, as the clocks read them.
+    fn clock_seconds(&self) -> f64 {
+        self.has_read_clock.set(true);
+        self.seconds + self.idle_seconds
+    }
+
+    /// #3001: milliseconds; wraps as the control's does.
+    fn millisecond_clock(&self) -> f64 {
+        (self.clock_seconds() * 1000.0 + self.clocks.0 + 1e-6).trunc().rem_euclid(2_147_483_648.0)
+    }
+
+    /// #3012 as hhmmss: the setting's time and what the run has taken since.
+    fn time_of_day(&self) -> f64 {
+        let start = self.settings.time;
+        let seconds =
+            f64::from(start / 10_000 * 3600 + start / 100 % 100 * 60 + start % 100) + self.clock_seconds();
+        let seconds = seconds.rem_euclid(86_400.0) as u32;
+        f64::from(seconds / 3600 * 10_000 + seconds / 60 % 60 * 100 + seconds % 60)
+    }
+
+    /// #3003 has two bits, #3004 three.
+    fn set_switch(&mut self, switch: u32, value: f64) -> Result<(), Alarm> {
+        let most = if switch == 0 { 3.0 } else { 7.0 };
+        if !(0.0..=most).contains(&value.round()) {
+            return Err(Alarm::OutOfRange { function: format!("#{}", 3003 + switch), value });
+        }
+        self.control_switches[switch as usize] = value.round();
+        Ok(())
+    }
+
+    fn set_parts(&mut self, counter: u32, value: f64) -> Result<(), Alarm> {
+        if value < 0.0 {
+            return Err(Alarm::OutOfRange { function: format!("#{}", 3901 + counter), value });
+        }
+        self.part_counters[counter as usize] = value.round();
+        Ok(())
+    }
+
+    fn modal_information(&self, item: u32) -> Result<f64, Alarm> {
+        let codes = &self.state.codes;
+        Ok(match item {
+            102 => codes.b,
+            107 => f64::from(codes.d),
+            108 => 0.0,
+            109 => codes.f,
+            111 => f64::from(codes.h),
+            113 => f64::from(codes.m),
+            114 => f64::from(codes.n),
+            115 => f64::from(codes.o),
+            119 => codes.s,
+            120 => f64::from(codes.t),
+            130 => match self.state.modal.work {
+                WorkSystem::Additional(p) => f64::from(p),
+                WorkSystem::Standard(_) => 0.0,
+            },
+            14 if g_codes::find(541).row_for(self.settings.codes).is_none()
+                && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
+            {
+                return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
+            }
+            group => {
+                let unknown = Alarm::NoSuchVariable { number: i64::from(4000 + group) };
+                f64::from(self.state.modal.code(group).ok_or(unknown)?) / 10.0
+            }
+        })
+    }
+
+    /// Where the last block ended: as programmed, or after mirror, scaling and rotation.
+    fn end_point(&self) -> gcode_lang::motion::Position {
+        match self.settings.undocumented.shows_transformed {
+            true => self.state.transform.forward(self.state.programmed),
+            false => {
+                if self.state.last_end_point.is_some() {
+                    self.block_effects.record_note(Note::EndPointBeforeTransform);
+                }
+                self.move_end(&self.state)
+            }
+        }
+    }
+
+    /// An axis of the control by its number from 0 on.
+    fn check_axis(&self, axis: u32) -> Result<AxisIndex, Alarm> {
+        let known = Some(axis as usize).filter(|axis| *axis < self.settings.axes.len());
+        known.ok_or(Alarm::AxisNumber { number: i64::from(axis) + 1 })
+    }
+
+    /// A position of an axis, in the unit of the program.
+    fn position(&self, axis: u32, of: impl Fn(&Self, AxisIndex) -> f64) -> Result<f64, Alarm> {
+        let axis = self.check_axis(axis)?;
+        Ok(self.to_program_unit(&self.state, Some(axis), of(self, axis)))
+    }
+
+    /// A machine position in the work coordinate system, tool length included.
+    fn work_coordinate(&self, axis: AxisIndex, machine: f64) -> f64 {
+        self.wrap_angle(axis, self.remove_residue(machine - self.zero(&self.state, axis)))
+    }
+
+    /// The control has so many work coordinate systems; 6 are G54 to G59.
+    fn check_system(&self, system: usize) -> Result<(), Alarm> {
+        if system > 6 + self.offsets.additional.len() {
+            return Err(Alarm::OffsetNumber { number: system as i64 - 6 });
+        }
+        Ok(())
+    }
+
+    /// The offset of G52.
+    fn set_local(&mut self, axis: u32, value: f64) -> Result<(), Alarm> {
+        let axis = self.check_axis(axis)?;
+        self.state.local_offset[axis] =
+            self.check_offset_range(self.to_stored(&self.state, Some(axis), value))?;
+        self.update_after_offset_change();
+        Ok(())
+    }
+
+    fn work_offset(&self, system: usize, axis: u32) -> Result<f64, Alarm> {
+        self.check_system(system)?;
+        self.position(axis, |core, axis| core.offsets.work(system)[axis])
+    }
+
+    fn set_work_offset(&mut self, system: usize, axis: u32, value: f64) -> Result<(), Alarm> {
+        self.check_system(system)?;
+        let axis = self.check_axis(axis)?;
+        let value = self.check_offset_range(self.to_stored(&self.state, Some(axis), value))?;
+        self.offsets.work_mut(system)[axis] = value;
+        self.record_system_set(system);
+        self.update_after_offset_change();
+        Ok(())
+    }
+
+    /// The active system's zero has moved, the machine hasn't.
+    pub(super) fn update_after_offset_change(&mut self) {
+        let mut state = *self.state;
+        self.recompute_position(&mut state);
+        *self.state = state;
+        self.update_is_plain();
+    }
+
+    fn register(&self, register: Register) -> Register {
+        match (self.settings.series_15_offsets, register) {
+            (false, same) => same,
+            (true, Register::HGeometry) => Register::HWear,
+            (true, Register::HWear) => Register::HGeometry,
+            (true, Register::DGeometry) => Register::DWear,
+            (true, Register::DWear) => Register::DGeometry,
+        }
+    }
+
+    fn tool_offset(&self, register: Register, place: u32) -> Result<f64, Alarm> {
+        let value = self.offsets.tool(self.register(register), place + 1)?;
+        Ok(self.to_program_unit(&self.state, None, value))
+    }
+
+    fn set_tool_offset(&mut self, register: Register, place: u32, value: f64) -> Result<(), Alarm> {
+        let register = self.register(register);
+        self.offsets.tool(register, place + 1)?;
+        let value = self.check_offset_range(self.to_stored(&self.state, None, value))?;
+        self.offsets.register(register)[place as usize + 1] = value;
+        Ok(())
+    }
+
+    /// Geometry and wear of a D number, or half of them with ODI; `None` where it isn't in the table.
+    pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
+        let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
+        let sum = geometry + self.offsets.tool(Register::DWear, d).ok()?;
+        Some(if self.settings.offsets_are_diameters { sum / 2.0 } else { sum })
+    }
+
+    /// Where the tool's centre stands, in machine coordinates; a move that waits for the next counts as done, as if
+    /// nothing followed.
+    pub(super) fn tool_centre(&self, axis: AxisIndex) -> f64 {
+        self.state.machine[axis] + self.lookahead.offset(axis)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_ascend_and_do_not_overlap() {
+        for pair in ROWS.windows(2) {
+            assert!(pair[0].to < pair[1].from, "#{}", pair[1].from);
+        }
+    }
+
+    #[test]
+    fn numbers_between_the_ranges_do_not_exist() {
+        for number in [34, 99, 200, 499, 5401, 9_999_999] {
+            assert!(find(number, OffsetVariables::Fanuc).is_err(), "#{number}");
+        }
+    }
+}

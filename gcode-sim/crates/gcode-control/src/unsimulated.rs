@@ -1,0 +1,159 @@
+//! What a block says that moves nothing in a run and means something on a machine: block skips, codes without effect here.
+use super::words::{computed_row, count};
+use super::{Control, Executor};
+use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
+use gcode_lang::program::m_codes::{self, MCodeEffect};
+use gcode_lang::program::{OpKind, WordOperand, Words};
+
+/// Of a block that is about to be done.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct UnsimulatedCodes {
+    /// `/`, `/3`: at its beginning or inside.
+    pub block_skips: Vec<String>,
+    /// How exactly corners are cut, and how far is read ahead: `G09`, `G05.1 Q1`.
+    pub path_codes: Vec<String>,
+    /// Other G codes without effect here: `G25`.
+    pub g_codes: Vec<String>,
+    /// Other M codes without effect here: `M29`.
+    pub m_codes: Vec<String>,
+    /// It may change offsets, parameters, outputs or counters.
+    pub writes: bool,
+    /// M02 or M30, by its number.
+    pub end_code: Option<u32>,
+}
+
+impl Control {
+    /// What [`Control::next_block`] says so; nothing for a block that is skipped.
+    pub fn next_unsimulated(&self) -> UnsimulatedCodes {
+        let mut unsimulated = UnsimulatedCodes::default();
+        self.inspect_next(|core, op| {
+            if core.is_skipped(op) {
+                return;
+            }
+            unsimulated.block_skips.extend(op.skip().map(skip_text));
+            match core.guarded_operation(op.kind()) {
+                OpKind::Words(words) => core.collect_unsimulated(words, &mut unsimulated),
+                OpKind::Statement(_) => {
+                    unsimulated.writes = self.next_assigned_variables().iter().any(|number| *number >= 1000);
+                }
+                OpKind::Empty | OpKind::AssignFree(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
+            }
+        });
+        unsimulated
+    }
+}
+
+/// The first switch needs no number.
+fn skip_text(switch: u8) -> String {
+    if switch <= 1 { "/".to_owned() } else { format!("/{switch}") }
+}
+
+impl Executor {
+    fn collect_unsimulated(&self, words: &Words, silent: &mut UnsimulatedCodes) {
+        silent.writes |= self.state.is_in_parameter_input;
+        let words = match words.skipped_form() {
+            Some((switch, short)) if self.is_skip_on(*switch) => short,
+            Some((switch, _)) => {
+                silent.block_skips.push(skip_text(*switch));
+                words
+            }
+            None => words,
+        };
+        for word in words.list.iter().filter(|word| matches!(word.letter, b'G' | b'M')) {
+            let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
+            if word.letter == b'M' {
+                let Ok(code) = count(raw, b'M') else { continue };
+                match m_codes::find(code, self.settings.codes) {
+                    Some(MCodeEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
+                    Some(MCodeEffect::Orient) => {
+                        silent.m_codes.push(self.with_words(words, format!("M{code:02}"), b"PR"));
+                    }
+                    Some(MCodeEffect::End) => silent.end_code = Some(code),
+                    _ => {}
+                }
+                continue;
+            }
+            let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
+            let text = || self.with_values(words, row.code);
+            match row.effect {
+                Effect::NoEffect if [50, 51, 90].contains(&row.code) => silent.path_codes.push(text()),
+                Effect::LookAhead | Effect::Smoothness => silent.path_codes.push(text()),
+                Effect::NoEffect => silent.g_codes.push(text()),
+                Effect::OneShot(
+                    OneShot::DataInput | OneShot::SetSystem | OneShot::PresetSystem | OneShot::LocalSystem,
+                ) => silent.writes = true,
+                Effect::OneShot(OneShot::OneSide) => silent.path_codes.push("G60".to_owned()),
+                Effect::OneShot(OneShot::Reference | OneShot::CheckReference | OneShot::FromReference) => {
+                    silent.g_codes.push(format!("G{}", spelled(row.code)));
+                }
+                Effect::OneShot(OneShot::SecondReference) => {
+                    silent.g_codes.push(self.with_words(words, "G30".to_owned(), b"P"));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A code with the words that belong to it; exact stop has none.
+    fn with_values(&self, words: &Words, code: u32) -> String {
+        let name = if code.is_multiple_of(10) { format!("G{:02}", code / 10) } else { two_digits(code) };
+        self.with_words(words, name, if code == 90 { b"" } else { b"EIPQR" })
+    }
+
+    /// A name and what stands behind these letters.
+    fn with_words(&self, words: &Words, name: String, letters: &[u8]) -> String {
+        let of_code = |letter: u8| letters.contains(&letter);
+        let values = words.list.iter().filter(|word| of_code(word.letter) && !word.comma);
+        let shown = values.filter_map(|word| {
+            if matches!(word.value, WordOperand::G(..)) {
+                return None;
+            }
+            let value = self.evaluate_word(words, word).ok()??.value();
+            Some(format!(" {}{value}", char::from(word.letter)))
+        });
+        name + &shown.collect::<String>()
+    }
+}
+
+/// `G05.1`
+fn two_digits(code: u32) -> String {
+    if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::seen_before;
+
+    fn said(block: &str) -> UnsimulatedCodes {
+        seen_before(block, Control::next_unsimulated)
+    }
+
+    #[test]
+    fn what_moves_nothing_is_seen() {
+        assert_eq!(said("/G1 X1. F100").block_skips, ["/"]);
+        assert_eq!(said("/3 M08").block_skips, ["/3"]);
+        assert_eq!(said("G1 X1. F100 /2 Y5.").block_skips, ["/2"]);
+        assert_eq!(said("G9 G1 X1. F100").path_codes, ["G09"]);
+        assert_eq!(said("G5.1 Q1 R5").path_codes, ["G05.1 Q1 R5"]);
+        assert_eq!(said("G8 P1").path_codes, ["G08 P1"]);
+        assert_eq!(said("G25").g_codes, ["G25"]);
+        assert_eq!(said("M29 S500").m_codes, ["M29"]);
+        assert_eq!(said("M19 R90.").m_codes, ["M19 R90"]);
+        assert_eq!(said("G91 G28 Z0").g_codes, ["G28"]);
+        assert_eq!(said("G30 P3 Z0").g_codes, ["G30 P3"]);
+        assert_eq!(said("G60 X5.").path_codes, ["G60"]);
+        // The spindle stops, and stands at an angle.
+        assert_eq!(said("M19").m_codes, ["M19"]);
+    }
+
+    #[test]
+    fn what_may_change_offsets_says_so() {
+        for block in ["G10 L2 P1 X5.", "G92 X0", "G52 X1.", "#5221=3.", "#2001=1."] {
+            assert!(said(block).writes, "{block}");
+        }
+        for block in ["G1 X1. F100", "#500=3.", "G54", "G90 G0 X5."] {
+            assert_eq!(said(block), UnsimulatedCodes::default(), "{block}");
+        }
+    }
+}

@@ -1,0 +1,343 @@
+//! Local and common variables. Vacant is a state of its own: it is neither 0 nor a number.
+use gcode_lang::program::Slot;
+
+/// What a variable holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Value {
+    #[default]
+    Vacant,
+    Number(f64),
+}
+
+impl Value {
+    /// Arithmetic takes a vacant variable for 0.
+    pub fn number(self) -> f64 {
+        match self {
+            Self::Vacant => 0.0,
+            Self::Number(number) => number,
+        }
+    }
+
+    pub fn is_vacant(self) -> bool {
+        self == Self::Vacant
+    }
+
+    /// The number, or `None` where the word that carries it is not there.
+    pub fn as_number(self) -> Option<f64> {
+        match self {
+            Self::Vacant => None,
+            Self::Number(number) => Some(number),
+        }
+    }
+}
+
+/// What code has given last: the number is 0 where it is vacant, so that arithmetic needn't ask.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Accumulator {
+    pub(super) number: f64,
+    is_vacant: bool,
+}
+
+impl Accumulator {
+    pub(super) const VACANT: Self = Self { number: 0.0, is_vacant: true };
+
+    #[inline(always)]
+    pub(super) fn of(number: f64) -> Self {
+        Self { number, is_vacant: false }
+    }
+}
+
+impl From<Value> for Accumulator {
+    #[inline]
+    fn from(value: Value) -> Self {
+        Self { number: value.number(), is_vacant: value.is_vacant() }
+    }
+}
+
+impl From<Accumulator> for Value {
+    #[inline]
+    fn from(last: Accumulator) -> Self {
+        if last.is_vacant { Self::Vacant } else { Self::Number(last.number) }
+    }
+}
+
+/// A value as it is kept, in the same way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct StoredValue {
+    number: f64,
+    is_vacant: bool,
+    /// The decimals of an argument that was written without a point and counts increments; 0 for all others.
+    decimals: u8,
+}
+
+impl StoredValue {
+    const VACANT: Self = Self { number: 0.0, is_vacant: true, decimals: 0 };
+
+    /// What tells 0 from −0, too.
+    fn bits(self) -> (u64, bool) {
+        (self.number.to_bits(), self.is_vacant)
+    }
+}
+
+impl From<Value> for StoredValue {
+    #[inline]
+    fn from(value: Value) -> Self {
+        Self { number: value.number(), is_vacant: value.is_vacant(), decimals: 0 }
+    }
+}
+
+impl From<StoredValue> for Value {
+    #[inline]
+    fn from(held: StoredValue) -> Self {
+        if held.is_vacant { Self::Vacant } else { Self::Number(held.number) }
+    }
+}
+
+/// #0, which stays vacant, and #1 to #33.
+const LOCALS: usize = 34;
+/// The numbers up to the last common of every control.
+const DIRECT_COUNT: usize = 1000;
+/// Places for them, so many that the low bits of any number are one: nothing needs to ask whether it is there.
+const PLACES: usize = DIRECT_COUNT.next_power_of_two();
+
+/// #1 to #33 of one macro level, by number; #0 stays vacant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Locals([StoredValue; LOCALS]);
+
+/// A level that nothing has been written to.
+pub(super) const VACANT: Locals = Locals([StoredValue::VACANT; LOCALS]);
+
+impl Locals {
+    pub fn get(&self, local: usize) -> Value {
+        self.0[local].into()
+    }
+
+    /// Sets an argument; `decimals` where it was written without a point and counts increments.
+    pub(super) fn set(&mut self, local: usize, value: Value, decimals: u8) {
+        self.0[local] = StoredValue { decimals, ..value.into() };
+    }
+}
+
+/// Where a number belongs; a local's and a common's place among the values of [`Vars`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum VariableClass {
+    Vacant,
+    Local(usize),
+    Common(usize),
+    System,
+}
+
+/// All variables that a program may use freely.
+#[derive(Clone, Debug)]
+pub struct Vars {
+    /// By number the locals of the current level and the commons. What has no number of these is never written.
+    direct_values: Box<[StoredValue; PLACES]>,
+    extra_values: Vec<StoredValue>,
+    /// The locals of the levels that wait for the current one, the main program's first.
+    outer_locals: Vec<Locals>,
+    /// The numbers of further commons.
+    extra_range: (u32, u32),
+    /// `#10100` is `#100`.
+    aliases_commons: bool,
+}
+
+impl Vars {
+    /// `more` are the numbers of commons beyond #999; with `aliased` #10100 is #100, and so on.
+    pub(super) fn new(more: Option<(u32, u32)>, aliased: bool) -> Self {
+        let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
+        Self {
+            direct_values: Box::new([StoredValue::VACANT; PLACES]),
+            extra_values: vec![StoredValue::VACANT; count],
+            outer_locals: Vec::new(),
+            extra_range: more.unwrap_or((1, 0)),
+            aliases_commons: aliased,
+        }
+    }
+
+    /// What kind of variable `number` is.
+    #[inline]
+    pub(super) fn classify(&self, number: u32) -> VariableClass {
+        match Slot::of(number) {
+            Slot::Free(place) if usize::from(place) < LOCALS => VariableClass::Local(usize::from(place)),
+            Slot::Free(place) => VariableClass::Common(usize::from(place)),
+            Slot::Other(number) => self.classify_other(number),
+        }
+    }
+
+    /// What kind of variable one is that settings of the control decide about.
+    fn classify_other(&self, number: u32) -> VariableClass {
+        match number {
+            0 => VariableClass::Vacant,
+            10_100..=10_199 | 10_500..=10_999 if self.aliases_commons => {
+                VariableClass::Common(number as usize - 10_000)
+            }
+            _ if (self.extra_range.0..=self.extra_range.1).contains(&number) => {
+                VariableClass::Common(DIRECT_COUNT + (number - self.extra_range.0) as usize)
+            }
+            _ => VariableClass::System,
+        }
+    }
+
+    /// The value of a variable of [`Slot::Free`].
+    #[inline(always)]
+    pub(super) fn get_free(&self, number: u16) -> Value {
+        self.direct_values[usize::from(number) % PLACES].into()
+    }
+
+    /// Its number; 0 where it is vacant.
+    #[inline(always)]
+    pub(super) fn free_number(&self, number: u16) -> f64 {
+        self.direct_values[usize::from(number) % PLACES].number
+    }
+
+    /// Writes such a variable.
+    #[inline(always)]
+    pub(super) fn set_free(&mut self, number: u16, value: Accumulator) {
+        let held = &mut self.direct_values[usize::from(number) % PLACES];
+        (held.number, held.is_vacant, held.decimals) = (value.number, value.is_vacant, 0);
+    }
+
+    /// The value at a place that [`Vars::kind`] tells.
+    pub(super) fn get(&self, place: usize) -> Value {
+        self.stored_value(place).into()
+    }
+
+    /// Writes a value at such a place.
+    pub(super) fn set(&mut self, place: usize, value: Value) {
+        match place.checked_sub(DIRECT_COUNT) {
+            None => self.direct_values[place] = value.into(),
+            Some(place) => self.extra_values[place] = value.into(),
+        }
+    }
+
+    #[inline]
+    fn stored_value(&self, place: usize) -> StoredValue {
+        match place.checked_sub(DIRECT_COUNT) {
+            None => self.direct_values[place],
+            Some(place) => self.extra_values[place],
+        }
+    }
+
+    /// How many places there are.
+    fn places(&self) -> usize {
+        DIRECT_COUNT + self.extra_values.len()
+    }
+
+    /// ADP: a local's value as if it had been passed with a point.
+    pub(super) fn value_with_point(&self, local: usize) -> f64 {
+        let StoredValue { number, decimals, .. } = self.direct_values[local];
+        number * 10_f64.powi(i32::from(decimals))
+    }
+
+    /// The locals of the current level.
+    pub fn locals(&self) -> Locals {
+        Locals(std::array::from_fn(|local| self.direct_values[local]))
+    }
+
+    pub(super) fn set_locals(&mut self, locals: &Locals) {
+        self.direct_values[..LOCALS].copy_from_slice(&locals.0);
+    }
+
+    pub fn level(&self) -> usize {
+        self.outer_locals.len()
+    }
+
+    /// A macro call: a new level with these locals.
+    pub(super) fn push_level(&mut self, locals: &Locals) {
+        self.outer_locals.push(self.locals());
+        self.set_locals(locals);
+    }
+
+    /// Back to the caller's locals.
+    pub(super) fn pop_level(&mut self) {
+        if let Some(callers) = self.outer_locals.pop() {
+            self.set_locals(&callers);
+        }
+    }
+
+    /// Whether all values in force are the same.
+    pub(super) fn has_same_values(&self, other: &Self) -> bool {
+        self.direct_values == other.direct_values
+            && self.extra_values == other.extra_values
+            && self.outer_locals == other.outer_locals
+    }
+
+    /// Whether the values at a place differ, be it in one bit.
+    #[inline]
+    pub(super) fn differs_at(&self, place: usize, other: &Self) -> bool {
+        self.stored_value(place).bits() != other.stored_value(place).bits()
+    }
+
+    /// A place where the values differ; that of #0 where only callers' locals do.
+    pub(super) fn difference(&self, other: &Self) -> Option<usize> {
+        let found = (0..self.places()).find(|place| self.differs_at(*place, other));
+        found.or_else(|| self.outer_bits().ne(other.outer_bits()).then_some(0))
+    }
+
+    fn outer_bits(&self) -> impl Iterator<Item = (u64, bool)> + '_ {
+        self.outer_locals.iter().flat_map(|level| level.0.map(StoredValue::bits))
+    }
+
+    /// The variables that aren't vacant, by number: the locals of the main program and the commons.
+    pub fn nonvacant(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let local =
+            |local| self.outer_locals.first().map_or_else(|| self.get(local), |level| level.get(local));
+        let locals = (0..LOCALS).map(move |place| (place, local(place)));
+        let commons = (LOCALS..self.places()).map(|place| (place, self.get(place)));
+        locals.chain(commons).filter_map(|(place, value)| {
+            let number =
+                place.checked_sub(DIRECT_COUNT).map_or(place as u32, |more| self.extra_range.0 + more as u32);
+            Some((number, value.as_number()?))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_call_hides_the_callers_locals_and_a_return_brings_them_back() {
+        let mut vars = Vars::new(None, false);
+        vars.set(1, Value::Number(7.0));
+        vars.push_level(&VACANT);
+        assert!(vars.get(1).is_vacant());
+        vars.set(1, Value::Number(9.0));
+        assert_eq!(vars.nonvacant().collect::<Vec<_>>(), [(1, 7.0)], "the main program's");
+        vars.pop_level();
+        assert_eq!(vars.get(1), Value::Number(7.0));
+        vars.push_level(&VACANT);
+        assert!(vars.get(1).is_vacant(), "a level used before starts vacant");
+    }
+
+    #[test]
+    fn values_differ_in_any_bit_and_on_any_level() {
+        let mut vars = Vars::new(Some((98_000, 98_499)), false);
+        vars.set(3, Value::Number(0.0));
+        let before = vars.clone();
+        assert_eq!(before.difference(&vars), None);
+        for value in [Value::Vacant, Value::Number(-0.0), Value::Number(1.0)] {
+            vars.set(3, value);
+            assert_eq!(before.difference(&vars), Some(3), "{value:?} is not 0");
+        }
+        vars.set(3, Value::Number(0.0));
+        vars.set(DIRECT_COUNT + 499, Value::Number(5.0));
+        assert_eq!(before.difference(&vars), Some(DIRECT_COUNT + 499));
+        vars.set(DIRECT_COUNT + 499, Value::Vacant);
+        assert_eq!(before.difference(&vars), None);
+        vars.push_level(&before.locals());
+        assert_eq!(before.difference(&vars), Some(0), "there is another level");
+        vars.pop_level();
+        assert_eq!(before.difference(&vars), None);
+    }
+
+    #[test]
+    fn what_is_known_has_its_number() {
+        let mut vars = Vars::new(Some((98_000, 98_499)), false);
+        for place in [33, 100, 999, DIRECT_COUNT, DIRECT_COUNT + 499] {
+            vars.set(place, Value::Number(1.0));
+        }
+        let numbers: Vec<_> = vars.nonvacant().map(|(number, _)| number).collect();
+        assert_eq!(numbers, [33, 100, 999, 98_000, 98_499]);
+    }
+}

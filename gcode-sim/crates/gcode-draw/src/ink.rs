@@ -1,0 +1,159 @@
+//! What a painter is asked for, in pixels from the picture's top left corner.
+
+/// A place on the sheet, pixels: to the right and down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Px {
+    pub x: f64,
+    pub y: f64,
+}
+
+/// Shorthand for a place on the sheet.
+pub(super) const fn px(x: f64, y: f64) -> Px {
+    Px { x, y }
+}
+
+impl Px {
+    pub(super) fn distance(self, other: Self) -> f64 {
+        libm::hypot(self.x - other.x, self.y - other.y)
+    }
+
+    /// The place `length` pixels further in a direction.
+    pub(super) fn toward(self, direction: [f64; 2], length: f64) -> Self {
+        px(self.x + direction[0] * length, self.y + direction[1] * length)
+    }
+}
+
+/// An upright rectangle, pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rect {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+impl Rect {
+    pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+        Self { left, top, right: left + width, bottom: top + height }
+    }
+
+    pub fn width(&self) -> f64 {
+        self.right - self.left
+    }
+
+    pub fn height(&self) -> f64 {
+        self.bottom - self.top
+    }
+
+    pub fn centre(&self) -> Px {
+        px((self.left + self.right) / 2.0, (self.top + self.bottom) / 2.0)
+    }
+
+    #[must_use]
+    pub fn grown(&self, by: f64) -> Self {
+        Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
+    }
+
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    pub fn contains(&self, inner: &Self) -> bool {
+        self.left <= inner.left
+            && self.top <= inner.top
+            && inner.right <= self.right
+            && inner.bottom <= self.bottom
+    }
+
+    /// The point of the rectangle that is nearest to `to`.
+    pub(super) fn nearest(&self, to: Px) -> Px {
+        px(to.x.clamp(self.left, self.right), to.y.clamp(self.top, self.bottom))
+    }
+
+    /// How far its farthest corner is from `from`.
+    pub(super) fn farthest(&self, from: Px) -> f64 {
+        let x = (from.x - self.left).abs().max((from.x - self.right).abs());
+        let y = (from.y - self.top).abs().max((from.y - self.bottom).abs());
+        libm::hypot(x, y)
+    }
+}
+
+/// An opaque colour, sRGB.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rgb(pub u8, pub u8, pub u8);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Dash {
+    Solid,
+    /// Pixels on, pixels off, and so on.
+    Pattern([f64; 2]),
+    /// Long, gap, short, gap: a centre line.
+    Chain(f64),
+}
+
+/// Where a text stands against its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Align {
+    Left,
+    Centre,
+    Right,
+}
+
+/// One thing to paint. Later ones cover earlier ones.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DrawCommand {
+    Line {
+        points: Vec<Px>,
+        closed: bool,
+        width: f64,
+        dash: Dash,
+        color: Rgb,
+    },
+    Area {
+        points: Vec<Px>,
+        color: Rgb,
+    },
+    Ring {
+        centre: Px,
+        radius: f64,
+        width: f64,
+        dash: Dash,
+        color: Rgb,
+    },
+    Disc {
+        centre: Px,
+        radius: f64,
+        color: Rgb,
+    },
+    /// `at` is on the base line; `size` is the em in pixels.
+    Text {
+        at: Px,
+        align: Align,
+        size: f64,
+        text: String,
+        color: Rgb,
+    },
+}
+
+impl DrawCommand {
+    pub(super) fn line(from: Px, to: Px, width: f64, color: Rgb) -> Self {
+        Self::Line { points: vec![from, to], closed: false, width, dash: Dash::Solid, color }
+    }
+
+    pub(super) fn area(rect: Rect, color: Rgb) -> Self {
+        let points = vec![
+            px(rect.left, rect.top),
+            px(rect.right, rect.top),
+            px(rect.right, rect.bottom),
+            px(rect.left, rect.bottom),
+        ];
+        Self::Area { points, color }
+    }
+
+    pub(super) fn text(at: Px, size: f64, text: impl Into<String>, color: Rgb) -> Self {
+        Self::Text { at, align: Align::Left, size, text: text.into(), color }
+    }
+}

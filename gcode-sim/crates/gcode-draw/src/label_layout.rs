@@ -1,0 +1,346 @@
+//! Letters holes and lines: as many lines of every label as there is room for, and a note of what had none.
+use super::font::{ASCENT, DESCENT};
+use super::frame::{Frame, LABEL_LIMIT};
+use super::ink::{Align, DrawCommand, Px, Rect, px};
+use super::labels::{LabelArea, LabelPlacement, LeaderRule, Symbol};
+use super::lines::is_path;
+use super::marks::DrawnMark;
+use super::obstacle::Obstacle;
+use super::palette;
+use super::role::Pen;
+use super::scene::{Mark, Scene, Shape, Stroke};
+use super::symbol;
+use gcode_lang::units::Deg;
+
+/// Height of a line of text in parts of its size.
+const LEADING: f64 = 1.18;
+
+/// The labels of all holes, placed.
+pub(super) struct LabelLayout {
+    /// The field with the labels in it.
+    pub(super) field: LabelArea,
+    labels: Vec<Label>,
+}
+
+/// Which hole, where, and how many lines of its label.
+struct Label {
+    mark: usize,
+    placement: LabelPlacement,
+    lines: usize,
+}
+
+impl LabelLayout {
+    /// As many lines for every good hole as all good holes have room for; the others get all they can, unless that
+    /// costs others their number.
+    pub(super) fn of(scene: &Scene, drawn: &[DrawnMark], frame: &Frame, field: &LabelArea) -> Self {
+        let mut order: Vec<usize> = (0..scene.marks.len()).collect();
+        order.sort_by_key(|i| (scene.marks[*i].status, *i));
+        order.truncate(LABEL_LIMIT);
+        let most = scene.marks.iter().map(|m| m.label.len()).max().unwrap_or(0);
+        let mut best = Self { field: field.clone(), labels: Vec::new() };
+        let fewer_for_bad_ones = (1..most).rev().map(|bad| (1, bad));
+        for (lines, bad) in (1..=most).rev().map(|good| (good, most)).chain(fewer_for_bad_ones) {
+            let trial = Self::with_lines((lines, bad), &order, scene, drawn, frame, field.clone());
+            let short = |l: &Label| l.lines < lines.min(scene.marks[l.mark].label.len());
+            let complete = trial.labels.len() == order.len() && !trial.labels.iter().any(short);
+            if complete || best.labels.len() < trial.labels.len() {
+                best = trial;
+            }
+            if complete {
+                break;
+            }
+        }
+        best
+    }
+
+    fn with_lines(
+        (good, bad): (usize, usize),
+        order: &[usize],
+        scene: &Scene,
+        drawn: &[DrawnMark],
+        frame: &Frame,
+        field: LabelArea,
+    ) -> Self {
+        let mut trial = Self { field, labels: Vec::new() };
+        for i in order {
+            let (mark, hole) = (&scene.marks[*i], &drawn[*i]);
+            let full = if mark.status.is_good() { good } else { bad }.min(mark.label.len());
+            let way = if hole.is_crowded { LeaderRule::OutOfCrowd } else { LeaderRule::Clear };
+            let found = trial.place(
+                mark,
+                full,
+                Symbol { position: hole.centre, clearance: hole.label_clearance, leader_rule: way },
+                frame,
+            );
+            // What is wrong must be found again: its number may stand far off, on a line over other holes.
+            let far = Symbol {
+                position: hole.centre,
+                clearance: hole.label_clearance,
+                leader_rule: LeaderRule::ThroughAll,
+            };
+            let found = match found {
+                None if !mark.status.is_good() => trial.place(mark, full, far, frame),
+                found => found,
+            };
+            trial.labels.extend(found.map(|(lines, spot)| Label { mark: *i, placement: spot, lines }));
+        }
+        trial
+    }
+
+    fn place(
+        &mut self,
+        mark: &Mark,
+        lines: usize,
+        symbol: Symbol,
+        frame: &Frame,
+    ) -> Option<(usize, LabelPlacement)> {
+        (1..=lines).rev().find_map(|n| {
+            let size = text_box(&mark.label[..n], frame);
+            Some((n, self.field.place(symbol, size, frame.text_size * LEADING)?))
+        })
+    }
+
+    /// How many holes that have a label are drawn without one.
+    pub(super) fn unlabelled(&self, scene: &Scene) -> usize {
+        scene.marks.iter().filter(|m| !m.label.is_empty()).count() - self.labels.len()
+    }
+
+    pub(super) fn write(
+        &self,
+        scene: &Scene,
+        frame: &Frame,
+        inks: &mut Vec<DrawCommand>,
+    ) -> Vec<(Rect, Vec<String>)> {
+        let thin = (0.05 * frame.text_size).max(1.0);
+        let leaders = self.labels.iter().filter_map(|l| l.placement.leader);
+        inks.extend(leaders.map(|(from, to)| DrawCommand::line(from, to, thin, palette::THIN)));
+        let mut labels = Vec::new();
+        for label in &self.labels {
+            let lines = scene.marks[label.mark].label[..label.lines].to_vec();
+            write(&lines, &label.placement, frame, inks);
+            labels.push((label.placement.rect, lines));
+        }
+        labels
+    }
+
+    /// What is left out.
+    pub(super) fn notes(&self, scene: &Scene) -> Vec<String> {
+        let mut notes = Vec::new();
+        let without = self.unlabelled(scene);
+        if 0 < without {
+            notes.push(format!("{without} of {} holes without a number: no room.", scene.marks.len()));
+        }
+        let cut = self.labels.iter().filter(|l| l.lines < scene.marks[l.mark].label.len()).count();
+        match cut {
+            0 => {}
+            1 => notes.push("1 label shortened: no room.".to_owned()),
+            _ => notes.push(format!("{cut} labels shortened: no room.")),
+        }
+        notes
+    }
+}
+
+/// Radii and the like, on the lines that are `wanted`: somewhere round a circle, from the lower left on, on a straight
+/// line, at the end of a scale's tick, along a path or on a leader to its middle. Gives back those that found no room;
+/// a scale can do without some of its numbers.
+pub(super) fn caption_strokes(
+    scene: &Scene,
+    wanted: impl Fn(&Stroke) -> bool,
+    frame: &Frame,
+    field: &mut LabelArea,
+    inks: &mut Vec<DrawCommand>,
+    labels: &mut Vec<(Rect, Vec<String>)>,
+) -> Vec<String> {
+    let mut left = Vec::new();
+    let paths: Vec<Path<'_>> = scene.strokes.iter().filter_map(|stroke| Path::of(stroke, frame)).collect();
+    for stroke in scene.strokes.iter().filter(|stroke| wanted(stroke)) {
+        let Some(caption) = &stroke.caption else { continue };
+        let lines = vec![caption.clone()];
+        let size = text_box(&lines, frame);
+        let places: Vec<Px> = match &stroke.shape {
+            Shape::Circle { centre, radius } => {
+                let (centre, radius) = (frame.scale.px(*centre), radius * frame.scale.factor);
+                let angles = (0..48).map(|i| Deg(f64::from(i) * 7.5 + 225.0));
+                angles.map(|angle| centre.toward(symbol::direction(angle), radius)).collect()
+            }
+            // A number on one of several paths covers none of the others: nobody should take it for theirs.
+            Shape::Line(_) if is_path(stroke.pen) => {
+                let own = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke));
+                let mut places = own.into_iter().flat_map(|path| path.points.iter().copied());
+                let apart = |place: &Px| {
+                    let rect = around(*place, size).grown(0.1 * frame.text_size);
+                    let mut others = paths.iter().filter(|path| !std::ptr::eq(path.stroke, stroke));
+                    field.is_free(&rect) && !others.any(|path| path.runs_through(&rect))
+                };
+                places.find(apart).into_iter().collect()
+            }
+            Shape::Line(points) => points
+                .windows(2)
+                .flat_map(|ends| {
+                    let (from, to) = (frame.scale.px(ends[0]), frame.scale.px(ends[1]));
+                    // Beyond an upright tick it would stand between its neighbours.
+                    let is_level = stroke.pen == Pen::Scale && from.y == to.y;
+                    let middle = px((from.x + to.x) / 2.0, (from.y + to.y) / 2.0);
+                    [is_level.then(|| beyond(from, to, size)), Some(middle)]
+                })
+                .flatten()
+                .collect(),
+        };
+        let spot = field.place_on(places, size).or_else(|| {
+            let path = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke))?;
+            let at = path.points[path.points.len() / 2];
+            field.place(
+                Symbol { position: at, clearance: 0.0, leader_rule: LeaderRule::ThroughAll },
+                size,
+                frame.text_size * LEADING,
+            )
+        });
+        if let Some(spot) = spot {
+            if let Some((from, to)) = spot.leader {
+                inks.push(DrawCommand::line(from, to, (0.05 * frame.text_size).max(1.0), palette::THIN));
+                inks.push(DrawCommand::Disc {
+                    centre: from,
+                    radius: 0.17 * frame.text_size,
+                    color: palette::TEXT,
+                });
+            }
+            write(&lines, &spot, frame, inks);
+            labels.push((spot.rect, lines));
+        } else if stroke.pen != Pen::Scale {
+            left.push(caption.clone());
+        }
+    }
+    left
+}
+
+/// The middle of a box that goes on where a level line ends.
+fn beyond(from: Px, to: Px, (width, _): (f64, f64)) -> Px {
+    px(to.x + (width / 2.0).copysign(to.x - from.x), to.y)
+}
+
+/// A tool's path that has a number, and the rectangle round it: some of its points will do.
+struct Path<'s> {
+    stroke: &'s Stroke,
+    points: Vec<Px>,
+    bounds: Rect,
+}
+
+/// So many points of a path are looked at.
+const POINTS: usize = 120;
+
+impl<'s> Path<'s> {
+    fn of(stroke: &'s Stroke, frame: &Frame) -> Option<Self> {
+        let Shape::Line(points) = &stroke.shape else { return None };
+        if !is_path(stroke.pen) || stroke.caption.is_none() {
+            return None;
+        }
+        let step = (points.len() / POINTS).max(1);
+        let points: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
+        let first = Obstacle::Segment(*points.first()?, *points.first()?).bounds();
+        let bounds = points.iter().fold(first, |all, p| Rect {
+            left: all.left.min(p.x),
+            top: all.top.min(p.y),
+            right: all.right.max(p.x),
+            bottom: all.bottom.max(p.y),
+        });
+        Some(Self { stroke, points, bounds })
+    }
+
+    fn runs_through(&self, rect: &Rect) -> bool {
+        self.bounds.overlaps(rect)
+            && self.points.windows(2).any(|pair| Obstacle::Segment(pair[0], pair[1]).hits(rect))
+    }
+}
+
+fn around(middle: Px, (width, height): (f64, f64)) -> Rect {
+    Rect::new(middle.x - width / 2.0, middle.y - height / 2.0, width, height)
+}
+
+fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
+    let widest = lines.iter().map(|l| frame.font.width(l, frame.text_size)).fold(0.0, f64::max);
+    let height = frame.text_size * (LEADING * (lines.len() as f64 - 1.0) + ASCENT + DESCENT);
+    (widest + 0.3 * frame.text_size, height + 0.1 * frame.text_size)
+}
+
+/// The lines in a box that interrupts what is below it, as a dimension interrupts its line.
+fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<DrawCommand>) {
+    let (rect, size, align) = (spot.rect, frame.text_size, spot.align);
+    inks.push(DrawCommand::area(rect, palette::PAPER));
+    let x = match align {
+        Align::Left => rect.left + 0.15 * size,
+        Align::Centre => rect.centre().x,
+        Align::Right => rect.right - 0.15 * size,
+    };
+    for (n, line) in lines.iter().enumerate() {
+        let at = px(x, rect.top + size * (0.05 + ASCENT + LEADING * n as f64));
+        let color = if n == 0 { palette::TEXT } else { palette::SOFT_TEXT };
+        inks.push(DrawCommand::Text { at, align, size, text: line.clone(), color });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::role::Point;
+    use super::super::sheet::{Sheet, lay_out};
+    use super::super::size::Size;
+    use super::*;
+
+    fn sheet(lines: Vec<(Vec<Point>, Pen, &str)>) -> Sheet {
+        let outline = vec![[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [0.0, 60.0], [0.0, 0.0]];
+        let stroke = |(points, pen, caption): (Vec<Point>, Pen, &str)| Stroke {
+            shape: Shape::Line(points),
+            pen,
+            caption: (!caption.is_empty()).then(|| caption.to_owned()),
+        };
+        let strokes = lines.into_iter().chain([(outline, Pen::Outline, "")]).map(stroke).collect();
+        lay_out(&Scene { strokes, ..Scene::default() }, Size::new(480, 360).unwrap()).unwrap()
+    }
+
+    fn place(sheet: &Sheet, words: &str) -> Rect {
+        sheet.labels.iter().find(|(_, lines)| lines[0] == words).unwrap_or_else(|| panic!("{words}")).0
+    }
+
+    /// Lines a tenth of a letter apart.
+    #[test]
+    fn paths_too_close_for_their_numbers_have_them_on_leaders() {
+        let path = |n: usize| {
+            let y = 1.0 + 0.4 * n as f64;
+            (0..=40).map(|k| [2.0 + 2.4 * f64::from(k), y]).collect::<Vec<_>>()
+        };
+        let names = ["1", "2", "3", "4", "5"];
+        let sheet = sheet(names.iter().enumerate().map(|(n, name)| (path(n), Pen::Feed, *name)).collect());
+        assert!(sheet.notes.is_empty(), "{:?}", sheet.notes);
+        let places: Vec<Rect> = names.iter().map(|name| place(&sheet, name)).collect();
+        let ends = sheet.commands.iter().filter(|ink| matches!(ink, DrawCommand::Disc { .. })).count();
+        assert!(3 <= ends, "{places:?}");
+    }
+
+    /// The left one's number goes on to the left where the tick ends, the upper one's interrupts its tick.
+    #[test]
+    fn a_scales_number_stands_beside_a_level_tick_and_on_an_upright_one() {
+        let tick = |from: Point, to: Point, name: &'static str| (vec![from, to], Pen::Scale, name);
+        let sheet =
+            sheet(vec![tick([-1.0, 30.0], [-4.0, 30.0], "left"), tick([50.0, 61.0], [50.0, 68.0], "over")]);
+        let (left, over) = (place(&sheet, "left"), place(&sheet, "over"));
+        let ends = |upright: bool| {
+            let lines = sheet.commands.iter().filter_map(|ink| match ink {
+                DrawCommand::Line { points, .. } if points.len() == 2 => Some((points[0], points[1])),
+                _ => None,
+            });
+            let mut ticks = lines.filter(|(a, b)| if upright { a.x == b.x } else { a.y == b.y });
+            ticks.next().unwrap()
+        };
+        assert!((left.right - ends(false).1.x).abs() < 1e-9, "{left:?}");
+        let (low, high) = ends(true);
+        assert!((over.centre().y - (low.y + high.y) / 2.0).abs() < 1e-9, "{over:?}");
+    }
+
+    #[test]
+    fn a_scale_without_room_for_a_number_says_nothing_of_it() {
+        let tick = |x: f64, name: &'static str| (vec![[x, 61.0], [x, 66.0]], Pen::Scale, name);
+        let sheet = sheet(vec![tick(50.0, "r100"), tick(51.0, "r101"), tick(70.0, "r120")]);
+        let named: Vec<&str> = sheet.labels.iter().map(|(_, lines)| lines[0].as_str()).collect();
+        assert_eq!(named, ["r100", "r120"]);
+        assert!(sheet.notes.is_empty(), "{:?}", sheet.notes);
+    }
+}

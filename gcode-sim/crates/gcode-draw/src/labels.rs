@@ -1,0 +1,284 @@
+//! Finds a free place for every label: near its symbol, else further away on a leader, else none at all.
+//!
+//! Greedy and deterministic: the most important label first, each at its cheapest free place. A label is only put
+//! where it covers nothing that is in the field, so two labels can never overlap.
+use super::ink::{Align, Px, Rect, px};
+use super::obstacle::Obstacle;
+use gcode_lang::units::Deg;
+
+/// What a label belongs to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Symbol {
+    pub(super) position: Px,
+    /// Labels keep this far from it.
+    pub(super) clearance: f64,
+    pub(super) leader_rule: LeaderRule,
+}
+
+/// What a leader may pass over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LeaderRule {
+    /// Nothing; it ends at the symbol's rim.
+    Clear,
+    /// The symbols of the crowd it starts in; it ends in the very place.
+    OutOfCrowd,
+    /// All symbols, but no label.
+    ThroughAll,
+}
+
+impl Symbol {
+    fn align(&self, rect: &Rect) -> Align {
+        let aside = rect.centre().x - self.position.x;
+        match rect.width() / 4.0 {
+            middle if middle < aside => Align::Left,
+            middle if aside < -middle => Align::Right,
+            _ => Align::Centre,
+        }
+    }
+
+    fn leader(&self, rect: &Rect) -> (Px, Px) {
+        let end = rect.nearest(self.position);
+        let length = self.position.distance(end).max(1e-9);
+        let start = if self.leader_rule == LeaderRule::OutOfCrowd { 0.0 } else { self.clearance };
+        (
+            self.position
+                .toward([(end.x - self.position.x) / length, (end.y - self.position.y) / length], start),
+            end,
+        )
+    }
+}
+
+/// Where a label stands, and the line that leads to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LabelPlacement {
+    pub(super) rect: Rect,
+    pub(super) leader: Option<(Px, Px)>,
+    /// The side of the box that is towards the symbol: lines of unequal length keep to it.
+    pub(super) align: Align,
+}
+
+/// The area for labels and what is already in it, sorted into cells so that asking stays cheap.
+#[derive(Clone)]
+pub(super) struct LabelArea {
+    area: Rect,
+    cell: f64,
+    columns: usize,
+    cells: Vec<Vec<Obstacle>>,
+    /// Lines that may be interrupted by a label where nothing better is found.
+    soft_obstacles: Vec<Obstacle>,
+}
+
+const DIRECTIONS: u32 = 24;
+/// Distances between symbol and label, in heights of a line; from the second on there is a leader.
+const DISTANCES: [f64; 12] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5, 9.0, 12.0, 16.0, 21.0];
+/// A label whose leader may not pass over other symbols stays within so many distances.
+const NEAR_DISTANCES: usize = 8;
+
+impl LabelArea {
+    pub(super) fn new(area: Rect, cell: f64) -> Self {
+        let columns = (area.width() / cell).max(0.0) as usize + 1;
+        let rows = (area.height() / cell).max(0.0) as usize + 1;
+        Self { area, cell, columns, cells: vec![Vec::new(); columns * rows], soft_obstacles: Vec::new() }
+    }
+
+    /// Nothing will be placed over it.
+    pub(super) fn block(&mut self, obstacle: Obstacle) {
+        let cells = self.touched_cells(&obstacle.bounds());
+        for index in cells {
+            self.cells[index].push(obstacle);
+        }
+    }
+
+    /// Labels keep off it if they can.
+    pub(super) fn discourage(&mut self, obstacle: Obstacle) {
+        self.soft_obstacles.push(obstacle);
+    }
+
+    pub(super) fn is_free(&self, rect: &Rect) -> bool {
+        self.area.contains(rect)
+            && self.touched_cells(rect).into_iter().all(|i| self.cells[i].iter().all(|o| !o.hits(rect)))
+    }
+
+    /// Puts a label of this size beside a symbol and blocks its place; `line` is the height of a line of text.
+    pub(super) fn place(
+        &mut self,
+        symbol: Symbol,
+        (width, height): (f64, f64),
+        line: f64,
+    ) -> Option<LabelPlacement> {
+        let Symbol { position: at, clearance: clear, .. } = symbol;
+        let reach =
+            if symbol.leader_rule == LeaderRule::ThroughAll { DISTANCES.len() } else { NEAR_DISTANCES };
+        let mut best: Option<(f64, LabelPlacement)> = None;
+        for (step, distance) in DISTANCES.iter().take(reach).enumerate() {
+            for turn in 0..DIRECTIONS {
+                // From the upper right, alternately to both sides: where a reader expects a number.
+                let side = if turn % 2 == 0 { 1.0 } else { -1.0 };
+                let off = f64::from(turn.div_ceil(2)) * side * 360.0 / f64::from(DIRECTIONS);
+                let angle = Deg(-30.0 + off);
+                let cost = distance * 2.0 + off.abs() / 180.0;
+                if best.is_some_and(|(least, _)| least <= cost) {
+                    continue;
+                }
+                let direction = [angle.cos(), angle.sin()];
+                let far = clear + distance * line;
+                // The box touches the circle of radius `far` with a side or a corner.
+                let lean = direction.map(|part| (1.5 * part).clamp(-1.0, 1.0));
+                let middle = px(
+                    at.x + direction[0] * far + lean[0] * width / 2.0,
+                    at.y + direction[1] * far + lean[1] * height / 2.0,
+                );
+                let rect = Rect::new(middle.x - width / 2.0, middle.y - height / 2.0, width, height);
+                if !self.is_free(&rect) {
+                    continue;
+                }
+                let leader = (symbol.leader_rule != LeaderRule::Clear
+                    || 0 < step
+                    || self.is_nearer_to_another(&rect, symbol))
+                .then(|| symbol.leader(&rect));
+                if leader.is_some_and(|leader| self.is_crossed(leader, symbol)) {
+                    continue;
+                }
+                let doubtful =
+                    if leader.is_some() && self.is_nearer_to_another(&rect, symbol) { 3.0 } else { 0.0 };
+                let cost = cost
+                    + doubtful
+                    + 2.0 * self.soft_obstacles.iter().filter(|o| o.hits(&rect)).count() as f64;
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, LabelPlacement { rect, leader, align: symbol.align(&rect) }));
+                }
+            }
+        }
+        let (_, spot) = best?;
+        self.block(Obstacle::Box(spot.rect));
+        if let Some((from, to)) = spot.leader {
+            self.block(Obstacle::Segment(from, to));
+        }
+        Some(spot)
+    }
+
+    /// Puts a label onto one of `middles`, the first that is free.
+    pub(super) fn place_on(
+        &mut self,
+        middles: impl IntoIterator<Item = Px>,
+        (width, height): (f64, f64),
+    ) -> Option<LabelPlacement> {
+        let rects =
+            middles.into_iter().map(|m| Rect::new(m.x - width / 2.0, m.y - height / 2.0, width, height));
+        let rect = rects.into_iter().find(|rect| self.is_free(rect))?;
+        self.block(Obstacle::Box(rect));
+        Some(LabelPlacement { rect, leader: None, align: Align::Centre })
+    }
+
+    /// Whether a reader would take the label for another symbol's.
+    fn is_nearer_to_another(&self, rect: &Rect, symbol: Symbol) -> bool {
+        let own = rect.nearest(symbol.position).distance(symbol.position) - symbol.clearance;
+        let cells = self.touched_cells(&rect.grown(1.5 * own.max(0.0)));
+        cells.into_iter().flat_map(|i| &self.cells[i]).any(|o| match *o {
+            Obstacle::Disc { centre, radius } => {
+                symbol.clearance < centre.distance(symbol.position)
+                    && rect.nearest(centre).distance(centre) - radius < 1.5 * own
+            }
+            Obstacle::Box(_) | Obstacle::Ring { .. } | Obstacle::Segment(..) => false,
+        })
+    }
+
+    /// Whether something lies in the leader's way.
+    fn is_crossed(&self, (from, to): (Px, Px), symbol: Symbol) -> bool {
+        let passable = |o: &Obstacle| match (symbol.leader_rule, *o) {
+            (LeaderRule::Clear, _) | (_, Obstacle::Box(_) | Obstacle::Ring { .. }) => false,
+            (LeaderRule::ThroughAll, Obstacle::Disc { .. } | Obstacle::Segment(..)) => true,
+            (LeaderRule::OutOfCrowd, Obstacle::Disc { centre, radius }) => {
+                centre.distance(symbol.position) < symbol.clearance + radius
+            }
+            (LeaderRule::OutOfCrowd, Obstacle::Segment(a, b)) => {
+                a.distance(symbol.position).min(b.distance(symbol.position)) < 2.0 * symbol.clearance
+            }
+        };
+        let bounds = Obstacle::Segment(from, to).bounds();
+        let cells = self.touched_cells(&bounds);
+        cells.into_iter().any(|i| self.cells[i].iter().any(|o| !passable(o) && o.crosses(from, to)))
+    }
+
+    fn touched_cells(&self, rect: &Rect) -> Vec<usize> {
+        let rows = self.cells.len() / self.columns;
+        let clamp = |v: f64, most: usize| ((v / self.cell).max(0.0) as usize).min(most - 1);
+        let (left, right) = (
+            clamp(rect.left - self.area.left, self.columns),
+            clamp(rect.right - self.area.left, self.columns),
+        );
+        let (top, bottom) = (clamp(rect.top - self.area.top, rows), clamp(rect.bottom - self.area.top, rows));
+        (top..=bottom).flat_map(|row| (left..=right).map(move |column| row * self.columns + column)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn symbol(x: f64, y: f64, clear: f64) -> Symbol {
+        Symbol { position: px(x, y), clearance: clear, leader_rule: LeaderRule::Clear }
+    }
+
+    fn field() -> LabelArea {
+        LabelArea::new(Rect::new(0.0, 0.0, 400.0, 300.0), 40.0)
+    }
+
+    #[test]
+    fn a_label_stands_at_the_upper_right_of_a_lonely_symbol() {
+        let spot = field().place(symbol(200.0, 150.0, 10.0), (30.0, 12.0), 12.0).unwrap();
+        assert!(200.0 < spot.rect.left && spot.rect.bottom < 150.0, "{spot:?}");
+        assert_eq!(spot.leader, None);
+    }
+
+    #[test]
+    fn a_label_in_a_corner_stays_on_the_sheet() {
+        let spot = field().place(symbol(398.0, 2.0, 5.0), (60.0, 24.0), 12.0).unwrap();
+        assert!(Rect::new(0.0, 0.0, 400.0, 300.0).contains(&spot.rect), "{spot:?}");
+    }
+
+    #[test]
+    fn a_label_that_has_no_place_beside_its_symbol_gets_a_leader() {
+        let mut field = field();
+        field.block(Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 });
+        let spot = field.place(symbol(200.0, 150.0, 10.0), (30.0, 12.0), 12.0).unwrap();
+        assert!(!Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 }.hits(&spot.rect));
+        field.block(Obstacle::Disc { centre: px(100.0, 100.0), radius: 26.0 });
+        let spot = field.place(symbol(100.0, 100.0, 10.0), (30.0, 12.0), 12.0);
+        // The leader itself would run through the disc that fills the surroundings.
+        assert_eq!(spot, None);
+    }
+
+    #[test]
+    fn a_full_field_takes_no_label() {
+        let mut field = field();
+        field.block(Obstacle::Box(Rect::new(0.0, 0.0, 400.0, 300.0)));
+        assert_eq!(field.place(symbol(200.0, 150.0, 10.0), (30.0, 12.0), 12.0), None);
+    }
+
+    proptest! {
+        #[test]
+        fn no_two_labels_overlap_and_none_leaves_the_area(
+            places in prop::collection::vec((0.0f64..400.0, 0.0f64..300.0, 8.0f64..70.0), 1..60),
+        ) {
+            let mut field = field();
+            for (x, y, _) in &places {
+                field.block(Obstacle::Disc { centre: px(*x, *y), radius: 5.0 });
+            }
+            let mut placed: Vec<LabelPlacement> = Vec::new();
+            for (x, y, width) in &places {
+                placed.extend(field.place(symbol(*x, *y, 6.0), (*width, 12.0), 12.0));
+            }
+            for (i, spot) in placed.iter().enumerate() {
+                prop_assert!(Rect::new(0.0, 0.0, 400.0, 300.0).contains(&spot.rect));
+                for other in &placed[i + 1..] {
+                    prop_assert!(!spot.rect.overlaps(&other.rect));
+                }
+                for (x, y, _) in &places {
+                    prop_assert!(5.0 <= spot.rect.nearest(px(*x, *y)).distance(px(*x, *y)) + 1e-9);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,351 @@
+//! Lays a scene out on a sheet of a given size: scale, dials, labels, scale bar, title block. Decides, doesn't paint.
+use super::PictureError;
+use super::deviation_dials::{Detail, DeviationDials};
+use super::font::Font;
+use super::frame::{Frame, LegendUse};
+use super::ink::{DrawCommand, Rect};
+use super::label_layout::{LabelLayout, caption_strokes};
+use super::labels::LabelArea;
+use super::lines::{are_arrows_hidden, axes, block_stroke, is_path, scale_bar, stroke_ink};
+use super::marks::draw_marks;
+use super::measure::Scale;
+use super::panel::Panel;
+use super::role::{HoleStatus, Pen, Point};
+use super::scene::{Scene, Shape, Stroke};
+use super::size::Size;
+use super::words::Words;
+
+/// A picture, laid out: every ink has its place in pixels.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    pub size: Size,
+    pub commands: Vec<DrawCommand>,
+    /// The labels of the holes and lines, as placed: none overlaps another.
+    pub labels: Vec<(Rect, Vec<String>)>,
+    /// What the picture leaves out, as it says itself.
+    pub notes: Vec<String>,
+    /// How many times misfits are enlarged against the part; none is drawn without.
+    pub magnification: Option<f64>,
+}
+
+/// Coordinates beyond are slips, not parts, mm.
+const MAX_COORDINATE: f64 = 1e6;
+
+/// # Errors
+/// A coordinate that is no number, or farther than a kilometre from the origin.
+pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
+    check(scene)?;
+    let font = Font::embedded();
+    let text = size.text();
+    let (width, height) = (f64::from(size.width()), f64::from(size.height()));
+    let page = Rect::new(0.0, 0.0, width, height).grown(-(0.5 * text).round());
+    let panel = Panel::beside(page, scene, &font, text);
+    let strip = 2.4 * text;
+    let drawing = Rect { bottom: panel.drawing.bottom - strip, ..panel.drawing };
+
+    let extent = extent(scene);
+    let largest_dial = (2.4 * text).min(0.05 * drawing.width().min(drawing.height()));
+    let frame_of = |axis_reach: f64| {
+        let scale = Scale::fitting(extent, drawing.grown(-axis_reach - 0.9 * text));
+        Frame { font: Font::embedded(), text_size: text, scale, largest_dial, axis_reach }
+    };
+    let mut frame = frame_of(2.0 * text);
+    if are_arrows_hidden(scene, &frame, extent) {
+        frame = frame_of(2.6 * text + largest_dial);
+    }
+
+    if let Some(chart) = &scene.chart {
+        let mut words = Words::new(&frame.font, text);
+        chart.draw(panel.drawing.grown(-text), &mut words);
+        let Words { commands: mut inks, labels, .. } = words;
+        inks.extend(panel.inks(scene, &frame, LegendUse::NOTHING, &[]));
+        return Ok(Sheet { size, commands: inks, labels, notes: Vec::new(), magnification: None });
+    }
+    let mut plans = Detail::ALL.iter().map(|detail| Plan::new(scene, &frame, drawing, extent, *detail));
+    let mut best = plans.next().expect("there is a first detail");
+    for plan in plans {
+        if best.unlabelled == 0 {
+            break;
+        }
+        if plan.unlabelled <= best.unlabelled {
+            best = plan;
+        }
+    }
+    let Plan { commands: mut inks, labels, notes, legend_use: shown, .. } = best;
+    inks.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
+    inks.extend(panel.inks(scene, &frame, shown, &notes));
+    Ok(Sheet { size, commands: inks, labels, notes, magnification: shown.magnification })
+}
+
+/// The drawing with some of the detail there could be.
+struct Plan {
+    commands: Vec<DrawCommand>,
+    labels: Vec<(Rect, Vec<String>)>,
+    notes: Vec<String>,
+    legend_use: LegendUse,
+    /// Holes without a number.
+    unlabelled: usize,
+}
+
+impl Plan {
+    fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
+        let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text_size), frame.text_size);
+        let mut inks = Vec::new();
+        for stroke in &scene.strokes {
+            inks.push(stroke_ink(stroke, frame));
+            block_stroke(&mut field, stroke, frame);
+        }
+        inks.extend(axes(scene, frame, extent, drawing, &mut field));
+        // The number on a straight line has one place, a hole's label many, the number on a circle or a path any.
+        let mut labels = Vec::new();
+        let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !is_path(stroke.pen);
+        let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut inks, &mut labels);
+        let dials = DeviationDials::choose(scene, frame, detail);
+        let drawn = draw_marks(scene, frame, &dials, &mut field);
+        // What isn't good comes last, on top.
+        for good in [true, false] {
+            let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.status.is_good() == good);
+            inks.extend(holes.flat_map(|(_, hole)| hole.commands.iter().cloned()));
+        }
+        let mut lettering = LabelLayout::of(scene, &drawn, frame, &field);
+        labels.extend(lettering.write(scene, frame, &mut inks));
+        let is_circle = |stroke: &Stroke| !is_line(stroke);
+        bare.extend(caption_strokes(scene, is_circle, frame, &mut lettering.field, &mut inks, &mut labels));
+        let mut notes: Vec<String> = dials.note(scene).into_iter().collect();
+        if drawn.iter().any(|d| d.is_truncated) {
+            notes.push("Deviation with an arrow: longer than drawn.".to_owned());
+        }
+        notes.extend(lettering.notes(scene));
+        if !bare.is_empty() {
+            notes.push(format!("No room on the line for {}.", bare.join(", ")));
+        }
+        let unlabelled = lettering.unlabelled(scene);
+        let shown = LegendUse {
+            magnification: dials.magnification(),
+            directions: drawn.iter().any(|d| d.has_axis_arrow),
+            displacements: drawn.iter().any(|d| d.has_displacement_line),
+            has_plain_good: dials.has_plain(scene, HoleStatus::is_good),
+            has_plain_rest: dials.has_plain(scene, |standing| !standing.is_good()),
+        };
+        if detail == Detail::SignsWithoutAxes {
+            notes.push("Axes of the holes not drawn: no room.".to_owned());
+        }
+        Self { commands: inks, labels, notes, legend_use: shown, unlabelled }
+    }
+}
+
+fn check(scene: &Scene) -> Result<(), PictureError> {
+    let fits = |p: &Point| p.iter().all(|v| v.abs() <= MAX_COORDINATE);
+    let off = |what: String| PictureError::OffTheSheet { what, limit: MAX_COORDINATE };
+    for stroke in &scene.strokes {
+        let fine = match &stroke.shape {
+            Shape::Line(points) => points.iter().all(fits),
+            Shape::Circle { centre, radius } => fits(centre) && fits(&[*radius, 0.0]) && 0.0 <= *radius,
+        };
+        if !fine {
+            return Err(off(format!("a line of the drawing ({:?})", stroke.pen)));
+        }
+    }
+    for mark in &scene.marks {
+        let places =
+            [mark.actual, mark.direction, mark.deviation.map(|m| m.entry), mark.deviation.map(|m| m.bottom)];
+        if !(fits(&mark.position) && fits(&[mark.radius, 0.0]) && places.iter().flatten().all(fits)) {
+            return Err(off(format!("hole {}", mark.label.first().map_or("", String::as_str))));
+        }
+    }
+    Ok(())
+}
+
+/// The path of the tool that somebody looks for.
+fn is_changed(pen: Pen) -> bool {
+    matches!(pen, Pen::New | Pen::Old)
+}
+
+/// What must be seen, mm: every line but the tool's path where it is as before, every hole, and the origin where there are axes.
+fn extent(scene: &Scene) -> (Point, Point) {
+    let mut seen: Vec<(Point, f64)> = Vec::new();
+    let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| is_path(s.pen));
+    for stroke in &scene.strokes {
+        match &stroke.shape {
+            Shape::Line(points) if path_alone || !is_path(stroke.pen) || is_changed(stroke.pen) => {
+                seen.extend(points.iter().map(|p| (*p, 0.0)))
+            }
+            Shape::Line(_) => {}
+            Shape::Circle { centre, radius } => seen.push((*centre, *radius)),
+        }
+    }
+    for mark in &scene.marks {
+        seen.extend(
+            [Some(mark.position), mark.actual].into_iter().flatten().map(|place| (place, mark.radius)),
+        );
+    }
+    if !scene.axes.is_empty() || seen.is_empty() {
+        seen.push(([0.0, 0.0], 0.0));
+    }
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for (at, radius) in seen {
+        low = [low[0].min(at[0] - radius), low[1].min(at[1] - radius)];
+        high = [high[0].max(at[0] + radius), high[1].max(at[1] + radius)];
+    }
+    // A single hole without a part round it would fill the sheet.
+    let widest = (high[0] - low[0]).max(high[1] - low[1]);
+    let alone = scene.strokes.iter().all(|stroke| is_path(stroke.pen));
+    let least = 20.0 * scene.marks.iter().map(|m| m.radius).fold(0.5, f64::max);
+    let grow = if alone { ((least - widest) / 2.0).max(0.0) } else { 0.0 };
+    (low.map(|v| v - grow), high.map(|v| v + grow))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ink::Align;
+    use crate::scene::{Axis, LegendItem, Mark, Sample, Title, ZoneDeviation};
+    use proptest::prelude::*;
+
+    fn scene(marks: Vec<Mark>) -> Scene {
+        let circle = |radius: f64, pen: Pen| Stroke {
+            shape: Shape::Circle { centre: [0.0, 0.0], radius },
+            pen,
+            caption: Some(format!("r {radius}")),
+        };
+        let axis = |name: &str, direction: Point| Axis { name: name.to_owned(), direction };
+        let item = |sample: Sample| LegendItem { sample, text: "what this sign means".to_owned() };
+        Scene {
+            title: Title {
+                name: "A part with quite a long name indeed, such as drawings have, and a revision"
+                    .to_owned(),
+                view: "Top view".to_owned(),
+                position: Some(0.1),
+                verdict: Some((HoleStatus::Bad, "FAIL: 2 of 5 good, 2 bad, 1 missing, 2 extra".to_owned())),
+                lines: (0..6).map(|i| format!("another line about the part, number {i}")).collect(),
+                caution: "Predicted by simulation, not measured".to_owned(),
+            },
+            axes: vec![axis("x", [1.0, 0.0]), axis("z", [0.0, -1.0])],
+            strokes: vec![circle(500.0, Pen::Outline), circle(300.0, Pen::Construction)],
+            marks,
+            zone: Some(0.1),
+            legend: vec![
+                item(Sample::Status(HoleStatus::Good)),
+                item(Sample::Status(HoleStatus::Bad)),
+                item(Sample::Deviation),
+                item(Sample::Direction),
+                item(Sample::Pen(Pen::Outline)),
+                item(Sample::Pen(Pen::Construction)),
+            ],
+            chart: None,
+        }
+    }
+
+    fn mark(index: usize, at: Point) -> Mark {
+        let standing =
+            [HoleStatus::Good, HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra]
+                [index % 5];
+        let off = 0.01 * index as f64;
+        let judged = matches!(standing, HoleStatus::Good | HoleStatus::Bad);
+        Mark {
+            position: at,
+            radius: 3.0,
+            status: standing,
+            label: vec![format!("{}", index + 1), format!("B {index}°"), "Φ0.020".to_owned()],
+            direction: Some([at[0] / 800.0, at[1] / 800.0]),
+            deviation: judged.then_some(ZoneDeviation { entry: [off, 0.01], bottom: [off, -0.01] }),
+            actual: judged.then_some([at[0] + off, at[1]]),
+        }
+    }
+
+    /// How far an ink reaches, pixels.
+    fn reach(ink: &DrawCommand, font: &Font) -> Rect {
+        match ink {
+            DrawCommand::Line { points, .. } | DrawCommand::Area { points, .. } => {
+                points.iter().fold(Rect::new(points[0].x, points[0].y, 0.0, 0.0), |rect, p| Rect {
+                    left: rect.left.min(p.x),
+                    top: rect.top.min(p.y),
+                    right: rect.right.max(p.x),
+                    bottom: rect.bottom.max(p.y),
+                })
+            }
+            DrawCommand::Ring { centre, radius, .. } | DrawCommand::Disc { centre, radius, .. } => {
+                Rect::new(centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius)
+            }
+            DrawCommand::Text { at, align, size, text, .. } => {
+                let width = font.width(text, *size);
+                let part = match align {
+                    Align::Left => 0.0,
+                    Align::Centre => 0.5,
+                    Align::Right => 1.0,
+                };
+                Rect::new(at.x - part * width, at.y - 0.76 * size, width, 0.98 * size)
+            }
+        }
+    }
+
+    fn holds(scene: &Scene, size: Size) -> Result<(), TestCaseError> {
+        let sheet = lay_out(scene, size).unwrap();
+        let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
+        for ink in &sheet.commands {
+            prop_assert!(page.contains(&reach(ink, &Font::embedded())), "{size:?} {ink:?}");
+        }
+        for (i, (rect, lines)) in sheet.labels.iter().enumerate() {
+            for (other, _) in &sheet.labels[i + 1..] {
+                prop_assert!(!rect.overlaps(other), "{size:?} {lines:?}");
+            }
+        }
+        Ok(())
+    }
+
+    const SIZES: [(u32, u32); 5] = [(480, 360), (360, 480), (800, 600), (1600, 1200), (900, 500)];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn nothing_is_clipped_and_no_label_covers_another(
+            places in prop::collection::vec((-480.0f64..480.0, -480.0f64..480.0), 0..40),
+            which in 0usize..5,
+        ) {
+            let marks = places.iter().enumerate().map(|(i, (x, y))| mark(i, [*x, *y])).collect();
+            let (width, height) = SIZES[which];
+            holds(&scene(marks), Size::new(width, height).unwrap())?;
+        }
+    }
+
+    #[test]
+    fn every_hole_of_a_ring_of_24_has_its_number() {
+        let places = (0..24).map(|i| {
+            let angle = gcode_lang::units::Deg(15.0 * f64::from(i));
+            [300.0 * angle.cos(), 300.0 * angle.sin()]
+        });
+        let scene = scene(places.enumerate().map(|(i, at)| mark(i, at)).collect());
+        for (width, height) in SIZES {
+            let sheet = lay_out(&scene, Size::new(width, height).unwrap()).unwrap();
+            let numbered = sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count();
+            assert_eq!(numbered, 24, "{width}x{height}: {:?}", sheet.notes);
+        }
+    }
+
+    #[test]
+    fn too_many_holes_for_their_numbers_are_said_to_be() {
+        let places = (0..900).map(|i| [f64::from(i % 30) * 30.0 - 435.0, f64::from(i / 30) * 30.0 - 435.0]);
+        let scene = scene(
+            places.enumerate().map(|(i, at)| Mark { status: HoleStatus::Good, ..mark(i, at) }).collect(),
+        );
+        let sheet = lay_out(&scene, Size::new(480, 360).unwrap()).unwrap();
+        let numbered = sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count();
+        let note = format!("{} of 900 holes without a number: no room.", 900 - numbered);
+        assert!(sheet.notes.contains(&note), "{note} {:?}", sheet.notes);
+    }
+
+    #[test]
+    fn a_coordinate_that_is_no_number_is_refused() {
+        for at in [[f64::NAN, 0.0], [0.0, f64::INFINITY], [2e6, 0.0]] {
+            let error = lay_out(&scene(vec![mark(6, at)]), Size::default()).unwrap_err().to_string();
+            assert!(error.starts_with("hole 7 has a coordinate that is not a number"), "{error}");
+        }
+    }
+
+    #[test]
+    fn an_empty_scene_is_a_sheet_with_its_title() {
+        let sheet = lay_out(&Scene::default(), Size::default()).unwrap();
+        assert!(sheet.labels.is_empty() && sheet.notes.is_empty());
+    }
+}

@@ -1,0 +1,84 @@
+//! The size of a picture in pixels, within what can be read and held in memory.
+use std::str::FromStr;
+
+use super::PictureError;
+
+/// Width and height in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    width: u32,
+    height: u32,
+}
+
+/// The longer and the shorter side below which the smallest text is no longer legible.
+const MIN_SIZE: (u32, u32) = (480, 360);
+/// 8,192 × 8,192 pixels are 256 MB while painting.
+const MAX_SIDE: u32 = 8192;
+
+impl Size {
+    /// # Errors
+    /// Below 480x360 (or 360x480) or beyond 8192 a side.
+    pub fn new(width: u32, height: u32) -> Result<Self, PictureError> {
+        if width.max(height) < MIN_SIZE.0 || width.min(height) < MIN_SIZE.1 {
+            return Err(PictureError::TooSmall { width, height, least: "480x360" });
+        }
+        if width.max(height) > MAX_SIDE {
+            return Err(PictureError::TooLarge { width, height, most: MAX_SIDE });
+        }
+        Ok(Self { width, height })
+    }
+
+    pub fn width(self) -> u32 {
+        self.width
+    }
+
+    pub fn height(self) -> u32 {
+        self.height
+    }
+
+    /// Height of ordinary text in pixels: grows with the picture, never too small to read.
+    pub fn text(self) -> f64 {
+        let short = f64::from(self.width.min(self.height));
+        ((6.5 + short / 110.0) * 2.0).round().clamp(21.0, 120.0) / 2.0
+    }
+}
+
+impl Default for Size {
+    fn default() -> Self {
+        Self { width: 1600, height: 1200 }
+    }
+}
+
+impl FromStr for Size {
+    type Err = PictureError;
+
+    /// `1600x1200`.
+    fn from_str(text: &str) -> Result<Self, PictureError> {
+        let wrong = || PictureError::NoSize(text.to_owned());
+        let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
+        Self::new(width.trim().parse().map_err(|_| wrong())?, height.trim().parse().map_err(|_| wrong())?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_size_is_width_by_height() {
+        let size: Size = "800x600".parse().unwrap();
+        assert_eq!((size.width(), size.height()), (800, 600));
+        assert_eq!("1600x1200".parse::<Size>().unwrap(), Size::default());
+    }
+
+    #[test]
+    fn what_can_not_be_read_is_refused() {
+        for text in ["800", "800x", "x600", "-1x5", "800x600x3", "8e2x600", ""] {
+            assert!(matches!(text.parse::<Size>(), Err(PictureError::NoSize(_))), "{text}");
+        }
+        assert!(matches!("479x360".parse::<Size>(), Err(PictureError::TooSmall { .. })));
+        assert!(matches!("480x359".parse::<Size>(), Err(PictureError::TooSmall { .. })));
+        assert!("360x480".parse::<Size>().is_ok());
+        assert!(matches!("9000x600".parse::<Size>(), Err(PictureError::TooLarge { .. })));
+    }
+}

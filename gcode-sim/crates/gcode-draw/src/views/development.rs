@@ -1,0 +1,348 @@
+//! The development: a cylinder about x, cut open along one line and unrolled.
+//!
+//! It is seen from outside: the azimuth (from z towards y) grows to the right, from 0 to 360, and x goes down. The cut
+//! is the seam: its left and its right edge are the same line of the part. What is long round and short along x is cut
+//! into strips, one below the other, so that holes are as large as the sheet allows.
+use super::super::measure::{bar_length, plain};
+use super::super::role::{Pen, Point};
+use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title, ZoneDeviation};
+use super::side::displacement;
+use super::top::{
+    Cylinder, DrawnHole, MAX_NUMBERED, TopView, headline, number_few, standings, turn_name, worst,
+};
+use gcode_lang::units::Deg;
+use gcode_part::Hole;
+
+/// The scene of a development; `None` of a part that is no cylinder.
+pub fn development(view: &TopView) -> Option<Scene> {
+    let sheet = UnrolledCylinder::of(view.cylinder?, view);
+    let mut marks: Vec<Mark> = view.holes.iter().filter_map(|hole| sheet.mark(hole, view)).collect();
+    number_few(&mut marks);
+    let title = Title {
+        name: view.name.clone(),
+        view: format!("Development of diameter {}, seen from outside", plain(2.0 * sheet.cylinder.radius)),
+        position: view.tolerance,
+        verdict: headline(view),
+        lines: worst(view).into_iter().chain(view.lines.iter().cloned()).chain([sheet.range()]).collect(),
+        caution: "Predicted by simulation, not measured".to_owned(),
+    };
+    let axes = vec![Axis { name: turn_name(view), direction: [1.0, 0.0] }];
+    let legend = sheet.legend(view, &marks);
+    let strokes = sheet.strokes();
+    Some(Scene { title, axes, strokes, marks, zone: view.tolerance, legend, chart: None })
+}
+
+/// Into how many strips a cylinder may be cut: each begins at a whole number of degrees and a half.
+const STRIPS: [u32; 7] = [1, 2, 3, 4, 6, 8, 12];
+/// Width over height of a sheet's drawing, about.
+const SHEET: f64 = 1.05;
+/// More strips only where holes come out larger by this.
+const WORTH: f64 = 1.15;
+
+/// Places of the cylinder on the sheet, mm.
+struct UnrolledCylinder {
+    cylinder: Cylinder,
+    strips: u32,
+    /// From where to where along x there are holes, wanted or found.
+    low: f64,
+    high: f64,
+    /// Radius of a hole by a tool of unknown diameter.
+    usual: f64,
+    /// The holes are so few that each may have a dial: scales keep off them.
+    few: bool,
+}
+
+impl UnrolledCylinder {
+    /// Cut into as many strips as draw its holes largest.
+    fn of(cylinder: Cylinder, view: &TopView) -> Self {
+        let places = view.holes.iter().filter_map(|hole| hole.nominal.as_ref().or(hole.actual.as_ref()));
+        let reach = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
+        let (low, high) = places.map(|hole| hole.entry[0]).fold((0.0, cylinder.length), reach);
+        let diameter = view.holes.iter().find_map(|hole| hole.nominal.as_ref()?.diameter);
+        let usual = diameter.unwrap_or(0.0) / 2.0;
+        let cut =
+            |strips: u32| Self { cylinder, strips, low, high, usual, few: view.holes.len() <= MAX_NUMBERED };
+        let scale = |sheet: &Self| {
+            let (wide, tall) =
+                (1.1 * sheet.width() + sheet.margin(), f64::from(sheet.strips) * sheet.height());
+            (SHEET / wide).min(1.0 / tall)
+        };
+        STRIPS
+            .into_iter()
+            .skip(1)
+            .map(cut)
+            .fold(cut(1), |best, next| if WORTH * scale(&best) < scale(&next) { next } else { best })
+    }
+
+    fn range(&self) -> String {
+        format!("rows r0 to r{}, x 0 to {}", self.cylinder.rows.max(1) - 1, plain(self.cylinder.length))
+    }
+
+    /// Of one strip.
+    fn width(&self) -> f64 {
+        std::f64::consts::TAU * self.cylinder.radius / f64::from(self.strips)
+    }
+
+    /// How long ticks are, which their numbers stand on.
+    fn tick(&self) -> f64 {
+        0.05 * self.width()
+    }
+
+    /// From the holes to their scales: no dial reaches farther, see `Frame::largest_dial`.
+    fn margin(&self) -> f64 {
+        if self.few { 0.065 * self.width() } else { 0.01 * self.width() }
+    }
+
+    /// From one strip to the next: the holes, numbers above and below them, a gap.
+    fn height(&self) -> f64 {
+        self.high - self.low + 2.0 * self.margin() + 2.4 * self.tick()
+    }
+
+    /// Which strip an azimuth lies on, and how far from its left edge. What stands on the seam or a cut, whichever way
+    /// rounding goes, stands at the left.
+    fn right(&self, azimuth: Deg) -> (u32, f64) {
+        let turn = azimuth.0.rem_euclid(360.0);
+        let turn = if turn > 360.0 - 1e-3 { turn - 360.0 } else { turn };
+        let span = 360.0 / f64::from(self.strips);
+        let strip = ((turn + 1e-3) / span).floor().clamp(0.0, f64::from(self.strips - 1));
+        (strip as u32, Deg(turn - strip * span).to_rad() * self.cylinder.radius)
+    }
+
+    /// Where x is on a strip: 0 − x, no negative zeros.
+    fn down(&self, strip: u32, x: f64) -> f64 {
+        0.0 - (f64::from(strip) * self.height() + x)
+    }
+
+    fn place(&self, hole: &Hole) -> Point {
+        let (strip, right) = self.right(Deg::atan2(hole.entry[1], hole.entry[2]));
+        [right, self.down(strip, hole.entry[0])]
+    }
+
+    fn mark(&self, hole: &DrawnHole, view: &TopView) -> Option<Mark> {
+        let shown = hole.nominal.as_ref().or(hole.actual.as_ref())?;
+        let both = hole.nominal.as_ref().zip(hole.actual.as_ref());
+        Some(Mark {
+            position: self.place(shown),
+            radius: shown.diameter.map_or(self.usual, |diameter| diameter / 2.0),
+            status: hole.status,
+            label: super::top::label(hole, view),
+            direction: None,
+            deviation: both.and_then(|(nominal, found)| zone_deviation(nominal, found)),
+            actual: None,
+        })
+    }
+
+    /// Of every strip its edges, the ends of the pattern, and scales round it: rows above, degrees below, x at the left.
+    fn strokes(&self) -> Vec<Stroke> {
+        let (width, length, tick) = (self.width(), self.cylinder.length, self.tick());
+        let mut strokes = Vec::new();
+        for strip in 0..self.strips {
+            let y = |x: f64| self.down(strip, x);
+            let (top, bottom) = (y(self.low) + self.margin(), y(self.high) - self.margin());
+            let left = 0.0 - self.margin();
+            let mut line = |from: Point, to: Point, pen: Pen, caption: Option<String>| {
+                strokes.push(Stroke { shape: Shape::Line(vec![from, to]), pen, caption });
+            };
+            for (at, is_seam) in [(0.0, strip == 0), (width, strip + 1 == self.strips)] {
+                let pen = if is_seam { Pen::Outline } else { Pen::Construction };
+                line([at, y(0.0)], [at, y(length)], pen, None);
+            }
+            for x in [0.0, length] {
+                line([0.0, y(x)], [width, y(x)], Pen::Construction, None);
+            }
+            for part in 0..=4u32 {
+                let at = width * f64::from(part) / 4.0;
+                let degrees = 360.0 * (f64::from(strip) + f64::from(part) / 4.0) / f64::from(self.strips);
+                let caption = Some(format!("{}°", plain(degrees)));
+                line([at, bottom], [at, bottom - tick], Pen::Scale, caption);
+            }
+            for x in marks_along(length, (length / 6.0).max(0.04 * width)) {
+                let caption = Some(if x == 0.0 { "x 0".to_owned() } else { plain(x) });
+                line([left, y(x)], [left - 0.6 * tick, y(x)], Pen::Scale, caption);
+            }
+            for (row, at, is_named) in self.rows(strip) {
+                let caption = is_named.then(|| format!("r{row}"));
+                let long = if is_named { tick } else { 0.3 * tick };
+                line([at, top], [at, top + long], Pen::Scale, caption);
+            }
+        }
+        strokes
+    }
+
+    /// The rows of a strip that have a tick above it, where they stand, and whether they have their number there: all of
+    /// them if there is room, else every fifth, tenth and so on. Where ticks would run into each other, those alone.
+    fn rows(&self, strip: u32) -> impl Iterator<Item = (u32, f64, bool)> {
+        let apart = self.width() * f64::from(self.strips) / f64::from(self.cylinder.rows);
+        let least = 0.09 * self.width() / apart;
+        let named = [1, 5, 10, 50, 100, 500, 1000].into_iter().find(|every| least <= f64::from(*every));
+        let named = named.unwrap_or(5000u32);
+        let every = if apart < 0.008 * self.width() { named } else { 1 };
+        let step = 360.0 / f64::from(self.cylinder.rows);
+        let all = (0..self.cylinder.rows).step_by(every as usize);
+        let placed = all.map(move |row| (row, self.right(Deg(f64::from(row) * step))));
+        let here = placed.filter(move |(_, (on, _))| *on == strip);
+        here.map(move |(row, (_, at))| (row, at, row % named == 0))
+    }
+
+    fn legend(&self, view: &TopView, marks: &[Mark]) -> Vec<LegendItem> {
+        let item = |sample: Sample, text: String| LegendItem { sample, text };
+        let mut items = standings(view);
+        if let Some(zone) = view.tolerance.filter(|_| marks.iter().any(|m| m.deviation.is_some())) {
+            let text = format!("{} Φ{}, axial view,", view.purpose.deviation_label(), plain(zone));
+            items.push(item(Sample::Deviation, text));
+        }
+        items.push(item(Sample::Pen(Pen::Outline), "seam: both edges are one line".to_owned()));
+        let thin = match self.strips {
+            1 => "ends of the pattern",
+            _ => "cuts: continued on the next strip; ends of the pattern",
+        };
+        items.push(item(Sample::Pen(Pen::Construction), thin.to_owned()));
+        items
+    }
+}
+
+/// Multiples of a round number, `least` or more apart, from 0 on; and the end.
+fn marks_along(end: f64, least: f64) -> Vec<f64> {
+    // A bar is never shorter than a 2.5th of the longest it may be.
+    let step = bar_length(2.5 * least);
+    let all = (0u32..).map(|n| f64::from(n) * step).take_while(|at| *at < end - least);
+    all.chain([end]).collect()
+}
+
+/// Actual − nominal along the circumference and along x.
+fn zone_deviation(nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
+    let azimuth = Deg::atan2(nominal.axis[1], nominal.axis[2]);
+    let end = |depth: f64| {
+        let off = displacement(nominal, found, depth)?;
+        Some([off.y * azimuth.cos() - off.z * azimuth.sin(), 0.0 - off.x])
+    };
+    Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::role::HoleStatus;
+
+    fn hole(x: f64, azimuth: f64, radius: f64) -> Hole {
+        let (s, c) = (Deg(azimuth).sin(), Deg(azimuth).cos());
+        let entry = [x, radius * s, radius * c];
+        Hole { id: None, entry, axis: [0.0, s, c], depth: 5.0, diameter: Some(3.0), from: None }
+    }
+
+    fn drawn(nominal: Hole, found: Hole) -> DrawnHole {
+        DrawnHole {
+            id: "1".to_owned(),
+            nominal: Some(nominal),
+            actual: Some(found),
+            status: HoleStatus::Good,
+            position_deviation: None,
+            rotary_angle: None,
+            remarks: Vec::new(),
+        }
+    }
+
+    fn scene(hole: DrawnHole) -> Scene {
+        unrolled(hole, 400.0)
+    }
+
+    fn unrolled(hole: DrawnHole, length: f64) -> Scene {
+        let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length, rows: 8 });
+        development(&TopView { cylinder, holes: vec![hole], ..TopView::default() }).unwrap()
+    }
+
+    /// A quarter turn of radius 100 is 157.08 mm, on whichever diameter the hole begins.
+    #[test]
+    fn azimuth_goes_right_as_an_arc_and_x_down() {
+        let mark = scene(drawn(hole(20.0, 90.0, 110.0), hole(20.0, 90.0, 112.0))).marks.remove(0);
+        assert!((mark.position[0] - 157.079_632_679).abs() < 1e-6 && mark.position[1] == -20.0, "{mark:?}");
+    }
+
+    #[test]
+    fn what_stands_on_the_seam_stands_at_its_left() {
+        for azimuth in [0.0, 360.0, -0.000_1, 359.999_9] {
+            let mark = scene(drawn(hole(0.0, azimuth, 100.0), hole(0.0, azimuth, 100.0))).marks.remove(0);
+            assert!(mark.position[0].abs() < 0.001, "{azimuth}: {mark:?}");
+        }
+        let mark = scene(drawn(hole(0.0, -1.0, 100.0), hole(0.0, -1.0, 100.0))).marks.remove(0);
+        assert!((mark.position[0] - 359.0 * 100.0 * std::f64::consts::PI / 180.0).abs() < 1e-6);
+    }
+
+    /// 0.02 mm towards larger azimuth at 90°, where that is −z, and 0.03 mm in x.
+    #[test]
+    fn a_misfit_points_where_the_hole_is() {
+        let mut found = hole(20.03, 90.0, 100.0);
+        found.entry[2] -= 0.02;
+        let misfit = scene(drawn(hole(20.0, 90.0, 100.0), found)).marks[0].deviation.unwrap();
+        assert!((misfit.entry[0] - 0.02).abs() < 1e-9 && (misfit.entry[1] + 0.03).abs() < 1e-9, "{misfit:?}");
+    }
+
+    /// 628 round and 30 long: three strips, 120° each.
+    #[test]
+    fn a_long_way_round_is_cut_into_strips_and_nothing_lies_across_a_cut() {
+        let at = |azimuth: f64| {
+            unrolled(drawn(hole(20.0, azimuth, 100.0), hole(20.0, azimuth, 100.0)), 30.0).marks[0].position
+        };
+        let third = 209.439_510_239;
+        let block = at(0.0)[1] - at(120.0)[1];
+        assert!(30.0 < block && block < 90.0, "{block}");
+        for (azimuth, right, down) in [
+            (0.0, 0.0, 0.0),
+            (119.0, 119.0 / 120.0 * third, 0.0),
+            (120.0, 0.0, block),
+            (119.999_999, 0.0, block),
+            (250.0, 10.0 / 120.0 * third, 2.0 * block),
+            (359.999_999, 0.0, 0.0),
+        ] {
+            let at = at(azimuth);
+            let off = libm::hypot(at[0] - right, at[1] + 20.0 + down);
+            assert!(off < 1e-5, "{azimuth}: {at:?}, {right} {down} wanted");
+        }
+    }
+
+    /// A rotary that counts the other way brings a hole up with minus its azimuth.
+    #[test]
+    fn the_axis_is_named_as_the_rotary_counts() {
+        let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length: 60.0, rows: 8 });
+        let name = |backwards: bool| {
+            let view = TopView {
+                cylinder,
+                is_rotary_reversed: backwards,
+                rotary: "A".to_owned(),
+                ..TopView::default()
+            };
+            development(&view).unwrap().axes.remove(0).name
+        };
+        assert_eq!((name(false), name(true)), ("A".to_owned(), "−A".to_owned()));
+    }
+
+    /// Of 100 rows on one strip every tenth has its number, the others a tick to count by; of 8 all have.
+    #[test]
+    fn odd_rows_have_a_tick_too() {
+        let of = |rows: u32| {
+            let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length: 400.0, rows });
+            let scene = development(&TopView { cylinder, ..TopView::default() }).unwrap();
+            let named = scene.strokes.iter().filter_map(|stroke| stroke.caption.clone());
+            let named: Vec<String> = named.filter(|caption| caption.starts_with('r')).collect();
+            (named, scene.strokes.len())
+        };
+        let (named, strokes) = of(100);
+        assert_eq!(named.join(" "), "r0 r10 r20 r30 r40 r50 r60 r70 r80 r90");
+        let (few, fewer_strokes) = of(8);
+        assert_eq!((few.len(), strokes - fewer_strokes), (8, 92));
+    }
+
+    /// A hole far beyond the length must not land on the next strip.
+    #[test]
+    fn strips_keep_apart_from_what_was_drilled_beyond_them() {
+        let beyond = |azimuth: f64| {
+            let hole = hole(170.0, azimuth, 100.0);
+            unrolled(DrawnHole { nominal: None, ..drawn(hole.clone(), hole) }, 30.0)
+        };
+        let captions = |scene: &Scene| {
+            let lines = scene.strokes.iter().filter_map(|s| s.caption.clone()).collect::<Vec<_>>();
+            lines.iter().filter(|caption| *caption == "x 0").count()
+        };
+        assert_eq!(captions(&beyond(0.0)), 2, "of 170, not of 30, which would be cut into three");
+    }
+}

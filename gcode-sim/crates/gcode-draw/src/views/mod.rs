@@ -1,0 +1,7 @@
+//! What can be shown of a part, one view a file: each turns holes and paths into a scene.
+pub(super) mod development;
+pub(super) mod flutes;
+pub(super) mod helix;
+pub(super) mod purpose;
+pub(super) mod side;
+pub(super) mod top;

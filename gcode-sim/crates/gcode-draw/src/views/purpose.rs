@@ -1,0 +1,131 @@
+//! What a picture of holes answers: are they where the drawing wants them, or where they were before?
+use super::super::role::HoleStatus;
+
+/// The question, and with it the words of the title block and the legend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PicturePurpose {
+    /// Held against a reference.
+    #[default]
+    Verdict,
+    /// Held against another revision of the program.
+    Change,
+}
+
+impl PicturePurpose {
+    /// Beside a hole, where it isn't there or shouldn't be.
+    pub(super) fn status_word(self, standing: HoleStatus) -> &'static str {
+        match (self, standing) {
+            (Self::Verdict, HoleStatus::Good) => "in tolerance",
+            (Self::Verdict, HoleStatus::Bad) => "out",
+            (Self::Verdict, HoleStatus::Missing) => "missing",
+            (Self::Verdict, HoleStatus::Extra) => "extra",
+            (Self::Change, HoleStatus::Good) => "unchanged",
+            (Self::Change, HoleStatus::Bad) => "changed",
+            (Self::Change, HoleStatus::Missing) => "lost",
+            (Self::Change, HoleStatus::Extra) => "added",
+            (_, HoleStatus::Unjudged) => "not verified",
+        }
+    }
+
+    /// In the legend.
+    pub(super) fn legend(self, standing: HoleStatus) -> &'static str {
+        match (self, standing) {
+            (Self::Verdict, HoleStatus::Good) => "in tolerance",
+            (Self::Verdict, HoleStatus::Bad) => "out of tolerance",
+            (Self::Verdict, HoleStatus::Missing) => "missing: not made",
+            (Self::Verdict, HoleStatus::Extra) => "extra: not in the reference",
+            (Self::Change, HoleStatus::Good) => "unchanged",
+            (Self::Change, HoleStatus::Bad) => "changed: symbol at the old position",
+            (Self::Change, HoleStatus::Missing) => "lost: only in the old program",
+            (Self::Change, HoleStatus::Extra) => "added: only in the new program",
+            (_, HoleStatus::Unjudged) => "hole, not verified",
+        }
+    }
+
+    /// Before the largest deviation.
+    pub(super) fn worst_label(self) -> &'static str {
+        match self {
+            Self::Verdict => "worst position",
+            Self::Change => "largest change of position",
+        }
+    }
+
+    /// Whether a position is told, written with so many places: of two revisions a change that there is.
+    pub(super) fn shows_deviation(self, phi: f64, places: i32) -> bool {
+        self == Self::Verdict || 0.5 <= phi * libm::pow(10.0, f64::from(places))
+    }
+
+    /// At a line to where a hole stands in truth.
+    pub(super) fn displacement_label(self) -> &'static str {
+        match self {
+            Self::Verdict => "to the actual position",
+            Self::Change => "to the new position",
+        }
+    }
+
+    /// Before the diameter of the circle that a misfit is drawn in.
+    pub(super) fn deviation_label(self) -> &'static str {
+        match self {
+            Self::Verdict => "deviation in the tolerance zone",
+            Self::Change => "displacement in a circle",
+        }
+    }
+
+    /// `PASS: 5 of 5 holes`, `3 of 5 unchanged, 2 lost`; `counts` are the holes that are good, bad, missing, extra, and
+    /// `others` the differences that no hole shows.
+    pub(super) fn headline(self, counts: [usize; 4], others: usize) -> Option<(HoleStatus, String)> {
+        let [good, bad, missing, extra] = counts;
+        let all = good + bad + missing;
+        if all + extra + others == 0 {
+            return None;
+        }
+        let is_good = all == good && extra + others == 0;
+        if is_good && self == Self::Verdict {
+            return Some((HoleStatus::Good, format!("PASS: {good} of {good} holes in tolerance")));
+        }
+        let mut words = match all {
+            0 => Vec::new(),
+            _ => vec![format!("{good} of {all} {}", self.status_word(HoleStatus::Good))],
+        };
+        let wrong = [(bad, HoleStatus::Bad), (missing, HoleStatus::Missing), (extra, HoleStatus::Extra)];
+        for (number, standing) in wrong.into_iter().filter(|(number, _)| 0 < *number) {
+            words.push(format!("{number} {}", self.status_word(standing)));
+        }
+        match others {
+            0 => {}
+            1 => words.push("1 other change".to_owned()),
+            _ => words.push(format!("{others} other changes")),
+        }
+        let words = words.join(", ");
+        Some(match (self, is_good) {
+            (Self::Change, true) => (HoleStatus::Good, words),
+            (Self::Change, false) => (HoleStatus::Bad, words),
+            (Self::Verdict, _) => (HoleStatus::Bad, format!("FAIL: {words}")),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_headline_names_what_is_wrong_and_what_has_changed() {
+        let headline = |question: PicturePurpose, counts| question.headline(counts, 0);
+        let good = |text: &str| Some((HoleStatus::Good, text.to_owned()));
+        let bad = |text: &str| Some((HoleStatus::Bad, text.to_owned()));
+        assert_eq!(headline(PicturePurpose::Verdict, [4, 0, 0, 0]), good("PASS: 4 of 4 holes in tolerance"));
+        assert_eq!(
+            headline(PicturePurpose::Verdict, [2, 0, 1, 1]),
+            bad("FAIL: 2 of 3 in tolerance, 1 missing, 1 extra")
+        );
+        assert_eq!(headline(PicturePurpose::Change, [4, 0, 0, 0]), good("4 of 4 unchanged"));
+        assert_eq!(
+            headline(PicturePurpose::Change, [2, 1, 0, 1]),
+            bad("2 of 3 unchanged, 1 changed, 1 added")
+        );
+        assert_eq!(headline(PicturePurpose::Change, [0; 4]), None);
+        assert_eq!(PicturePurpose::Change.headline([4, 0, 0, 0], 1), bad("4 of 4 unchanged, 1 other change"));
+        assert_eq!(PicturePurpose::Change.headline([0; 4], 2), bad("2 other changes"));
+    }
+}

@@ -1,0 +1,57 @@
+//! The words of a chart, each with the place it takes: title and notes above, names and numbers in it.
+use super::font::Font;
+use super::ink::{Align, DrawCommand, Px, Rect, Rgb, px};
+use super::palette;
+
+pub(super) struct Words<'f> {
+    pub(super) font: &'f Font,
+    /// Height of the plain text, pixels.
+    pub(super) text_size: f64,
+    pub(super) commands: Vec<DrawCommand>,
+    pub(super) labels: Vec<(Rect, Vec<String>)>,
+}
+
+impl<'f> Words<'f> {
+    pub(super) fn new(font: &'f Font, text: f64) -> Self {
+        Self { font, text_size: text, commands: Vec::new(), labels: Vec::new() }
+    }
+
+    /// A larger title and a line for each note, from the page's top; where the last line stands.
+    pub(super) fn head(&mut self, page: &Rect, title: &str, notes: &[String]) -> f64 {
+        let text = self.text_size;
+        let mut y = page.top + 1.4 * text;
+        self.write(px(page.left, y), Align::Left, 1.4 * text, palette::TEXT, title, page.width());
+        for note in notes {
+            y += 1.6 * text;
+            self.write(px(page.left, y), Align::Left, text, palette::SOFT_TEXT, note, page.width());
+        }
+        y
+    }
+
+    /// Words on the line through `at`, unless others stand there.
+    pub(super) fn write_if_free(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str) {
+        let place = self.place(at, align, size, words);
+        if self.labels.iter().all(|(other, _)| !other.overlaps(&place)) {
+            self.write(at, align, size, color, words, f64::INFINITY);
+        }
+    }
+
+    /// Words on the line through `at`, shortened to `width`.
+    pub(super) fn write(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str, width: f64) {
+        let words = self.font.fitted(words, size, width);
+        let place = self.place(at, align, size, &words);
+        self.labels.push((place, vec![words.clone()]));
+        self.commands.push(DrawCommand::Text { at, align, size, text: words, color });
+    }
+
+    /// The place that words on the line through `at` take.
+    pub(super) fn place(&self, at: Px, align: Align, size: f64, words: &str) -> Rect {
+        let wide = self.font.width(words, size);
+        let part = match align {
+            Align::Left => 0.0,
+            Align::Centre => 0.5,
+            Align::Right => 1.0,
+        };
+        Rect::new(at.x - part * wide, at.y - size, wide, 1.2 * size)
+    }
+}

@@ -1,0 +1,86 @@
+//! A hole as it will be drilled: where the axes are sent for it, and where that puts it on a machine with errors.
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::BudgetError;
+use crate::machine::{HeadKind, LinkMotion, Machine, Setup};
+use crate::verify::position::Deviation;
+use gcode_lang::motion::Position;
+use gcode_lang::units::Deg;
+use gcode_part::Hole;
+
+/// Where the axes stand where the feed begins and where it ends, rounded to the increment as the control does.
+#[derive(Clone, Debug)]
+pub(super) struct HolePlan<'h> {
+    nominal: &'h Hole,
+    start: Position,
+    end: Position,
+    setup: Setup,
+}
+
+impl<'h> HolePlan<'h> {
+    pub(super) fn new(machine: &Machine, wanted: &'h Hole, clearance: f64) -> Result<Self, BudgetError> {
+        let out_of_reach = || BudgetError::OutOfReach { id: id(wanted) };
+        let (entry, out) = (Point3::from(wanted.entry), Unit::new_normalize(Vector3::from(wanted.axis)));
+        let tool = machine.tools.last().map(|tool| tool.number);
+        let mut setup = Setup { tool, ..Setup::default() };
+        let reach = |tip: Point3<f64>, setup: &Setup| machine.inverse(tip, out, setup);
+        let bottom = reach(entry - out.into_inner() * wanted.depth, &setup);
+        // Where the table can turn the hole to the head in two ways, the program takes that on the side of +x.
+        let end = bottom.into_iter().reduce(|best, other| if other[0] > best[0] { other } else { best });
+        let end = end.ok_or_else(out_of_reach)?;
+        let direction = machine.part_frame(&end).rotation * out.into_inner();
+        if machine.head.is_set_by_hand() {
+            setup.head_angle = Some(Deg::atan2(direction.y, direction.x));
+        }
+        let starts = reach(entry + out.into_inner() * clearance, &setup);
+        let same = |start: &Position| !machine.table.is_moved(start, &end);
+        let start = starts.into_iter().find(same).ok_or_else(out_of_reach)?;
+        Ok(Self {
+            nominal: wanted,
+            start: round_position(machine, &setup, start),
+            end: round_position(machine, &setup, end),
+            setup,
+        })
+    }
+
+    pub(super) fn id(&self) -> String {
+        id(self.nominal)
+    }
+
+    /// The hole that this machine makes; `None` where its axis runs across the wanted one. Its axis is the tool's where that is
+    /// known, else the feed's, as in [`crate::holes`].
+    pub(super) fn deviation(&self, machine: &Machine) -> Option<Deviation> {
+        let frame = machine.part_frame(&self.end);
+        let [start, end] =
+            [&self.start, &self.end].map(|at| machine.tool_pose(at, &self.setup).relative_to(&frame));
+        let axis = end.axis.or_else(|| Unit::try_new(start.tip - end.tip, 1e-9))?;
+        Deviation::new(self.nominal, &end.tip, &axis)
+    }
+
+    pub(super) fn position_deviation(&self, machine: &Machine) -> f64 {
+        self.deviation(machine).map_or(f64::INFINITY, |deviation| deviation.zone_diameter())
+    }
+}
+
+fn id(hole: &Hole) -> String {
+    hole.id.clone().unwrap_or_default()
+}
+
+/// As the control rounds. A head that is an axis stands at a rounded angle before the program computes where the tip is.
+fn round_position(machine: &Machine, setup: &Setup, mut at: Position) -> Position {
+    let increment = machine.increment.size();
+    // What is left of the arithmetic mustn't decide a half increment.
+    let round = |value: f64| ((value / increment * 1e6).round() / 1e6).round() * increment;
+    if let HeadKind::Axis { axis, .. } = machine.head.kind {
+        let tip = machine.tool_pose(&at, setup).tip;
+        at[axis] = round(at[axis]);
+        let missing = tip - machine.tool_pose(&at, setup).tip;
+        for link in &machine.slides.0 {
+            if let LinkMotion::Linear { along } = &link.motion {
+                at[link.axis] += link.sign * along.dot(&missing);
+            }
+        }
+    }
+    at.0.iter_mut().for_each(|value| *value = round(*value));
+    at
+}

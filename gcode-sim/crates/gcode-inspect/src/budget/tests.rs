@@ -1,0 +1,186 @@
+//! Budgets whose answer is known: one source or two, and distributions that tables have.
+use super::*;
+use crate::machine::error::Distribution;
+use crate::machine::sources::Quantity;
+use gcode_lang::units::Deg;
+
+/// An axial hole at azimuth 0, or 180, of places that are whole increments: rounding leaves nothing.
+fn hole(x: f64) -> Hole {
+    Hole {
+        id: Some("1".to_owned()),
+        entry: [x, 320.0, 0.0],
+        axis: [0.0, 1.0, 0.0],
+        depth: 15.0,
+        diameter: None,
+        from: None,
+    }
+}
+
+fn found(holes: &[Hole], sources: &[ErrorSource], samples: usize, threads: usize) -> Budget {
+    let machine = Machine::default();
+    let question = BudgetRequest {
+        machine: &machine,
+        holes,
+        clearance: 2.0,
+        sources,
+        samples,
+        seed: 20_210_115,
+        threads: NonZeroUsize::new(threads).unwrap(),
+        tolerance: 0.1,
+    };
+    budget(&question, &AtomicUsize::new(0)).unwrap()
+}
+
+fn source(quantity: Quantity, spread: Distribution) -> ErrorSource {
+    ErrorSource { quantity, distribution: spread }
+}
+
+const N: usize = 60_000;
+
+/// Four standard errors of a percentile: √(q·(1 − q)/N) over the density there.
+fn percentile(found: f64, expected: f64, q: f64, density: f64) {
+    let error = (q * (1.0 - q) / N as f64).sqrt() / density;
+    assert!((found - expected).abs() < 4.0 * error, "{found} is not {expected} within {error}");
+}
+
+/// Of X alone, Gaussian with σ: Φ = 2·|x| is half-normal. Mean 2σ·√(2/π); the percentiles of |x|/σ are those of the
+/// normal distribution for 75 %, 97.5 % and 99.85 %.
+#[test]
+fn one_gaussian_axis_gives_the_half_normal_distribution() {
+    let sigma = 0.01;
+    for x in [300.0, -300.0] {
+        let found = found(&[hole(x)], &[source(Quantity::Linear(0), Distribution::Normal(sigma))], N, 2);
+        let statistics = found.holes[0].statistics;
+        let mean = 2.0 * sigma * (2.0 / std::f64::consts::PI).sqrt();
+        let error = 2.0 * sigma * (1.0 - 2.0 / std::f64::consts::PI).sqrt() / (N as f64).sqrt();
+        assert!((statistics.mean - mean).abs() < 4.0 * error, "{} is not {mean}", statistics.mean);
+        for (found, q, z) in [
+            (statistics.p50, 0.5, 0.674_489_750),
+            (statistics.p95, 0.95, 1.959_963_985),
+            (statistics.p997, 0.997, 2.967_737_925),
+        ] {
+            let density = 2.0 * libm::exp(-z * z / 2.0) / (2.0 * std::f64::consts::PI).sqrt() / (2.0 * sigma);
+            percentile(found, 2.0 * sigma * z, q, density);
+        }
+        assert!(statistics.p997 < statistics.max && statistics.share_in_tolerance > 0.999);
+        assert!(found.holes[0].nominal < 1e-9);
+        assert_eq!(found.shares[0].share, 1.0);
+        assert!((found.shares[0].displacement - sigma).abs() < 1e-9);
+    }
+}
+
+/// Of a shift in x and in z, both Gaussian with σ: Φ is twice a Rayleigh variable, whose percentile q is
+/// σ·√(−2·ln(1 − q)) and whose mean σ·√(π/2).
+#[test]
+fn two_gaussian_shifts_give_the_rayleigh_distribution() {
+    let sigma = 0.02;
+    let sources = [Quantity::Shift(0), Quantity::Shift(2)].map(|q| source(q, Distribution::Normal(sigma)));
+    let found = found(&[hole(300.0), hole(-400.0)], &sources, N, 2);
+    for hole in &found.holes {
+        let mean = 2.0 * sigma * (std::f64::consts::PI / 2.0).sqrt();
+        let error = 2.0 * sigma * (2.0 - std::f64::consts::PI / 2.0).sqrt() / (N as f64).sqrt();
+        assert!((hole.statistics.mean - mean).abs() < 4.0 * error);
+        let statistics = hole.statistics;
+        for (found, q) in [(statistics.p50, 0.5), (statistics.p95, 0.95), (statistics.p997, 0.997)] {
+            let r = (-2.0 * libm::log(1.0 - q)).sqrt();
+            percentile(found, 2.0 * sigma * r, q, r * libm::exp(-r * r / 2.0) / (2.0 * sigma));
+        }
+        assert!((hole.shares[0].share - 0.5).abs() < 1e-9);
+    }
+    // One part has one set-up: both its holes are off by the same, and so is the worst of them.
+    assert!((found.parts.p95 - found.holes[0].statistics.p95).abs() < 1e-9);
+    // Within Φ0.1 is within 2.5 σ: 1 − exp(−3.125).
+    assert!(
+        (found.parts.share_in_tolerance - (1.0 - libm::exp(-3.125))).abs()
+            < 4.0 * (0.042f64 / N as f64).sqrt()
+    );
+}
+
+/// A run-out from 0 to 0.15 evenly, in any direction, is an eccentricity of 0 to 0.075, so Φ is 0 to 0.15 evenly.
+#[test]
+fn a_run_out_is_a_position_of_the_same_size() {
+    let found = found(&[hole(300.0)], &[source(Quantity::RunOut, Distribution::Uniform(0.15))], N, 2);
+    let statistics = found.holes[0].statistics;
+    percentile(statistics.p50, 0.075, 0.5, 1.0 / 0.15);
+    percentile(statistics.p95, 0.1425, 0.95, 1.0 / 0.15);
+    assert!(statistics.max <= 0.15 + 1e-9);
+    // The mean square of the way is (0.15/2)²/3.
+    assert!((found.shares[0].displacement - 0.075 / 3f64.sqrt()).abs() < 1e-9);
+}
+
+/// A head that stands 0.1° beyond its angle, its tip where it was told (no pivot, no tool length): the tool lies across the
+/// hole, whose mouth is 15·tan 0.1° aside.
+#[test]
+fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
+    for angle in [0.1, -0.1] {
+        let found = found(&[hole(300.0)], &[source(Quantity::Head, Distribution::Fixed(angle))], 1, 1);
+        let aside = 15.0 * Deg(0.1).tan();
+        assert!((found.holes[0].statistics.max - 2.0 * aside).abs() < 1e-9, "{found:?}");
+        assert!((found.shares[0].displacement - aside).abs() < 1e-6);
+    }
+}
+
+/// The sum of the sources' squares is the mean square that the samples show, for a hole where one end decides.
+#[test]
+fn the_shares_add_up_to_what_the_samples_show() {
+    let sources = [
+        source(Quantity::Tilt(2), Distribution::Normal(0.002)),
+        source(Quantity::Index, Distribution::Uniform(0.002)),
+        source(Quantity::Linear(0), Distribution::Normal(0.005)),
+        source(Quantity::Centre(0), Distribution::Normal(0.004)),
+    ];
+    let found = found(&[hole(-300.0)], &sources, N, 2);
+    let squares: f64 =
+        found.holes[0].shares.iter().map(|share| share.displacement * share.displacement).sum();
+    assert!((found.holes[0].shares.iter().map(|share| share.share).sum::<f64>() - 1.0).abs() < 1e-12);
+    // By hand: tilt about z at the height 320 and index at the radius 300, in rad, and B's centre twice at B = 180.
+    let (tilt, index) = (320.0 * 0.002f64.to_radians(), 300.0 * 0.002f64.to_radians() / 3f64.sqrt());
+    let by_hand = tilt * tilt + index * index + 0.005 * 0.005 + 0.008 * 0.008;
+    assert!((squares / by_hand - 1.0).abs() < 1e-3, "{squares} is not {by_hand}");
+    let mean = found.holes[0].statistics.mean;
+    assert!(mean * mean / 4.0 < squares && squares < mean * mean, "{mean}");
+}
+
+#[test]
+fn the_same_seed_is_the_same_answer_on_any_number_of_threads() {
+    let sources = [
+        source(Quantity::RunOut, Distribution::Uniform(0.1)),
+        source(Quantity::Linear(0), Distribution::Normal(0.01)),
+        source(Quantity::AxisTilt(2), Distribution::Normal(0.01)),
+    ];
+    let holes = [hole(300.0), hole(-200.0)];
+    let one = found(&holes, &sources, 10_007, 1);
+    for threads in [2, 3, 8] {
+        assert_eq!(one, found(&holes, &sources, 10_007, threads));
+    }
+    assert_eq!(
+        found(&holes, &sources, 1, 4).holes[0].statistics.share_in_tolerance,
+        1.0,
+        "fewer samples than threads"
+    );
+}
+
+#[test]
+fn a_hole_that_the_machine_cannot_reach_is_named() {
+    let machine = Machine::default();
+    let mut sideways = hole(300.0);
+    sideways.axis = [0.0, 0.6, 0.8];
+    let question = BudgetRequest {
+        machine: &Machine {
+            head: crate::machine::Head::new(
+                crate::machine::HeadKind::Fixed(nalgebra::Vector3::z_axis()),
+                0.0,
+            ),
+            ..machine
+        },
+        holes: &[sideways],
+        clearance: 2.0,
+        sources: &[],
+        samples: 1,
+        seed: 0,
+        threads: NonZeroUsize::MIN,
+        tolerance: 0.1,
+    };
+    let told = budget(&question, &AtomicUsize::new(0)).unwrap_err();
+    assert_eq!(told, BudgetError::OutOfReach { id: "1".to_owned() });
+}

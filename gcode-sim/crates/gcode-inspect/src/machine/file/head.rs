@@ -1,0 +1,157 @@
+//! The machine file's `[head]`: what kind it is, and which keys go with that.
+use nalgebra::{Unit, Vector3};
+use schemars::{JsonSchema, Schema};
+use serde::Deserialize;
+use serde_json::json;
+
+use super::{ROTARY_LETTERS, letter, sign};
+use crate::machine::{Chain, Head, HeadKind};
+use gcode_lang::motion::Axes;
+use gcode_lang::units::Deg;
+use gcode_part::reader::FileError;
+use gcode_part::reader::{FixedArray, Reader, Spanned, names};
+
+/// How the tool is inclined.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(transform = by_kind)]
+pub(super) struct FileHead {
+    /// free: unknown; fixed: constant; manual: set by hand; axis: by an axis of the control.
+    #[schemars(extend("enum" = names(&KINDS)))]
+    kind: Spanned<String>,
+    /// From the head's pivot to the spindle's gauge line, mm [default: 0].
+    #[schemars(range(min = 0.0))]
+    pivot: Option<Spanned<f64>>,
+    /// From the tip to the spindle, not all 0.
+    direction: Option<Spanned<FixedArray<f64, 3>>>,
+    /// The axis, A, B or C.
+    #[schemars(extend("enum" = ROTARY_LETTERS))]
+    letter: Option<Spanned<String>>,
+    /// 1, or -1 if the axis is reversed [default: 1].
+    #[schemars(extend("enum" = [1, -1]))]
+    sign: Option<Spanned<i64>>,
+    /// The head's angle with the axis at 0, degrees [default: 0].
+    #[schemars(range(min = -360.0, max = 360.0))]
+    zero: Option<Spanned<f64>>,
+    /// Its angle before the first stop, degrees.
+    #[schemars(range(min = -360.0, max = 360.0))]
+    angle: Option<Spanned<f64>>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum FileHeadKind {
+    Free,
+    Fixed,
+    Manual,
+    Axis,
+}
+
+const KINDS: [(&str, FileHeadKind); 4] = [
+    ("free", FileHeadKind::Free),
+    ("fixed", FileHeadKind::Fixed),
+    ("manual", FileHeadKind::Manual),
+    ("axis", FileHeadKind::Axis),
+];
+
+/// Which kinds the keys go with, in the order of [`FileHead`].
+const KEYS: [(&str, &[FileHeadKind]); 6] = [
+    ("pivot", &[FileHeadKind::Fixed, FileHeadKind::Manual, FileHeadKind::Axis]),
+    ("direction", &[FileHeadKind::Fixed]),
+    ("letter", &[FileHeadKind::Axis]),
+    ("sign", &[FileHeadKind::Axis]),
+    ("zero", &[FileHeadKind::Axis]),
+    ("angle", &[FileHeadKind::Manual]),
+];
+
+/// The key that a kind can't do without.
+fn required_key(kind: FileHeadKind) -> Option<&'static str> {
+    match kind {
+        FileHeadKind::Free | FileHeadKind::Manual => None,
+        FileHeadKind::Fixed => Some("direction"),
+        FileHeadKind::Axis => Some("letter"),
+    }
+}
+
+/// Each kind with the keys that it needs, and without those that mean nothing for it.
+fn by_kind(schema: &mut Schema) {
+    let case = |(name, kind): &(&str, FileHeadKind)| {
+        let others = KEYS.iter().filter(|(_, kinds)| !kinds.contains(kind));
+        let others: Vec<_> = others.map(|(key, _)| json!({ "required": [key] })).collect();
+        let needed: Vec<_> = std::iter::once("kind").chain(required_key(*kind)).collect();
+        json!({ "properties": { "kind": { "enum": [name] } }, "required": needed, "not": { "anyOf": others } })
+    };
+    schema.insert("oneOf".to_owned(), KINDS.iter().map(case).collect());
+}
+
+impl FileHead {
+    pub(super) fn check(&self, reader: &Reader<'_>, axes: &Axes, table: &Chain) -> Result<Head, FileError> {
+        let kind = reader.choice("head.kind", &self.kind, &KINDS)?;
+        self.check_keys(reader, kind)?;
+        let pivot = match &self.pivot {
+            Some(pivot) => reader.number("head.pivot", pivot, "mm, 0 or more", |v| v >= 0.0)?,
+            None => 0.0,
+        };
+        let angle = |key: &str, value: &Spanned<f64>| {
+            reader.number(key, value, "degrees from -360 to 360", |v| v.abs() <= 360.0).map(Deg)
+        };
+        let needs = |key: &str| {
+            reader.error(&self.kind, format!("kind = \"{}\" needs the key 'head.{key}'", self.kind.as_ref()))
+        };
+        let kind = match kind {
+            FileHeadKind::Free => HeadKind::Free,
+            FileHeadKind::Fixed => {
+                let direction = self.direction.as_ref().ok_or_else(|| needs("direction"))?;
+                let unit =
+                    Unit::try_new(Vector3::from(direction.as_ref().0), 1e-9).filter(|u| u.norm().is_finite());
+                let allowed = "key 'head.direction' is [x, y, z] from the tip to the spindle, not all 0";
+                HeadKind::Fixed(unit.ok_or_else(|| reader.error(direction, allowed))?)
+            }
+            FileHeadKind::Manual => {
+                HeadKind::Manual { start: self.angle.as_ref().map(|a| angle("head.angle", a)).transpose()? }
+            }
+            FileHeadKind::Axis => {
+                let value = self.letter.as_ref().ok_or_else(|| needs("letter"))?;
+                let axis = letter(reader, "head.letter", value, axes)?;
+                if !axes.is_rotary(axis) {
+                    return Err(reader.error(value, "key 'head.letter': the head rotates by A, B or C"));
+                }
+                if table.has_axis(axis) {
+                    let message =
+                        format!("key 'head.letter' is {}, the letter of the table", axes.letter(axis));
+                    return Err(reader.error(value, message));
+                }
+                HeadKind::Axis {
+                    axis,
+                    sign: self.sign.as_ref().map_or(Ok(1.0), |s| sign(reader, "head.sign", s))?,
+                    zero: self.zero.as_ref().map_or(Ok(Deg::ZERO), |z| angle("head.zero", z))?,
+                }
+            }
+        };
+        Ok(Head::new(kind, pivot))
+    }
+
+    /// A key that means nothing for this kind of head is a mistake, not an extra.
+    fn check_keys(&self, reader: &Reader<'_>, kind: FileHeadKind) -> Result<(), FileError> {
+        let given = [
+            self.pivot.as_ref().map(start),
+            self.direction.as_ref().map(start),
+            self.letter.as_ref().map(start),
+            self.sign.as_ref().map(start),
+            self.zero.as_ref().map(start),
+            self.angle.as_ref().map(start),
+        ];
+        for (place, (key, kinds)) in given.into_iter().zip(KEYS) {
+            if let (Some(place), false) = (place, kinds.contains(&kind)) {
+                let names: Vec<_> =
+                    KINDS.iter().filter(|(_, k)| kinds.contains(k)).map(|(name, _)| *name).collect();
+                let message = format!("key 'head.{key}' is for kind {} only", names.join(", "));
+                return Err(FileError { line: Some(reader.line(place)), message });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn start<T>(value: &Spanned<T>) -> usize {
+    value.span().start
+}

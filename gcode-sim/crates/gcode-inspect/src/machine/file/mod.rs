@@ -1,0 +1,310 @@
+//! The machine file: axes, table, head, tools, offsets and the part's place, as TOML.
+//!
+//! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
+mod errors;
+mod head;
+mod link;
+mod offsets;
+mod part;
+mod probe;
+mod sections;
+mod spread;
+mod tool;
+mod wheel;
+
+pub use errors::File as ErrorFile;
+use errors::FileErrors;
+pub use errors::error_file;
+use head::FileHead;
+use link::FileLink;
+use nalgebra::Vector3;
+use offsets::{FileOffsets, work_offsets};
+use part::FilePart;
+use probe::FileProbe;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use tool::FileTool;
+use wheel::FileWheel;
+
+use super::{Chain, Head, HeadKind, Machine, Tool};
+use gcode_lang::control::{Dialect, Increment};
+use gcode_lang::motion::{Axes, AxisIndex};
+use gcode_part::reader::FileError;
+use gcode_part::reader::{FixedArray, Reader, Spanned, names};
+
+/// The machine of a program. Every section is optional; without any it is the machine of the paper.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct File {
+    /// The control.
+    control: Option<FileControl>,
+    /// The axes that carry the part, from the bed outwards.
+    table: Option<Vec<FileLink>>,
+    /// How the tool is inclined.
+    head: Option<FileHead>,
+    /// A grinder's wheel, stationary while the table moves the part.
+    wheel: Option<FileWheel>,
+    /// The tools.
+    tool: Option<Vec<FileTool>>,
+    /// The work offsets G54 to G59 at the start of the run, by axis.
+    offsets: Option<Spanned<FileOffsets>>,
+    /// Nominal position of the part on the machine, and its misalignment.
+    part: Option<FilePart>,
+    /// A touch probe.
+    probe: Option<FileProbe>,
+    /// The errors of the machine.
+    errors: Option<FileErrors>,
+}
+
+/// The control.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct FileControl {
+    /// The family of controls [default: fanuc-31i].
+    #[schemars(extend("enum" = names(&Dialect::ALL)))]
+    dialect: Option<Spanned<String>>,
+    /// The least input increment: IS-A 0.01, IS-B 0.001, IS-C 0.0001 [default: IS-B].
+    #[schemars(extend("enum" = names(&Increment::ALL)))]
+    increment: Option<Spanned<String>>,
+    /// Its axis table, axis 1 first: different letters [default: XYZABC].
+    #[schemars(regex(pattern = "^[XYZABCUVW]{1,8}$"))]
+    axes: Option<Spanned<String>>,
+}
+
+/// Letters that axes may have, and those of axes that turn.
+const AXES: [&str; 9] = ["X", "Y", "Z", "A", "B", "C", "U", "V", "W"];
+const ROTARY_LETTERS: [&str; 3] = ["A", "B", "C"];
+
+const LENGTH: &str = "mm, from -100000 to 100000";
+impl Machine {
+    /// Reads a machine file's text.
+    pub fn parse(text: &str) -> Result<Self, FileError> {
+        let reader = Reader { text };
+        let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+        let control = file.control.unwrap_or_default();
+        let axes = control.axes(&reader)?;
+        let part = file.part.unwrap_or_default().check(&reader)?;
+        let table = match &file.table {
+            Some(links) => {
+                let mut table = Chain::default();
+                for link in links {
+                    let link = link.check(&reader, &axes, &table, part.origin)?;
+                    table.0.push(link);
+                }
+                table
+            }
+            None => Chain::default_table(&axes, part.origin),
+        };
+        let head = match &file.head {
+            Some(head) => head.check(&reader, &axes, &table)?,
+            None => Head::new(HeadKind::Free, 0.0),
+        };
+        let mut tools: Vec<Tool> = Vec::new();
+        for tool in file.tool.iter().flatten() {
+            let checked = tool.check(&reader, &head)?;
+            if tools.iter().any(|other| other.number == checked.number) {
+                let message = format!("key 'tool.number': {} is used twice", checked.number);
+                return Err(reader.error(&tool.number, message));
+            }
+            tools.push(checked);
+        }
+        let mut machine = Self {
+            dialect: match &control.dialect {
+                Some(dialect) => reader.choice("control.dialect", dialect, &Dialect::ALL)?,
+                None => Dialect::default(),
+            },
+            increment: match &control.increment {
+                Some(increment) => reader.choice("control.increment", increment, &Increment::ALL)?,
+                None => Increment::default(),
+            },
+            slides: Chain::default_slides(&axes, &table),
+            wheel: file.wheel.map(|wheel| wheel.check(&reader, &axes, &table, &head)).transpose()?,
+            offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, &offsets))?,
+            axes,
+            table,
+            head,
+            tools,
+            part,
+            probe: file.probe.map(|probe| probe.check(&reader)).transpose()?,
+        };
+        if let Some(errors) = &file.errors {
+            errors.apply(&reader, &mut machine)?;
+        }
+        Ok(machine)
+    }
+}
+
+fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
+    reader.number(key, value, LENGTH, |v| v.abs() <= 100_000.0)
+}
+
+fn lengths(
+    reader: &Reader<'_>,
+    key: &str,
+    values: &FixedArray<Spanned<f64>, 3>,
+) -> Result<Vector3<f64>, FileError> {
+    let FixedArray([x, y, z]) = values;
+    Ok(Vector3::new(length(reader, key, x)?, length(reader, key, y)?, length(reader, key, z)?))
+}
+
+fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Result<f64, FileError> {
+    match *value.as_ref() {
+        1 => Ok(1.0),
+        -1 => Ok(-1.0),
+        other => Err(reader.error(value, format!("key '{key}' is {other}: 1 or -1"))),
+    }
+}
+
+fn letter(
+    reader: &Reader<'_>,
+    key: &str,
+    value: &Spanned<String>,
+    axes: &Axes,
+) -> Result<AxisIndex, FileError> {
+    let found = match value.as_ref().as_bytes() {
+        [letter] => axes.find(*letter),
+        _ => None,
+    };
+    found.ok_or_else(|| {
+        let letters: String = axes.iter().map(|(_, letter)| letter).collect();
+        reader
+            .error(value, format!("key '{key}' is '{}': one of the control's axes {letters}", value.as_ref()))
+    })
+}
+
+impl FileControl {
+    fn axes(&self, reader: &Reader<'_>) -> Result<Axes, FileError> {
+        let Some(letters) = &self.axes else { return Ok(Axes::default()) };
+        Axes::new(letters.as_ref()).filter(|axes| !axes.is_empty()).ok_or_else(|| {
+            let allowed = "1 to 8 different letters of X Y Z A B C U V W, axis 1 first";
+            reader.error(letters, format!("key 'control.axes' is '{}': {allowed}", letters.as_ref()))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point3;
+
+    use super::super::{AxisLink, LinkMotion, Placement};
+    use super::*;
+    use gcode_lang::units::Deg;
+
+    const PAPER: &str = "[[table]]\nletter = \"B\"\nturns = \"y\"\nsign = 1\n";
+
+    #[test]
+    fn the_shortest_file_is_the_machine_of_the_paper() {
+        assert_eq!(Machine::parse(PAPER).unwrap(), Machine::default());
+    }
+
+    #[test]
+    fn everything_a_file_can_say() {
+        let text = r#"
+[control]
+dialect = "haas-ngc"
+increment = "IS-C"
+axes = "XYZAB"
+[[table]]
+letter = "A"
+turns = "x"
+sign = -1
+centre = [1, 2.5, 3.0]
+[head]
+kind = "axis"
+letter = "B"
+sign = -1
+zero = 90.0
+pivot = 120.0
+[[tool]]
+number = 12
+length = 80.5
+diameter = 6.0
+[offsets]
+G54 = { X = 500.0, B = -3 }
+[part]
+origin = [500.0, 0.0, -200.0]
+shift = [0.1, 0.0, 0.0]
+tilt = [0.0, 0.0, 1.0]
+"#;
+        let machine = Machine::parse(text).unwrap();
+        assert_eq!(machine.axes.len(), 5);
+        let centre = Point3::new(1.0, 2.5, 3.0);
+        assert_eq!(machine.table.0, [AxisLink::rotary(3, Vector3::x_axis(), centre, -1.0)]);
+        assert_eq!(machine.head.kind, HeadKind::Axis { axis: 4, sign: -1.0, zero: Deg(90.0) });
+        assert_eq!(machine.head.pivot, 120.0);
+        assert_eq!(machine.tools, [Tool { number: 12, length: Some(80.5), diameter: Some(6.0) }]);
+        assert_eq!(machine.offsets[0].values, [(4, -3.0), (0, 500.0)]);
+        assert_eq!(machine.part.origin.z, -200.0);
+        assert_eq!(machine.part.tilt[2], Deg(1.0));
+    }
+
+    #[test]
+    fn a_table_turns_about_the_parts_origin_unless_told_otherwise() {
+        let machine = Machine::parse(&format!("{PAPER}[part]\norigin = [5.0, 6.0, 7.0]\n")).unwrap();
+        let LinkMotion::Rotary { centre, .. } = &machine.table.0[0].motion else { panic!("it turns") };
+        assert_eq!(*centre, Point3::new(5.0, 6.0, 7.0));
+    }
+
+    fn refused(text: &str) -> String {
+        Machine::parse(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_is_left_out_is_as_on_the_machine_of_the_paper() {
+        let machine = Machine::parse("[part]\nshift = [0.3, 0, 0]\n").unwrap();
+        let part = Placement { shift: Vector3::new(0.3, 0.0, 0.0), ..Placement::default() };
+        assert_eq!(machine, Machine { part, ..Machine::default() });
+        assert_eq!(Machine::parse("").unwrap(), Machine::default());
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_named_with_its_line() {
+        let cases = [
+            (
+                "tables = []\n",
+                "line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, \
+                 part, probe, errors",
+            ),
+            ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: key 'table.sign' is missing"),
+            (
+                "[[table]]\nletter = \"B\"\nturns = \"q\"\nsign = 1\n",
+                "line 3: key 'table.turns' is 'q': one of x, y, z",
+            ),
+            (
+                "[[table]]\nletter = \"B\"\nturns = \"y\"\nsign = 2\n",
+                "line 4: key 'table.sign' is 2: 1 or -1",
+            ),
+            (
+                "[[table]]\nletter = \"V\"\nturns = \"y\"\nsign = 1\n",
+                "line 2: key 'table.letter' is 'V': one of the control's axes XYZABC",
+            ),
+            (
+                "table = []\n[head]\nkind = \"manual\"\npivot = -1.0\n",
+                "line 4: key 'head.pivot' is -1: mm, 0 or more",
+            ),
+            ("table = []\n[head]\nkind = \"axis\"\n", "line 3: kind = \"axis\" needs the key 'head.letter'"),
+            ("[part]\norigin = [1, 2, 3, 4]\n", "line 2: key 'part.origin' has 4 values: 3 are required"),
+            (
+                "[head]\nkind = \"fixed\"\ndirection = [0, 1]\n",
+                "line 3: key 'head.direction' has 2 values: 3 are required",
+            ),
+            (
+                "table = []\n[head]\nkind = \"manual\"\ndirection = [0.0, 1.0, 0.0]\n",
+                "line 4: key 'head.direction' is for kind fixed only",
+            ),
+            (
+                "table = []\n[offsets]\nG53 = { X = 1.0 }\n",
+                "line 2: key 'offsets.G53' is unknown: G54 to G59",
+            ),
+            ("table = []\n[part]\ntilt = [0.0, nan, 0.0]\n", "line 3: key 'part.tilt' is NaN: degrees"),
+            (
+                "table = []\n[[tool]]\nnumber = 1\nlength = 5.0\n",
+                "line 4: key 'tool.length' acts along the tool",
+            ),
+        ];
+        for (text, expected) in cases {
+            let found = refused(text);
+            assert!(found.starts_with(expected), "{text:?}\n  says {found:?}\n  not  {expected:?}");
+        }
+    }
+}

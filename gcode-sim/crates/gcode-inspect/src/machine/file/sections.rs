@@ -1,0 +1,167 @@
+//! The sections of errors that a machine file and the error file of a budget share, and the sources in them.
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::spread::{ANGLE, FileSpread, FileVector, LENGTH, QuantityLimits};
+use crate::machine::sources::{ErrorSource, Quantity};
+use crate::machine::{HeadKind, Machine};
+use gcode_lang::motion::AxisIndex;
+use gcode_part::reader::FileError;
+use gcode_part::reader::{Reader, Spanned};
+
+/// The set-up of the part.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FilePart {
+    /// Its shift, mm.
+    #[schemars(transform = LENGTH.bounds())]
+    pub(super) shift: Option<FileVector>,
+    /// Its tilt, degrees.
+    #[schemars(transform = ANGLE.bounds())]
+    pub(super) tilt: Option<FileVector>,
+    /// Offset of its axis from the table's, mm, in any direction.
+    #[schemars(transform = LENGTH.bounds())]
+    pub(super) runout: Option<Spanned<FileSpread>>,
+}
+
+/// Of the linear axes.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileLinear {
+    /// Position error of X, mm.
+    #[schemars(transform = LENGTH.bounds())]
+    pub(super) x: Option<Spanned<FileSpread>>,
+    /// Position error of Y, mm.
+    #[schemars(transform = LENGTH.bounds())]
+    pub(super) y: Option<Spanned<FileSpread>>,
+    /// Position error of Z, mm.
+    #[schemars(transform = LENGTH.bounds())]
+    pub(super) z: Option<Spanned<FileSpread>>,
+    /// Wavelength of the error along the axis, mm [default: 500].
+    #[schemars(range(min = 1.0, max = 100_000.0))]
+    pub(super) wave: Option<Spanned<f64>>,
+    /// Seed of the random errors: another seed is another machine of the same type [default: 0].
+    pub(super) seed: Option<Spanned<u64>>,
+}
+
+/// Of the axis that rotates the part.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileRotary {
+    /// Error of its commanded angle, degrees.
+    #[schemars(transform = ANGLE.bounds())]
+    pub(super) index: Option<Spanned<FileSpread>>,
+    /// Offset of the axis from its centre, mm.
+    #[schemars(transform = LENGTH.bounds())]
+    pub(super) centre: Option<FileVector>,
+    /// Tilt of its direction, degrees.
+    #[schemars(transform = ANGLE.bounds())]
+    pub(super) tilt: Option<FileVector>,
+    /// Seed of the random errors: another seed is another machine of the same type [default: 0].
+    pub(super) seed: Option<Spanned<u64>>,
+}
+
+/// Of a head of kind manual or axis.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileHead {
+    /// Error of its angle, degrees.
+    #[schemars(transform = ANGLE.bounds())]
+    pub(super) angle: Option<Spanned<FileSpread>>,
+    /// Seed of the random errors: another seed is another machine of the same type [default: 0].
+    pub(super) seed: Option<Spanned<u64>>,
+}
+
+/// Collects sources, and checks that the machine has what they are about.
+pub(super) struct Collector<'r, 'm> {
+    pub(super) reader: &'r Reader<'r>,
+    pub(super) machine: &'m Machine,
+    /// `errors.` in a machine file.
+    pub(super) prefix: &'static str,
+    pub(super) sources: Vec<ErrorSource>,
+}
+
+impl Collector<'_, '_> {
+    fn add(
+        &mut self,
+        key: &str,
+        spread: &Option<Spanned<FileSpread>>,
+        quantity: Quantity,
+        kind: QuantityLimits,
+    ) -> Result<(), FileError> {
+        let Some(spread) = spread else { return Ok(()) };
+        let key = format!("{}{key}", self.prefix);
+        let spread_checked = spread.as_ref().check(self.reader, &key, spread.span().start, kind)?;
+        if let Some(lacking) = self.missing_part(quantity) {
+            return Err(self.reader.error(spread, format!("key '{key}': {lacking}")));
+        }
+        self.sources.push(ErrorSource { quantity, distribution: spread_checked });
+        Ok(())
+    }
+
+    fn add_vector(
+        &mut self,
+        key: &str,
+        vector: &Option<FileVector>,
+        quantity: impl Fn(usize) -> Quantity,
+        kind: QuantityLimits,
+    ) -> Result<(), FileError> {
+        let Some(vector) = vector else { return Ok(()) };
+        for (direction, spread) in [&vector.x, &vector.y, &vector.z].into_iter().enumerate() {
+            let letter = ["x", "y", "z"][direction];
+            self.add(&format!("{key}.{letter}"), spread, quantity(direction), kind)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn part(&mut self, part: &FilePart) -> Result<(), FileError> {
+        self.add_vector("part.shift", &part.shift, Quantity::Shift, LENGTH)?;
+        self.add_vector("part.tilt", &part.tilt, Quantity::Tilt, ANGLE)?;
+        self.add("part.runout", &part.runout, Quantity::RunOut, LENGTH)
+    }
+
+    pub(super) fn linear(&mut self, linear: &FileLinear) -> Result<(), FileError> {
+        for (letter, spread) in [(b'X', &linear.x), (b'Y', &linear.y), (b'Z', &linear.z)] {
+            let Some(written) = spread else { continue };
+            let name = char::from(letter).to_ascii_lowercase();
+            let axis: Option<AxisIndex> =
+                self.machine.axes.find(letter).filter(|axis| self.machine.is_axis_used(*axis));
+            let Some(axis) = axis else {
+                let message = format!(
+                    "key '{}linear.{name}': no linear axis with this letter moves the tool or the part",
+                    self.prefix
+                );
+                return Err(self.reader.error(written, message));
+            };
+            self.add(&format!("linear.{name}"), spread, Quantity::Linear(axis), LENGTH)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn rotary(&mut self, rotary: &FileRotary) -> Result<(), FileError> {
+        self.add("rotary.index", &rotary.index, Quantity::Index, ANGLE)?;
+        self.add_vector("rotary.centre", &rotary.centre, Quantity::Centre, LENGTH)?;
+        self.add_vector("rotary.tilt", &rotary.tilt, Quantity::AxisTilt, ANGLE)
+    }
+
+    pub(super) fn head(&mut self, head: &FileHead) -> Result<(), FileError> {
+        self.add("head.angle", &head.angle, Quantity::Head, ANGLE)
+    }
+
+    /// What an error needs that the machine hasn't got.
+    fn missing_part(&self, quantity: Quantity) -> Option<&'static str> {
+        match quantity {
+            Quantity::RunOut | Quantity::Index | Quantity::Centre(_) | Quantity::AxisTilt(_) => {
+                let one = self.machine.rotary_axis().is_some();
+                (!one).then_some(
+                    "needs exactly one axis that rotates the part; this machine has none, or several",
+                )
+            }
+            Quantity::Head => {
+                let turns = matches!(self.machine.head.kind, HeadKind::Manual { .. } | HeadKind::Axis { .. });
+                (!turns).then_some("needs a [head] of kind manual or axis")
+            }
+            Quantity::Shift(_) | Quantity::Tilt(_) | Quantity::Linear(_) => None,
+        }
+    }
+}

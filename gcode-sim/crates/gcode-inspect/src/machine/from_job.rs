@@ -1,0 +1,61 @@
+//! The machine that a job is for, from the job file itself: as exact as the program believes it to be.
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::{AxisLink, Chain, Head, HeadKind, Machine, Placement, Probe, Tool};
+use gcode_lang::units::Deg;
+use gcode_part::job::{self, Job, Rotary};
+
+impl Machine {
+    /// The arrangement that goes with the job's family; `None` where the control has no such axis, and for a burr, which needs
+    /// the machine file that stands beside its programs.
+    pub fn from_job(job: &Job) -> Option<Self> {
+        let nominal =
+            Self { dialect: job.control().dialect, increment: job.control().increment, ..Self::default() };
+        match job {
+            Job::PinHoles(job) => {
+                let axes = &nominal.axes;
+                let kind = match job.machine.head.kind {
+                    job::HeadKind::Manual => HeadKind::Manual { start: None },
+                    job::HeadKind::Axis(letter) => {
+                        HeadKind::Axis { axis: axes.find(letter as u8)?, sign: 1.0, zero: Deg::ZERO }
+                    }
+                };
+                let tool = |tool: &job::Tool| Tool {
+                    number: tool.number,
+                    length: Some(tool.length),
+                    diameter: Some(tool.diameter),
+                };
+                Some(Self {
+                    table: nominal.rotary_table(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
+                    head: Head::new(kind, job.machine.head.pivot),
+                    tools: job.tools.iter().map(tool).collect(),
+                    ..nominal
+                })
+            }
+            Job::Honeycomb(job) => {
+                // The programs' Z0 is on the cylinder's surface.
+                let origin = Point3::new(0.0, 0.0, -job.cylinder.outer / 2.0);
+                let diameter = Some(job.drill.diameter);
+                Some(Self {
+                    table: nominal.rotary_table(job.machine.rotary, Vector3::x_axis(), origin)?,
+                    head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0),
+                    tools: vec![Tool { number: job.drill.number, length: None, diameter }],
+                    part: Placement { origin, ..Placement::default() },
+                    ..nominal
+                })
+            }
+            Job::Burr(_) => None,
+            // The programmed point is the centre of the ball; the head stays as it is.
+            Job::Alignment(job) => Some(Self {
+                table: nominal.rotary_table(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
+                probe: Some(Probe::new(job.probe_radius)),
+                ..nominal
+            }),
+        }
+    }
+
+    fn rotary_table(&self, rotary: Rotary, about: Unit<Vector3<f64>>, centre: Point3<f64>) -> Option<Chain> {
+        let axis = self.axes.find(rotary.letter as u8)?;
+        Some(Chain(vec![AxisLink::rotary(axis, about, centre, f64::from(rotary.sign))]))
+    }
+}

@@ -1,0 +1,272 @@
+//! The machine as data: which axes carry the part, which carry the tool, the head, the tools, and where the part
+//! stands. Forward kinematics is the definition; everything else has to agree with it.
+mod chain;
+pub(crate) mod error;
+mod file;
+mod from_job;
+mod head;
+mod inverse;
+pub(crate) mod path;
+mod probe;
+pub(crate) mod random;
+pub(crate) mod sources;
+mod touch;
+mod wheel;
+
+use nalgebra::{IsometryMatrix3, Point3, Translation3, Unit, Vector3};
+
+pub use chain::{AxisLink, Chain, LinkMotion};
+pub use error::Distribution;
+pub use file::error_file;
+pub use file::{ErrorFile, File as MachineFile};
+pub use head::{Head, HeadKind, HeadMessage};
+pub use path::AxisMotion;
+pub use probe::Probe;
+pub use random::RandomStream;
+pub use wheel::Wheel;
+
+use gcode_lang::control::{Dialect, Increment};
+use gcode_lang::motion::{Axes, AxisIndex, Position};
+use gcode_lang::units::Deg;
+
+/// Turns and shifts a point; lengths in mm.
+pub type Frame = IsometryMatrix3<f64>;
+
+/// One machine: the control's axes, what each of them carries, and the set-up of the job on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Machine {
+    pub axes: Axes,
+    pub dialect: Dialect,
+    pub increment: Increment,
+    /// The axes that carry the part, from the bed outwards.
+    pub table: Chain,
+    /// What carries the tool: the slides X Y Z that don't carry the part.
+    pub slides: Chain,
+    pub head: Head,
+    /// Of a grinder.
+    pub wheel: Option<Wheel>,
+    pub tools: Vec<Tool>,
+    pub offsets: Vec<WorkOffset>,
+    pub part: Placement,
+    pub probe: Option<Probe>,
+}
+
+/// A tool of the machine's tool table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tool {
+    pub number: u32,
+    /// From the spindle's gauge line to the tip. Unknown: as long as the length offset in effect says.
+    pub length: Option<f64>,
+    pub diameter: Option<f64>,
+}
+
+/// What the control's work offset holds when the run begins, on the axes named.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorkOffset {
+    /// 54 to 59.
+    pub code: u32,
+    pub values: Vec<(AxisIndex, f64)>,
+}
+
+/// Where the part stands on its table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// The part's origin in machine coordinates with all axes of the table at 0, as the program believes it.
+    pub origin: Point3<f64>,
+    /// Where the real part stands against that: tilted about x, then y, then z through its origin, then shifted.
+    pub shift: Vector3<f64>,
+    pub tilt: [Deg; 3],
+}
+
+/// What decides where the tip is besides the axes: set by the operator, by M06 and by the length offset.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Setup {
+    /// The angle of a head that is set by hand, once it has been set.
+    pub head_angle: Option<Deg>,
+    pub tool: Option<u32>,
+    /// The tool length offset that is part of every machine position.
+    pub offset: Position,
+}
+
+/// Where the tool is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    pub tip: Point3<f64>,
+    /// From the tip towards the spindle: the direction that points out of the part. `None`: not known.
+    pub axis: Option<Unit<Vector3<f64>>>,
+}
+
+impl Default for Machine {
+    /// The machine of the paper: X Y Z carry the tool, B about Y carries the part, whose origin is on B's axis and
+    /// at machine zero; A and C are axes of the control that carry nothing. How the head stands is not known.
+    fn default() -> Self {
+        let axes = Axes::default();
+        Self {
+            slides: Chain::default_slides(&axes, &Chain::default()),
+            table: Chain::default_table(&axes, Point3::origin()),
+            axes,
+            dialect: Dialect::default(),
+            increment: Increment::default(),
+            head: Head::new(HeadKind::Free, 0.0),
+            wheel: None,
+            tools: Vec::new(),
+            offsets: Vec::new(),
+            part: Placement::default(),
+            probe: None,
+        }
+    }
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self { origin: Point3::origin(), shift: Vector3::zeros(), tilt: [Deg::ZERO; 3] }
+    }
+}
+
+impl Placement {
+    /// From the part's frame to machine coordinates with all axes of the table at 0.
+    pub fn frame(&self) -> Frame {
+        let [x, y, z] = self.tilt;
+        let turn = chain::rotation_about(&Vector3::z_axis(), z)
+            * chain::rotation_about(&Vector3::y_axis(), y)
+            * chain::rotation_about(&Vector3::x_axis(), x);
+        Frame::from_parts(Translation3::from(self.origin.coords + self.shift), turn)
+    }
+}
+
+impl Machine {
+    /// From the part's frame to machine coordinates while the axes stand at `at`.
+    pub fn part_frame(&self, at: &Position) -> Frame {
+        self.table.frame(at) * self.part.frame()
+    }
+
+    /// Where the tool stands in machine coordinates.
+    ///
+    /// The axes' position is the head's pivot; the tip is the pivot's distance from the gauge line and the tool's
+    /// length away from it, along the tool. While the tool's direction isn't known, the tip is where the control
+    /// believes it to be: the position less the length offset.
+    pub fn tool_pose(&self, at: &Position, setup: &Setup) -> Pose {
+        let carried = self.slides.frame(at) * Point3::origin();
+        match self.head.direction(at, setup) {
+            Some(axis) => {
+                let reach = self.head.pivot + self.tool_length(setup);
+                Pose { tip: carried - axis.into_inner() * reach, axis: Some(axis) }
+            }
+            None => Pose { tip: carried - self.slides.displacement(&setup.offset), axis: None },
+        }
+    }
+
+    /// Where the tool stands on the part.
+    pub fn forward(&self, at: &Position, setup: &Setup) -> Pose {
+        self.tool_pose(at, setup).relative_to(&self.part_frame(at))
+    }
+
+    /// The tool's length: from the tool table, else what the length offset says (a tool measured right).
+    pub fn tool_length(&self, setup: &Setup) -> f64 {
+        let known = self.length_of(setup.tool);
+        known.unwrap_or_else(|| self.slides.displacement(&setup.offset).norm())
+    }
+
+    pub fn find_tool(&self, number: u32) -> Option<&Tool> {
+        self.tools.iter().find(|tool| tool.number == number)
+    }
+
+    /// Of the tool in the spindle, mm; `None` where nothing says which, or how long it is.
+    pub fn length_of(&self, tool: Option<u32>) -> Option<f64> {
+        self.find_tool(tool?)?.length
+    }
+
+    /// The same of its diameter.
+    pub fn diameter_of(&self, tool: Option<u32>) -> Option<f64> {
+        self.find_tool(tool?)?.diameter
+    }
+
+    /// Whether the axis moves the tool or the part.
+    pub fn is_axis_used(&self, axis: AxisIndex) -> bool {
+        let head = matches!(self.head.kind, HeadKind::Axis { axis: head, .. } if head == axis);
+        let wheel =
+            self.wheel.is_some_and(|wheel| wheel.swivel_axis.is_some_and(|(swivel, _)| swivel == axis));
+        head || wheel || self.table.has_axis(axis) || self.slides.has_axis(axis)
+    }
+}
+
+impl Pose {
+    /// The same tool seen from a frame that stands at `frame`.
+    pub fn relative_to(&self, frame: &Frame) -> Self {
+        Self {
+            tip: frame.inverse_transform_point(&self.tip),
+            axis: self.axis.map(|axis| frame.rotation.inverse_transform_unit_vector(&axis)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rotation by `degrees` about +y, written out: x' = x·c + z·s, z' = −x·s + z·c.
+    fn about_y(p: [f64; 3], degrees: f64) -> Point3<f64> {
+        let (s, c) = (Deg(degrees).sin(), Deg(degrees).cos());
+        Point3::new(p[0] * c + p[2] * s, p[1], -p[0] * s + p[2] * c)
+    }
+
+    fn at(machine: &Machine, values: &[(u8, f64)]) -> Position {
+        let mut position = Position::default();
+        for (letter, value) in values {
+            position[machine.axes.find(*letter).unwrap()] = *value;
+        }
+        position
+    }
+
+    #[test]
+    fn b_equal_to_the_azimuth_brings_a_point_to_the_plane_z_0() {
+        let machine = Machine::default();
+        let point = [300.0 * Deg(72.0).cos(), 50.0, 300.0 * Deg(72.0).sin()];
+        let there = machine.part_frame(&at(&machine, &[(b'B', 72.0)])) * Point3::from(point);
+        assert!((there - Point3::new(300.0, 50.0, 0.0)).norm() < 1e-10, "{there}");
+        assert!((there - about_y(point, 72.0)).norm() < 1e-10);
+    }
+
+    #[test]
+    fn with_the_sign_turned_round_minus_the_azimuth_does() {
+        let mut machine = Machine::default();
+        machine.table.0[0].sign = -1.0;
+        let point = Point3::new(300.0 * Deg(200.0).cos(), 0.0, 300.0 * Deg(200.0).sin());
+        let there = machine.part_frame(&at(&machine, &[(b'B', -200.0)])) * point;
+        assert!((there - Point3::new(300.0, 0.0, 0.0)).norm() < 1e-10, "{there}");
+    }
+
+    #[test]
+    fn the_tip_is_pivot_and_tool_length_below_the_pivot_point_along_the_head() {
+        let machine = Machine {
+            head: Head::new(HeadKind::Manual { start: None }, 100.0),
+            tools: vec![Tool { number: 2, length: Some(150.0), diameter: None }],
+            ..Machine::default()
+        };
+        let setup = Setup { head_angle: Some(Deg(30.0)), tool: Some(2), ..Setup::default() };
+        let pose = machine.tool_pose(&at(&machine, &[(b'X', 400.0), (b'Y', 300.0)]), &setup);
+        // 250 mm along (cos 30°, sin 30°) = (216.506…, 125).
+        assert!((pose.tip - Point3::new(400.0 - 216.506_350_946, 175.0, 0.0)).norm() < 1e-8, "{}", pose.tip);
+    }
+
+    #[test]
+    fn a_length_offset_without_a_tool_table_puts_the_tip_at_the_programmed_point() {
+        let machine = Machine::default();
+        let offset = at(&machine, &[(b'Z', 120.0)]);
+        let setup = Setup { offset, ..Setup::default() };
+        let pose = machine.forward(&at(&machine, &[(b'X', 5.0), (b'Z', 130.0)]), &setup);
+        assert!((pose.tip - Point3::new(5.0, 0.0, 10.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_misplaced_part_is_tilted_about_x_then_y_then_z_and_shifted() {
+        let part = Placement {
+            shift: Vector3::new(1.0, 2.0, 3.0),
+            tilt: [Deg(90.0), Deg(90.0), Deg::ZERO],
+            ..Placement::default()
+        };
+        // (0, 1, 0) about x by 90°: (0, 0, 1); about y by 90°: (1, 0, 0); shifted: (2, 2, 3).
+        let there = part.frame() * Point3::new(0.0, 1.0, 0.0);
+        assert!((there - Point3::new(2.0, 2.0, 3.0)).norm() < 1e-12, "{there}");
+    }
+}

@@ -1,0 +1,253 @@
+//! Sources of error: what of a machine and of a part's set-up can be off, and what that does to a machine.
+use nalgebra::{Unit, Vector3};
+
+use super::error::{Distribution, PeriodicError};
+use super::random::RandomStream;
+use super::{LinkMotion, Machine, chain};
+use gcode_lang::motion::AxisIndex;
+use gcode_lang::units::Deg;
+
+/// One thing that can be off; directions are counted 0 to 2 for x, y, z of the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Where the part stands against where the program believes it, at 0 of the table.
+    Shift(usize),
+    /// How the part is turned against that, about a line through its origin.
+    Tilt(usize),
+    /// The part's centre stands aside of the axis by half of this, in a direction that nobody knows.
+    RunOut,
+    /// A linear axis stands beyond its commanded place.
+    Linear(AxisIndex),
+    /// The rotary axis stands beyond its commanded angle.
+    Index,
+    /// Where the rotary axis is, against where the program believes it.
+    Centre(usize),
+    /// How the rotary axis is turned against that, about a line through its centre.
+    AxisTilt(usize),
+    /// The head stands beyond its angle.
+    Head,
+}
+
+/// A thing that can be off, and how far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorSource {
+    pub quantity: Quantity,
+    pub distribution: Distribution,
+}
+
+/// What a group of sources is drawn from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SampleParameters {
+    pub(super) seed: u64,
+    /// How far a linear axis goes for one wave of its error, mm.
+    pub(super) wave: f64,
+}
+
+impl Quantity {
+    /// The key that names it in a file, `part.shift.x`.
+    pub fn name(self, machine: &Machine) -> String {
+        let letter = |direction: usize| ['x', 'y', 'z'][direction];
+        match self {
+            Self::Shift(direction) => format!("part.shift.{}", letter(direction)),
+            Self::Tilt(direction) => format!("part.tilt.{}", letter(direction)),
+            Self::RunOut => "part.runout".to_owned(),
+            Self::Linear(axis) => format!("linear.{}", machine.axes.letter(axis).to_ascii_lowercase()),
+            Self::Index => "rotary.index".to_owned(),
+            Self::Centre(direction) => format!("rotary.centre.{}", letter(direction)),
+            Self::AxisTilt(direction) => format!("rotary.tilt.{}", letter(direction)),
+            Self::Head => "head.angle".to_owned(),
+        }
+    }
+
+    /// Set up once for a part, or built into the machine; the others are off anew at each hole.
+    pub fn is_per_part(self) -> bool {
+        !matches!(self, Self::Linear(_) | Self::Index | Self::Head)
+    }
+
+    /// The place of its random numbers in the tree of a seed.
+    fn stream_index(self) -> u64 {
+        match self {
+            Self::Shift(direction) => direction as u64,
+            Self::Tilt(direction) => 10 + direction as u64,
+            Self::RunOut => 20,
+            Self::Linear(axis) => 30 + axis as u64,
+            Self::Index => 40,
+            Self::Centre(direction) => 50 + direction as u64,
+            Self::AxisTilt(direction) => 60 + direction as u64,
+            Self::Head => 70,
+        }
+    }
+}
+
+impl ErrorSource {
+    /// Draws its value, the same at every place of the axes, and puts it into the machine.
+    pub fn draw_into(&self, machine: &mut Machine, draw: RandomStream) {
+        let draw = draw.branch(self.quantity.stream_index());
+        let direction = if self.quantity == Quantity::RunOut { draw.branch(2).angle() } else { Deg::ZERO };
+        machine.add_error(self.quantity, self.distribution.sample(draw), direction);
+    }
+
+    /// One machine with this error: of an axis as a function of its place.
+    pub(super) fn apply_by_position(&self, machine: &mut Machine, drawn: SampleParameters) {
+        let draw = RandomStream::new(drawn.seed).branch(self.quantity.stream_index());
+        match self.quantity {
+            Quantity::Linear(axis) => {
+                machine.set_link_error(axis, PeriodicError::sample(self.distribution, drawn.wave, draw));
+            }
+            Quantity::Index => {
+                if let Some(axis) = machine.rotary_axis() {
+                    machine.set_link_error(axis, PeriodicError::sample(self.distribution, 360.0, draw));
+                }
+            }
+            Quantity::Head => machine.head.error = PeriodicError::sample(self.distribution, 360.0, draw),
+            Quantity::Shift(_)
+            | Quantity::Tilt(_)
+            | Quantity::RunOut
+            | Quantity::Centre(_)
+            | Quantity::AxisTilt(_) => self.draw_into(machine, RandomStream::new(drawn.seed)),
+        }
+    }
+}
+
+impl Machine {
+    /// The one axis that turns the part; `None` where none or several do.
+    pub fn rotary_axis(&self) -> Option<AxisIndex> {
+        let mut turns = self
+            .table
+            .0
+            .iter()
+            .filter(|link| matches!(link.motion, LinkMotion::Rotary { .. }))
+            .map(|l| l.axis);
+        let first = turns.next()?;
+        turns.next().is_none().then_some(first)
+    }
+
+    /// Makes it as exact as `nominal`, a machine of the same arrangement, without asking for memory.
+    pub fn reset(&mut self, nominal: &Self) {
+        self.part = nominal.part;
+        self.head.error = nominal.head.error;
+        self.table.0.clone_from_slice(&nominal.table.0);
+        self.slides.0.clone_from_slice(&nominal.slides.0);
+    }
+
+    /// Whether it does what it is told, to a part that stands where it should.
+    pub fn is_exact(&self) -> bool {
+        let exact = |error: &PeriodicError| error.level == 0.0 && error.amplitude == 0.0;
+        let part = self.part.shift == Vector3::zeros() && self.part.tilt == [Deg::ZERO; 3];
+        part && exact(&self.head.error)
+            && self.table.0.iter().chain(&self.slides.0).all(|link| exact(&link.error))
+    }
+
+    /// Puts one more error into the machine; `direction` is that of a run-out, about the rotary axis.
+    pub fn add_error(&mut self, quantity: Quantity, value: f64, direction: Deg) {
+        match quantity {
+            Quantity::Shift(along) => self.part.shift[along] += value,
+            Quantity::Tilt(about) => self.part.tilt[about] = self.part.tilt[about] + Deg(value),
+            Quantity::RunOut => {
+                let Some((about, _)) = self.rotary_axis_mut() else { return };
+                let across = perpendicular(about);
+                let aside = chain::rotation_about(about, direction) * across;
+                self.part.shift += aside * (value / 2.0);
+            }
+            Quantity::Linear(axis) => self.set_link_error(axis, PeriodicError::constant(value)),
+            Quantity::Index => {
+                if let Some(axis) = self.rotary_axis() {
+                    self.set_link_error(axis, PeriodicError::constant(value));
+                }
+            }
+            Quantity::Centre(along) => {
+                if let Some((_, centre)) = self.rotary_axis_mut() {
+                    centre[along] += value;
+                }
+            }
+            Quantity::AxisTilt(axis) => {
+                let line = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()][axis];
+                if let Some((about, _)) = self.rotary_axis_mut() {
+                    *about = chain::rotation_about(&line, Deg(value)) * *about;
+                }
+            }
+            Quantity::Head => self.head.error = PeriodicError::constant(value),
+        }
+    }
+
+    fn rotary_axis_mut(&mut self) -> Option<(&mut Unit<Vector3<f64>>, &mut nalgebra::Point3<f64>)> {
+        let axis = self.rotary_axis()?;
+        let link = self.table.0.iter_mut().find(|link| link.axis == axis)?;
+        match &mut link.motion {
+            LinkMotion::Rotary { about, centre } => Some((about, centre)),
+            LinkMotion::Linear { .. } => None,
+        }
+    }
+
+    fn set_link_error(&mut self, axis: AxisIndex, error: PeriodicError) {
+        let links = self.table.0.iter_mut().chain(&mut self.slides.0);
+        links.filter(|link| link.axis == axis).for_each(|link| link.error = error);
+    }
+}
+
+/// A unit vector across another.
+fn perpendicular(about: &Unit<Vector3<f64>>) -> Vector3<f64> {
+    let other = if about.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() };
+    (other - about.into_inner() * about.dot(&other)).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point3;
+
+    use super::*;
+    use crate::machine::Setup;
+    use gcode_lang::motion::Position;
+
+    fn with(quantity: Quantity, value: f64) -> Machine {
+        let mut machine = Machine::default();
+        machine.add_error(quantity, value, Deg::ZERO);
+        machine
+    }
+
+    fn tip(machine: &Machine, x: f64, b: f64) -> Point3<f64> {
+        let mut at = Position::default();
+        at[0] = x;
+        at[4] = b;
+        machine.forward(&at, &Setup::default()).tip
+    }
+
+    fn near(found: Point3<f64>, expected: [f64; 3]) {
+        assert!((found - Point3::from(expected)).norm() < 1e-9, "{found} is not {expected:?}");
+    }
+
+    /// The tool stands at machine x = 100 each time; the answers are the part's own coordinates, by hand.
+    #[test]
+    fn each_source_moves_the_tool_on_the_part_as_worked_out_by_hand() {
+        // The part stands 0.05 farther in x, so the tool is 0.05 less far on it: at B = 0 in x …
+        near(tip(&with(Quantity::Shift(0), 0.05), 100.0, 0.0), [99.95, 0.0, 0.0]);
+        // … and at B = 180, where the part's +x points to machine −x, at −100 − 0.05.
+        near(tip(&with(Quantity::Shift(0), 0.05), 100.0, 180.0), [-100.05, 0.0, 0.0]);
+        near(tip(&with(Quantity::Shift(0), -0.05), 100.0, 180.0), [-99.95, 0.0, 0.0]);
+        // An X that stands 0.02 too far.
+        near(tip(&with(Quantity::Linear(0), 0.02), 100.0, 0.0), [100.02, 0.0, 0.0]);
+        // B stands at 90 for 89.
+        near(tip(&with(Quantity::Index, 1.0), 100.0, 89.0), [0.0, 0.0, 100.0]);
+        // B's axis lies at x = 0.3: at 0 that moves nothing, at 180 the part's origin stands at x = 0.6.
+        near(tip(&with(Quantity::Centre(0), 0.3), 100.0, 0.0), [100.0, 0.0, 0.0]);
+        near(tip(&with(Quantity::Centre(0), 0.3), 100.0, 180.0), [-99.4, 0.0, 0.0]);
+        // B's axis leans by 1° about z, its top towards −x: half a turn about it brings the part's own axis 2° over.
+        near(tip(&with(Quantity::AxisTilt(2), 1.0), 100.0, 0.0), [100.0, 0.0, 0.0]);
+        let (c, s) = (Deg(2.0).cos(), Deg(2.0).sin());
+        near(tip(&with(Quantity::AxisTilt(2), 1.0), 100.0, 180.0), [-100.0 * c, -100.0 * s, 0.0]);
+        // The part is turned by 90° about z: machine x is its −y.
+        near(tip(&with(Quantity::Tilt(2), 90.0), 100.0, 0.0), [0.0, -100.0, 0.0]);
+        // A run-out of 0.4 in the direction 0: the centre 0.2 aside in x.
+        near(tip(&with(Quantity::RunOut, 0.4), 100.0, 0.0), [99.8, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_head_angle_that_is_off_moves_the_tip_on_the_pivots_lever() {
+        let mut machine = with(Quantity::Head, 0.1);
+        machine.head.pivot = 200.0;
+        let setup = Setup { head_angle: Some(Deg(90.0)), ..Setup::default() };
+        let tip = machine.tool_pose(&Position::default(), &setup).tip;
+        // The tool points along 90.1°: its tip hangs 200 mm below, 200·sin 0.1° to +x.
+        near(tip, [200.0 * Deg(0.1).sin(), -200.0 * Deg(0.1).cos(), 0.0]);
+    }
+}

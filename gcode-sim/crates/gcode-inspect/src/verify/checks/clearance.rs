@@ -1,0 +1,71 @@
+//! While an axis turns, and where a rapid goes past the part, the tool must be clear of it: no nearer than the job lets
+//! feeds begin, and never so near that a length set a little wrong would touch.
+use crate::holes::per_block::with_repeat_note;
+use crate::holes::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
+use gcode_lang::diag::Diagnostic;
+use gcode_part::ProcessLimits;
+
+pub(in crate::verify) fn findings(close_motions: &[CloseMotion], conduct: &ProcessLimits) -> Vec<Diagnostic> {
+    let told = close_motions.iter().map(|passing| {
+        with_repeat_note(finding(passing, conduct), passing.count).with_backtrace(passing.backtrace.clone())
+    });
+    told.collect()
+}
+
+fn finding(close_motion: &CloseMotion, conduct: &ProcessLimits) -> Diagnostic {
+    let above = close_motion.tip_clearance.max(0.0);
+    match close_motion.kind {
+        CloseMotionKind::RotaryTurn { letter, angle: by } => {
+            let mut message =
+                format!("{letter} rotates by {:.3}° with the tool {above:.3} mm above the part", by.0);
+            if close_motion.tip_clearance < CONTACT_CLEARANCE {
+                let finding = Diagnostic::error("turns-near-part", message).note(format!(
+                    "an error of {CONTACT_CLEARANCE} mm in the tool length or the part position makes it touch"
+                ));
+                return finding.help(format!("retract to a safe height before {letter} rotates"));
+            }
+            if let Some(edge) = close_motion
+                .edge_clearance
+                .filter(|edge| *edge < close_motion.tip_clearance - ROUNDING_ALLOWANCE)
+            {
+                let (far, side) = (edge.abs(), if edge < 0.0 { "below the surface" } else { "above" });
+                message.push_str(&format!(", the edge of a flat end {far:.3} mm {side}"));
+            }
+            let help = format!(
+                "retract before {letter} rotates: the job starts feeds {} mm above the surface, and a \
+                 rotation needs more clearance",
+                conduct.clearance.unwrap_or_default()
+            );
+            Diagnostic::warning("turns-near-part", message).help(help)
+        }
+        CloseMotionKind::LowRetract { letter, angle: by } => {
+            let retract = conduct.retract.unwrap_or_default();
+            let message = format!(
+                "{letter} rotates by {:.3}° with the tool {above:.3} mm above the part; the job specifies \
+                 {retract} mm",
+                by.0
+            );
+            Diagnostic::warning("turns-near-part", message)
+                .help(format!("retract to machine.retract before {letter} rotates, or correct it in the job"))
+        }
+        CloseMotionKind::RapidPast => {
+            let message = format!("the rapid passes {above:.3} mm above the part surface");
+            let finding = Diagnostic::warning("rapid-near-part", message).note(format!(
+                "an error of {CONTACT_CLEARANCE} mm in the tool length or the part position makes it touch"
+            ));
+            finding.help("move from hole to hole at a safe height")
+        }
+        CloseMotionKind::RapidTowards if CONTACT_CLEARANCE <= close_motion.tip_clearance => {
+            let approach = conduct.approach.unwrap_or_default();
+            let message =
+                format!("the rapid ends {above:.3} mm above the part; the job specifies {approach} mm");
+            Diagnostic::warning("rapid-near-part", message)
+                .help("raise R, or the end of the approach, to machine.clearance, or correct it in the job")
+        }
+        CloseMotionKind::RapidTowards => {
+            let message = format!("the rapid ends {above:.3} mm above the part");
+            let finding = Diagnostic::warning("rapid-near-part", message);
+            finding.help("end it at the clearance where the feed begins; check R for a missing decimal point")
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Wanted holes that cut into each other, which the drawing may mean: told, not failed. A pattern sees to its own.
+use super::{Comparison, HoleFinding};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_part::overlaps;
+
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+    if comparison.pattern.is_some() {
+        return;
+    }
+    for overlap in overlaps(comparison.nominal) {
+        let message = overlap.sentence(comparison.nominal);
+        let finding = Diagnostic::new(Severity::Note, "hole-overlap", message)
+            .help("check radius, azimuth and depth of both holes, unless the drawing specifies this");
+        objections.push(HoleFinding::of_nominal(overlap.holes[0], finding));
+    }
+}

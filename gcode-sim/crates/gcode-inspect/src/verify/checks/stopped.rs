@@ -1,0 +1,29 @@
+//! Where the run stopped before its end, what it left out says nothing more: one sentence, and nothing of rows.
+use super::{Comparison, HoleFinding};
+use crate::verify::hole_finding::{fold, folded_note};
+use gcode_lang::diag::Diagnostic;
+
+pub(in crate::verify) fn check(
+    comparison: &Comparison<'_>,
+    stopped: bool,
+    objections: &mut Vec<HoleFinding>,
+) {
+    if !stopped || comparison.missing.is_empty() {
+        return;
+    }
+    // Rows that were not reached look like a seam or a missing group.
+    objections.retain(|objection| !objection.finding.code.starts_with("row-"));
+    if let [one] = comparison.missing.as_slice() {
+        for objection in objections.iter_mut().filter(|objection| objection.nominal == Some(*one)) {
+            objection.finding.help = Some("find out first why the run stopped before its end".to_owned());
+        }
+        return;
+    }
+    fold(objections, &["hole-missing"], |_| true);
+    let (missing, all) = (comparison.missing.len(), comparison.nominal.len());
+    let message = format!("the run stopped before its end: {missing} of {all} holes are missing");
+    let mut finding = Diagnostic::error("hole-missing", message)
+        .help("correct the cause of the stop first: the holes after it were not begun");
+    finding.notes.extend(folded_note(missing));
+    objections.insert(0, HoleFinding::unlocated(finding));
+}

@@ -1,0 +1,74 @@
+//! The contact stays on the tooth bottom, between the programmed points too.
+use super::super::Inspection;
+use super::super::cause::Cause;
+use crate::flutes::{GrindingPass, ROUNDING_ERROR, Sample};
+use gcode_lang::diag::{Diagnostic, Site};
+
+pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnostic>) {
+    let allowed = inspection.nominal.surface_tolerance;
+    // Of every pass its worst place.
+    let of_pass = |(index, pass): (usize, &'g GrindingPass)| {
+        let worst =
+            pass.trace.samples.iter().max_by(|a, b| a.deviation.abs().total_cmp(&b.deviation.abs()))?;
+        (allowed + ROUNDING_ERROR < worst.deviation.abs()).then_some((index, worst))
+    };
+    let mut all: Vec<(usize, &Sample)> =
+        inspection.actual.passes.iter().enumerate().filter_map(of_pass).collect();
+    all.sort_by(|a, b| b.1.deviation.abs().total_cmp(&a.1.deviation.abs()));
+    let Some((pass, worst)) = all.first().copied() else { return };
+    let finding = surface_finding(inspection, pass, worst);
+    let pass = &inspection.actual.passes[pass];
+    let sites = all.iter().map(|(pass, sample)| Site::new(Some(*pass), sample.point));
+    findings.push(finding.with_backtrace(pass.trace.backtrace(worst).clone()).with_sites(sites));
+}
+
+fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic {
+    let wanted = inspection.nominal;
+    let (allowed, radius) = (wanted.surface_tolerance, wanted.profile.radius());
+    let error = |message: String| Diagnostic::error("flute-surface", message);
+    let (side, off) =
+        if worst.deviation < 0.0 { ("below", -worst.deviation) } else { ("above", worst.deviation) };
+    if let Some(depth) = inspection.common_height {
+        let flutes = inspection.flutes_with_verb();
+        return error(format!(
+            "{flutes} ground to a diameter of {:.3} mm, nominal {:.3} mm: the contact is {:.4} mm {side} \
+             the tooth bottom all along, tolerance {allowed} mm",
+            2.0 * (radius + depth),
+            2.0 * radius,
+            depth.abs()
+        ))
+        .help("check Y where the wheel is fed into the blank, the work offset in Y, and wheel.contact in the machine file");
+    }
+    let finding = error(format!(
+        "the contact is {off:.4} mm {side} the tooth bottom at polar angle {:.1}°: tolerance {allowed} mm",
+        worst.polar.0
+    ));
+    match Cause::of(wanted, &inspection.actual.passes[pass], off) {
+        Cause::BetweenPoints => finding
+            .note("the deviation is less than half of this at the programmed points: it arises between them")
+            .help("use shorter moves, or a finer increment: the present ones are too coarse for this chord error"),
+        Cause::Depth(depth) => finding
+            .note(format!(
+                "the contact is {:.4} mm {side} the tooth bottom all along {}, at the programmed points too",
+                depth.abs(),
+                inspection.pass_name(pass)
+            ))
+            .help("check Y where the wheel is fed into the blank"),
+        Cause::Offset([x, y]) => {
+            let [from_x, from_y] = inspection.actual.offset.unwrap_or(wanted.c_offset);
+            finding
+                .note(format!(
+                    "the deviation is present at the programmed points too, as if the end of the cylinder \
+                     were at X{:.3} Y{:.3} from the C axis instead of X{from_x} Y{from_y}: X{x:+.3} Y{y:+.3}",
+                    from_x + x,
+                    from_y + y
+                ))
+                .help("check the numbers from which the program computes X and Y while C rotates (I and J \
+                       of the call), and c_offset")
+        }
+        Cause::Other => finding.help(
+            "check the sign of each axis, the formula for Y, and c_offset against the machine file's \
+             part.origin: X and Y do not keep the arc's centre in place while C rotates",
+        ),
+    }
+}

@@ -1,0 +1,281 @@
+//! The answer on flutes: the numbers of the worst place, both laws side by side, and the findings.
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Inspection;
+use super::speed::SPEED_TOLERANCE;
+use crate::flutes::{GrindingResult, Window};
+use crate::verify::verdict::{Answer, Finding, finding_of, limit_per_kind};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::source::Span;
+use gcode_lang::units::Deg;
+use gcode_part::Flutes;
+use gcode_part::job::FluteLaw;
+
+/// The result of `verify --format json`. Lengths in mm, angles in degrees; nothing is rounded.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct FluteVerdict {
+    /// The kind of the numbers.
+    pub basis: &'static str,
+    pub verdict: Answer,
+    pub law: &'static str,
+    /// Number of flutes ground; repeated passes over a flute do not count.
+    pub flutes: usize,
+    #[serde(rename = "wanted_flutes")]
+    pub nominal_flutes: usize,
+    /// The largest distance of the contact from the tooth bottom, between the points too; null without a flute.
+    pub surface_deviation: Option<f64>,
+    /// Its tolerance: the job's chord error, or that of the command line.
+    pub tolerance: f64,
+    pub helix_min: Option<f64>,
+    pub helix_max: Option<f64>,
+    /// Nominal angle on the cylinder, by the job's law.
+    pub helix: f64,
+    /// The largest deviation from the job's law.
+    pub helix_error: Option<f64>,
+    pub helix_tolerance: f64,
+    /// The length over which a helix angle is measured.
+    pub gauge: f64,
+    /// The largest deviation of a gap between neighbours from the nominal one.
+    pub index_error: Option<f64>,
+    pub index_tolerance: f64,
+    /// Of the contact along the flutes, mm/min, over a gauge length.
+    pub speed_min: Option<f64>,
+    pub speed_max: Option<f64>,
+    /// The speed that the job specifies, if it does.
+    pub speed: Option<f64>,
+    /// Tolerance of the speed, either way, as a fraction.
+    pub speed_tolerance: f64,
+    /// The least distance between the paths of neighbours, in a straight line.
+    pub nearest: Option<f64>,
+    pub passes: usize,
+    /// Grinding moves of all passes.
+    pub moves: usize,
+    /// Always empty for a burr.
+    pub holes: [(); 0],
+    pub laws: Vec<LawAngles>,
+    pub findings: Vec<Finding>,
+    /// What the verdict does not cover, in words.
+    pub not_checked: Vec<String>,
+    /// For plots: the helix angle along the flute that is farthest from the law, and which pass that is, counted from 1.
+    #[serde(skip)]
+    pub helix_course: Vec<HelixSample>,
+    #[serde(skip)]
+    pub course_pass: usize,
+    /// What neighbours' least distance may be: twice the chord error.
+    #[serde(skip)]
+    pub min_nearest: f64,
+    /// The findings with their places, for people.
+    #[serde(skip)]
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The helix angle at one polar angle: measured, and by both laws.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Law")]
+pub struct LawAngles {
+    #[serde(rename = "theta")]
+    pub polar: f64,
+    /// On the flute with the largest deviation from the law; null where it is not measured.
+    pub measured: Option<f64>,
+    pub constant_helix: f64,
+    pub published: f64,
+}
+
+/// The result of `reference` for a burr: the nominal flutes, without a program.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct NominalFlutes {
+    pub unit: &'static str,
+    /// Always empty for a burr.
+    pub holes: [(); 0],
+    pub flutes: u32,
+    pub law: &'static str,
+    /// Start of the flutes from the end of the cylinder; `pole`: position of the pole along the axis.
+    pub start: f64,
+    pub pole: f64,
+    pub tip_angle: f64,
+    pub laws: Vec<LawAngles>,
+}
+
+impl FluteVerdict {
+    /// How many flutes there are, and what else is wrong, in one line.
+    pub fn sentence(&self) -> String {
+        let mut text = match self.flutes <= self.nominal_flutes {
+            true => format!("{} of {} flutes ground", self.flutes, self.nominal_flutes),
+            false => format!("{} flutes ground, {} specified", self.flutes, self.nominal_flutes),
+        };
+        let mut mentioned: Vec<&str> = Vec::new();
+        for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
+            let what = describe_code(&finding.code).unwrap_or(&finding.code);
+            // The numbers say what is missing and what is too many.
+            let is_counted = matches!(finding.code.as_str(), "flute-missing" | "flute-extra");
+            if !is_counted && !mentioned.contains(&what) {
+                mentioned.push(what);
+                text.push_str(", ");
+                text.push_str(what);
+            }
+        }
+        text
+    }
+}
+
+/// The code of a finding on flutes in few words; `None` of others.
+pub fn describe_code(code: &str) -> Option<&'static str> {
+    Some(match code {
+        "flute-missing" => "a flute is missing",
+        "flute-extra" => "an extra flute",
+        "flute-twice" => "a flute is ground twice",
+        "flute-surface" => "contact off the tooth bottom",
+        "flute-helix" => "helix angle out of tolerance",
+        "flute-index" => "spacing out of tolerance",
+        "flute-end" => "an end out of position",
+        "flute-head" => "head angle out of tolerance",
+        "flute-speed" => "speed out of tolerance",
+        "wheel-speed" => "wheel speed out of tolerance",
+        "wheel-feed" => "feed into the blank out of tolerance",
+        "burr-offset" => "the burr's position differs from the job's",
+        "spindle-stopped" => "the wheel is stopped",
+        "flutes-meet" => "neighbours overlap",
+        "wheel-into-burr" => "the wheel enters the burr",
+        _ => return None,
+    })
+}
+
+impl NominalFlutes {
+    pub fn of(wanted: &Flutes) -> Self {
+        Self {
+            unit: "mm",
+            holes: [],
+            flutes: wanted.count,
+            law: wanted.law.name(),
+            start: wanted.start,
+            pole: wanted.profile.pole(),
+            tip_angle: wanted.tip_angle.0,
+            laws: law_table(wanted, &[]),
+        }
+    }
+}
+
+/// A measured helix angle.
+#[derive(Clone, Copy, Debug)]
+pub struct HelixSample {
+    pub polar: Deg,
+    pub helix: Deg,
+}
+
+/// The polar angles of the table; the tip angle comes last.
+const TABLE_ANGLES: [f64; 9] = [90.0, 75.0, 60.0, 45.0, 30.0, 20.0, 15.0, 10.0, 5.0];
+
+pub(super) fn verdict(
+    inspection: &Inspection<'_>,
+    measured: bool,
+    findings: Vec<Diagnostic>,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> FluteVerdict {
+    let (wanted, ground, helix) = (inspection.nominal, inspection.actual, &inspection.helix);
+    let samples = ground.passes.iter().flat_map(|pass| &pass.trace.samples);
+    let fails = findings.iter().any(|finding| Severity::Error <= finding.severity);
+    let gauge = wanted.gauge;
+    let worst_pass = helix.worst.map_or(0, |worst| worst.pass);
+    let along: Vec<HelixSample> = ground.passes.get(worst_pass).map_or(Vec::new(), |pass| {
+        let angles = |window: Window<'_>| HelixSample { polar: window.middle.polar, helix: window.helix };
+        pass.trace.windows(gauge).map(angles).collect()
+    });
+    FluteVerdict {
+        basis: "predicted by simulation, not measured",
+        verdict: if fails { Answer::Fail } else { Answer::Pass },
+        law: wanted.law.name(),
+        flutes: inspection.spacing.flutes.len(),
+        nominal_flutes: wanted.count as usize,
+        surface_deviation: samples.map(|s| s.deviation.abs()).reduce(f64::max),
+        tolerance: wanted.surface_tolerance,
+        helix_min: measured.then_some(helix.min.0),
+        helix_max: measured.then_some(helix.max.0),
+        helix: wanted.helix.0,
+        helix_error: helix.worst.map(|worst| worst.error().0),
+        helix_tolerance: wanted.helix_tolerance.0,
+        gauge,
+        index_error: inspection.spacing.worst_gap.map(|gap| gap.error.0),
+        index_tolerance: wanted.index_tolerance.0,
+        speed_min: inspection.speed.as_ref().map(|range| range.min),
+        speed_max: inspection.speed.as_ref().map(|range| range.max),
+        speed: wanted.speed,
+        speed_tolerance: SPEED_TOLERANCE,
+        nearest: inspection.spacing.nearest_approach.map(|near| near.distance),
+        passes: ground.passes.len(),
+        moves: ground.passes.iter().map(|pass| pass.moves).sum(),
+        holes: [],
+        laws: law_table(wanted, &along),
+        findings: findings.iter().map(|finding| finding_of(finding, None, false, locate)).collect(),
+        not_checked: not_checked(wanted, ground, locate),
+        helix_course: along,
+        course_pass: worst_pass + 1,
+        min_nearest: 2.0 * wanted.chord_error,
+        diagnostics: limit_per_kind(findings.into_iter()),
+    }
+}
+
+/// What the verdict says nothing about.
+fn not_checked(
+    wanted: &Flutes,
+    ground: &GrindingResult,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Vec<String> {
+    let mut all = vec![
+        "the wheel's width, form and body: it is simulated as one point, so gouging of a neighbouring \
+         tooth next to the contact is unknown"
+            .to_owned(),
+        "the direction of the wheel's swivel B: only its angle is compared with the helix angle".to_owned(),
+        "the wheel's direction of rotation: the job does not give it".to_owned(),
+    ];
+    if wanted.speed.is_none() {
+        all.push("the speed along the flutes: the job has no program.speed".to_owned());
+    }
+    if wanted.wheel.is_none() {
+        all.push("the wheel's spindle speed: the job has no program.wheel".to_owned());
+    }
+    if wanted.plunge.is_none() {
+        all.push("the wheel's feed into the blank: the job has no program.plunge".to_owned());
+    }
+    if wanted.clearance.is_none() {
+        all.push(
+            "the distance from the blank where rapid motion ends, except for contact: the job has no \
+             machine.clearance"
+                .to_owned(),
+        );
+    }
+    if ground.offset.is_none() {
+        all.push("the job's c_offset: the machine file has no axis C that rotates about z".to_owned());
+    }
+    let unseen = ground.unchecked_rapids;
+    if 0 < unseen {
+        let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
+        all.push(format!(
+            "rapid motion up to where the wheel is first clear of the blank ({moves}): the axes' start \
+             position is unknown"
+        ));
+    }
+    all.extend(
+        ground.unknown_work_zero.as_ref().map(|unplaced| unplaced.describe(locate(unplaced.backtrace.block))),
+    );
+    all
+}
+
+fn law_table(wanted: &Flutes, along: &[HelixSample]) -> Vec<LawAngles> {
+    let tip = wanted.tip_angle.0;
+    let all = TABLE_ANGLES.into_iter().filter(|polar| tip < *polar).chain([tip]);
+    let at = |theta: f64| {
+        let near = |one: &&HelixSample, other: &&HelixSample| {
+            (one.polar.0 - theta).abs().total_cmp(&(other.polar.0 - theta).abs())
+        };
+        // At its end a flute is measured half a gauge before it.
+        let nearest = along.iter().min_by(near).filter(|angles| (angles.polar.0 - theta).abs() < 2.5);
+        LawAngles {
+            polar: theta,
+            measured: nearest.map(|angles| angles.helix.0),
+            constant_helix: wanted.helix_angle(FluteLaw::ConstantHelix, Deg(theta)).0,
+            published: wanted.helix_angle(FluteLaw::Published, Deg(theta)).0,
+        }
+    };
+    all.map(at).collect()
+}

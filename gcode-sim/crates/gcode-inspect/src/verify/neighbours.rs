@@ -1,0 +1,266 @@
+//! How far each hole's neighbours stand: in a honeycomb every hole inside has six, all at the pitch.
+use std::cmp::Ordering;
+
+use nalgebra::{Point3, Vector3};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Comparison;
+use gcode_part::PointTree;
+use gcode_part::{Pattern, azimuth};
+
+/// A hole has so many at most.
+const MAX_NEIGHBOURS: usize = 6;
+
+/// The neighbours of all holes, lengths in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Neighbours {
+    /// The metric of distances: `arc` or `chord`.
+    pub metric: &'static str,
+    /// The nominal distance of all neighbours: the pitch with which the pattern closes.
+    #[serde(rename = "wanted")]
+    pub nominal: f64,
+    /// Number of inner holes that are drilled and have all six neighbours; `with_six_wanted`: their nominal
+    /// number.
+    pub with_six: usize,
+    #[serde(rename = "with_six_wanted")]
+    pub with_six_nominal: usize,
+    /// The two nearest neighbours; `max`: the two farthest.
+    pub min: Option<Distance>,
+    pub max: Option<Distance>,
+}
+
+/// Between two holes.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Distance {
+    pub distance: f64,
+    /// The holes by their ids; an extra hole by its position.
+    pub between: [String; 2],
+}
+
+/// Of one hole.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct HoleNeighbours {
+    pub count: usize,
+    pub min: f64,
+    pub max: f64,
+    #[serde(skip)]
+    nearest: usize,
+    #[serde(skip)]
+    farthest: usize,
+}
+
+/// For every drilled hole what is round it, in the order of the holes; the summary.
+pub(super) fn neighbours(
+    comparison: &Comparison<'_>,
+    pattern: &Pattern,
+) -> (Vec<Option<HoleNeighbours>>, Neighbours) {
+    let found = comparison.actual.iter().map(|hole| (hole.bottom(), hole.axis.into_inner()));
+    let lines: Vec<usize> = comparison.actual.iter().map(|hole| hole.first_on_line).collect();
+    let (around, places) = neighbours_of(found, &lines, pattern);
+    let wanted = comparison.nominal.iter().map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis)));
+    let apart: Vec<usize> = (0..comparison.nominal.len()).collect();
+    let (around_wanted, _) = self::neighbours_of(wanted, &apart, pattern);
+    let mut names = vec![None; comparison.actual.len()];
+    for pair in &comparison.pairs {
+        names[pair.actual] = Some(comparison.id(pair.nominal));
+    }
+    let name = |index: usize| names[index].map_or_else(|| format_place(&places[index]), str::to_owned);
+    let known = || around.iter().enumerate().filter_map(|(index, around)| Some((index, (*around)?)));
+    let distance = |index: usize, other: usize, distance: f64| Distance {
+        distance,
+        between: [name(index.min(other)), name(index.max(other))],
+    };
+    let min = known().min_by(|a, b| a.1.min.total_cmp(&b.1.min));
+    // Of equal ones the first, as for the smallest.
+    let max = known().rev().max_by(|a, b| a.1.max.total_cmp(&b.1.max));
+    let six = |around: &Option<HoleNeighbours>| around.is_some_and(|around| around.count == MAX_NEIGHBOURS);
+    let inner = comparison.pairs.iter().filter(|pair| six(&around_wanted[pair.nominal]));
+    let summary = Neighbours {
+        metric: pattern.metric.name(),
+        nominal: pattern.pitch,
+        with_six: inner.filter(|pair| six(&around[pair.actual])).count(),
+        with_six_nominal: around_wanted.iter().filter(|around| six(around)).count(),
+        min: min.map(|(index, around)| distance(index, around.nearest, around.min)),
+        max: max.map(|(index, around)| distance(index, around.farthest, around.max)),
+    };
+    (around, summary)
+}
+
+/// What is round each of the holes, given by a point of the axis and its direction out of the part; `None` for one that
+/// stands alone or misses the cylinder. And where they cross the cylinder. `lines` says which holes are on one line.
+fn neighbours_of(
+    holes: impl Iterator<Item = (Point3<f64>, Vector3<f64>)>,
+    lines: &[usize],
+    pattern: &Pattern,
+) -> (Vec<Option<HoleNeighbours>>, Vec<Point3<f64>>) {
+    let nowhere = Point3::from(Vector3::repeat(f64::INFINITY));
+    let places: Vec<_> = holes.map(|(on, out)| pattern.crossing(&on, &out).unwrap_or(nowhere)).collect();
+    let on_cylinder: Vec<usize> = (0..places.len()).filter(|index| places[*index] != nowhere).collect();
+    let mut near = vec![NearestSix::default(); places.len()];
+    let here = thin_crowded_spots(on_cylinder, lines, &places, &mut near);
+    let tree = PointTree::new(here.iter().map(|index| places[*index]));
+    // Halfway to those that are no neighbours any more.
+    let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
+    // No way on the surface is shorter than the straight one: all neighbours are told.
+    tree.pairs(reach, &mut |one, other| {
+        let (one, other) = (here[one], here[other]);
+        let distance = pattern.distance(&places[one], &places[other]);
+        if distance <= reach {
+            near[one].add(distance, other);
+            near[other].add(distance, one);
+        }
+    });
+    (near.iter().map(NearestSix::summary).collect(), places)
+}
+
+/// The holes without the eighth and more on one spot: those are nobody's neighbours, and have the first six round them. So as many
+/// as there may be on a spot stay n log n.
+fn thin_crowded_spots(
+    mut holes: Vec<usize>,
+    lines: &[usize],
+    places: &[Point3<f64>],
+    nearest_six: &mut [NearestSix],
+) -> Vec<usize> {
+    let mut kept = Vec::with_capacity(holes.len());
+    for line in holes.chunk_by_mut(|one, other| lines[*one] == lines[*other]) {
+        if line.len() <= MAX_NEIGHBOURS + 1 {
+            kept.extend_from_slice(line);
+            continue;
+        }
+        line.sort_unstable_by(|one, other| {
+            compare_points(&places[*one], &places[*other]).then(one.cmp(other))
+        });
+        for spot in line.chunk_by(|one, other| compare_points(&places[*one], &places[*other]).is_eq()) {
+            let (first, others) = spot.split_at(spot.len().min(MAX_NEIGHBOURS + 1));
+            kept.extend_from_slice(first);
+            for one in others {
+                first[..MAX_NEIGHBOURS].iter().for_each(|other| nearest_six[*one].add(0.0, *other));
+            }
+        }
+    }
+    kept
+}
+
+/// The neighbours of a hole with their distances: the six nearest, the nearest first, of equally near ones the first.
+#[derive(Clone, Copy, Default)]
+struct NearestSix {
+    count: usize,
+    nearest: [(f64, usize); MAX_NEIGHBOURS],
+}
+
+impl NearestSix {
+    fn add(&mut self, distance: f64, other: usize) {
+        let new = (distance, other);
+        if self.count < MAX_NEIGHBOURS {
+            self.count += 1;
+        } else if self.nearest[MAX_NEIGHBOURS - 1] < new {
+            return;
+        }
+        let mut place = self.count - 1;
+        while 0 < place && new < self.nearest[place - 1] {
+            self.nearest[place] = self.nearest[place - 1];
+            place -= 1;
+        }
+        self.nearest[place] = new;
+    }
+
+    fn summary(&self) -> Option<HoleNeighbours> {
+        let near = &self.nearest[..self.count];
+        let ((min, nearest), (max, farthest)) = (*near.first()?, *near.last()?);
+        Some(HoleNeighbours { count: self.count, min, max, nearest, farthest })
+    }
+}
+
+/// An order in which points on one spot stand together.
+fn compare_points(one: &Point3<f64>, other: &Point3<f64>) -> Ordering {
+    let along = |axis: usize| one[axis].total_cmp(&other[axis]);
+    along(0).then_with(|| along(1)).then_with(|| along(2))
+}
+
+fn format_place(p: &Point3<f64>) -> String {
+    format!("x {:.3} at {:.3}°", p.x, azimuth(p).0)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use gcode_lang::units::Deg;
+    use gcode_part::job::Metric;
+
+    const PATTERN: Pattern = Pattern {
+        metric: Metric::Arc,
+        diameter: 100.0,
+        rows: 30,
+        pitch: 12.0,
+        specified_pitch: None,
+        length: 90.0,
+        outer: 100.0,
+        bore: 0.0,
+    };
+
+    /// A hole of the cylinder: x in mm, its azimuth in degrees.
+    fn hole(x: f64, azimuth: f64) -> (Point3<f64>, Vector3<f64>) {
+        let out = Vector3::new(0.0, Deg(azimuth).sin(), Deg(azimuth).cos());
+        (Point3::new(x, 0.0, 0.0) + out * 38.0, out)
+    }
+
+    /// All distances, sorted: count, the least and the sixth, and whose they are.
+    fn by_looking_at_all(places: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<HoleNeighbours>> {
+        let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
+        let round = |index: usize| {
+            let others = (0..places.len()).filter(|other| *other != index);
+            let mut all: Vec<_> =
+                others.map(|other| (pattern.distance(&places[index], &places[other]), other)).collect();
+            all.retain(|(distance, _)| *distance <= reach);
+            all.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            all.truncate(6);
+            let ((min, nearest), (max, farthest)) = (*all.first()?, *all.last()?);
+            Some(HoleNeighbours { count: all.len(), min, max, nearest, farthest })
+        };
+        (0..places.len()).map(round).collect()
+    }
+
+    /// By hand: of ten holes on a spot each has six at 0; one 5 mm beside them has six of them at 5.
+    #[test]
+    fn a_spot_drilled_ten_times_is_six_neighbours() {
+        let holes = std::iter::repeat_n(hole(20.0, 30.0), 10).chain([hole(25.0, 30.0), hole(80.0, 30.0)]);
+        let (around, _) = neighbours_of(holes, &[[7; 10].as_slice(), &[17, 18]].concat(), &PATTERN);
+        let seen: Vec<_> = around.iter().map(|one| one.map(|one| (one.count, one.min, one.max))).collect();
+        assert_eq!(seen[..10], [Some((6, 0.0, 0.0)); 10]);
+        assert_eq!(seen[10..], [Some((6, 5.0, 5.0)), None]);
+        let beside = around[10].unwrap();
+        assert_eq!((beside.nearest, beside.farthest), (0, 5), "of equally near ones the first six");
+    }
+
+    /// Looked at pair by pair, it would be 5·10⁹ of them.
+    #[test]
+    fn a_hundred_thousand_holes_on_one_spot_are_looked_at_at_once() {
+        let (around, _) =
+            neighbours_of(std::iter::repeat_n(hole(20.0, 30.0), 100_000), &[0; 100_000], &PATTERN);
+        assert_eq!(around.len(), 100_000);
+        assert!(around.iter().all(|one| one.is_some_and(|one| (one.count, one.max) == (6, 0.0))));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_round_a_hole_is_what_looking_at_all_of_them_finds(
+            spots in prop::collection::btree_map((0i32..5, -3i32..4), 1usize..12, 1..14)
+                .prop_map(Vec::from_iter)
+                .prop_shuffle(),
+            chord in any::<bool>(),
+        ) {
+            let metric = if chord { Metric::Chord } else { Metric::Arc };
+            let pattern = Pattern { metric, ..PATTERN };
+            let lines: Vec<usize> = (0..spots.len()).flat_map(|line| vec![line; spots[line].1]).collect();
+            let holes = lines.iter().map(|line| {
+                let ((x, row), _) = spots[*line];
+                hole(f64::from(x) * 4.0, f64::from(row) * 6.0)
+            });
+            let (around, places) = neighbours_of(holes, &lines, &pattern);
+            prop_assert_eq!(around, by_looking_at_all(&places, &pattern));
+        }
+    }
+}

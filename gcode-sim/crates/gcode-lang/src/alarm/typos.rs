@@ -1,0 +1,306 @@
+//! The slip behind an alarm, where its text shows one: a letter O for a zero, a comma for a point, a sign from a PDF.
+use super::Alarm;
+use crate::source::{Sources, Span};
+
+/// One thing to do about an alarm at a place: what its text suggests, else what the table says.
+pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
+    let source = sources.get(span.source);
+    let at = source.line_column(span.start);
+    let from = (span.start + 1 - at.column) as usize;
+    let line = source.bytes[from..].split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
+    let (before, rest) = line.split_at((at.column as usize - 1).min(line.len()));
+    let [before, rest] = [before, rest].map(|bytes| without_comments(&String::from_utf8_lossy(bytes)));
+    let place = AlarmLine { before: &before, rest: rest.trim_matches(' '), text: &sources.text(span) };
+    let rules = [
+        foreign_character,
+        letter_o,
+        number_with_n,
+        misplaced_comma,
+        exponent,
+        missing_operator,
+        else_case,
+        two_signs,
+        zero_divisor,
+        radius_without_point,
+        dwell_with_two_times,
+    ];
+    rules.into_iter().find_map(|rule| rule(alarm, &place)).or_else(|| alarm.row().help)
+}
+
+/// The line of an alarm without its comments.
+struct AlarmLine<'a> {
+    /// Up to where the alarm is.
+    before: &'a str,
+    /// From there to the end of the line.
+    rest: &'a str,
+    /// What the alarm is about.
+    text: &'a str,
+}
+
+fn without_comments(text: &str) -> String {
+    let mut is_in_comment = false;
+    let is_kept = |c: &char| {
+        is_in_comment = (is_in_comment || *c == '(') && *c != ')';
+        !is_in_comment && *c != ')'
+    };
+    text.chars().filter(is_kept).collect()
+}
+
+/// Whether the alarm is about how something is written.
+fn is_read_failure(alarm: &Alarm) -> bool {
+    matches!(
+        alarm,
+        Alarm::NotAWord { .. }
+            | Alarm::NoDataAfterAddress { .. }
+            | Alarm::Expression { .. }
+            | Alarm::MixedStatements
+            | Alarm::MissingEquals
+            | Alarm::ImproperAddress { .. }
+            | Alarm::MissingCloseBracket
+            | Alarm::IfFormat
+            | Alarm::WhileFormat
+    )
+}
+
+/// A character that looks like one of a control's and comes from a word processor, a PDF or another keyboard.
+fn foreign_character(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let found = alarm_line.rest.chars().find(|c| !c.is_ascii()).filter(|_| is_read_failure(alarm))?;
+    let replacement = match found {
+        // Bytes of another encoding: nobody knows what they show.
+        '\u{fffd}' => return None,
+        '\u{2010}'..='\u{2015}' | '\u{2212}' => "the minus '-'".to_owned(),
+        '\u{a0}' | '\u{2000}'..='\u{200b}' | '\u{202f}' | '\u{3000}' | '\u{feff}' => "a space".to_owned(),
+        '\u{ff01}'..='\u{ff5e}' => {
+            let plain = char::from_u32(u32::from(found) - 0xfee0).unwrap_or(found);
+            format!("'{plain}' in half width")
+        }
+        '×' => "'*'".to_owned(),
+        '÷' => "'/'".to_owned(),
+        _ => {
+            let number = u32::from(found);
+            return Some(format!("'{found}' (U+{number:04X}) is not a character of a control: retype it"));
+        }
+    };
+    Some(format!(
+        "the character U+{:04X} is not a character of a control: type {replacement}",
+        u32::from(found)
+    ))
+}
+
+/// `GO1`, `M3O`, `X1O.`: a letter O in a number.
+fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    if !is_read_failure(alarm) && !matches!(alarm, Alarm::ImproperGCode { .. }) {
+        return None;
+    }
+    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
+    let chars: Vec<char> = line.chars().collect();
+    (0..chars.len()).find_map(|at| {
+        let letter = chars[at];
+        if !letter.is_ascii_uppercase() || letter == 'O' || at > 0 && chars[at - 1].is_ascii_alphabetic() {
+            return None;
+        }
+        let is_number = |c: &&char| matches!(c, '0'..='9' | 'O' | '.' | '-');
+        let number: String = chars[at + 1..].iter().take_while(is_number).collect();
+        let behind = chars.get(at + 1 + number.len());
+        let is_word = behind.is_none_or(|c| !c.is_ascii_alphabetic());
+        // DO1 and GO TO 10 are words of statements.
+        let is_statement =
+            letter == 'D' && number.starts_with('O') || matches!(letter, 'G' | 'T') && number == "O";
+        (number.contains('O') && is_word && !is_statement).then(|| {
+            let corrected = number.replace('O', "0");
+            format!("'{letter}{number}' has the letter O instead of a zero: write {letter}{corrected}")
+        })
+    })
+}
+
+/// `GOTO N10`.
+fn number_with_n(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let number =
+        alarm_line.rest.strip_prefix('N').filter(|_| matches!(alarm, Alarm::Expression { .. }))?.trim_start();
+    let digits: String = number.chars().take_while(char::is_ascii_digit).collect();
+    (alarm_line.before.trim_end().ends_with("GOTO") && !digits.is_empty())
+        .then(|| format!("write GOTO {digits}, without N"))
+}
+
+/// `X10,5` and `X10., Y5.`.
+fn misplaced_comma(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let behind = alarm_line
+        .rest
+        .strip_prefix(',')
+        .filter(|_| is_read_failure(alarm) || matches!(alarm, Alarm::CornerWords))?;
+    let whole: String = alarm_line.before.chars().rev().take_while(char::is_ascii_digit).collect();
+    let whole: String = whole.chars().rev().collect();
+    let part: String = behind.chars().take_while(char::is_ascii_digit).collect();
+    if !part.is_empty() && !whole.is_empty() {
+        return Some(format!("write {whole}.{part}: the decimal separator is a point"));
+    }
+    let next = behind.trim_start().chars().next()?;
+    let is_word = next.is_ascii_alphabetic() && !matches!(next, 'R' | 'C');
+    is_word.then(|| "remove the comma: words are not separated by commas".to_owned())
+}
+
+/// `1E3`.
+fn exponent(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    if !matches!(alarm, Alarm::MixedStatements | Alarm::ImproperAddress { letter: 'E' }) {
+        return None;
+    }
+    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
+    line.match_indices('E').find_map(|(at, _)| {
+        let number = |c: &char| matches!(c, '0'..='9' | '.');
+        let mantissa: String = line[..at].chars().rev().take_while(number).collect();
+        let mantissa: String = mantissa.chars().rev().collect();
+        let power: String =
+            line[at + 1..].chars().take_while(|c| matches!(c, '0'..='9' | '-' | '+')).collect();
+        let written = format!("{mantissa}E{power}");
+        let value: f64 = written.parse().ok().filter(|_| !mantissa.is_empty())?;
+        Some(format!("write {value} for {written}: numbers have no exponent"))
+    })
+}
+
+/// `#1=5#2`.
+fn missing_operator(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    if *alarm != Alarm::MissingEquals {
+        return None;
+    }
+    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
+    let at = line.rfind('#')?;
+    let before = line[..at].trim_end();
+    let is_value = before.ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ']'));
+    (is_value && before.contains('='))
+        .then(|| format!("check for a missing + - * or / before {}", &line[at..]))
+}
+
+/// `IF[…]THEN #1=2 ELSE #1=3`.
+fn else_case(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let is_else =
+        matches!(alarm, Alarm::NoDataAfterAddress { letter: 'E' }) && alarm_line.rest.starts_with("ELSE");
+    is_else.then(|| {
+        "write a second IF with the opposite condition, or GOTO past it: a control has no ELSE".to_owned()
+    })
+}
+
+/// `Z--5`.
+fn two_signs(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let Alarm::IllegalMinus { letter } = alarm else { return None };
+    let value = alarm_line.rest.strip_prefix('-').filter(|_| alarm_line.before.trim_end().ends_with('-'))?;
+    let value: String = value.chars().take_while(|c| matches!(c, '0'..='9' | '.')).collect();
+    Some(format!("write one sign: {letter}-{value}, or {letter}-[-{value}]"))
+}
+
+/// `10/0`.
+fn zero_divisor(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let (_, divisor) = alarm_line.text.rsplit_once('/').filter(|_| *alarm == Alarm::DivideByZero)?;
+    let is_zero = divisor.chars().all(|c| matches!(c, '0' | '.' | ' ')) && divisor.contains('0');
+    is_zero.then(|| "correct the divisor: it is written as 0".to_owned())
+}
+
+/// `R5` where `R5.` was meant.
+fn radius_without_point(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let Alarm::RadiusTooSmall { radius, .. } = alarm else { return None };
+    let number = alarm_line.text.strip_prefix('R')?.trim();
+    let written: f64 = number.parse().ok().filter(|_| !number.contains('.'))?;
+    let is_other = (written.abs() - radius).abs() > 1e-9;
+    is_other.then(|| format!("write R{number}.: R{number} without a decimal point is {radius} mm here"))
+}
+
+/// `G04 X1.5 P500`.
+fn dwell_with_two_times(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let Alarm::NotSimulated { what } = alarm else { return None };
+    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
+    let is_dwell = line.split(|c: char| !c.is_ascii_alphanumeric()).any(|word| matches!(word, "G4" | "G04"));
+    (is_dwell && what.ends_with("in this block") && line.contains('P'))
+        .then(|| "write one time for a dwell: X in seconds or P in milliseconds".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The remedy for an alarm at the first place where `at` stands in the line.
+    fn told(alarm: Alarm, line: &str, at: &str) -> String {
+        let mut sources = Sources::default();
+        let text = format!("O1\n{line}\nM30\n");
+        let source = sources.add("O1.nc", text.clone().into_bytes());
+        let start = text.find(at).unwrap();
+        let span = Span { source, start: start as u32, end: (start + at.len()) as u32 };
+        remedy(&alarm, span, &sources).unwrap_or_default()
+    }
+
+    fn not_a_word() -> Alarm {
+        Alarm::NotAWord { text: String::new() }
+    }
+
+    fn no_number(letter: char) -> Alarm {
+        Alarm::NoDataAfterAddress { letter }
+    }
+
+    fn no_value() -> Alarm {
+        Alarm::Expression { text: "X".into() }
+    }
+
+    #[test]
+    fn a_letter_o_for_a_zero() {
+        assert!(told(Alarm::MixedStatements, "G90 GO1 X10. F100.", "G90").contains("write G01"));
+        assert!(told(no_value(), "GOO X10.", "O X").contains("write G00"));
+        assert!(told(no_value(), "M3O", "O\n").contains("write M30"));
+        assert!(told(no_number('Y'), "G00 X1O.5 Y", "Y").contains("write X10.5"));
+        for (alarm, line) in
+            [(no_value(), "GO TO X"), (Alarm::WhileFormat, "WHILE #1 LT 5 DO1"), (no_value(), "#1=ROUND X")]
+        {
+            assert!(!told(alarm, line, line).contains("letter O"), "{line}");
+        }
+    }
+
+    #[test]
+    fn characters_that_only_look_right() {
+        assert!(
+            told(no_number('X'), "G00 X\u{2212}10.", "X")
+                .contains("U+2212 is not a character of a control: type the minus")
+        );
+        assert!(told(no_number('X'), "G00 X\u{2013}10.", "X").contains("type the minus"));
+        assert!(told(not_a_word(), "G00\u{a0}X1.", "\u{a0}X").contains("type a space"));
+        assert!(told(not_a_word(), "G00 \u{ff38}10.", "\u{ff38}").contains("type 'X' in half width"));
+        assert!(told(not_a_word(), "G00 é", "é").contains("'é' (U+00E9)"));
+        // In a comment anything may stand.
+        assert!(!told(no_number('X'), "G00 X (é)", "X").contains("character"));
+    }
+
+    #[test]
+    fn commas_for_points_and_between_words() {
+        assert_eq!(told(not_a_word(), "G00 X10,5", ",5"), "write 10.5: the decimal separator is a point");
+        assert!(told(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("not separated by commas"));
+        assert!(!told(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("not separated by commas"));
+    }
+
+    #[test]
+    fn what_other_languages_have() {
+        assert_eq!(
+            told(Alarm::MixedStatements, "#1=1E3", "#1"),
+            "write 1000 for 1E3: numbers have no exponent"
+        );
+        let alarm = Alarm::ImproperAddress { letter: 'E' };
+        assert_eq!(told(alarm, "G00 X2.5E-2", "E"), "write 0.025 for 2.5E-2: numbers have no exponent");
+        assert!(told(no_number('E'), "IF[#1EQ1]THEN #2=1 ELSE #2=2", "ELSE").contains("no ELSE"));
+        assert_eq!(told(Alarm::MissingEquals, "#1=5#2", "#2"), "check for a missing + - * or / before #2");
+        assert_eq!(told(no_value(), "GOTO N10", "N10"), "write GOTO 10, without N");
+    }
+
+    #[test]
+    fn numbers_that_can_not_be_meant() {
+        assert_eq!(
+            told(Alarm::IllegalMinus { letter: 'Z' }, "G00 Z--5", "-5"),
+            "write one sign: Z-5, or Z-[-5]"
+        );
+        assert_eq!(told(Alarm::DivideByZero, "#1=10/0", "10/0"), "correct the divisor: it is written as 0");
+        assert!(told(Alarm::DivideByZero, "#1=10/#2", "10/#2").contains("vacant"));
+        let small = |radius: f64| Alarm::RadiusTooSmall { radius, half_chord: 5.0 };
+        assert_eq!(
+            told(small(0.004), "G02 X10. R4", "R4"),
+            "write R4.: R4 without a decimal point is 0.004 mm here"
+        );
+        // Where numbers are calculator's, the point is not what is wrong.
+        assert!(!told(small(4.0), "G02 X10. R4", "R4").contains("without"));
+        let alarm = Alarm::NotSimulated { what: "X in this block".into() };
+        assert!(told(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));
+    }
+}

@@ -1,0 +1,401 @@
+//! Calls by codes: the G, M, T, S and B codes and the addresses that call a program, by the parameters that say so.
+
+use std::ops::RangeInclusive;
+
+/// What a code calls, and as what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CalledProgram {
+    pub program: u32,
+    pub kind: CodeCallKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CodeCallKind {
+    /// As G65: the other words are arguments.
+    Macro,
+    /// As G66 or, with MGE 6007#3, as G66.1.
+    Modal,
+    /// As M98: the other words act first.
+    Subprogram,
+}
+
+/// Parameters that hold one code each: the first of them calls `program`, the next the program after it.
+#[derive(Debug)]
+pub struct SequentialCodes {
+    pub letter: u8,
+    pub first: u16,
+    pub last: u16,
+    pub program: u32,
+    pub kind: CodeCallKind,
+}
+
+impl SequentialCodes {
+    /// What each of its parameters may hold: a G code below 0 is a modal call.
+    pub fn codes(&self) -> RangeInclusive<i64> {
+        if self.letter == b'G' { -9999..=9999 } else { 0..=99_999_999 }
+    }
+
+    /// The parameter that makes a code of this letter such a call.
+    fn parameter(&self, letter: u8, called: CalledProgram) -> Option<u16> {
+        let same = (self.kind == CodeCallKind::Subprogram) == (called.kind == CodeCallKind::Subprogram);
+        let place = u16::try_from(called.program.checked_sub(self.program)?).ok()?;
+        let number = self.first.checked_add(place)?;
+        (same && self.letter == letter && number <= self.last).then_some(number)
+    }
+}
+
+const fn sequential_codes(
+    letter: u8,
+    first: u16,
+    last: u16,
+    program: u32,
+    kind: CodeCallKind,
+) -> SequentialCodes {
+    SequentialCodes { letter, first, last, program, kind }
+}
+
+pub const SEQUENTIAL_CODES: [SequentialCodes; 3] = [
+    sequential_codes(b'G', 6050, 6059, 9010, CodeCallKind::Macro),
+    sequential_codes(b'M', 6071, 6079, 9001, CodeCallKind::Subprogram),
+    sequential_codes(b'M', 6080, 6089, 9020, CodeCallKind::Macro),
+];
+
+/// Three parameters that make calls of a range of codes: the first code, its program, how many.
+#[derive(Debug)]
+pub struct CodeRange {
+    pub letter: u8,
+    pub first: u16,
+    pub kind: CodeCallKind,
+}
+
+pub const CODE_RANGES: [CodeRange; 3] = [
+    CodeRange { letter: b'G', first: 6038, kind: CodeCallKind::Macro },
+    CodeRange { letter: b'M', first: 6044, kind: CodeCallKind::Subprogram },
+    CodeRange { letter: b'M', first: 6047, kind: CodeCallKind::Macro },
+];
+
+/// A subprogram call by an address whatever its number, which a common variable gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AddressCall {
+    pub program: u32,
+    /// The common variable that holds the number.
+    pub variable: u32,
+}
+
+const T_CALL: AddressCall = AddressCall { program: 9000, variable: 149 };
+const S_CALL: AddressCall = AddressCall { program: 9029, variable: 147 };
+const B_CALL: AddressCall = AddressCall { program: 9028, variable: 146 };
+/// 6090 and 6091, which hold the character code of an address.
+const ADDRESS_CALLS: [AddressCall; 2] =
+    [AddressCall { program: 9004, variable: 146 }, AddressCall { program: 9005, variable: 147 }];
+const FIRST_ADDRESS_PARAMETER: u16 = 6090;
+
+/// Addresses that 6090 and 6091 may name.
+pub const ADDRESSES: &[u8] = b"ABDFHIJKMPQRSTVXYZ";
+
+/// Codes that are calls or ends themselves.
+const RESERVED_CODES: [(u8, u32); 13] = [
+    (b'G', 650),
+    (b'G', 660),
+    (b'G', 661),
+    (b'G', 670),
+    (b'M', 0),
+    (b'M', 10),
+    (b'M', 20),
+    (b'M', 300),
+    (b'M', 960),
+    (b'M', 970),
+    (b'M', 980),
+    (b'M', 990),
+    (b'M', 1980),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CodeCall {
+    /// The parameter of [`FAMILIES`] that holds it, if one does.
+    parameter: Option<u16>,
+    letter: u8,
+    /// × 10, as G codes are counted everywhere.
+    code: u32,
+    target: CalledProgram,
+}
+
+/// Every code that calls. `Default` is none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CodeCalls {
+    codes: Vec<CodeCall>,
+    /// The values of the parameters of [`RANGES`].
+    ranges: [[i64; 3]; 3],
+    addresses: [Option<u8>; 2],
+    /// TCS 6001#5.
+    pub t_calls_program: bool,
+    /// S calls O9029.
+    pub s_calls_program: bool,
+    /// B, where it is no axis, calls O9028.
+    pub b_calls_program: bool,
+    /// MGE 6007#3: a modal call by a G code is G66.1 instead of G66.
+    pub modal_is_every_block: bool,
+    /// GMP 6008#6: G codes call in programs that other codes called, and the other way round.
+    pub allows_nested_calls: bool,
+}
+
+impl CodeCalls {
+    pub fn is_empty(&self) -> bool {
+        let Self {
+            codes,
+            ranges,
+            addresses,
+            t_calls_program: by_t,
+            s_calls_program: by_s,
+            b_calls_program: by_b,
+            modal_is_every_block: _,
+            allows_nested_calls: _,
+        } = self;
+        // Every block asks: one answer instead of nine.
+        let [g, m, t] = ranges.map(|[.., count]| count);
+        let [one, other] = addresses.map(|address| address.is_some());
+        codes.is_empty() & (g | m | t == 0) & !(one | other | by_t | by_s | by_b)
+    }
+
+    /// What a G or M code × 10 calls. A code of its own goes before a range, and of several parameters with the same
+    /// code the first.
+    pub fn find_call(&self, letter: u8, code: u32) -> Option<CalledProgram> {
+        let same = self.codes.iter().filter(|call| (call.letter, call.code) == (letter, code));
+        let own = same.min_by_key(|call| call.parameter);
+        own.map(|call| call.target).or_else(|| self.find_in_ranges(letter, code))
+    }
+
+    fn find_in_ranges(&self, letter: u8, code: u32) -> Option<CalledProgram> {
+        let number = code.is_multiple_of(10).then_some(i64::from(code / 10))?;
+        if RESERVED_CODES.contains(&(letter, code)) {
+            return None;
+        }
+        CODE_RANGES.iter().zip(&self.ranges).find_map(|(family, [first, program, count])| {
+            let place = number - first.abs();
+            if family.letter != letter || *first == 0 || !(0..*count).contains(&place) {
+                return None;
+            }
+            let kind = if *first < 0 { CodeCallKind::Modal } else { family.kind };
+            Some(CalledProgram { program: u32::try_from(program + place).ok()?, kind })
+        })
+    }
+
+    /// What an address calls whatever its number.
+    pub fn address_call(&self, letter: u8) -> Option<AddressCall> {
+        let place = self.addresses.iter().position(|address| *address == Some(letter));
+        match letter {
+            b'T' if self.t_calls_program => Some(T_CALL),
+            b'S' if self.s_calls_program => Some(S_CALL),
+            b'B' if self.b_calls_program => Some(B_CALL),
+            _ => place.map(|place| ADDRESS_CALLS[place]),
+        }
+    }
+
+    /// The value of one of the parameters here; `None` for any other number.
+    pub fn parameter(&self, number: u16) -> Option<i64> {
+        if sequential_codes_of(number).is_some() {
+            let own = self.codes.iter().rfind(|call| call.parameter == Some(number));
+            return Some(own.map_or(0, |call| {
+                let code = i64::from(call.code / 10);
+                if call.target.kind == CodeCallKind::Modal { -code } else { code }
+            }));
+        }
+        if let Some((range, place)) = range_parameter(number) {
+            return Some(self.ranges[range][place]);
+        }
+        let place = usize::from(number.checked_sub(FIRST_ADDRESS_PARAMETER)?);
+        self.addresses.get(place).map(|address| address.map_or(0, i64::from))
+    }
+
+    /// The codes of a letter that no parameter makes calls: they are calls or ends themselves.
+    pub fn reserved_codes(letter: u8) -> impl Iterator<Item = u32> {
+        RESERVED_CODES.iter().filter(move |(taken, _)| *taken == letter).map(|(_, code)| code / 10)
+    }
+
+    /// The programs that an address may call, its own and those of 6090 and 6091.
+    pub fn address_programs(letter: u8) -> impl Iterator<Item = u32> {
+        let own = [(b'T', T_CALL), (b'S', S_CALL), (b'B', B_CALL)]
+            .into_iter()
+            .filter(move |(own, _)| *own == letter);
+        own.map(|(_, call)| call).chain(ADDRESS_CALLS).map(|call| call.program)
+    }
+
+    /// Sets one of the parameters here; `None` where it is none of them, or can't have this value.
+    pub fn set_parameter(&mut self, number: u16, value: i64) -> Option<()> {
+        if let Some(family) = sequential_codes_of(number) {
+            if !family.codes().contains(&value) {
+                return None;
+            }
+            let kind = if value < 0 { CodeCallKind::Modal } else { family.kind };
+            let code = u32::try_from(value.unsigned_abs()).ok()?.checked_mul(10)?;
+            if value != 0 && RESERVED_CODES.contains(&(family.letter, code)) {
+                return None;
+            }
+            self.codes.retain(|call| call.parameter != Some(number));
+            if value != 0 {
+                let program = family.program + u32::from(number - family.first);
+                let called = CalledProgram { program, kind };
+                self.codes.push(CodeCall {
+                    parameter: Some(number),
+                    letter: family.letter,
+                    code,
+                    target: called,
+                });
+            }
+            return Some(());
+        }
+        if let Some((range, place)) = range_parameter(number) {
+            let least = if place == 0 && CODE_RANGES[range].letter == b'G' { -9999 } else { 0 };
+            let kept = (least..=99_999_999).contains(&value).then_some(value)?;
+            self.ranges[range][place] = kept;
+            return Some(());
+        }
+        let place = usize::from(number.checked_sub(FIRST_ADDRESS_PARAMETER)?);
+        let address = self.addresses.get_mut(place)?;
+        let letter = u8::try_from(value).ok().filter(|letter| *letter == 0 || ADDRESSES.contains(letter))?;
+        *address = (letter != 0).then_some(letter);
+        Some(())
+    }
+
+    /// `G201=9010`, `M50=9020`, `M6=9001`, `G-201=9010` for a modal call, `T=9000`, `S=9029`, `B=9028`, `V=9004`: a
+    /// program O9001 to O9009 is a subprogram where M calls it, any other a macro.
+    pub fn set_code(&mut self, key: &str, program: u32) -> Option<()> {
+        let letter = key.bytes().next()?.to_ascii_uppercase();
+        let number = key.get(1..)?.trim();
+        if number.is_empty() {
+            return self.set_address(letter, program);
+        }
+        let code: f64 = number.parse().ok()?;
+        let tenths = (code.abs() * 10.0).round();
+        let kind = match letter {
+            b'G' if (10.0..=99_990.0).contains(&tenths) && code < 0.0 => CodeCallKind::Modal,
+            b'G' if (10.0..=99_990.0).contains(&tenths) => CodeCallKind::Macro,
+            b'M' if (1.0..=99_999_999.0).contains(&code) && code.fract() == 0.0 => match program {
+                9001..=9009 => CodeCallKind::Subprogram,
+                _ => CodeCallKind::Macro,
+            },
+            _ => return None,
+        };
+        self.add(letter, tenths as u32, CalledProgram { program, kind })
+    }
+
+    fn set_address(&mut self, letter: u8, program: u32) -> Option<()> {
+        match (letter, program) {
+            (b'T', 9000) => self.t_calls_program = true,
+            (b'S', 9029) => self.s_calls_program = true,
+            (b'B', 9028) => self.b_calls_program = true,
+            _ => {
+                let place = ADDRESS_CALLS.iter().position(|call| call.program == program)?;
+                self.addresses[place] = ADDRESSES.contains(&letter).then_some(Some(letter))?;
+            }
+        }
+        Some(())
+    }
+
+    fn add(&mut self, letter: u8, code: u32, called: CalledProgram) -> Option<()> {
+        if RESERVED_CODES.contains(&(letter, code)) {
+            return None;
+        }
+        self.codes.retain(|call| (call.letter, call.code) != (letter, code));
+        let parameter = SEQUENTIAL_CODES.iter().find_map(|family| family.parameter(letter, called));
+        self.codes.push(CodeCall { parameter, letter, code, target: called });
+        Some(())
+    }
+}
+
+/// The family that a parameter belongs to.
+fn sequential_codes_of(number: u16) -> Option<&'static SequentialCodes> {
+    SEQUENTIAL_CODES.iter().find(|family| (family.first..=family.last).contains(&number))
+}
+
+/// The family of a range's parameter, and which of its three it is.
+fn range_parameter(number: u16) -> Option<(usize, usize)> {
+    CODE_RANGES.iter().enumerate().find_map(|(range, family)| {
+        let place = usize::from(number.checked_sub(family.first)?);
+        (place < 3).then_some((range, place))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn called(program: u32, kind: CodeCallKind) -> Option<CalledProgram> {
+        Some(CalledProgram { program, kind })
+    }
+
+    #[test]
+    fn each_parameter_has_its_program() {
+        let mut calls = CodeCalls::default();
+        for (parameter, code) in [(6050, 201), (6059, -81), (6071, 6), (6079, 60), (6080, 50), (6089, 59)] {
+            calls.set_parameter(parameter, code).unwrap();
+            assert_eq!(calls.parameter(parameter), Some(code), "{parameter}");
+        }
+        assert_eq!(calls.find_call(b'G', 2010), called(9010, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'G', 810), called(9019, CodeCallKind::Modal));
+        assert_eq!(calls.find_call(b'M', 60), called(9001, CodeCallKind::Subprogram));
+        assert_eq!(calls.find_call(b'M', 600), called(9009, CodeCallKind::Subprogram));
+        assert_eq!(calls.find_call(b'M', 500), called(9020, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'M', 590), called(9029, CodeCallKind::Macro));
+        assert_eq!((calls.find_call(b'G', 500), calls.parameter(6060)), (None, None));
+        calls.set_parameter(6050, 0).unwrap();
+        assert_eq!(calls.find_call(b'G', 2010), None, "0 calls nothing");
+    }
+
+    #[test]
+    fn each_parameter_keeps_its_value_beside_one_with_the_same_code() {
+        let mut calls = CodeCalls::default();
+        calls.set_parameter(6050, 201).unwrap();
+        calls.set_parameter(6051, 201).unwrap();
+        assert_eq!((calls.parameter(6050), calls.parameter(6051)), (Some(201), Some(201)));
+        assert_eq!(calls.find_call(b'G', 2010), called(9010, CodeCallKind::Macro));
+        assert_eq!(calls.set_parameter(6050, 65), None, "G65 is a call itself");
+        assert_eq!(calls.parameter(6050), Some(201), "what is refused changes nothing");
+        calls.set_parameter(6050, 0).unwrap();
+        assert_eq!(calls.find_call(b'G', 2010), called(9011, CodeCallKind::Macro));
+    }
+
+    #[test]
+    fn no_range_takes_what_ends_or_calls_by_itself() {
+        let mut calls = CodeCalls::default();
+        for (parameter, value) in [(6044, 1), (6045, 3000), (6046, 200), (6038, 60), (6039, 4000), (6040, 10)]
+        {
+            calls.set_parameter(parameter, value).unwrap();
+        }
+        for code in [1, 2, 30, 98, 99, 198] {
+            assert_eq!(calls.find_call(b'M', code * 10), None, "M{code}");
+        }
+        assert_eq!(calls.find_call(b'M', 40), called(3003, CodeCallKind::Subprogram));
+        assert_eq!((calls.find_call(b'G', 650), calls.find_call(b'G', 660)), (None, None));
+        assert_eq!(calls.find_call(b'G', 640), called(4004, CodeCallKind::Macro));
+        calls.set_parameter(6044, 0).unwrap();
+        assert_eq!(calls.find_call(b'M', 40), None, "a range from 0 on is none");
+    }
+
+    #[test]
+    fn a_range_ends_and_a_code_of_its_own_goes_first() {
+        let mut calls = CodeCalls::default();
+        for (parameter, value) in [(6038, -900), (6039, 3000), (6040, 10), (6047, 200), (6048, 50), (6049, 2)]
+        {
+            calls.set_parameter(parameter, value).unwrap();
+        }
+        calls.set_code("G905", 9010).unwrap();
+        assert_eq!(calls.find_call(b'G', 9000), called(3000, CodeCallKind::Modal));
+        assert_eq!(calls.find_call(b'G', 9090), called(3009, CodeCallKind::Modal));
+        assert_eq!(calls.find_call(b'G', 9050), called(9010, CodeCallKind::Macro));
+        assert_eq!((calls.find_call(b'G', 9100), calls.find_call(b'G', 8990)), (None, None));
+        assert_eq!(calls.find_call(b'M', 2010), called(51, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'M', 2020), None);
+    }
+
+    #[test]
+    fn what_ends_or_calls_by_itself_is_refused() {
+        let mut calls = CodeCalls::default();
+        for key in ["G65", "M99", "M30", "M0", "X1", "M1.5", "M-5"] {
+            assert_eq!(calls.set_code(key, 9020), None, "{key}");
+        }
+        assert_eq!(calls.set_parameter(6080, 98), None);
+        assert_eq!(calls.set_parameter(6090, i64::from(b'N')), None);
+        assert!(calls.is_empty());
+    }
+}

@@ -1,0 +1,98 @@
+//! The families of controls as data: what choosing one sets, in the words of `--control`.
+use super::{Dialect, Settings};
+
+/// What a family of controls has by itself; a setting named after the dialect still changes it.
+#[derive(Debug)]
+pub struct DialectRow {
+    pub dialect: Dialect,
+    pub name: &'static str,
+    /// The family it is like but for what it sets itself.
+    pub base: Option<Dialect>,
+    /// Keys of [`super::ROWS`] with their values.
+    pub settings: &'static [(&'static str, &'static str)],
+}
+
+/// Settings not named here are those of every control of the class.
+///
+/// What a 31i and a 0i-F have: operator's manuals B-64484EN and B-64604EN. What a Haas has: Mill Operator's Manual
+/// 96-8210 (its predecessor 96-8000 where that says nothing).
+#[rustfmt::skip]
+pub const DIALECTS: &[DialectRow] = &[
+    DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", base: None, settings: &[
+        ("CODES", "fanuc-31i"), ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("OFFSETS", "400"), ("WORK-SYSTEMS", "300"),
+        ("MORE-COMMONS", "98000-98499"), ("ALIASED-COMMONS", "0"), ("VARIABLE-BITS", "0"), ("OFFSET-VARIABLES", "fanuc"),
+        ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"),
+        ("PLAIN-IF", "0"), ("THEN-WORDS", "0"), ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
+        ("NEW-WORDS", "1"), ("MORE-FUNCTIONS", "1"), ("G10-PARAMETERS", "1"), ("REPEATS-IN-P", "1"), ("M97-CALLS", "0"),
+        ("CYCLE-REPEATS", "K"), ("K0-MOVES", "0"), ("HOME-ALL", "0"), ("DWELL-SECONDS", "0"), ("FEED-INCREMENTS", "0"), ("PECK-IJK", "0"),
+        ("TAP-DWELL-R", "1"),
+    ] },
+    // Four axes move at once, so nothing for five; 48 additional work coordinate systems, 300 by option.
+    DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", base: Some(Dialect::Fanuc31i), settings: &[
+        ("CODES", "fanuc-0i-f"), ("WORK-SYSTEMS", "48"),
+    ] },
+    // Nine macro levels in all; offsets as #2001 and #2201 length and its wear, #2401 and #2601 diameter and its wear;
+    // #3000=n shows 1000 + n; DPRNT prints all digits, seven at most are asked for; IF without THEN.
+    DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", base: None, settings: &[
+        ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
+        ("MORE-COMMONS", "10000-10999"), ("ALIASED-COMMONS", "1"), ("VARIABLE-BITS", "1"), ("OFFSET-VARIABLES", "haas"),
+        ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"),
+        ("PLAIN-IF", "1"), ("THEN-WORDS", "1"), ("THEN-GOTO", "1"), ("G67-ALARM", "1"),
+        ("NEW-WORDS", "0"), ("MORE-FUNCTIONS", "0"), ("G10-PARAMETERS", "0"), ("REPEATS-IN-P", "0"), ("M97-CALLS", "1"),
+        ("CYCLE-REPEATS", "L"), ("K0-MOVES", "1"), ("HOME-ALL", "1"), ("DWELL-SECONDS", "1"), ("FEED-INCREMENTS", "1"), ("PECK-IJK", "1"),
+        ("TAP-DWELL-R", "0"),
+    ] },
+];
+
+impl Settings {
+    /// Makes the control one of a family: sets all that the family's row names.
+    pub fn apply_dialect(&mut self, dialect: Dialect) {
+        self.dialect = dialect;
+        let row = |dialect: Dialect| DIALECTS.iter().find(|row| row.dialect == dialect);
+        let own = row(dialect);
+        let like = own.and_then(|own| own.base).and_then(row);
+        for (key, value) in like.into_iter().chain(own).flat_map(|row| row.settings) {
+            // A test holds that every row can be set.
+            let result = self.set(key, value);
+            debug_assert_eq!(result, Ok(()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 48 additional work coordinate systems and its own codes; what it doesn't name is as on a 31i.
+    #[test]
+    fn a_0i_f_is_a_31i_with_fewer_work_systems() {
+        let mut wanted = Settings::default();
+        wanted.set("CODES", "fanuc-0i-f").unwrap();
+        wanted.set("WORK-SYSTEMS", "48").unwrap();
+        wanted.dialect = Dialect::Fanuc0iF;
+        let mut settings = Settings::default();
+        settings.apply_dialect(Dialect::HaasNgc);
+        settings.apply_dialect(Dialect::Fanuc0iF);
+        assert_eq!(settings, wanted);
+    }
+
+    #[test]
+    fn every_row_can_be_set_and_the_first_is_the_default() {
+        for row in DIALECTS {
+            let mut settings = Settings::default();
+            for (key, value) in row.settings {
+                settings.set(key, value).unwrap();
+            }
+            let like = row.base.and_then(|like| DIALECTS.iter().find(|other| other.dialect == like));
+            assert!(
+                like.is_none_or(|like| like.base.is_none()),
+                "{}: like one that is like another",
+                row.name
+            );
+            settings.apply_dialect(row.dialect);
+            assert_eq!(settings.dialect, row.dialect);
+            settings.apply_dialect(Dialect::default());
+            assert_eq!(settings, Settings::default(), "{} leaves something behind", row.name);
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! The settings of a control that a program's meaning depends on, in one struct: never an `if` in the reader.
+mod code_calls;
+mod dialect;
+mod parameters;
+mod table;
+mod undocumented;
+
+use crate::motion::{Axes, AxisIndex, MAX_AXES, Position};
+use crate::units::{MmPerMin, round_scaled};
+
+pub use code_calls::{
+    ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
+};
+pub use dialect::{DIALECTS, DialectRow};
+pub use parameters::{ParameterError, ParameterId, is_without_effect};
+pub use table::{ROWS, SettingError, SettingRow, SettingValues};
+pub use undocumented::{ArgumentScale, UndocumentedChoices};
+
+/// The least input increment (parameter 1013).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Increment {
+    /// 0.01 mm and degrees.
+    IsA,
+    /// 0.001 mm and degrees.
+    #[default]
+    IsB,
+    /// 0.0001 mm and degrees.
+    IsC,
+}
+
+impl Increment {
+    pub const ALL: [(&'static str, Self); 3] =
+        [("IS-A", Self::IsA), ("IS-B", Self::IsB), ("IS-C", Self::IsC)];
+
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, increment)| *increment == self).map_or("", |(name, _)| name)
+    }
+
+    /// How many increments make a millimetre or a degree.
+    pub fn per_unit(self) -> f64 {
+        match self {
+            Self::IsA => 100.0,
+            Self::IsB => 1_000.0,
+            Self::IsC => 10_000.0,
+        }
+    }
+
+    /// The multiple of the increment nearest to `value`, half away from zero.
+    pub fn round(self, value: f64) -> f64 {
+        round_scaled(value, self.per_unit()) / self.per_unit()
+    }
+
+    /// The increment itself in mm or degrees.
+    pub fn size(self) -> f64 {
+        1.0 / self.per_unit()
+    }
+}
+
+/// Which family of controls; its limits and differences are data.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Dialect {
+    #[default]
+    Fanuc31i,
+    Fanuc0iF,
+    HaasNgc,
+}
+
+impl Dialect {
+    pub const ALL: [(&'static str, Self); 3] =
+        [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
+
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, dialect)| *dialect == self).map_or("", |(name, _)| name)
+    }
+}
+
+/// Whose G and M codes a control has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CodeSet {
+    #[default]
+    Fanuc31i,
+    Fanuc0iF,
+    Haas,
+}
+
+impl CodeSet {
+    pub const ALL: [(&'static str, Self); 3] =
+        [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::Haas)];
+
+    /// Groups for the rows of code tables.
+    pub const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
+    pub const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
+    pub const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
+    pub const HAAS: &'static [Self] = &[Self::Haas];
+}
+
+/// Which variables the tool offsets have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OffsetVariables {
+    /// #10001 wear and #11001 geometry of H, #12001 and #13001 of D; #2001 and #2201 for the first 200 of H.
+    #[default]
+    Fanuc,
+    /// #2001 geometry and #2201 wear of the length, #2401 and #2601 of the diameter.
+    Haas,
+}
+
+impl OffsetVariables {
+    pub const ALL: [(&'static str, Self); 2] = [("fanuc", Self::Fanuc), ("haas", Self::Haas)];
+
+    /// The variable of the geometry offset H of a tool, if it has one.
+    pub fn length(self, tool: u32) -> Option<u32> {
+        match self {
+            Self::Fanuc => (tool <= 999).then_some(11_000 + tool),
+            Self::Haas => (tool <= 200).then_some(2_000 + tool),
+        }
+    }
+}
+
+/// Stroke limits in machine coordinates; an axis without one has no end there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StrokeLimits {
+    pub max: [Option<f64>; MAX_AXES],
+    pub min: [Option<f64>; MAX_AXES],
+}
+
+/// Everything a run depends on besides the programs. `Default` is a 30i / 0i-F class mill, metric, IS-B.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    pub dialect: Dialect,
+    pub codes: CodeSet,
+    pub increment: Increment,
+    pub axes: Axes,
+    /// ROA 1008#0: the axes whose work coordinate runs from 0 to 360 and that turn the shorter way.
+    pub rolls_over: [bool; MAX_AXES],
+    /// DPI 3401#0: a number without a point is mm, degrees, seconds instead of increments.
+    pub uses_calculator_input: bool,
+    /// NAT 6004#0: ASIN and ATAN answer −90…90 and −180…180 instead of 270…90 and 0…360.
+    pub returns_signed_angles: bool,
+    /// MFZ 6004#1: sines, cosines and tangents below 1e-8 become 0.
+    pub zeroes_residues: bool,
+    /// IJK 6008#7: I J K in G65 are always specification I.
+    pub reads_ijk_plainly: bool,
+    /// CVA 6007#4: arguments of macro calls are converted when they are passed, so that ADP finds nothing to do.
+    pub converts_arguments: bool,
+    /// FXY 5101#0: cycles drill along the normal of the plane, or along the axis that their block names, instead of Z.
+    pub drills_by_plane: bool,
+    /// V15 6000#3: geometry and wear change places in the variables of tool offsets.
+    pub series_15_offsets: bool,
+    /// AD2 3403#6: an address twice in a block raises PS5074.
+    pub alarms_on_repeated_address: bool,
+    /// More M codes in a block than it may have raise PS0335; otherwise the last counts.
+    pub plural_m_alarms: bool,
+    /// M3B 3404#7: up to three M codes in a block.
+    pub allows_three_m_codes: bool,
+    /// `#3000=n` shows MC with this number added; MCA 6008#1 makes it 0.
+    pub macro_alarm_base: u16,
+    /// The largest n that the manual names for `#3000=n`.
+    pub macro_alarm_max: u16,
+    /// `IF[…]` is followed by an assignment or by words without THEN.
+    pub allows_plain_if: bool,
+    /// `IF[…]THEN` takes words.
+    pub then_takes_words: bool,
+    /// Common variables beyond #999.
+    pub extra_commons: Option<(u32, u32)>,
+    pub offset_variables: OffsetVariables,
+    /// PRT 6001#1: DPRNT leaves the blanks before a number out.
+    pub omits_print_blanks: bool,
+    /// A number with more digits than DPRNT's format is printed whole instead of its lower digits only.
+    pub print_expands: bool,
+    /// DPRNT and BPRNT alarm unless POPEN came before.
+    pub print_needs_open: bool,
+    /// How many digits DPRNT's format may ask for.
+    pub print_digits: usize,
+    /// ODI 5004#2: the offsets of D are diameters.
+    pub offsets_are_diameters: bool,
+    /// EVR 5001#4: a changed offset of D counts from the next block on, not from the next D.
+    pub applies_radius_at_once: bool,
+    /// SUP 5003#0: cutter compensation starts and ends by type B.
+    pub starts_up_by_type_b: bool,
+    /// 19625: blocks read in cutter compensation; two of them have to move.
+    pub lookahead_blocks: usize,
+    /// SCR 5400#7: G51 counts its factors in 0.001 instead of 0.00001.
+    pub has_coarse_scaling: bool,
+    /// Block-skip switches that are on, by number 1 to 9.
+    pub skip_switches: [bool; 9],
+    /// M01 stops.
+    pub stops_at_m01: bool,
+    /// The inputs #1000 to #1031 that are 1, as bits.
+    pub inputs: u32,
+    /// The skip signal comes after this part of a G31 path; without it, never.
+    pub skip_signal: Option<f64>,
+    /// A G31 that ends without its signal alarms.
+    pub missed_skip_alarms: bool,
+    /// The main program's M99 of this number ends the run.
+    pub main_program_cycles: Option<u32>,
+    /// Codes and addresses that call programs.
+    pub code_calls: CodeCalls,
+    /// 1420: rapid rate of the axes that slide.
+    pub rapid: MmPerMin,
+    /// 1420: rapid rate of the axes that turn, degrees a minute.
+    pub rapid_rotary: f64,
+    /// 3410: how far an arc's end may be off its radius, mm.
+    pub arc_tolerance: f64,
+    /// 5440: the way that G60 leaves to its end, in the direction it comes from.
+    pub one_side_overrun: Position,
+    /// M97 P calls the subprogram that begins at a sequence number of its own program.
+    pub has_local_calls: bool,
+    /// 5114: the retract of G73, mm.
+    pub g73_retract: f64,
+    /// 5115: the clearance of G83 above the last depth, mm.
+    pub g83_clearance: f64,
+    /// 1241 to 1243: the second, third and fourth reference position, in machine coordinates.
+    pub reference_positions: [Position; 3],
+    /// 1320 and 1321: stroke limits; without any, axes have no ends.
+    pub stroke_limits: Option<StrokeLimits>,
+    /// Additional work coordinate systems: G54.1 P1…, G154 P1….
+    pub work_systems: usize,
+    /// `#10100` is `#100`, `#10500` to `#10999` are `#500` to `#999`.
+    pub aliases_commons: bool,
+    /// `#n.m` is bit m of #n.
+    pub has_variable_bits: bool,
+    /// Programs and variables have names; PRM, AX and AXNUM are known.
+    pub has_named_variables: bool,
+    /// FUP, LN, EXP, BIN, BCD, POW, ADP and ATAN with a comma are known.
+    pub has_extended_functions: bool,
+    /// G10 takes parameters, variables and tool life.
+    pub allows_parameter_input: bool,
+    /// Five digits and more behind `M98 P` are repeats and a program.
+    pub reads_repeats_in_p: bool,
+    /// The letter that repeats a drilling block, K or L.
+    pub cycle_repeat_letter: u8,
+    /// G28 without an axis sends all of them home.
+    pub homes_all_axes: bool,
+    /// P of a dwell with a point is seconds.
+    pub dwell_in_seconds: bool,
+    /// F without a point counts increments.
+    pub feed_in_increments: bool,
+    /// G73 and G83 take I, J and K for pecks that become smaller.
+    pub has_shrinking_pecks: bool,
+    /// How far above R G83 retracts, mm.
+    pub g83_above_r: f64,
+    /// Pairs of tool offsets.
+    pub tool_offsets: usize,
+    /// Macro calls inside one another.
+    pub macro_levels: usize,
+    /// Calls of all kinds inside one another.
+    pub call_levels: usize,
+    /// #3011 as yyyymmdd: a run never reads a clock.
+    pub date: u32,
+    /// #3012 as hhmmss at the start of the run.
+    pub time: u32,
+    pub undocumented: UndocumentedChoices,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            dialect: Dialect::default(),
+            codes: CodeSet::default(),
+            increment: Increment::default(),
+            axes: Axes::default(),
+            rolls_over: [false; MAX_AXES],
+            uses_calculator_input: false,
+            returns_signed_angles: false,
+            zeroes_residues: false,
+            reads_ijk_plainly: false,
+            converts_arguments: false,
+            drills_by_plane: false,
+            series_15_offsets: false,
+            alarms_on_repeated_address: false,
+            plural_m_alarms: false,
+            allows_three_m_codes: false,
+            macro_alarm_base: 3000,
+            macro_alarm_max: 200,
+            allows_plain_if: false,
+            then_takes_words: false,
+            extra_commons: Some((98_000, 98_499)),
+            offset_variables: OffsetVariables::default(),
+            omits_print_blanks: false,
+            print_expands: false,
+            print_needs_open: false,
+            print_digits: 8,
+            offsets_are_diameters: false,
+            applies_radius_at_once: false,
+            starts_up_by_type_b: false,
+            lookahead_blocks: 3,
+            has_coarse_scaling: true,
+            skip_switches: [false; 9],
+            stops_at_m01: true,
+            inputs: 0,
+            skip_signal: None,
+            missed_skip_alarms: false,
+            main_program_cycles: None,
+            code_calls: CodeCalls::default(),
+            rapid: MmPerMin(24_000.0),
+            rapid_rotary: 3_600.0,
+            arc_tolerance: 0.02,
+            one_side_overrun: Position::default(),
+            has_local_calls: false,
+            g73_retract: 1.0,
+            g83_clearance: 0.5,
+            reference_positions: [Position::default(); 3],
+            stroke_limits: None,
+            work_systems: 300,
+            aliases_commons: false,
+            has_variable_bits: false,
+            has_named_variables: true,
+            has_extended_functions: true,
+            allows_parameter_input: true,
+            reads_repeats_in_p: true,
+            cycle_repeat_letter: b'K',
+            homes_all_axes: false,
+            dwell_in_seconds: false,
+            feed_in_increments: false,
+            has_shrinking_pecks: false,
+            g83_above_r: 0.0,
+            tool_offsets: 400,
+            macro_levels: 5,
+            call_levels: 15,
+            date: 20_260_101,
+            time: 120_000,
+            undocumented: UndocumentedChoices::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// The axes that roll over: mostly none.
+    pub fn rollover_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
+        let some = self.rolls_over != [false; MAX_AXES];
+        (0..if some { self.axes.len() } else { 0 }).filter(|axis| self.rolls_over[*axis])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_is_half_away_from_zero() {
+        assert_eq!(Increment::IsB.round(-1.0005), -1.001);
+        assert_eq!(Increment::IsB.round(12.3456), 12.346);
+        assert_eq!(Increment::IsA.round(0.005), 0.01);
+    }
+}

@@ -1,0 +1,367 @@
+//! The settings by their names: the parameter a manual names, its key on the command line, how it is read.
+use super::{ArgumentScale, CodeSet, Dialect, Increment, OffsetVariables, Settings};
+use crate::motion::{Axes, MAX_AXES, Position};
+use crate::units::MmPerMin;
+
+/// Why a setting can't be taken.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SettingError {
+    #[error("no setting '{key}': see `gcode-sim settings`")]
+    Unknown { key: String },
+    #[error("setting {key} is '{value}': {allowed}")]
+    Value { key: String, value: String, allowed: String },
+}
+
+/// One setting that has a name.
+pub struct SettingRow {
+    pub key: &'static str,
+    /// Its meaning, with the parameter's number where a control has one.
+    pub meaning: &'static str,
+    pub values: SettingValues,
+    set: fn(&mut Settings, &str) -> Option<()>,
+}
+
+/// What values a setting takes.
+#[derive(Clone, Copy)]
+pub enum SettingValues {
+    /// On or off, 1 or 0.
+    Switch,
+    /// One of a few words.
+    Words(fn() -> Vec<&'static str>),
+    /// A whole number from one to the other.
+    Whole(usize, usize),
+    /// A number from one to the other, and how that is said.
+    Number(f64, f64, &'static str),
+    /// What a regular expression describes, and how that is said.
+    Text(&'static str, &'static str),
+}
+
+impl SettingRow {
+    pub fn is_switch(&self) -> bool {
+        matches!(self.values, SettingValues::Switch)
+    }
+}
+
+/// As a message and the list of settings say it.
+impl std::fmt::Display for SettingValues {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Switch => f.write_str(SWITCH),
+            Self::Words(words) => match words().as_slice() {
+                [] => Ok(()),
+                [only] => f.write_str(only),
+                [others @ .., last] => write!(f, "{} or {last}", others.join(", ")),
+            },
+            Self::Whole(least, most) => write!(f, "{least} to {most}"),
+            Self::Number(_, _, said) | Self::Text(_, said) => f.write_str(said),
+        }
+    }
+}
+
+const SWITCH: &str = "0 or 1";
+const LENGTH: &str = "a length in mm, 0 or more";
+
+/// `X10,Z-5.5`.
+const POINT: &str = "^ *[A-Ca-cU-Zu-z][+-]?([0-9]+[.]?[0-9]*|[.][0-9]+)( *, *[A-Ca-cU-Zu-z][+-]?([0-9]+[.]?[0-9]*|[.][0-9]+))* *$";
+const MACHINE_POSITION: SettingValues =
+    SettingValues::Text(POINT, "axes and their machine coordinates, as in X10,Z-5");
+
+macro_rules! switch {
+    ($key:literal, $meaning:literal, $($field:ident).+) => {
+        switch!($key, $meaning, |s, on| s.$($field).+ = on)
+    };
+    ($key:literal, $meaning:literal, |$s:ident, $on:ident| $set:expr) => {
+        row!($key, $meaning, SettingValues::Switch, |$s, text| { let $on = switch(text)?; $set; })
+    };
+}
+
+macro_rules! choice {
+    ($key:literal, $meaning:literal, $all:expr, |$s:ident, $v:ident| $set:expr) => {
+        row!(
+            $key,
+            $meaning,
+            SettingValues::Words(|| $all.iter().map(|(name, _)| *name).collect()),
+            |$s, text| {
+                let $v = choice(text, &$all)?;
+                $set;
+            }
+        )
+    };
+}
+
+macro_rules! whole {
+    ($key:literal, $meaning:literal, $least:literal, $most:literal, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, SettingValues::Whole($least, $most), |$s, text| {
+            let $v = whole(text, $least, $most)?;
+            $set;
+        })
+    };
+}
+
+macro_rules! number {
+    ($key:literal, $meaning:literal, $least:expr, $most:expr, $said:expr, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, SettingValues::Number($least, $most, $said), |$s, text| {
+            let $v = between(text, $least, $most)?;
+            $set;
+        })
+    };
+}
+
+macro_rules! row {
+    ($key:literal, $meaning:literal, $values:expr, |$s:ident, $text:ident| $set:expr) => {
+        SettingRow {
+            key: $key,
+            meaning: $meaning,
+            values: $values,
+            set: |$s, $text| {
+                $set;
+                Some(())
+            },
+        }
+    };
+}
+
+const REPEAT_LETTERS: [(&str, u8); 2] = [("K", b'K'), ("L", b'L')];
+
+/// Every setting with a name, in the order they are listed.
+#[rustfmt::skip]
+pub const ROWS: &[SettingRow] = &[
+    choice!("DIALECT", "the family of controls", Dialect::ALL, |s, v| s.apply_dialect(v)),
+    choice!("CODES", "the set of G and M codes", CodeSet::ALL, |s, v| s.codes = v),
+    choice!("INCREMENT", "1013: the least input increment", Increment::ALL, |s, v| s.increment = v),
+    switch!("DPI", "3401#0, setting 162 of a Haas: numbers without a decimal point are mm, degrees, seconds", uses_calculator_input),
+    switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", returns_signed_angles),
+    switch!("MFZ", "6004#1: SIN, COS, TAN below 1e-8 become 0", zeroes_residues),
+    switch!("IJK", "6008#7: I J K in G65 are always specification I", reads_ijk_plainly),
+    switch!("GMP", "6008#6: G codes also call in programs called by M, T, S or B, and vice versa", code_calls.allows_nested_calls),
+    switch!("MGE", "6007#3: a G code that 6050 and following define as a modal call is G66.1 instead of G66", code_calls.modal_is_every_block),
+    switch!("TCS", "6001#5: T calls O9000 with its number in #149", code_calls.t_calls_program),
+    switch!("SCS", "S calls O9029 with its number in #147", code_calls.s_calls_program),
+    switch!("BCS", "B, unless it is an axis, calls O9028 with its number in #146", code_calls.b_calls_program),
+    switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has no effect", converts_arguments),
+    switch!("FXY", "5101#0: cycles drill along the normal of the plane, not always Z", drills_by_plane),
+    switch!("V15", "6000#3: geometry and wear are exchanged in tool offset variables", series_15_offsets),
+    switch!("AD2", "3403#6: a repeated address in a block raises an alarm", alarms_on_repeated_address),
+    switch!("M3B", "3404#7: up to three M codes in a block", allows_three_m_codes),
+    switch!("PLURAL-M-ALARM", "more M codes in a block than allowed raise an alarm", plural_m_alarms),
+    row!("1241", "the second reference position", MACHINE_POSITION, |s, v| s.reference_positions[0] = point(s, v)?),
+    row!("1242", "the third reference position", MACHINE_POSITION, |s, v| s.reference_positions[1] = point(s, v)?),
+    row!("1243", "the fourth reference position", MACHINE_POSITION, |s, v| s.reference_positions[2] = point(s, v)?),
+    row!("1320", "stroke limits on the plus side: OT0500 beyond them", MACHINE_POSITION, |s, v| s.stroke_limits.get_or_insert_default().max = limits(&s.axes, v)?),
+    row!("1321", "stroke limits on the minus side: OT0501 beyond them", MACHINE_POSITION, |s, v| s.stroke_limits.get_or_insert_default().min = limits(&s.axes, v)?),
+    switch!("MCA", "6008#1: #3000=n shows MC n", |s, on| (s.macro_alarm_base, s.macro_alarm_max) = if on { (0, 4095) } else { (3000, 200) }),
+    whole!("ALARM-BASE", "the number that #3000=n adds to n", 0, 9000, |s, v| s.macro_alarm_base = v as u16),
+    whole!("ALARM-MOST", "the largest n that the manual gives for #3000=n", 1, 4095, |s, v| s.macro_alarm_max = v as u16),
+    row!("MORE-COMMONS", "common variables beyond #999", SettingValues::Text("^(0|[0-9]{4,5} *- *[0-9]{4,6})$", "a range as 98000-98499, or 0"), |s, v| s.extra_commons = range(v)?),
+    choice!("OFFSET-VARIABLES", "numbering of the tool offset variables", OffsetVariables::ALL, |s, v| s.offset_variables = v),
+    switch!("PLAIN-IF", "IF[..] accepts an assignment or words without THEN", allows_plain_if),
+    switch!("THEN-WORDS", "IF[..]THEN accepts words", then_takes_words),
+    switch!("PRT", "6001#1: DPRNT omits the blanks before a number", omits_print_blanks),
+    switch!("PRINT-EXPANDS", "DPRNT prints all digits of a number, also beyond its format", print_expands),
+    switch!("PRINT-NEEDS-POPEN", "DPRNT and BPRNT without POPEN raise an alarm", print_needs_open),
+    whole!("PRINT-DIGITS", "the most digits that DPRNT's format allows", 1, 15, |s, v| s.print_digits = v),
+    switch!("ODI", "5004#2: the offsets of D are diameters", offsets_are_diameters),
+    switch!("EVR", "5001#4: a changed offset of D applies from the next block", applies_radius_at_once),
+    switch!("SUP", "5003#0: cutter compensation starts and ends by type B", starts_up_by_type_b),
+    whole!("19625", "blocks of lookahead in cutter compensation", 3, 8, |s, v| s.lookahead_blocks = v),
+    switch!("SCR", "5400#7: G51 scales in units of 0.001", has_coarse_scaling),
+    row!("ROA", "1008#0: axes that roll over at 360 degrees", SettingValues::Text("^[A-Ca-c+]*$", "letters of rotary axes"), |s, v| roll_over(s, v)?),
+    row!("BDT", "the block skip switches that are on", SettingValues::Text("^[1-9]([+][1-9])*$", "switches 1 to 9, as in 1+2"), |s, v| skip_switches(s, v)?),
+    switch!("OPTIONAL-STOP", "M01 stops", stops_at_m01),
+    number!("SKIP", "the skip signal comes after this fraction of a G31 path", 0.0, 1.0, "0 to 1", |s, v| s.skip_signal = Some(v)),
+    switch!("SKIP-ALARM", "a G31 that ends without its signal raises an alarm", missed_skip_alarms),
+    whole!("CYCLES", "the main program's M99 of this number ends the run", 0, 999_999_999, |s, v| s.main_program_cycles = u32::try_from(v).ok()),
+    number!("RAPID", "1420: rapid rate of linear axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
+    number!("RAPID-ROTARY", "1420: rapid rate of rotary axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
+    number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
+    row!("5440", "the final approach of G60, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.one_side_overrun = point(s, v)?),
+    switch!("M97-CALLS", "M97 P calls the subprogram at N of the same program", has_local_calls),
+    number!("5114", "retract of G73; setting 22 of a Haas", 0.0, 1e6, LENGTH, |s, v| s.g73_retract = v),
+    number!("5115", "clearance of G83", 0.0, 1e6, LENGTH, |s, v| s.g83_clearance = v),
+    number!("SETTING-52", "setting 52 of a Haas: height above R to which G83 retracts", 0.0, 1e6, LENGTH, |s, v| s.g83_above_r = v),
+    switch!("FEED-INCREMENTS", "setting 77 of a Haas: F without a decimal point counts 0.001 mm/min", feed_in_increments),
+    whole!("WORK-SYSTEMS", "additional work coordinate systems, G54.1 P or G154 P", 1, 300, |s, v| s.work_systems = v),
+    switch!("ALIASED-COMMONS", "#10100.. and #10500.. are #100.. and #500..", aliases_commons),
+    switch!("VARIABLE-BITS", "#n.m is bit m of #n", has_variable_bits),
+    switch!("NEW-WORDS", "<NAME>, SETVN, [#NAME], [#_NAME], PRM, AX, AXNUM are available", has_named_variables),
+    switch!("MORE-FUNCTIONS", "FUP, LN, EXP, BIN, BCD, POW, ADP, ATAN[a,b] are available", has_extended_functions),
+    switch!("G10-PARAMETERS", "G10 accepts L3, L14, L50, L52 and L85", allows_parameter_input),
+    switch!("REPEATS-IN-P", "M98 P with more than four digits is repeats and program", reads_repeats_in_p),
+    choice!("CYCLE-REPEATS", "the address that repeats a drilling block", REPEAT_LETTERS, |s, v| s.cycle_repeat_letter = v),
+    switch!("HOME-ALL", "G28 without an axis moves all axes to the reference position", homes_all_axes),
+    switch!("DWELL-SECONDS", "P of a dwell with a decimal point is seconds; G04 takes no X and U", dwell_in_seconds),
+    switch!("PECK-IJK", "G73 and G83 accept I, J, K for decreasing pecks", has_shrinking_pecks),
+    whole!("OFFSETS", "pairs of tool offsets", 1, 999, |s, v| s.tool_offsets = v),
+    whole!("MACRO-LEVELS", "levels of macro calls", 1, 15, |s, v| s.macro_levels = v),
+    whole!("CALL-LEVELS", "levels of calls", 1, 30, |s, v| s.call_levels = v),
+    whole!("DATE", "#3011, as yyyymmdd", 0, 99_991_231, |s, v| s.date = v as u32),
+    whole!("TIME", "#3012, as hhmmss", 0, 235_959, |s, v| s.time = v as u32),
+    switch!("VACANT-MINUS", "-#1 of a vacant #1 stays vacant in an expression", undocumented.minus_keeps_vacancy),
+    switch!("VACANT-BRACKETS", "[#1] of a vacant #1 stays vacant", undocumented.brackets_keep_vacancy),
+    switch!("ROUND-LITERALS", "literals finer than the increment are rounded, not truncated", undocumented.rounds_literals),
+    switch!("GOTO-FIRST", "of duplicate N, GOTO takes the first in the program, not the next", undocumented.goto_takes_first_number),
+    switch!("THEN-GOTO", "IF[..]THEN GOTO is accepted", undocumented.then_takes_goto),
+    switch!("L-RESETS", "G65 L sets the arguments again for every repeat", undocumented.repeats_reset_locals),
+    switch!("G66.1-CALLS", "G66.1 with arguments calls its macro at once", undocumented.every_block_calls_itself),
+    switch!("G66-KEEPS-LOCALS", "a modal macro keeps its locals from its last call", undocumented.modal_keeps_locals),
+    switch!("GOTO-MINUS-UP", "GOTO-n searches upwards", undocumented.minus_searches_up),
+    switch!("MISSING-N-78", "GOTO without its target is PS0078, not PS0128", undocumented.missing_target_is_78),
+    switch!("BITS-ALARM", "AND, OR, XOR of a negative number raise an alarm", undocumented.negative_bits_alarm),
+    switch!("SHOWN-TRANSFORMED", "#5001.. under G51, G51.1, G68, G68.2 are the transformed coordinates", undocumented.shows_transformed),
+    switch!("NEW-FUNCTIONS", "POW, MOD and ATAN[a,b] are available", undocumented.has_new_functions),
+    switch!("ATAN-0-ALARM", "ATAN[0]/[0] raises an alarm", undocumented.atan_of_zeros_alarms),
+    switch!("TAN-90-ALARM", "TAN[90] raises an alarm", undocumented.tan_90_alarms),
+    switch!("G53-IN-G91", "G53 moves incrementally in G91", undocumented.g53_moves_in_g91),
+    switch!("K0-MOVES", "a drilling block with K0 moves in the plane", undocumented.k0_positions),
+    switch!("SKIP-KEEPS-END", "#5001.. after a skipped G31 are the commanded end", undocumented.skip_keeps_end),
+    switch!("G43-MOVES", "G43 H without an axis moves by the offset at once", undocumented.length_moves_at_once),
+    switch!("TAP-DWELL-R", "G84 and G74 dwell at R as well", undocumented.tap_dwells_at_r),
+    switch!("G67-ALARM", "G67 without G66 raises an alarm", undocumented.g67_alarms),
+    switch!("SMALL-R-ALARM", "an arc whose R is too small raises an alarm", undocumented.small_radius_alarms),
+    switch!("TWO-ASSIGNMENTS", "several assignments in a block are accepted", undocumented.allows_several_assignments),
+    switch!("SIGNS", "conditions accept = <> > >= < <= & and |", undocumented.allows_relation_signs),
+    switch!("SHORT-WORDS", "statement keywords may be abbreviated to two letters: WH GO EN TH PO PC DP BP SE", undocumented.allows_short_words),
+    switch!("LOWER-CASE", "lower case is read as capitals, not refused", undocumented.reads_lower_case),
+    switch!("LARGE-ALARMS", "#3000=n shows a number that is too large", undocumented.shows_large_alarm_numbers),
+    switch!("M98-NO-P-311", "M98 without P is PS0311, not PS0076", undocumented.missing_p_is_311),
+    switch!("M06-STOPS-SPINDLE", "M06 stops the spindle", undocumented.tool_change_stops_spindle),
+    choice!("ARGUMENT-E", "unit of an argument E without a decimal point", ArgumentScale::ALL, |s, v| s.undocumented.argument_e = v),
+    choice!("ARGUMENT-F", "unit of an argument F without a decimal point", ArgumentScale::ALL, |s, v| s.undocumented.argument_f = v),
+];
+
+impl Settings {
+    /// Sets one setting by its key (`NAT`, `5115`), an input by its variable (`#1005`), or a code that calls a
+    /// program (`G201`, `M50`, `T`), by itself or by its parameter (`6050`).
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), SettingError> {
+        let bad = |allowed: &dyn std::fmt::Display| {
+            let allowed = allowed.to_string();
+            SettingError::Value { key: key.to_owned(), value: value.to_owned(), allowed }
+        };
+        if let Some(row) = ROWS.iter().find(|row| row.key.eq_ignore_ascii_case(key)) {
+            return (row.set)(self, value.trim()).ok_or_else(|| bad(&row.values));
+        }
+        if let Some(number) = key.strip_prefix('#') {
+            let bit = number.parse().ok().filter(|n| (1000..=1031).contains(n)).map(|n: u32| n - 1000);
+            let bit = bit.ok_or_else(|| SettingError::Unknown { key: key.to_owned() })?;
+            let on = switch(value).ok_or_else(|| bad(&SettingValues::Switch))?;
+            self.inputs = if on { self.inputs | 1 << bit } else { self.inputs & !(1 << bit) };
+            return Ok(());
+        }
+        let unknown = || SettingError::Unknown { key: key.to_owned() };
+        if let Some(number) = key.parse().ok().filter(|n| self.code_calls.parameter(*n).is_some()) {
+            let set = value.trim().parse().ok().and_then(|v| self.code_calls.set_parameter(number, v));
+            return set.ok_or_else(|| bad(&"the code that calls, 0 for none"));
+        }
+        if !key.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            return Err(unknown());
+        }
+        let program = whole(value, 1, 99_999_999).ok_or_else(|| bad(&"a program number"))? as u32;
+        self.code_calls.set_code(key, program).ok_or_else(unknown)?;
+        Ok(())
+    }
+}
+
+fn switch(value: &str) -> Option<bool> {
+    match value {
+        "0" => Some(false),
+        "1" => Some(true),
+        _ => None,
+    }
+}
+
+fn choice<T: Copy>(value: &str, all: &[(&str, T)]) -> Option<T> {
+    all.iter().find(|(name, _)| name.eq_ignore_ascii_case(value)).map(|(_, choice)| *choice)
+}
+
+fn between(value: &str, least: f64, most: f64) -> Option<f64> {
+    value.parse().ok().filter(|v| (least..=most).contains(v))
+}
+
+fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
+    value.parse().ok().filter(|v| (least..=most).contains(v))
+}
+
+/// `X10,Z-5`; axes not named are at 0.
+fn point(settings: &Settings, value: &str) -> Option<Position> {
+    let mut point = Position::default();
+    for word in value.split(',').map(str::trim) {
+        let letter = word.bytes().next()?.to_ascii_uppercase();
+        point[settings.axes.find(letter)?] = between(word.get(1..)?, -1e6, 1e6)?;
+    }
+    Some(point)
+}
+
+/// `X400,Z0`: the named axes.
+fn limits(axes: &Axes, value: &str) -> Option<[Option<f64>; MAX_AXES]> {
+    let mut limits = [None; MAX_AXES];
+    for word in value.split(',').map(str::trim) {
+        let letter = word.bytes().next()?.to_ascii_uppercase();
+        limits[axes.find(letter)?] = Some(between(word.get(1..)?, -1e6, 1e6)?);
+    }
+    Some(limits)
+}
+
+/// `98000-98499`; `0` is none.
+fn range(value: &str) -> Option<Option<(u32, u32)>> {
+    if value == "0" {
+        return Some(None);
+    }
+    let (from, to) = value.split_once('-')?;
+    let from = whole(from.trim(), 1000, 99_999)? as u32;
+    let to = whole(to.trim(), from as usize, from as usize + 9_999)? as u32;
+    Some(Some((from, to)))
+}
+
+fn roll_over(settings: &mut Settings, letters: &str) -> Option<()> {
+    for letter in letters.bytes().filter(|b| *b != b'+') {
+        let axis = settings.axes.find(letter.to_ascii_uppercase())?;
+        if !settings.axes.is_rotary(axis) {
+            return None;
+        }
+        settings.rolls_over[axis] = true;
+    }
+    Some(())
+}
+
+fn skip_switches(settings: &mut Settings, value: &str) -> Option<()> {
+    for number in value.split('+') {
+        let switch = whole(number, 1, 9)?;
+        settings.skip_switches[switch - 1] = true;
+    }
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_have_names() {
+        let mut settings = Settings::default();
+        for (key, value) in
+            [("NAT", "1"), ("BDT", "1+3"), ("ROA", "A"), ("5115", "0.2"), ("#1005", "1"), ("G201", "9010")]
+        {
+            settings.set(key, value).unwrap();
+        }
+        assert!(settings.returns_signed_angles && settings.rolls_over[3]);
+        assert_eq!(settings.skip_switches.map(u8::from), [1, 0, 1, 0, 0, 0, 0, 0, 0]);
+        assert_eq!((settings.g83_clearance, settings.inputs), (0.2, 1 << 5));
+        assert_eq!(settings.code_calls.find_call(b'G', 2010).map(|called| called.program), Some(9010));
+    }
+
+    #[test]
+    fn a_refusal_names_the_key_and_what_is_allowed() {
+        let mut settings = Settings::default();
+        let told = |r: Result<(), SettingError>| r.unwrap_err().to_string();
+        assert_eq!(told(settings.set("NAT", "2")), "setting NAT is '2': 0 or 1");
+        assert!(told(settings.set("NOPE", "1")).starts_with("no setting 'NOPE'"));
+        assert!(told(settings.set("ROA", "X")).contains("letters of rotary axes"));
+    }
+
+    #[test]
+    fn keys_stand_once() {
+        for (i, row) in ROWS.iter().enumerate() {
+            assert!(ROWS[..i].iter().all(|other| other.key != row.key), "{}", row.key);
+        }
+    }
+}

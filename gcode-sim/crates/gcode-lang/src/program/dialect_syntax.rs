@@ -1,0 +1,71 @@
+//! Ways of writing that not every control takes: noted in a block when it is lowered, held against the control's
+//! settings when a run gets there.
+use crate::alarm::Alarm;
+use crate::control::Settings;
+
+use super::g_codes;
+
+/// One way of writing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DialectSyntax {
+    /// Letters in lower case.
+    LowerCase,
+    /// `WH[…]DO1`, `GO 5`.
+    ShortWord,
+    /// `=`, `<>`, `<`, `&` and the like in a condition.
+    RelationSigns,
+    /// `#1=1 #2=2`.
+    SeveralAssignments,
+    /// `IF[…]` before words or an assignment, without THEN.
+    PlainIf,
+    /// `IF[…]THEN` before words.
+    ThenWords,
+    /// `IF[…]THEN GOTO 5`.
+    ThenGoto,
+    /// POW, MOD, ATAN with a comma: by its name.
+    NewFunction(&'static str),
+    /// FUP, LN and others that controls with few functions lack.
+    MoreFunction(&'static str),
+    /// `<NAME>`, SETVN, `[#NAME]`, PRM and the like.
+    NewWord(&'static str),
+    /// A G code × 10 that lowering takes for a call.
+    GCodeCall(u32),
+    /// `#30057.21`: a bit of a variable, or the variable of the nearest number.
+    FractionalNumber,
+}
+
+impl DialectSyntax {
+    /// Whether a control takes it.
+    pub fn is_accepted(self, settings: &Settings) -> bool {
+        let undocumented = &settings.undocumented;
+        match self {
+            Self::LowerCase => undocumented.reads_lower_case,
+            Self::ShortWord => undocumented.allows_short_words,
+            Self::RelationSigns => undocumented.allows_relation_signs,
+            Self::SeveralAssignments => undocumented.allows_several_assignments,
+            Self::PlainIf => settings.allows_plain_if,
+            Self::ThenWords => settings.then_takes_words,
+            Self::ThenGoto => undocumented.then_takes_goto,
+            Self::NewFunction(_) => undocumented.has_new_functions,
+            Self::MoreFunction(_) => settings.has_extended_functions,
+            Self::NewWord(_) => settings.has_named_variables,
+            Self::GCodeCall(code) => g_codes::find(code).row_for(settings.codes).is_some(),
+            Self::FractionalNumber => !settings.has_variable_bits,
+        }
+    }
+
+    /// What a control raises that doesn't take it.
+    pub fn alarm(self) -> Alarm {
+        match self {
+            Self::LowerCase => Alarm::LowerCase,
+            Self::ShortWord => Alarm::ShortWord,
+            Self::RelationSigns => Alarm::RelationSymbol,
+            Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },
+            Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,
+            Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
+            Self::NewWord(word) => Alarm::NotAWord { text: word.into() },
+            Self::GCodeCall(code) => Alarm::ImproperGCode { code: g_codes::spelled(code) },
+            Self::FractionalNumber => Alarm::NotSimulated { what: "a bit of a variable, #n.m".into() },
+        }
+    }
+}

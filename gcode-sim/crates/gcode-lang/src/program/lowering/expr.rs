@@ -1,0 +1,355 @@
+//! Expressions lowered to postfix code.
+use super::Lowering;
+use crate::alarm::{Alarm, LocatedAlarm};
+use crate::program::DialectSyntax;
+use crate::program::bytecode::{
+    AssignmentTarget, Bytecode, ComputedSource, Instruction, Operand, OperandSource, Operation, STACK, Slot,
+    UncommonOp,
+};
+use crate::program::names::{self, OTHER_MEMORIES};
+use crate::source::Span;
+use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, OperatorSpelling};
+
+/// How deep brackets may stand in one another (operator's manual, custom macro: five levels).
+pub(in crate::program) const MAX_BRACKETS: usize = 5;
+
+const LAST: OperandSource = OperandSource::Computed(ComputedSource::Last);
+const WAITING: OperandSource = OperandSource::Computed(ComputedSource::Waiting);
+
+/// Beyond it no number is a variable's.
+const MAX_VARIABLE_NUMBER: f64 = 999_999_999.0;
+
+/// What an expression stands in.
+#[derive(Clone, Copy)]
+pub(in crate::program) enum ExprContext {
+    Macro,
+    /// The value of an address.
+    Address(u8),
+}
+
+type LoweringResult<T> = Result<T, LocatedAlarm>;
+
+impl Lowering {
+    pub(in crate::program) fn operand(
+        &mut self,
+        expr: &Expr,
+        context: ExprContext,
+    ) -> LoweringResult<Operand> {
+        match &expr.kind {
+            ExprKind::Literal(number) => return Ok(Operand::Number(number.value())),
+            ExprKind::Variable(index) => {
+                if let Some(number) = self.literal_index(index) {
+                    return Ok(Operand::Variable { slot: Slot::of(number), span: expr.span });
+                }
+            }
+            _ => {}
+        }
+        self.compile(expr.span, |this| this.compile_expr(expr, context, 0)).map(Operand::Code)
+    }
+
+    /// The value of a word, whose own sign is no part of an expression.
+    pub(in crate::program) fn word_value(&mut self, expr: &Expr, letter: u8) -> LoweringResult<Operand> {
+        let context = ExprContext::Address(letter);
+        let ExprKind::Negate(inner) = &expr.kind else { return self.operand(expr, context) };
+        let write =
+            |this: &mut Self| this.compile_unary(inner, UncommonOp::NegateWord, expr.span, context, 0);
+        self.compile(expr.span, write).map(Operand::Code)
+    }
+
+    pub(in crate::program) fn condition(
+        &mut self,
+        condition: &Condition,
+        span: Span,
+    ) -> LoweringResult<Bytecode> {
+        self.compile(span, |this| this.compile_condition(condition))
+    }
+
+    fn compile(
+        &mut self,
+        span: Span,
+        write: impl FnOnce(&mut Self) -> LoweringResult<usize>,
+    ) -> LoweringResult<Bytecode> {
+        self.instructions.clear();
+        let depth = write(self)?;
+        if depth > STACK {
+            Err(Alarm::TooManyBrackets.located_at(span))
+        } else {
+            Ok(self.instructions.drain(..).collect())
+        }
+    }
+
+    fn emit(&mut self, operation: impl Into<Operation>, span: Span) {
+        self.instructions.push(Instruction { operation: operation.into(), span });
+    }
+
+    /// Writes the code of `expr`; the answer is how many values it needs on the stack at once.
+    fn compile_expr(&mut self, expr: &Expr, context: ExprContext, brackets: usize) -> LoweringResult<usize> {
+        let (source, depth) = self.compile_source(expr, context, brackets)?;
+        if source != LAST {
+            self.emit(UncommonOp::Load(source), expr.span);
+        }
+        Ok(depth)
+    }
+
+    /// Where an operator finds the value of `expr`, and how many places on the stack it needs at once. Only what has
+    /// to be computed gets code, and what may alarm, so that the first alarm stays the first.
+    fn compile_source(
+        &mut self,
+        expr: &Expr,
+        context: ExprContext,
+        brackets: usize,
+    ) -> LoweringResult<(OperandSource, usize)> {
+        if brackets > MAX_BRACKETS {
+            return Err(Alarm::TooManyBrackets.located_at(expr.span));
+        }
+        match &expr.kind {
+            ExprKind::Literal(number) => return Ok((OperandSource::Number(number.value()), 1)),
+            ExprKind::Variable(index) => {
+                if let Some(number) = self.literal_index(index) {
+                    let source = match Slot::of(number) {
+                        Slot::Free(number) => OperandSource::Free(number),
+                        Slot::Other(number) => {
+                            self.emit(UncommonOp::Read(number), expr.span);
+                            LAST
+                        }
+                    };
+                    return Ok((source, 1));
+                }
+                let depth = self.compile_expr(index, ExprContext::Macro, brackets)?;
+                self.emit(UncommonOp::LoadIndirect, expr.span);
+                return Ok((LAST, depth));
+            }
+            _ => {}
+        }
+        self.compile_computed(expr, context, brackets).map(|depth| (LAST, depth))
+    }
+
+    /// The sources of an operator's two values. The second may have to wait for the first.
+    fn compile_sources(
+        &mut self,
+        [left, right]: [&Expr; 2],
+        context: ExprContext,
+        brackets: usize,
+    ) -> LoweringResult<([OperandSource; 2], usize)> {
+        let (mut left_source, left_depth) = self.compile_source(left, context, brackets)?;
+        let behind_left = self.instructions.len();
+        let (right_source, right_depth) = self.compile_source(right, context, brackets)?;
+        if (left_source, right_source) == (LAST, LAST) {
+            left_source = WAITING;
+            let wait = Instruction { operation: UncommonOp::Push.into(), span: left.span };
+            self.instructions.insert(behind_left, wait);
+        }
+        Ok(([left_source, right_source], left_depth.max(right_depth + 1)))
+    }
+
+    /// Writes the code of what is no number and no variable.
+    fn compile_computed(
+        &mut self,
+        expr: &Expr,
+        context: ExprContext,
+        brackets: usize,
+    ) -> LoweringResult<usize> {
+        let span = expr.span;
+        Ok(match &expr.kind {
+            ExprKind::Literal(_) | ExprKind::Variable(_) => self.compile_expr(expr, context, brackets)?,
+            ExprKind::Named(name) => {
+                let depth = self.compile_named(name, span, brackets)?;
+                self.emit(UncommonOp::LoadIndirect, span);
+                depth
+            }
+            ExprKind::Negate(inner) => {
+                self.compile_unary(inner, UncommonOp::Negate, span, context, brackets)?
+            }
+            ExprKind::Plus(inner) => self.compile_unary(inner, UncommonOp::Plus, span, context, brackets)?,
+            ExprKind::Bracket(inner) => {
+                self.compile_unary(inner, UncommonOp::Bracket, span, context, brackets + 1)?
+            }
+            ExprKind::Binary(op, left, right) => {
+                if *op == BinaryOp::Mod {
+                    self.record_syntax(DialectSyntax::NewFunction("MOD"), span);
+                }
+                let (values, depth) = self.compile_sources([left, right], context, brackets)?;
+                self.emit(Operation::binary(*op, values), span);
+                depth
+            }
+            ExprKind::Call(function, form) => {
+                self.compile_call(*function, form, span, context, brackets + 1)?
+            }
+            ExprKind::Parameter { number, bit, axis } => {
+                self.record_syntax(DialectSyntax::NewWord("PRM"), span);
+                let mut depth = self.compile_expr(number, ExprContext::Macro, brackets + 1)?;
+                for (place, part) in bit.iter().chain(axis).enumerate() {
+                    self.emit(UncommonOp::Push, span);
+                    depth = depth.max(self.compile_expr(part, ExprContext::Macro, brackets + 1)? + place + 1);
+                }
+                self.emit(UncommonOp::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
+                depth
+            }
+            ExprKind::AxisNumber(letter) => {
+                self.record_syntax(DialectSyntax::NewWord("AXNUM"), span);
+                self.emit(UncommonOp::AxisNumber(*letter), span);
+                1
+            }
+        })
+    }
+
+    fn compile_unary(
+        &mut self,
+        inner: &Expr,
+        operation: UncommonOp,
+        span: Span,
+        context: ExprContext,
+        brackets: usize,
+    ) -> LoweringResult<usize> {
+        let depth = self.compile_expr(inner, context, brackets)?;
+        self.emit(operation, span);
+        Ok(depth)
+    }
+
+    fn compile_call(
+        &mut self,
+        function: Function,
+        form: &CallForm,
+        span: Span,
+        context: ExprContext,
+        brackets: usize,
+    ) -> LoweringResult<usize> {
+        let two = |this: &mut Self, a: &Expr, b: &Expr, operation: fn([OperandSource; 2]) -> Operation| {
+            let (values, depth) = this.compile_sources([a, b], context, brackets)?;
+            this.emit(operation(values), span);
+            Ok(depth)
+        };
+        let new = match (function, form) {
+            (Function::Pow, _) => Some("POW"),
+            (Function::Atan, CallForm::Comma(..)) => Some("ATAN[a,b]"),
+            _ => None,
+        };
+        if let Some(name) = new {
+            self.record_syntax(DialectSyntax::NewFunction(name), span);
+        }
+        if let Some(name) = new.or(extended_function_name(function)) {
+            self.record_syntax(DialectSyntax::MoreFunction(name), span);
+        }
+        match (function, form, context) {
+            (Function::Atan, CallForm::Slash(a, b) | CallForm::Comma(a, b), _) => {
+                two(self, a, b, Operation::Atan2)
+            }
+            (Function::Pow, CallForm::Comma(a, b), _) => {
+                two(self, a, b, |values| UncommonOp::Power(values).into())
+            }
+            (Function::Pow, CallForm::One(_), _) => Err(Alarm::MissingComma.located_at(span)),
+            (Function::Round, CallForm::One(inner), ExprContext::Address(letter)) => {
+                self.compile_unary(inner, UncommonOp::RoundTo(letter), span, context, brackets)
+            }
+            (Function::Adp, CallForm::One(inner), _) => {
+                let ExprKind::Variable(index) = &inner.kind else {
+                    return Err(Alarm::ArgumentFormat { function: "ADP".into() }.located_at(span));
+                };
+                self.compile_unary(index, UncommonOp::AddPoint, span, ExprContext::Macro, brackets)
+            }
+            (_, CallForm::One(inner), _) => {
+                let (value, depth) = self.compile_source(inner, context, brackets)?;
+                self.emit(Operation::Function(function, value), span);
+                Ok(depth)
+            }
+            (_, CallForm::Slash(..) | CallForm::Comma(..), _) => {
+                Err(Alarm::ArgumentFormat { function: format!("{function:?}").to_uppercase() }
+                    .located_at(span))
+            }
+        }
+    }
+
+    /// The variable that an assignment writes.
+    pub(in crate::program) fn compile_target(&mut self, target: &Expr) -> LoweringResult<AssignmentTarget> {
+        match &target.kind {
+            ExprKind::Variable(index) => match self.operand(index, ExprContext::Macro)? {
+                // The nearest whole number, as of any index.
+                Operand::Number(number) if (0.0..=MAX_VARIABLE_NUMBER).contains(&number.round()) => {
+                    Ok(AssignmentTarget::Slot(Slot::of(number.round() as u32)))
+                }
+                operand => Ok(AssignmentTarget::Computed(operand)),
+            },
+            ExprKind::Named(name) => {
+                let code = self.compile(target.span, |this| this.compile_named(name, target.span, 0))?;
+                Ok(AssignmentTarget::Computed(Operand::Code(code)))
+            }
+            _ => Err(Alarm::Expression { text: String::new() }.located_at(target.span)),
+        }
+    }
+
+    /// The number of a named variable.
+    fn compile_named(&mut self, name: &Name, span: Span, brackets: usize) -> LoweringResult<usize> {
+        let text = || name.text.clone();
+        self.record_syntax(DialectSyntax::NewWord("[#NAME]"), span);
+        if !name.text.starts_with('_') {
+            if name.index.is_some() {
+                return Err(Alarm::Suffix { name: text() }.located_at(span));
+            }
+            self.emit(UncommonOp::NameNumber(name.text.as_str().into()), span);
+            return Ok(1);
+        }
+        if OTHER_MEMORIES.contains(&name.text.as_str()) {
+            return Err(Alarm::VariableName { name: text() }.located_at(span));
+        }
+        let row =
+            names::find(&name.text).ok_or_else(|| Alarm::NoVariableName { name: text() }.located_at(span))?;
+        let depth = match (&name.index, row.suffix) {
+            (Some(index), Some(_)) => self.compile_expr(index, ExprContext::Macro, brackets + 2)?,
+            (None, None) => 1,
+            _ => return Err(Alarm::Suffix { name: text() }.located_at(span)),
+        };
+        self.emit(UncommonOp::SystemNumber(row), span);
+        Ok(depth)
+    }
+
+    /// `#5`: a variable whose number is written out. `#5.4` is #5, as any number used as an integer, unless the control
+    /// means a bit by it.
+    fn literal_index(&mut self, index: &Expr) -> Option<u32> {
+        let ExprKind::Literal(number) = index.kind else { return None };
+        let value = number.value();
+        if value.fract() != 0.0 {
+            self.record_syntax(DialectSyntax::FractionalNumber, index.span);
+        }
+        let value = value.round();
+        (0.0..=MAX_VARIABLE_NUMBER).contains(&value).then_some(value as u32)
+    }
+
+    fn compile_condition(&mut self, condition: &Condition) -> LoweringResult<usize> {
+        match condition {
+            Condition::Compare { left, relation, spelling: written, right, span } => {
+                if *written == OperatorSpelling::Sign {
+                    self.record_syntax(DialectSyntax::RelationSigns, *span);
+                }
+                let (values, depth) = self.compile_sources([left, right], ExprContext::Macro, 1)?;
+                self.emit(Operation::Compare(*relation, values), *span);
+                Ok(depth)
+            }
+            Condition::Logic(op, written, first, second) => {
+                let left = self.compile_condition(first)?;
+                let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
+                self.emit(UncommonOp::Push, span);
+                let right = self.compile_condition(second)?;
+                let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
+                if *written == OperatorSpelling::Sign {
+                    self.record_syntax(DialectSyntax::RelationSigns, span);
+                }
+                self.emit(UncommonOp::Logic(*op), span);
+                Ok(left.max(right + 1))
+            }
+            Condition::Bracket(inner) => self.compile_condition(inner),
+        }
+    }
+}
+
+/// Functions that controls with few of them lack.
+fn extended_function_name(function: Function) -> Option<&'static str> {
+    Some(match function {
+        Function::Fup => "FUP",
+        Function::Ln => "LN",
+        Function::Exp => "EXP",
+        Function::Bin => "BIN",
+        Function::Bcd => "BCD",
+        Function::Adp => "ADP",
+        _ => return None,
+    })
+}

@@ -1,0 +1,258 @@
+//! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
+mod expr;
+
+use super::bytecode::{AssignmentTarget, Bytecode, Instruction, Slot};
+use super::{Assign, DialectSyntax, GuardedOp, Op, OpBody, OpKind, Operand, PrintPart, Statement};
+use crate::alarm::{Alarm, LocatedAlarm};
+use crate::source::{Span, Spanned};
+use crate::syntax::ast;
+pub(super) use expr::ExprContext;
+
+/// Skips inside one block: as many as there are switches.
+const MAX_INNER_SKIPS: usize = 9;
+
+/// What is at hand while blocks are lowered.
+#[derive(Debug, Default)]
+pub(super) struct Lowering {
+    /// The code of the expression at hand.
+    pub(super) instructions: Vec<Instruction>,
+    /// What the words of the block at hand compute, and the numbers of their axes.
+    pub(super) codes: Vec<Bytecode>,
+    pub(super) axes: Vec<Operand>,
+    /// What the block at hand has that not every control takes.
+    dialect_syntax: Vec<Spanned<DialectSyntax>>,
+}
+
+type LoweringResult<T> = Result<T, LocatedAlarm>;
+
+impl Lowering {
+    /// Notes a way of writing for the block at hand.
+    pub(super) fn record_syntax(&mut self, form: DialectSyntax, span: Span) {
+        self.dialect_syntax.push(Spanned::new(form, span));
+    }
+
+    /// A block; `small` is the first of its letters in lower case, as [`lower_case`] finds it.
+    pub(super) fn lower_block(&mut self, block: &ast::Block, small: Option<Span>) -> Op {
+        if let Some(span) = small {
+            self.record_syntax(DialectSyntax::LowerCase, span);
+        }
+        if let Some(span) = block.short_word {
+            self.record_syntax(DialectSyntax::ShortWord, span);
+        }
+        let kind = self.lower_kind(block).unwrap_or_else(OpKind::Alarm);
+        let skip = block.skip.as_ref().map(|s| s.node);
+        let act = match skip.is_some() || !self.dialect_syntax.is_empty() {
+            true => OpBody::Guarded(Box::new(GuardedOp {
+                skip,
+                dialect_syntax: self.dialect_syntax.drain(..).collect(),
+                kind,
+            })),
+            false => OpBody::Plain(kind),
+        };
+        Op { ordinal: 0, span: block.span, number: block.number.as_ref().map(|n| n.node), body: act }
+    }
+
+    fn lower_kind(&mut self, block: &ast::Block) -> LoweringResult<OpKind> {
+        if let Some(ast::Item::Statement(first)) = block.items.first()
+            && let ast::Statement::If { condition, has_then } = &first.node
+        {
+            self.record_syntax(
+                if *has_then { DialectSyntax::ThenWords } else { DialectSyntax::PlainIf },
+                first.span,
+            );
+            let condition = self.condition(condition, first.span)?;
+            let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
+            let then = match self.lower_kind(&rest)? {
+                then @ (OpKind::Words(_)
+                | OpKind::AssignFree(_)
+                | OpKind::Statement(Statement::Assign { .. })) => Box::new(then),
+                _ => return Err(Alarm::IfFormat.located_at(first.span)),
+            };
+            return Ok(OpKind::If { condition, then });
+        }
+        if let Some(several) = self.lower_assignments(block)? {
+            return Ok(OpKind::Statement(several));
+        }
+        let mut words = 0;
+        let mut skips = Vec::new();
+        let mut statement = None;
+        for (place, item) in block.items.iter().enumerate() {
+            match item {
+                ast::Item::Word(_) => words += 1,
+                ast::Item::Skip(switch) => skips.push((switch.node, place)),
+                ast::Item::Unreadable(unreadable) => return Err(Box::new(unreadable.alarm.clone())),
+                ast::Item::Statement(_) if statement.is_some() => {
+                    let what = "two statements in one block".into();
+                    return Err(Alarm::MacroFormat { what }.located_at(block.span));
+                }
+                ast::Item::Statement(found) => statement = Some(found),
+            }
+        }
+        match (statement, words == 0) {
+            (Some(_), false) => Err(Alarm::MixedStatements.located_at(block.span)),
+            // What a control does with a /n behind a statement is not known; it must not be read over.
+            (Some(_), true) if !skips.is_empty() => Err(Alarm::MixedStatements.located_at(block.span)),
+            (Some(found), true) => match self.lower_statement(&found.node, found.span, block)? {
+                Statement::AssignFree(compute) => Ok(OpKind::AssignFree(compute)),
+                statement => Ok(OpKind::Statement(statement)),
+            },
+            (None, true) => Ok(OpKind::Empty),
+            (None, false) if skips.len() > MAX_INNER_SKIPS => {
+                let what = format!("a block with more than {MAX_INNER_SKIPS} skips inside");
+                Err(Alarm::NotSimulated { what }.located_at(block.span))
+            }
+            (None, false) => {
+                let mut lowered = self.lower_words(&block.items, &skips)?;
+                if let Some(value) = block.comments.first().and_then(|comment| sixteen_digits(&comment.text))
+                {
+                    lowered.set_punched_value(value);
+                }
+                Ok(OpKind::Words(lowered))
+            }
+        }
+    }
+
+    /// A block of nothing but assignments, two or more.
+    fn lower_assignments(&mut self, block: &ast::Block) -> LoweringResult<Option<Statement>> {
+        let [_, second, ..] = &block.items[..] else { return Ok(None) };
+        let ast::Item::Statement(second) = second else { return Ok(None) };
+        let mut several = Vec::new();
+        for item in &block.items {
+            let ast::Item::Statement(found) = item else { return Ok(None) };
+            let ast::Statement::Assign { target, value } = &found.node else { return Ok(None) };
+            several.push(self.lower_assignment(target, value, found.span, block)?);
+        }
+        self.record_syntax(DialectSyntax::SeveralAssignments, second.span);
+        Ok(Some(Statement::Assignments(several)))
+    }
+
+    fn lower_statement(
+        &mut self,
+        statement: &ast::Statement,
+        span: Span,
+        block: &ast::Block,
+    ) -> LoweringResult<Statement> {
+        Ok(match statement {
+            ast::Statement::Assign { target, value } => self.lower_assignment(target, value, span, block)?,
+            ast::Statement::Goto(to) => Statement::Goto(self.lower_jump_target(to)?),
+            ast::Statement::IfGoto { condition, to } => Statement::IfGoto {
+                condition: self.condition(condition, span)?,
+                to: self.lower_jump_target(to)?,
+            },
+            ast::Statement::IfThen { condition, then } => {
+                let condition = self.condition(condition, span)?;
+                let then = match &**then {
+                    ast::Statement::Assign { .. } => self.lower_statement(then, span, block)?,
+                    ast::Statement::Goto(_) => {
+                        self.record_syntax(DialectSyntax::ThenGoto, span);
+                        self.lower_statement(then, span, block)?
+                    }
+                    _ => Statement::Alarm(Alarm::IfFormat.located_at(span)),
+                };
+                Statement::IfThen { condition, then: Box::new(then) }
+            }
+            ast::Statement::If { .. } => return Err(Alarm::IfFormat.located_at(span)),
+            ast::Statement::While { condition, number } => {
+                let number = loop_number(number)?;
+                Statement::While { condition: self.condition(condition, span)?, number, end: 0 }
+            }
+            ast::Statement::Do(number) => Statement::Do { number: loop_number(number)?, end: 0 },
+            ast::Statement::End(number) => Statement::End { number: loop_number(number)?, start: 0 },
+            ast::Statement::SetNames { first, names } => {
+                self.record_syntax(DialectSyntax::NewWord("SETVN"), span);
+                let first = self.operand(first, ExprContext::Macro)?;
+                Statement::SetNames { first, names: names.clone() }
+            }
+            ast::Statement::Print { kind, parts } => self.lower_print(*kind, parts, span)?,
+            ast::Statement::OpenOutput => Statement::OpenOutput,
+            ast::Statement::CloseOutput => Statement::CloseOutput,
+        })
+    }
+
+    fn lower_assignment(
+        &mut self,
+        target: &ast::Expr,
+        value: &ast::Expr,
+        span: Span,
+        block: &ast::Block,
+    ) -> LoweringResult<Statement> {
+        let (to, value) = (self.compile_target(target)?, self.operand(value, ExprContext::Macro)?);
+        Ok(match (to, value) {
+            (AssignmentTarget::Slot(Slot::Free(place)), Operand::Code(code)) => {
+                Statement::AssignFree(Assign { variable: place, code })
+            }
+            (to, value) => {
+                let text = block.comments.iter().find(|c| c.span.start >= span.start);
+                let text = text.map(|c| c.text.clone().into_boxed_slice());
+                Statement::Assign { target: to, target_span: target.span, value, text }
+            }
+        })
+    }
+
+    fn lower_jump_target(&mut self, to: &ast::Expr) -> LoweringResult<Spanned<Operand>> {
+        Ok(Spanned::new(self.operand(to, ExprContext::Macro)?, to.span))
+    }
+
+    fn lower_print(
+        &mut self,
+        kind: ast::PrintKind,
+        parts: &[ast::PrintPart],
+        span: Span,
+    ) -> LoweringResult<Statement> {
+        let mut lowered = Vec::new();
+        for part in parts {
+            lowered.push(match part {
+                ast::PrintPart::Text(text) => PrintPart::Text(text.clone()),
+                ast::PrintPart::Value { variable, format } => {
+                    let digits: Vec<u8> = format.bytes().map(|b| b.wrapping_sub(b'0')).collect();
+                    let (whole, decimals) = match (kind, &digits[..]) {
+                        (ast::PrintKind::Decimal, [whole @ 0..=9, decimals @ 0..=9]) => (*whole, *decimals),
+                        (ast::PrintKind::Binary, [decimals @ 0..=9]) => (0, *decimals),
+                        _ => return Err(Alarm::PrintFormat.located_at(span)),
+                    };
+                    let value = self.operand(variable, ExprContext::Macro)?;
+                    PrintPart::Value { value, whole, decimals }
+                }
+            });
+        }
+        Ok(Statement::Print { kind, parts: lowered })
+    }
+}
+
+/// A double as a control punches it.
+fn sixteen_digits(text: &[u8]) -> Option<u64> {
+    let text = std::str::from_utf8(text).ok()?.trim();
+    let hexadecimal = text.len() == 16 && text.bytes().all(|b| b.is_ascii_hexdigit());
+    hexadecimal.then(|| u64::from_str_radix(text, 16).ok()).flatten()
+}
+
+/// The first letter in lower case outside comments, and what follows it. What can't be read has an alarm of its own.
+pub(super) fn lower_case(block: &ast::Block, bytes: &[u8]) -> Option<Span> {
+    if matches!(block.items.last(), Some(ast::Item::Unreadable(_))) {
+        return None;
+    }
+    let written = bytes.get(block.span.start as usize..block.span.end as usize)?;
+    // Most blocks have none at all.
+    if !written.iter().fold(false, |any, byte| any | byte.is_ascii_lowercase()) {
+        return None;
+    }
+    let mut from = block.span.start as usize;
+    let small = |from: usize, to: usize| {
+        let at = bytes.get(from..to)?.iter().position(u8::is_ascii_lowercase)?;
+        Some(Span { start: (from + at) as u32, ..block.span })
+    };
+    for comment in &block.comments {
+        if let Some(found) = small(from, comment.span.start as usize) {
+            return Some(found);
+        }
+        from = comment.span.end as usize;
+    }
+    small(from, block.span.end as usize)
+}
+
+fn loop_number(number: &Spanned<i64>) -> LoweringResult<u8> {
+    match number.node {
+        1..=3 => Ok(number.node as u8),
+        other => Err(Alarm::LoopNumber { number: other }.located_at(number.span)),
+    }
+}

@@ -1,0 +1,103 @@
+//! Blocks of numbers, lowered straight from their text.
+use super::g_codes;
+use super::words::{LoweredWord, WordOperand, Words, g_code};
+use super::{Op, OpBody, OpKind};
+use crate::source::{SourceId, Span};
+use crate::syntax::{NumberWord, NumberWords};
+
+impl Op {
+    /// Becomes the block that begins at `start`; not where more stands in it than numbers, or a call: then it may have
+    /// become anything, and its tree must be lowered.
+    #[inline]
+    pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
+        self.ordinal = 0;
+        let Some(numbers) = NumberWords::new(source, text, start) else { return false };
+        let number = numbers.sequence_number;
+        if !matches!(self.body, OpBody::Plain(OpKind::Words(_))) {
+            self.body = OpBody::Plain(OpKind::Words(Words::default()));
+        }
+        let OpBody::Plain(OpKind::Words(words)) = &mut self.body else { return false };
+        let Some(end) = fill(words.cleared_list(), numbers) else { return false };
+        if words.list.is_empty() {
+            self.body = OpBody::default();
+        }
+        self.span = Span { source, start, end };
+        self.number = number;
+        true
+    }
+}
+
+/// Puts the words of a line into an empty list, and tells where the last one ends; not where the line has others.
+#[inline(never)]
+fn fill(list: &mut Vec<LoweredWord>, mut numbers: NumberWords<'_>) -> Option<u32> {
+    let mut end = numbers.words_start;
+    for NumberWord { letter, number, span } in numbers.by_ref() {
+        end = span.end;
+        let lowered_word = |value| LoweredWord { letter, axis: None, comma: false, value, span };
+        match letter {
+            b'G' => match g_code(number)? {
+                650 | 660 | 661 | 670 => return None,
+                code => list.push(lowered_word(WordOperand::G(code, g_codes::find(code)))),
+            },
+            b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return None,
+            _ => list.push(lowered_word(WordOperand::Literal(number))),
+        }
+    }
+    numbers.is_at_end().then_some(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::super::lowering::Lowering;
+    use super::*;
+    use crate::syntax::block_at;
+
+    /// An operation that was another block before.
+    fn another() -> Op {
+        let tree = block_at(SourceId(0), b"/N5 gO04 M30 /2 X1 (0123456789ABCDEF)", 0).unwrap();
+        Lowering::default().lower_block(&tree, None)
+    }
+
+    /// A long file goes on behind a line.
+    const BEHIND: &str = "\nX1.\nG4 (AND SO FORTH) X1.\n";
+
+    proptest! {
+        #[test]
+        fn a_block_of_numbers_is_what_its_tree_is(
+            words in vec("[A-Z]|G(1|0?4|54\\.1|65|5\\.55|-1)|M(3|9[7-9]|198)|[XNIFO][-+]?[0-9]{0,10}[.]?[0-9]{0,10}|[XNY][0-9]{1,3}\\.?[0-9]{1,3} ?|[ \t\x1a]|[#%(;/n]", 1..8),
+            end in proptest::sample::select(vec!["", "\n", "\r\n", " \nX5", "\t\r"]),
+            behind in proptest::sample::select(vec!["", BEHIND]),
+        ) {
+            let text = format!("{}{end}{behind}", words.concat().trim_start_matches([' ', '\t', '\x1a']));
+            let mut op = another();
+            if op.refill(SourceId(0), text.as_bytes(), 0) {
+                prop_assume!(op.span.end > 0);
+                let tree = block_at(SourceId(0), text.as_bytes(), 0).unwrap();
+                let lowered = Lowering::default().lower_block(&tree, None);
+                prop_assert_eq!(format!("{op:?}"), format!("{lowered:?}"), "{:?}", text);
+            }
+        }
+    }
+
+    #[test]
+    fn the_common_line_needs_no_tree() {
+        let text = format!("N10 G1 X1.5 Y-.25 Z+3\r\nG0{BEHIND}");
+        let mut op = another();
+        assert!(op.refill(SourceId(0), text.as_bytes(), 0));
+        assert_eq!((op.number, op.span.end), (Some(10), 21));
+        assert!(matches!(op.kind(), OpKind::Words(words) if words.list.len() == 4));
+    }
+
+    #[test]
+    fn whatever_else_stands_in_a_block_is_left_to_its_tree() {
+        for text in
+            ["G1 X#1", "G1 (A)", "g1", "G65 P1", "M98 P1", "M99", "X1 O2", "G5.55", "/G1", "X1.2.", "X 1"]
+        {
+            let text = format!("{text}{BEHIND}");
+            assert!(!another().refill(SourceId(0), text.as_bytes(), 0), "{text}");
+        }
+    }
+}

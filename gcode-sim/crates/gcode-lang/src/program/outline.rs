@@ -1,0 +1,111 @@
+//! What is known of a program when its file is loaded: where its blocks begin, its first sequence number, its loops.
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use super::blocks::{Blocks, ProgramText};
+use super::loops::{LoopRole, Loops};
+use super::lowering::Lowering;
+use super::{OpIndex, OpKind, Program, Statement};
+use crate::source::{Bytes, SourceId, Span};
+use crate::syntax::ast::{self, ProgramName};
+use crate::syntax::{
+    BlockOutline, ProgramParts, end_without_spaces, outline, sequence_number_at, without_trailer,
+};
+
+/// What grows while a program is outlined.
+#[derive(Default)]
+struct OutlineBuilder {
+    blocks: u32,
+    /// Where the last block ends, perhaps with spaces behind it.
+    end: u32,
+    first_number: Option<u32>,
+    loops: Vec<(OpIndex, LoopRole, u8)>,
+    separate_trees: BTreeMap<u32, ast::Block>,
+}
+
+/// Outlines the programs of a file.
+pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
+    let text = ProgramText { source, bytes: bytes.clone(), length: without_trailer(bytes).len() };
+    let programs = outline(source, bytes, |growing: &mut OutlineBuilder, block| growing.block(block, &text));
+    programs.into_iter().map(|parts| finish(parts, text.clone())).collect()
+}
+
+impl OutlineBuilder {
+    /// Notes a block.
+    #[inline(always)]
+    fn block(&mut self, block: BlockOutline, text: &ProgramText) -> u32 {
+        let span = block.span();
+        if !matches!(block, BlockOutline::Words(_)) || self.first_number.is_none() {
+            self.record_block(block, text);
+        }
+        self.blocks += 1;
+        self.end = span.end;
+        span.start
+    }
+
+    /// Notes what is in a block besides words.
+    #[inline(never)]
+    fn record_block(&mut self, block: BlockOutline, text: &ProgramText) {
+        let place = self.blocks;
+        match block {
+            BlockOutline::Words(span) => {
+                self.record_number(sequence_number_at(text.source, text.content(), span.start));
+            }
+            BlockOutline::Tree(block) => self.record_tree(place, &block),
+            BlockOutline::WithinLine(block) => {
+                self.record_tree(place, &block);
+                self.separate_trees.insert(place, *block);
+            }
+        }
+    }
+
+    /// Notes the sequence number of a block.
+    fn record_number(&mut self, number: Option<u32>) {
+        self.first_number = self.first_number.or(number.filter(|number| *number > 0));
+    }
+
+    /// Notes a block that had to be read.
+    fn record_tree(&mut self, place: u32, block: &ast::Block) {
+        self.record_number(block.number.map(|number| number.node));
+        if !block.items.iter().any(is_loop_item) {
+            return;
+        }
+        let part = match Lowering::default().lower_block(block, None).kind() {
+            OpKind::Statement(Statement::While { number, .. } | Statement::Do { number, .. }) => {
+                Some((LoopRole::Begin, *number))
+            }
+            OpKind::Statement(Statement::End { number, .. }) => Some((LoopRole::End, *number)),
+            _ => None,
+        };
+        self.loops.extend(part.map(|(part, number)| (place as OpIndex, part, number)));
+    }
+}
+
+/// WHILE, DO or END.
+fn is_loop_item(item: &ast::Item) -> bool {
+    use ast::Statement::{Do, End, While};
+    matches!(item, ast::Item::Statement(found) if matches!(found.node, While { .. } | Do(_) | End(_)))
+}
+
+fn finish(
+    ProgramParts { name, span, context, blocks, is_closed: closed }: ProgramParts<OutlineBuilder, u32>,
+    text: ProgramText,
+) -> Program {
+    let OutlineBuilder { end, first_number, loops, separate_trees: apart, .. } = context;
+    let end = end_without_spaces(text.content(), end);
+    let number = match name {
+        ProgramName::Number(number) => Some(number),
+        ProgramName::Name(_) => None,
+        ProgramName::Unnamed => first_number,
+    };
+    Program {
+        name,
+        number,
+        first_number,
+        span: Span { end: end.max(span.end), ..span },
+        blocks: Blocks::new(text, blocks, apart),
+        numbers: OnceLock::new(),
+        loops: Loops::pair(&loops),
+        is_closed: closed,
+    }
+}

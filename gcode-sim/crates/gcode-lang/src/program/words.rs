@@ -1,0 +1,382 @@
+//! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
+use super::DialectSyntax;
+use super::bytecode::{Bytecode, Instruction, Operand, Slot};
+use super::g_codes::{self, RowLookup};
+use super::lowering::{ExprContext, Lowering};
+use crate::alarm::{Alarm, LocatedAlarm};
+use crate::source::Span;
+use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};
+
+/// The words of one block.
+#[derive(Debug, Default)]
+pub struct Words {
+    pub list: Vec<LoweredWord>,
+    /// What blocks of numbers don't have, so that the next one needs only its list.
+    uncommon: Option<Box<UncommonWords>>,
+}
+
+/// What few blocks of words have.
+#[derive(Debug, Default)]
+struct UncommonWords {
+    call: Option<CallOp>,
+    /// `/n` inside the block: what is left of it while switch n is on.
+    skipped_form: Option<(u8, Words)>,
+    punched_value: Option<u64>,
+    /// What [`WordOperand::Code`] counts.
+    codes: Vec<Bytecode>,
+    /// The numbers of axes that [`LoweredWord::axis`] counts.
+    axes: Vec<Operand>,
+}
+
+/// A word ready to be evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct LoweredWord {
+    pub letter: u8,
+    /// `AX[…]`: where the number of the axis is among those of its block, see [`Words::axis`].
+    pub axis: Option<u32>,
+    /// `,R` and `,C`.
+    pub comma: bool,
+    pub value: WordOperand,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum WordOperand {
+    /// Its meaning depends on the increment and on units: decided when it runs.
+    Literal(Decimal),
+    /// A G code × 10 written as a number, with what it is on each control.
+    G(u32, RowLookup),
+    /// Known, and computed for the control: it rounds.
+    Number(f64),
+    /// `#n` with a literal n.
+    Variable { slot: Slot, span: Span },
+    /// Its place among those of its block, see [`Words::code`].
+    Code(u32),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CallCode {
+    /// G65.
+    Macro,
+    /// G66.
+    AfterMoves,
+    /// G66.1.
+    EveryBlock,
+    /// G67.
+    Cancel,
+    /// M98.
+    Subprogram,
+    /// M198: a file of the device.
+    File,
+    /// M97 P: a part of the same program.
+    Local,
+    /// M99.
+    Return,
+}
+
+#[derive(Clone, Debug)]
+pub enum CallTarget {
+    Number(LoweredWord),
+    Name(String),
+    None,
+}
+
+/// A call or a return.
+#[derive(Debug)]
+pub struct CallOp {
+    pub kind: CallCode,
+    /// P: the program, or the sequence number of `M99 P`.
+    pub target: CallTarget,
+    /// L.
+    pub repeats: Option<LoweredWord>,
+    /// Q of M98, H where M98 has neither P nor Q, P of M97: the sequence number to start at.
+    pub start: Option<LoweredWord>,
+    pub arguments: Vec<LoweredWord>,
+    pub span: Span,
+}
+
+impl Words {
+    fn new(list: Vec<LoweredWord>, call: Option<CallOp>) -> Self {
+        let rest = call.map(|call| Box::new(UncommonWords { call: Some(call), ..UncommonWords::default() }));
+        Self { list, uncommon: rest }
+    }
+
+    /// Its list, emptied for the words of another block.
+    #[inline]
+    pub(super) fn cleared_list(&mut self) -> &mut Vec<LoweredWord> {
+        self.uncommon = None;
+        self.list.clear();
+        &mut self.list
+    }
+
+    fn uncommon_mut(&mut self) -> &mut UncommonWords {
+        self.uncommon.get_or_insert_default()
+    }
+
+    /// Keeps sixteen hexadecimal digits of the block's comment.
+    pub(super) fn set_punched_value(&mut self, value: u64) {
+        self.uncommon_mut().punched_value = Some(value);
+    }
+
+    /// Whether the block has neither a call nor `/n` inside.
+    #[inline]
+    pub fn is_plain(&self) -> bool {
+        self.uncommon.as_ref().is_none_or(|rest| rest.call.is_none() && rest.skipped_form.is_none())
+    }
+
+    pub fn call(&self) -> Option<&CallOp> {
+        self.uncommon.as_ref()?.call.as_ref()
+    }
+
+    /// `/n` inside the block: n, and what is left of the block while switch n is on.
+    pub fn skipped_form(&self) -> Option<&(u8, Self)> {
+        self.uncommon.as_ref()?.skipped_form.as_ref()
+    }
+
+    /// Sixteen hexadecimal digits in the block's comment: the value behind `G10 L85 P500`, as controls punch it.
+    pub fn punched_value(&self) -> Option<u64> {
+        self.uncommon.as_ref()?.punched_value
+    }
+
+    /// What computes the value of a word.
+    pub fn code(&self, place: u32) -> &[Instruction] {
+        self.uncommon.as_ref().map_or(&[], |rest| &rest.codes[place as usize])
+    }
+
+    /// The number of the axis that a word is for.
+    pub fn axis(&self, place: u32) -> Option<&Operand> {
+        self.uncommon.as_ref()?.axes.get(place as usize)
+    }
+}
+
+impl Lowering {
+    /// A block of words; `skips` are the switches inside it with their places among the items.
+    pub(super) fn lower_words(
+        &mut self,
+        items: &[Item],
+        skips: &[(u8, usize)],
+    ) -> Result<Words, LocatedAlarm> {
+        let Some(((switch, place), before)) = skips.split_last() else {
+            return self.lower_plain_words(items);
+        };
+        let short = self.lower_words(&items[..*place], before)?;
+        let mut whole = self.lower_plain_words(items)?;
+        whole.uncommon_mut().skipped_form = Some((*switch, short));
+        Ok(whole)
+    }
+
+    fn lower_plain_words(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
+        (self.codes, self.axes) = (Vec::new(), Vec::new());
+        let mut words = self.lower_list(items)?;
+        let (codes, axes) = (std::mem::take(&mut self.codes), std::mem::take(&mut self.axes));
+        if !codes.is_empty() || !axes.is_empty() {
+            let rest = words.uncommon_mut();
+            (rest.codes, rest.axes) = (codes, axes);
+        }
+        Ok(words)
+    }
+
+    fn lower_list(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
+        let words =
+            items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
+        let mut list = Vec::with_capacity(items.len());
+        // Macro calls begin with a G code, all others with an M code; names stand in calls.
+        let (mut by_g, mut by_m) = (false, false);
+        for word in words.clone() {
+            let coded = self.lower_word(word)?;
+            by_g |= matches!(coded.value, WordOperand::G(650 | 660 | 661 | 670, _));
+            by_m |= coded.letter == b'M' || matches!(word.value, WordValue::Name(_));
+            list.push(coded);
+        }
+        match (by_g, by_m) {
+            (false, false) => return Ok(Words::new(list, None)),
+            (false, true) => return subprogram(list, words),
+            (true, _) => {}
+        }
+        let is = |coded: &LoweredWord, code: u32| matches!(coded.value, WordOperand::G(c, _) if c == code);
+        let call = [(650, CallCode::Macro), (660, CallCode::AfterMoves), (661, CallCode::EveryBlock)];
+        for (code, kind) in call {
+            if let Some(at) = list.iter().position(|w| is(w, code)) {
+                self.record_syntax(DialectSyntax::GCodeCall(code), list[at].span);
+                return macro_call(list, at, kind, words);
+            }
+        }
+        if let Some(at) = list.iter().position(|w| is(w, 670)) {
+            let span = list.remove(at).span;
+            self.record_syntax(DialectSyntax::GCodeCall(670), span);
+            let call = CallOp {
+                kind: CallCode::Cancel,
+                target: CallTarget::None,
+                repeats: None,
+                start: None,
+                arguments: Vec::new(),
+                span,
+            };
+            return Ok(Words::new(list, Some(call)));
+        }
+        subprogram(list, words)
+    }
+
+    fn lower_word(&mut self, word: &Word) -> Result<LoweredWord, LocatedAlarm> {
+        let letter = word.address.letter;
+        let value = match &word.value {
+            WordValue::Literal(number) => literal(letter, *number).ok_or_else(|| {
+                Alarm::ImproperGCode { code: number.value().to_string() }.located_at(word.span)
+            })?,
+            // Axes have one increment.
+            WordValue::Expr(expr) if letter == AX => self.lower_computed_word(expr, b'X')?,
+            WordValue::Expr(expr) => self.lower_computed_word(expr, letter)?,
+            // Taken up by the call in the same block.
+            WordValue::Name(_) => {
+                self.record_syntax(DialectSyntax::NewWord("<NAME>"), word.span);
+                WordOperand::Literal(Decimal { negative: false, digits: 0, places: None })
+            }
+        };
+        let axis = match &word.axis {
+            Some(axis) => {
+                let axis = self.operand(axis, ExprContext::Macro)?;
+                self.axes.push(axis);
+                Some(self.axes.len() as u32 - 1)
+            }
+            None => None,
+        };
+        Ok(LoweredWord { letter, axis, comma: word.address.comma, value, span: word.span })
+    }
+
+    fn lower_computed_word(&mut self, expr: &Expr, letter: u8) -> Result<WordOperand, LocatedAlarm> {
+        Ok(match self.word_value(expr, letter)? {
+            Operand::Number(number) => WordOperand::Number(number),
+            Operand::Variable { slot, span } => WordOperand::Variable { slot, span },
+            Operand::Code(code) => {
+                self.codes.push(code);
+                WordOperand::Code(self.codes.len() as u32 - 1)
+            }
+        })
+    }
+}
+
+/// What a number is behind its address; `None` for a G code that none can be.
+fn literal(letter: u8, number: Decimal) -> Option<WordOperand> {
+    if letter == b'G' {
+        let code = g_code(number)?;
+        return Some(WordOperand::G(code, g_codes::find(code)));
+    }
+    Some(WordOperand::Literal(number))
+}
+
+/// G code × 10 of a literal with at most one decimal.
+#[inline]
+pub(super) fn g_code(number: Decimal) -> Option<u32> {
+    let tenths = match number.places {
+        None => number.digits.checked_mul(10)?,
+        Some(places) => {
+            let unit = 10_u64.checked_pow(u32::from(places))?;
+            let tenths = number.digits.checked_mul(10)?;
+            if tenths % unit != 0 {
+                return None;
+            }
+            tenths / unit
+        }
+    };
+    if number.negative { None } else { u32::try_from(tenths).ok() }
+}
+
+/// G65, G66, G66.1: everything behind the code is for the macro.
+fn macro_call<'a>(
+    mut list: Vec<LoweredWord>,
+    at: usize,
+    kind: CallCode,
+    words: impl Iterator<Item = &'a Word>,
+) -> Result<Words, LocatedAlarm> {
+    let span = list[at].span;
+    if at > 0 {
+        let what = "words before the macro call".into();
+        return Err(Alarm::MacroFormat { what }.located_at(list[0].span));
+    }
+    list.remove(0);
+    let mut call =
+        CallOp { kind, target: CallTarget::None, repeats: None, start: None, arguments: Vec::new(), span };
+    for (coded, word) in list.into_iter().zip(words.skip(1)) {
+        match (coded.letter, &word.value) {
+            (b'P', WordValue::Name(name)) => call.target = CallTarget::Name(name.clone()),
+            (b'P', _) => call.target = CallTarget::Number(coded),
+            (_, WordValue::Name(_)) => {
+                return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(coded.span));
+            }
+            (b'L', _) => call.repeats = Some(coded),
+            (b'G', _) if matches!(coded.value, WordOperand::G(650 | 660 | 661, _)) => {
+                return Err(Alarm::TwoMacroCalls.located_at(coded.span));
+            }
+            (b'M', WordValue::Literal(number)) if number.places.is_none() && number.digits == 98 => {
+                return Err(Alarm::TwoMacroCalls.located_at(coded.span));
+            }
+            (b'G', _) if kind != CallCode::EveryBlock => {
+                return Err(Alarm::GAsArgument.located_at(coded.span));
+            }
+            _ => call.arguments.push(coded),
+        }
+    }
+    Ok(Words::new(Vec::new(), Some(call)))
+}
+
+/// M97 P, M98, M99 and M198 with their P, L and Q; the other words act first.
+fn subprogram<'a>(
+    list: Vec<LoweredWord>,
+    words: impl Iterator<Item = &'a Word> + Clone,
+) -> Result<Words, LocatedAlarm> {
+    let code = |word: &Word| match word.value {
+        WordValue::Literal(Decimal { negative: false, digits, places: None })
+            if word.address.letter == b'M' =>
+        {
+            Some(digits)
+        }
+        _ => None,
+    };
+    let has = |letter: u8| words.clone().any(|word| word.address.letter == letter);
+    let kind = |word: &Word| match code(word)? {
+        // Without P it ends a macro interrupt.
+        97 if has(b'P') => Some(CallCode::Local),
+        98 => Some(CallCode::Subprogram),
+        99 => Some(CallCode::Return),
+        198 => Some(CallCode::File),
+        _ => None,
+    };
+    let mut calls = words.clone().filter_map(|word| Some((word, kind(word)?)));
+    let Some((call, calling)) = calls.next() else {
+        if let Some(word) = words.clone().find(|w| matches!(w.value, WordValue::Name(_))) {
+            return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.located_at(word.span));
+        }
+        return Ok(Words::new(list, None));
+    };
+    if let Some((second, _)) = calls.next() {
+        return Err(Alarm::TwoSubprogramCalls.located_at(second.span));
+    }
+    let mut call_op = CallOp {
+        kind: calling,
+        target: CallTarget::None,
+        repeats: None,
+        start: None,
+        arguments: Vec::new(),
+        span: call.span,
+    };
+    let mut other_words = Vec::with_capacity(list.len());
+    for (coded, word) in list.into_iter().zip(words.clone()) {
+        match (coded.letter, &word.value) {
+            (b'M', _) if kind(word).is_some() => {}
+            (b'P', WordValue::Name(name)) => call_op.target = CallTarget::Name(name.clone()),
+            (_, WordValue::Name(_)) => {
+                return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(coded.span));
+            }
+            (b'P', _) if calling == CallCode::Local => call_op.start = Some(coded),
+            (b'P', _) => call_op.target = CallTarget::Number(coded),
+            (b'L', _) if calling != CallCode::Return => call_op.repeats = Some(coded),
+            (b'Q', _) if calling == CallCode::Subprogram => call_op.start = Some(coded),
+            // M98 H alone: some controls call the subprogram at this N of the same program.
+            (b'H', _) if calling == CallCode::Subprogram && !has(b'P') && !has(b'Q') => {
+                call_op.start = Some(coded)
+            }
+            _ => other_words.push(coded),
+        }
+    }
+    Ok(Words::new(other_words, Some(call_op)))
+}

@@ -1,0 +1,242 @@
+//! Program texts as bytes, and places in them: every token, operation, event and finding carries a [`Span`].
+use std::ops::Deref;
+use std::sync::{Arc, OnceLock};
+
+/// Which text a place belongs to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SourceId(pub u32);
+
+/// The bytes from `start` up to `end` of one text.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Span {
+    pub source: SourceId,
+    pub start: u32,
+    pub end: u32,
+}
+
+/// A value with the place it was written at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spanned<T> {
+    pub node: T,
+    pub span: Span,
+}
+
+impl<T> Spanned<T> {
+    pub fn new(node: T, span: Span) -> Self {
+        Self { node, span }
+    }
+}
+
+/// A place for people: both count from 1, the column in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LineColumn {
+    pub line: u32,
+    pub column: u32,
+}
+
+/// The bytes of a text, shared by all who need them. Those of a file are taken over as they were read, without a copy.
+#[derive(Clone, Debug)]
+pub struct Bytes(Arc<Vec<u8>>);
+
+impl Deref for Bytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+impl From<Vec<u8>> for Bytes {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self(Arc::new(bytes))
+    }
+}
+
+impl From<&[u8]> for Bytes {
+    fn from(bytes: &[u8]) -> Self {
+        bytes.to_vec().into()
+    }
+}
+
+impl<const N: usize> From<[u8; N]> for Bytes {
+    fn from(bytes: [u8; N]) -> Self {
+        bytes.to_vec().into()
+    }
+}
+
+/// One text: its name as the user gave it, its bytes, and where its lines begin.
+#[derive(Debug)]
+pub struct Source {
+    pub name: String,
+    pub bytes: Bytes,
+    /// Found when a place is asked for.
+    lines: OnceLock<Vec<u32>>,
+}
+
+impl Source {
+    fn new(name: String, bytes: Bytes) -> Self {
+        Self { name, bytes, lines: OnceLock::new() }
+    }
+
+    fn cached_line_starts(&self) -> &[u32] {
+        self.lines.get_or_init(|| line_starts(&self.bytes))
+    }
+
+    /// The lines without their ends, bytes that aren't UTF-8 replaced.
+    pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
+        let starts = self.cached_line_starts();
+        let ends = starts.iter().skip(1).map(|end| *end as usize).chain([self.bytes.len()]);
+        starts.iter().zip(ends).map(|(start, end)| {
+            let line = &self.bytes[*start as usize..end];
+            let content_end =
+                line.iter().rposition(|b| !matches!(b, b'\n' | b'\r')).map_or(0, |last| last + 1);
+            String::from_utf8_lossy(&line[..content_end]).into_owned()
+        })
+    }
+
+    /// The line and column of the byte at `offset`.
+    pub fn line_column(&self, offset: u32) -> LineColumn {
+        let lines = self.cached_line_starts();
+        let index = lines.partition_point(|start| *start <= offset).saturating_sub(1);
+        let start = lines.get(index).copied().unwrap_or(0);
+        LineColumn { line: index as u32 + 1, column: offset - start + 1 }
+    }
+}
+
+/// Where each line begins. A line ends with LF, with CR LF, or with a CR that stands alone; the stray CRs
+/// that some senders put around a LF belong to that one end of line.
+fn line_starts(bytes: &[u8]) -> Vec<u32> {
+    let mut starts = vec![0];
+    let mut at = 0;
+    loop {
+        at += line_length(&bytes[at..]);
+        if at == bytes.len() {
+            return starts;
+        }
+        at += end_of_line(&bytes[at..]);
+        starts.push(at as u32);
+    }
+}
+
+/// The length of the line that a text begins with, its end not counted. Sixteen bytes are looked at together.
+#[inline]
+pub fn line_length(text: &[u8]) -> usize {
+    const ONES: u64 = u64::from_ne_bytes([1; 8]);
+    let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    // The top bit of each byte up to CR, LF among them; behind such a one a byte may get it as well.
+    let low_byte_bits = |word: u64| word.wrapping_sub(ONES * u64::from(b'\r' + 1)) & !word & ONES << 7;
+    let (chunks, rest) = text.as_chunks::<16>();
+    for (place, chunk) in chunks.iter().enumerate() {
+        if !chunk.iter().fold(false, |any, byte| any | (*byte <= b'\r')) {
+            continue;
+        }
+        let (words, _) = chunk.as_chunks::<8>();
+        for (half, word) in words.iter().enumerate() {
+            let word = u64::from_le_bytes(*word);
+            let mut found = low_byte_bits(word);
+            while found != 0 {
+                let bits = found.trailing_zeros() & !7;
+                if is_line_end(&((word >> bits) as u8)) {
+                    return 16 * place + 8 * half + bits as usize / 8;
+                }
+                found &= found - 1;
+            }
+        }
+    }
+    16 * chunks.len() + rest.iter().position(is_line_end).unwrap_or(rest.len())
+}
+
+/// No sender puts more CRs than this around a LF; the limit keeps reading linear in a file of nothing but CRs.
+const MAX_CARRIAGE_RETURNS: usize = 4;
+
+/// The length of the end of line that `rest` begins with: CRs with at most one LF among them, 0 if none.
+#[inline]
+pub fn end_of_line(rest: &[u8]) -> usize {
+    match rest {
+        // The commonest of all.
+        [b'\n', behind, ..] if *behind != b'\r' => 1,
+        _ => mixed_line_end_length(rest),
+    }
+}
+
+fn mixed_line_end_length(rest: &[u8]) -> usize {
+    let before = rest.iter().take(MAX_CARRIAGE_RETURNS).take_while(|b| **b == b'\r').count();
+    match rest.get(before) {
+        Some(b'\n') => before + 1 + trailing_return_count(&rest[before + 1..]),
+        _ => usize::from(before > 0),
+    }
+}
+
+/// CRs after a LF that don't begin the next CR LF.
+fn trailing_return_count(rest: &[u8]) -> usize {
+    let count = rest.iter().take(MAX_CARRIAGE_RETURNS).take_while(|b| **b == b'\r').count();
+    if rest.get(count) == Some(&b'\n') { 0 } else { count }
+}
+
+/// All texts of one session. Adding one never moves another, so a [`SourceId`] stays good.
+#[derive(Clone, Debug, Default)]
+pub struct Sources(Vec<Arc<Source>>);
+
+impl Sources {
+    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Bytes>) -> SourceId {
+        let id = SourceId(self.0.len() as u32);
+        self.0.push(Arc::new(Source::new(name.into(), bytes.into())));
+        id
+    }
+
+    /// All texts with their ids, in the order they were read.
+    pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Arc<Source>)> {
+        self.0.iter().enumerate().map(|(id, source)| (SourceId(id as u32), source))
+    }
+
+    /// The text with this id; ids come only from [`Sources::add`] of the same collection.
+    pub fn get(&self, id: SourceId) -> &Arc<Source> {
+        &self.0[id.0 as usize]
+    }
+
+    pub fn line_column(&self, span: Span) -> LineColumn {
+        self.get(span.source).line_column(span.start)
+    }
+
+    /// What stands at `span`, bytes that aren't UTF-8 replaced.
+    pub fn text(&self, span: Span) -> String {
+        let bytes = &self.get(span.source).bytes;
+        String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize]).into_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn starts(text: &[u8]) -> Vec<u32> {
+        line_starts(text)
+    }
+
+    #[test]
+    fn every_kind_of_line_end_counts_once() {
+        assert_eq!(starts(b"a\nb\nc"), [0, 2, 4]);
+        assert_eq!(starts(b"a\r\nb\r\nc"), [0, 3, 6]);
+        assert_eq!(starts(b"a\rb\rc"), [0, 2, 4]);
+        assert_eq!(starts(b"a\n\r\rb\n\r\rc"), [0, 4, 8]);
+        assert_eq!(starts(b"a\r\n\r\nb"), [0, 3, 5], "an empty line between CR LF pairs is a line");
+        assert_eq!(starts(b"a\r\rb"), [0, 2, 3], "CRs without a LF end a line each");
+    }
+
+    #[test]
+    fn a_line_ends_at_the_first_of_its_ends_wherever_it_stands() {
+        for length in 0..40 {
+            for end in [&b"\n"[..], b"\r", b"\r\n\n", b"", b"\n\x0b\x0c\x8a\x8d\r\r\r\r"] {
+                let text = [&b"X\x0b\x0c\x0e\x09\x8a\x8d\xff".repeat(5)[..length], end].concat();
+                assert_eq!(line_length(&text), length, "{text:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn places_count_from_one() {
+        let mut sources = Sources::default();
+        let id = sources.add("O1", *b"%\r\nO1\r\nG0 X1.\r\n");
+        assert_eq!(sources.get(id).line_column(10), LineColumn { line: 3, column: 4 });
+    }
+}

@@ -1,0 +1,284 @@
+//! Expressions and conditions in one pass: brackets, and operators in their three levels.
+//!
+//! `[…]` may hold a number or a condition, which only its end tells, so both are read as [`ExprOrCondition`] and told apart
+//! where one of them is wanted. Nothing is read twice.
+mod function;
+
+use nom::Parser;
+use nom::branch::alt;
+use nom::combinator::value;
+
+use super::ast::{BinaryOp, Condition, Expr, ExprKind, OperatorSpelling, Relation};
+use super::number::{EXPRESSION_LIMIT, decimal};
+use super::token::{
+    Input, LineInput, ReadResult, comment_before, fail, next, no_expression, no_match, require,
+    round_brackets, sign, spaces, word,
+};
+use crate::alarm::Alarm;
+pub(super) use function::is_name;
+use function::{call, named};
+
+/// Brackets inside one another, those of functions and of `#[…]` included (manual: at most five).
+const MAX_BRACKET_DEPTH: u8 = 5;
+
+/// Operators of one level side by side. No control takes a block this long; the limit keeps the tree shallow.
+const MAX_OPERATORS: usize = 100;
+
+enum ExprOrCondition {
+    Expr(Expr),
+    Condition(Condition),
+}
+
+/// An expression; a condition in its place is an alarm.
+pub(super) fn expr(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
+    let (rest, mixed) = sum(line, input, depth)?;
+    number(rest, input, mixed)
+}
+
+/// `[c]` of IF and WHILE, or `[c1]AND[c2]` as some programs write `[[c1]AND[c2]]`. The bracket around all of it is
+/// not kept.
+pub(super) fn condition(line: LineInput, input: Input<'_>) -> ReadResult<'_, Condition> {
+    sign(b'[')(input)?;
+    match sum(line, input, 0)? {
+        (rest, ExprOrCondition::Condition(Condition::Bracket(inner))) => Ok((rest, *inner)),
+        (rest, ExprOrCondition::Condition(condition)) => Ok((rest, condition)),
+        (_, ExprOrCondition::Expr(_)) => no_match(input),
+    }
+}
+
+/// `#n`, `#[…]`, or a variable by its name in brackets: what may stand left of `=`.
+pub(super) fn variable(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr> {
+    let start = spaces(input);
+    match start.first() {
+        Some(b'#') => numbered(line, start, 0),
+        Some(b'[') if is_name(start) => named(line, start, 0),
+        _ => no_match(input),
+    }
+}
+
+/// One value: a variable or `[…]`, as after an address.
+pub(super) fn single_value(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr> {
+    let start = spaces(input);
+    match start.first() {
+        Some(b'[') if !is_name(start) => {
+            let (rest, mixed) = bracket(line, start, 0)?;
+            number(rest, start, mixed)
+        }
+        _ => variable(line, start),
+    }
+}
+
+fn number<'a>(rest: Input<'a>, from: Input<'a>, mixed: ExprOrCondition) -> ReadResult<'a, Expr> {
+    match mixed {
+        ExprOrCondition::Expr(expr) => Ok((rest, expr)),
+        ExprOrCondition::Condition(_) => no_expression(spaces(from)),
+    }
+}
+
+type OperatorParser = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)>;
+type OperandParser = for<'a> fn(LineInput, Input<'a>, u8) -> ReadResult<'a, ExprOrCondition>;
+
+/// `+ - OR XOR |`, left to right.
+fn sum(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    let operator: OperatorParser = |input| match next(input)? {
+        (b'+', rest) => Some((rest, BinaryOp::Add, OperatorSpelling::Sign)),
+        (b'-', rest) => Some((rest, BinaryOp::Sub, OperatorSpelling::Sign)),
+        (b'|', rest) => Some((rest, BinaryOp::Or, OperatorSpelling::Sign)),
+        (b'O' | b'o', _) => letter_operator(input, "OR", BinaryOp::Or),
+        (b'X' | b'x', _) => letter_operator(input, "XOR", BinaryOp::Xor),
+        _ => None,
+    };
+    chain(line, input, depth, operator, term)
+}
+
+/// `* / AND MOD &`, left to right.
+fn term(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    let operator: OperatorParser = |input| match next(input)? {
+        (b'*', rest) => Some((rest, BinaryOp::Mul, OperatorSpelling::Sign)),
+        (b'/', rest) => Some((rest, BinaryOp::Div, OperatorSpelling::Sign)),
+        (b'&', rest) => Some((rest, BinaryOp::And, OperatorSpelling::Sign)),
+        (b'A' | b'a', _) => letter_operator(input, "AND", BinaryOp::And),
+        (b'M' | b'm', _) => letter_operator(input, "MOD", BinaryOp::Mod),
+        _ => None,
+    };
+    chain(line, input, depth, operator, signed)
+}
+
+fn letter_operator<'a>(
+    input: Input<'a>,
+    text: &'static str,
+    op: BinaryOp,
+) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)> {
+    word(text)(input).ok().map(|(rest, ())| (rest, op, OperatorSpelling::Letters))
+}
+
+fn chain<'a>(
+    line: LineInput,
+    input: Input<'a>,
+    depth: u8,
+    operator: OperatorParser,
+    part: OperandParser,
+) -> ReadResult<'a, ExprOrCondition> {
+    let start = spaces(input);
+    let (mut rest, mut left) = part(line, input, depth)?;
+    let mut count = 0;
+    while let Some((after, op, written)) = operator(rest) {
+        let at = spaces(rest);
+        count += 1;
+        if count > MAX_OPERATORS {
+            let what = format!("an expression of more than {MAX_OPERATORS} operators");
+            return fail(at, Alarm::NotSimulated { what });
+        }
+        let (after, right) = require_value(part(line, after, depth), after)?;
+        let bits = matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor);
+        left = match (left, right) {
+            // `&` and `|` join conditions only.
+            (ExprOrCondition::Expr(_), ExprOrCondition::Expr(_))
+                if bits && written == OperatorSpelling::Sign =>
+            {
+                return no_expression(at);
+            }
+            (ExprOrCondition::Expr(left), ExprOrCondition::Expr(right)) => ExprOrCondition::Expr(Expr {
+                kind: ExprKind::Binary(op, Box::new(left), Box::new(right)),
+                span: line.span(start, after),
+            }),
+            (ExprOrCondition::Condition(left), ExprOrCondition::Condition(right)) if bits => {
+                ExprOrCondition::Condition(Condition::Logic(op, written, Box::new(left), Box::new(right)))
+            }
+            _ => return no_expression(at),
+        };
+        rest = after;
+    }
+    Ok((rest, left))
+}
+
+/// Where a value must follow, round brackets, which are a comment, get an alarm of their own.
+pub(super) fn require_value<'a, T>(read: ReadResult<'a, T>, at: Input<'a>) -> ReadResult<'a, T> {
+    match read {
+        Err(nom::Err::Error(_)) if comment_before(at) => round_brackets(at, None),
+        Err(nom::Err::Error(_)) => no_expression(spaces(at)),
+        read => read,
+    }
+}
+
+fn signed(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    let start = spaces(input);
+    let wrap: fn(Box<Expr>) -> ExprKind = match start.first() {
+        Some(b'-') => ExprKind::Negate,
+        Some(b'+') => ExprKind::Plus,
+        _ => return primary(line, input, depth),
+    };
+    let (rest, mixed) = require_value(primary(line, &start[1..], depth), &start[1..])?;
+    let (rest, inner) = number(rest, start, mixed)?;
+    Ok((rest, ExprOrCondition::Expr(Expr { kind: wrap(Box::new(inner)), span: line.span(start, rest) })))
+}
+
+fn primary(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    let start = spaces(input);
+    let (rest, expr) = match start.first() {
+        Some(b'0'..=b'9' | b'.') => {
+            let (rest, number) = decimal(start, false, EXPRESSION_LIMIT)?;
+            (rest, Expr { kind: ExprKind::Literal(number), span: line.span(start, rest) })
+        }
+        Some(b'#') => numbered(line, start, depth)?,
+        Some(b'[') if is_name(start) => named(line, start, depth)?,
+        Some(b'[') => return bracket(line, start, depth),
+        Some(b'A'..=b'Z' | b'a'..=b'z') => call(line, start, depth)?,
+        _ => return no_match(input),
+    };
+    Ok((rest, ExprOrCondition::Expr(expr)))
+}
+
+/// `[…]` with whatever is in it.
+fn bracket(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    let depth = increase_depth(input, depth)?;
+    let start = &input[1..];
+    let (rest, left) = require_value(sum(line, start, depth), start)?;
+    let (rest, inside) = match (relation(rest), left) {
+        (Ok((after, (relation, written))), ExprOrCondition::Expr(left)) => {
+            let (after, right) = require_value(expr(line, after, depth), after)?;
+            let span = line.span(spaces(start), after);
+            (
+                after,
+                ExprOrCondition::Condition(Condition::Compare {
+                    left,
+                    relation,
+                    spelling: written,
+                    right,
+                    span,
+                }),
+            )
+        }
+        (Ok(_), ExprOrCondition::Condition(_)) => return no_expression(spaces(rest)),
+        (Err(nom::Err::Error(_)), left) => (rest, left),
+        (Err(error), _) => return Err(error),
+    };
+    let (rest, ()) = close(rest)?;
+    let inside = match inside {
+        ExprOrCondition::Expr(inner) => ExprOrCondition::Expr(Expr {
+            kind: ExprKind::Bracket(Box::new(inner)),
+            span: line.span(input, rest),
+        }),
+        ExprOrCondition::Condition(inner) => ExprOrCondition::Condition(Condition::Bracket(Box::new(inner))),
+    };
+    Ok((rest, inside))
+}
+
+/// The signs of comparisons, the longer ones first.
+const SIGNS: [(&[u8], Relation); 6] = [
+    (b"<>", Relation::Ne),
+    (b">=", Relation::Ge),
+    (b"<=", Relation::Le),
+    (b"=", Relation::Eq),
+    (b">", Relation::Gt),
+    (b"<", Relation::Lt),
+];
+
+fn relation(input: Input<'_>) -> ReadResult<'_, (Relation, OperatorSpelling)> {
+    let start = spaces(input);
+    if let Some((sign, relation)) = SIGNS.iter().find(|(sign, _)| start.starts_with(sign)) {
+        let rest = &start[sign.len()..];
+        return match next(rest) {
+            // `==` and `=>` are no control's.
+            Some((b'=' | b'<' | b'>', _)) => fail(start, Alarm::RelationSymbol),
+            _ => Ok((rest, (*relation, OperatorSpelling::Sign))),
+        };
+    }
+    let letters = alt((
+        value(Relation::Eq, word("EQ")),
+        value(Relation::Ne, word("NE")),
+        value(Relation::Gt, word("GT")),
+        value(Relation::Ge, word("GE")),
+        value(Relation::Lt, word("LT")),
+        value(Relation::Le, word("LE")),
+    ));
+    letters.map(|relation| (relation, OperatorSpelling::Letters)).parse(input)
+}
+
+pub(super) fn increase_depth(input: Input<'_>, depth: u8) -> Result<u8, nom::Err<super::token::ReadFailure>> {
+    if depth < MAX_BRACKET_DEPTH {
+        Ok(depth + 1)
+    } else {
+        fail(input, Alarm::TooManyBrackets).map(|(_, depth)| depth)
+    }
+}
+
+pub(super) fn close(input: Input<'_>) -> ReadResult<'_, ()> {
+    if spaces(input).is_empty() {
+        return fail(spaces(input), Alarm::MissingCloseBracket);
+    }
+    require(sign(b']'), || Alarm::Expression { text: String::new() })(input)
+}
+
+/// `#5`, `#-1` (an alarm when it runs), `#[…]`; `##1` is none.
+fn numbered(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
+    let (rest, index) = match next(&input[1..]) {
+        Some((b'[' | b'0'..=b'9' | b'.' | b'-', _)) => {
+            let (rest, mixed) = require_value(signed(line, &input[1..], depth), input)?;
+            number(rest, input, mixed)?
+        }
+        _ if comment_before(&input[1..]) => return round_brackets(&input[1..], None),
+        _ => return no_expression(input),
+    };
+    Ok((rest, Expr { kind: ExprKind::Variable(Box::new(index)), span: line.span(input, rest) }))
+}

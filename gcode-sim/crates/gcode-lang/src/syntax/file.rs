@@ -1,0 +1,176 @@
+//! A whole file: the programs in it.
+use super::ast::{Block, Program, ProgramName};
+use super::file_items::{FileItem, FileItems, is_unreadable_block};
+use crate::source::{SourceId, Span};
+
+/// One program, its blocks in the form that was asked for.
+#[derive(Debug)]
+pub struct ProgramParts<C, B> {
+    pub name: ProgramName,
+    pub span: Span,
+    pub context: C,
+    pub blocks: Vec<B>,
+    /// Whether `%` or another program follows, and not just the end of the text.
+    pub is_closed: bool,
+}
+
+/// All programs of a file.
+pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
+    let mut programs = Programs::<(), Block>::default();
+    for piece in FileItems::new(source, bytes) {
+        match piece {
+            FileItem::Section => programs.close(),
+            FileItem::Program { name, span } => programs.begin(name, span),
+            FileItem::Block(block) => {
+                let (span, silent) = (block.span, is_unreadable_block(&block));
+                programs.program_for_block(span, silent).blocks.push(block);
+            }
+        }
+    }
+    let parts = programs.finish().into_iter();
+    parts.map(|ProgramParts { name, span, blocks, .. }| Program { name, span, blocks }).collect()
+}
+
+/// The programs that pieces make up. Each has a context of its own.
+#[derive(Debug)]
+pub(super) struct Programs<C, B> {
+    /// Each with whether nothing in it can be read.
+    list: Vec<(ProgramParts<C, B>, bool)>,
+    /// Whether a block that comes now belongs to the last one.
+    is_open: bool,
+}
+
+impl<C, B> Default for Programs<C, B> {
+    fn default() -> Self {
+        Self { list: Vec::new(), is_open: false }
+    }
+}
+
+impl<C: Default, B> Programs<C, B> {
+    /// Another program follows.
+    pub(super) fn begin(&mut self, name: ProgramName, span: Span) {
+        self.close();
+        let silent = name == ProgramName::Unnamed;
+        let (context, blocks) = (C::default(), Vec::new());
+        self.list.push((ProgramParts { name, span, context, blocks, is_closed: false }, silent));
+        self.is_open = true;
+    }
+
+    /// Something follows the last program.
+    pub(super) fn close(&mut self) {
+        if let Some((program, _)) = self.list.last_mut() {
+            program.is_closed = true;
+        }
+        self.is_open = false;
+    }
+
+    /// The program that a block belongs to, `silent` if nothing in it can be read. Blocks before the first O word of a
+    /// section are a program without a name.
+    pub(super) fn program_for_block(&mut self, span: Span, is_unreadable: bool) -> &mut ProgramParts<C, B> {
+        if !self.is_open {
+            self.begin(ProgramName::Unnamed, span);
+        }
+        let last = self.list.len() - 1;
+        let (program, all_silent) = &mut self.list[last];
+        *all_silent &= is_unreadable;
+        program
+    }
+
+    /// All of them. One in which nothing can be read is the text around a tape and left out where the file has others.
+    pub(super) fn finish(self) -> Vec<ProgramParts<C, B>> {
+        let is_only_program = self.list.len() == 1;
+        self.list
+            .into_iter()
+            .filter(|(_, silent)| is_only_program || !silent)
+            .map(|(program, _)| program)
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ast::{Item, Statement, WordValue};
+    use super::*;
+    use crate::alarm::AlarmCode;
+
+    fn programs(text: &[u8]) -> Vec<Program> {
+        parse(SourceId(0), text)
+    }
+
+    fn alarms(text: &str) -> Vec<AlarmCode> {
+        let blocks = programs(text.as_bytes()).into_iter().flat_map(|p| p.blocks);
+        let items = blocks.flat_map(|b| b.items);
+        items
+            .filter_map(|item| if let Item::Unreadable(a) = item { Some(a.alarm.node.code()) } else { None })
+            .collect()
+    }
+
+    #[test]
+    fn a_file_of_two_programs_with_a_leader() {
+        let found = programs(b"PART 7\r\n%\r\nO1(A)\r\nG0X1 0.5Y-#1\r\nM30\r\nO2\r\nM99\r\n%\r\n");
+        let names: Vec<_> = found.iter().map(|p| p.name.clone()).collect();
+        assert_eq!(names, [ProgramName::Number(1), ProgramName::Number(2)]);
+        let words = &found[0].blocks[1].items;
+        assert_eq!(words.len(), 3);
+        let Item::Word(x) = &words[1] else { panic!("a word") };
+        let WordValue::Literal(number) = &x.value else { panic!("a literal") };
+        assert_eq!((number.value(), number.places), (10.5, Some(1)));
+    }
+
+    #[test]
+    fn a_number_run_together_begins_the_next_program() {
+        let found = programs(b"%O0003(X)\nM99O0810(TEXT)\nM30\n%");
+        let names: Vec<_> = found.iter().map(|p| p.name.clone()).collect();
+        assert_eq!(names, [ProgramName::Number(3), ProgramName::Number(810)]);
+        assert_eq!(found[1].blocks[0].comments[0].text, b"TEXT");
+    }
+
+    #[test]
+    fn statements_are_told_from_words() {
+        let found =
+            programs(b"N41GOTO#22\nIF[[#1 EQ 1]AND[#2 LT 3]]THEN#3000=1(BAD)\nWH[#1GT0]DO1\nEND 1\nDO4\n");
+        let kinds: Vec<_> = found[0]
+            .blocks
+            .iter()
+            .map(|b| match &b.items[0] {
+                Item::Statement(s) => match &s.node {
+                    Statement::Goto(_) => "goto",
+                    Statement::IfThen { .. } => "if then",
+                    Statement::While { .. } => "while",
+                    Statement::End(_) => "end",
+                    Statement::Do(_) => "do",
+                    _ => "else",
+                },
+                _ => "no statement",
+            })
+            .collect();
+        assert_eq!(kinds, ["goto", "if then", "while", "end", "do"]);
+        assert_eq!(found[0].blocks[1].comments[0].text, b"BAD");
+    }
+
+    #[test]
+    fn what_cannot_be_read_has_the_alarm_of_a_control() {
+        for (text, alarm) in [
+            ("G0 X1..5", 7),
+            ("G0 X Y10.", 5),
+            ("X-12.8.", 7),
+            ("X-11.Z", 5),
+            ("G0 X123456789012.", 3),
+            ("#100=[[[[[[1+1]]]]]]", 118),
+            ("#100=1+2]", 1131),
+            ("#100=[1+2", 1132),
+            ("#100 5", 1133),
+            ("#100=2**3", 1125),
+            ("#1=ABS(#26 - #13)", 1131),
+            ("#100=[1 LT 2]", 1125),
+            ("IF #1 EQ 1 GOTO 10", 1137),
+            ("IF[#814GT1]", 1137),
+            ("WHILE[#500LT1]", 1138),
+            ("WHILE #1 LT 2 DO1", 1138),
+            ("X#1+#2", 4),
+            ("?", 4),
+        ] {
+            assert_eq!(alarms(text), [AlarmCode::Ps(alarm)], "{text}");
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! A file piece by piece: `%`, the beginnings of programs, and blocks.
+use std::collections::VecDeque;
+
+use super::ast::{Block, Comment, Item, ProgramName, Unreadable};
+use super::block::{begins_program, read_block};
+use super::comment::blank_out_comments;
+use super::dividers::find_divider;
+use super::number::integer;
+use super::token::{Input, LineInput, is_space, spaces, unspaced};
+use super::word::program_name;
+use crate::alarm::Alarm;
+use crate::source::{SourceId, Span, end_of_line, line_length};
+
+/// What a file is made of, line by line, so that nobody has to hold all of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FileItem<B = Block> {
+    /// `%`: what follows belongs to no program yet.
+    Section,
+    /// `O0001`, `:0007`, `<NAME>`; words on its line are the next piece.
+    Program {
+        name: ProgramName,
+        span: Span,
+    },
+    Block(B),
+}
+
+/// Reads the pieces of a file in order. Lines without anything in them are left out.
+#[derive(Debug)]
+pub struct FileItems<'a> {
+    source: SourceId,
+    bytes: &'a [u8],
+    /// Where the next line begins.
+    next_line_start: usize,
+    /// The line in hand: where it begins, what is left to read, and where the line itself and its code end.
+    line_start: usize,
+    position: usize,
+    line_end: usize,
+    code_end: usize,
+    /// How far nothing divides the lines behind the one in hand.
+    undivided_end: usize,
+    /// The line's code where comments had to be blanked, and where it begins.
+    blanked: Option<usize>,
+    code: Vec<u8>,
+    /// The line's comments that no piece has taken yet.
+    comments: VecDeque<Comment>,
+}
+
+impl<'a> FileItems<'a> {
+    pub fn new(source: SourceId, bytes: &'a [u8]) -> Self {
+        let bytes = without_trailer(bytes);
+        Self::starting(source, bytes, byte_order_marks(bytes)).skip_leader()
+    }
+
+    /// The pieces from a place on where a line begins, spaces before it left out; of a text as [`written`].
+    pub(super) fn starting_at(source: SourceId, bytes: &'a [u8], place: u32) -> Self {
+        Self::starting(source, bytes, place as usize)
+    }
+
+    fn starting(source: SourceId, bytes: &'a [u8], next: usize) -> Self {
+        let (code, comments) = (Vec::new(), VecDeque::new());
+        Self {
+            source,
+            bytes,
+            next_line_start: next,
+            line_start: 0,
+            position: 0,
+            line_end: 0,
+            code_end: 0,
+            undivided_end: next,
+            blanked: None,
+            code,
+            comments,
+        }
+    }
+
+    /// What stands before the first `%` is a leader, which a control ignores, if nothing in it can be read.
+    fn skip_leader(mut self) -> Self {
+        // Nearly every file begins with what can be read.
+        let first = FileItems::starting(self.source, self.bytes, self.next_line_start).next();
+        let text = &self.bytes[self.next_line_start..];
+        if !first.as_ref().is_some_and(has_nothing_readable) || !text.contains(&b'%') {
+            return self;
+        }
+        let begins_line = |at: usize| text[..at].last().is_none_or(|b| matches!(b, b'\n' | b'\r'));
+        let mark = text.iter().enumerate().find(|(at, byte)| **byte == b'%' && begins_line(*at));
+        let Some((mark, _)) = mark else { return self };
+        let mut leader = FileItems::starting(
+            self.source,
+            &self.bytes[..self.next_line_start + mark],
+            self.next_line_start,
+        );
+        if leader.all(|piece| has_nothing_readable(&piece)) {
+            self.next_line_start += mark;
+        }
+        self
+    }
+
+    /// Takes the next line in hand. Folder lines of memory dumps, `&F=//CNC_MEM/…`, say nothing to the control.
+    pub(super) fn next_line(&mut self) -> Option<()> {
+        loop {
+            let text = self.bytes.get(self.next_line_start..).filter(|text| !text.is_empty())?;
+            let length = line_length(text);
+            (self.line_start, self.position) = (self.next_line_start, self.next_line_start);
+            self.line_end = self.next_line_start + length;
+            self.code_end = self.line_end;
+            self.blanked = None;
+            self.next_line_start = self.line_end + end_of_line(&text[length..]);
+            let line = &text[..length];
+            if unspaced(line).starts_with(b"&F=") {
+                continue;
+            }
+            if line.iter().fold(false, |any, byte| any | matches!(byte, b'(' | b';' | b'/')) {
+                self.blank_comments(line);
+            }
+            return Some(());
+        }
+    }
+
+    fn blank_comments(&mut self, text: &[u8]) {
+        let Self { source, position: at, code, comments, .. } = self;
+        blank_out_comments(*source, *at as u32, text, code, comments, |text| {
+            let mut block = Block::default();
+            let left =
+                read_block(LineInput { source: SourceId(0), end: text.len() as u32 }, text, &mut block);
+            !left.is_empty() || !is_unreadable_block(&block) && !block.items.iter().any(is_unreadable)
+        });
+        self.code_end = *at + code.len();
+        self.blanked = Some(*at);
+    }
+
+    /// Reads the next piece of the line in hand; `None` at its end.
+    pub(super) fn next_item(&mut self) -> Option<FileItem> {
+        if self.position == self.code_end && self.comments.is_empty() {
+            return None;
+        }
+        self.read_item()
+    }
+
+    fn read_item(&mut self) -> Option<FileItem> {
+        let text = match self.blanked {
+            Some(begin) => &self.code[self.position - begin..],
+            None => &self.bytes[self.position..self.code_end],
+        };
+        let line = LineInput { source: self.source, end: self.code_end as u32 };
+        let from = self.position;
+        let at = spaces(text);
+        let left = |rest: Input<'_>| self.code_end - rest.len();
+        if at.is_empty() && self.comments.is_empty() {
+            return None;
+        }
+        if let Some(behind) = at.strip_prefix(b"%") {
+            // `%O0003(…)` goes on with the program; any other text behind the sign is a leader.
+            let behind = spaces(behind);
+            let goes_on = begins_program(behind) || behind.first() == Some(&b'<');
+            self.position = if goes_on { left(behind) } else { self.code_end };
+            if !goes_on {
+                self.comments.clear();
+            }
+            return Some(FileItem::Section);
+        }
+        if let [b'O' | b'o' | b':' | b'<', ..] = at
+            && let Some((rest, name)) = program_word(at)
+        {
+            let span = line.span(at, rest);
+            self.position = left(rest);
+            return Some(FileItem::Program { name, span });
+        }
+        let mut block = Block::default();
+        let to = left(read_block(line, text, &mut block));
+        self.position = to;
+        self.attach_comments(&mut block, from, to);
+        Some(FileItem::Block(block))
+    }
+
+    /// The lines behind the one in hand without spaces before them, as long as each is one block whatever stands in it:
+    /// nothing divides it and nothing in it is a remark. They count as read then.
+    #[inline]
+    pub(super) fn plain_lines(&mut self, mut each: impl FnMut(Span)) {
+        let mut text = &self.bytes[self.next_line_start..];
+        while !text.is_empty() {
+            let place = self.bytes.len() - text.len();
+            if self.undivided_end <= place {
+                self.undivided_end = find_divider(self.bytes, place);
+            }
+            let (line, behind) = text.split_at(line_length(text));
+            let end = place + line.len();
+            if self.undivided_end < end {
+                break;
+            }
+            let line = if let [0x21..=0x7e, ..] = line { line } else { unspaced(line) };
+            if !line.is_empty() {
+                each(Span { source: self.source, start: (end - line.len()) as u32, end: end as u32 });
+            }
+            text = &behind[end_of_line(behind)..];
+        }
+        self.next_line_start = self.bytes.len() - text.len();
+    }
+
+    /// Whether nothing of the line in hand has been read.
+    pub(super) fn begins_line(&self) -> bool {
+        self.position == self.line_start
+    }
+
+    /// Gives the block its comments and its place, and what can't be read its text as written.
+    fn attach_comments(&mut self, block: &mut Block, from: usize, to: usize) {
+        let is_last = to == self.code_end;
+        let end = if is_last { self.line_end } else { to };
+        if is_last {
+            block.comments = self.comments.drain(..).collect();
+        } else if !self.comments.is_empty() {
+            let own = self.comments.iter().take_while(|c| (c.span.start as usize) < to).count();
+            block.comments.extend(self.comments.drain(..own));
+        }
+        block.span = trimmed(self.source, self.bytes, from, end);
+        if let Some(Item::Unreadable(unreadable)) = block.items.last_mut() {
+            fill_alarm_text(unreadable, self.bytes, end);
+            let begin = unreadable.span.start;
+            block.comments.retain(|c| c.span.start < begin);
+        }
+    }
+}
+
+impl Iterator for FileItems<'_> {
+    type Item = FileItem;
+
+    fn next(&mut self) -> Option<FileItem> {
+        loop {
+            if let Some(piece) = self.next_item() {
+                return Some(piece);
+            }
+            self.next_line()?;
+        }
+    }
+}
+
+/// The text without what senders end a file with: 0x1A or blank tape.
+pub fn without_trailer(bytes: &[u8]) -> &[u8] {
+    let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
+    &bytes[..kept.map_or(0, |last| last + 1)]
+}
+
+/// The length of the byte order mark; an editor that doesn't know it puts another before it.
+fn byte_order_marks(bytes: &[u8]) -> usize {
+    3 * bytes.chunks(3).take_while(|mark| mark == b"\xef\xbb\xbf").count()
+}
+
+/// The place of what stands between two offsets, spaces around it left out.
+fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
+    let text = &bytes[from..to];
+    let start = from + text.len() - unspaced(text).len();
+    let end = text.iter().rposition(|b| !is_space(*b)).map_or(start, |last| from + last + 1);
+    Span { source, start: start as u32, end: end as u32 }
+}
+
+/// Where what stands before a place ends, spaces left out.
+pub fn end_without_spaces(bytes: &[u8], place: u32) -> u32 {
+    let text = &bytes[..place as usize];
+    text.iter().rposition(|b| !is_space(*b)).map_or(0, |last| last as u32 + 1)
+}
+
+/// Fills in what is shown of a text that can't be read.
+fn fill_alarm_text(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
+    let Unreadable { alarm, span, text } = unreadable;
+    *span = trimmed(span.source, bytes, span.start as usize, end);
+    *text = bytes[span.start as usize..span.end as usize].to_vec();
+    alarm.span.end = span.end.max(alarm.span.start);
+    if let Alarm::NotAWord { text } | Alarm::Expression { text } | Alarm::AxisAddress { text } =
+        &mut alarm.node
+    {
+        let rest = String::from_utf8_lossy(&bytes[alarm.span.start as usize..alarm.span.end as usize]);
+        let shown: String = rest.chars().take(12).collect();
+        *text = shown.trim_end().to_owned();
+    }
+}
+
+fn is_unreadable(item: &Item) -> bool {
+    matches!(item, Item::Unreadable(_))
+}
+
+fn has_nothing_readable(piece: &FileItem) -> bool {
+    matches!(piece, FileItem::Block(block) if is_unreadable_block(block))
+}
+
+/// No word and no statement that can be read: a comment, or text that was never meant for a control.
+pub(super) fn is_unreadable_block(block: &Block) -> bool {
+    block.items.iter().all(is_unreadable) && block.number.is_none() && block.skip.is_none()
+}
+
+/// `O0001`, `:0007`, `<NAME>`, `O9123<NAME>`, where the number is the name and the rest a title.
+fn program_word(at: Input<'_>) -> Option<(Input<'_>, ProgramName)> {
+    if begins_program(at) {
+        let (rest, number) = integer(spaces(&at[1..])).ok()?;
+        let number = u32::try_from(number).ok().filter(|n| (1..=99_999_999).contains(n))?;
+        let rest = program_name(spaces(rest)).map_or(rest, |(rest, _)| rest);
+        return Some((rest, ProgramName::Number(number)));
+    }
+    let (rest, text) = program_name(at).ok()?;
+    Some((rest, ProgramName::of(text)))
+}

@@ -1,0 +1,220 @@
+//! Lengths, angles, feeds, speeds and times as types, and the only sines and cosines of the project.
+//!
+//! The trigonometry comes from `libm`, so that every machine computes the same bits and stored results hold.
+use std::ops::{Add, Mul, Neg, Sub};
+
+use serde::{Deserialize, Serialize};
+
+/// `value` × `scale` as the nearest whole number, halves away from 0. What binary numbers miss of a half counts as one:
+/// 0.5005 × 1000 is 500.49999999999994 to a double, and 501 to everybody who reads it.
+pub fn round_scaled(value: f64, scale: f64) -> f64 {
+    round(value * scale * HALF_CORRECTION)
+}
+
+/// As [`nearest`], up to a largest size; `None` beyond it.
+#[inline]
+pub fn round_scaled_within(value: f64, scale: f64, max: f64) -> Option<f64> {
+    debug_assert!(max < FRACTION_LIMIT, "{max} has no room for a fraction");
+    let rounded = round_small(value * scale * HALF_CORRECTION);
+    (rounded.abs() <= max).then_some(rounded)
+}
+
+/// What lifts a half that binary numbers miss.
+const HALF_CORRECTION: f64 = 1.0 + 4.0 * f64::EPSILON;
+
+macro_rules! unit {
+    ($(#[$doc:meta])* $name:ident, $suffix:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
+        #[serde(transparent)]
+        pub struct $name(pub f64);
+
+        impl $name {
+            pub const ZERO: Self = Self(0.0);
+
+            pub fn abs(self) -> Self {
+                Self(self.0.abs())
+            }
+        }
+
+        impl Add for $name {
+            type Output = Self;
+            fn add(self, other: Self) -> Self {
+                Self(self.0 + other.0)
+            }
+        }
+
+        impl Sub for $name {
+            type Output = Self;
+            fn sub(self, other: Self) -> Self {
+                Self(self.0 - other.0)
+            }
+        }
+
+        impl Neg for $name {
+            type Output = Self;
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+        }
+
+        impl Mul<f64> for $name {
+            type Output = Self;
+            fn mul(self, factor: f64) -> Self {
+                Self(self.0 * factor)
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            /// The number with the precision asked for, and its unit.
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                std::fmt::Display::fmt(&self.0, f)?;
+                f.write_str($suffix)
+            }
+        }
+    };
+}
+
+unit!(/// A length in millimetres.
+    Mm, " mm");
+unit!(/// An angle in degrees.
+    Deg, "°");
+unit!(/// A feed in millimetres a minute.
+    MmPerMin, " mm/min");
+unit!(/// A spindle speed in revolutions a minute.
+    Rpm, " r/min");
+unit!(/// A time in seconds.
+    Seconds, " s");
+
+impl Deg {
+    pub fn from_rad(rad: f64) -> Self {
+        Self(rad.to_degrees())
+    }
+
+    pub fn to_rad(self) -> f64 {
+        self.0.to_radians()
+    }
+
+    pub fn sin(self) -> f64 {
+        libm::sin(self.to_rad())
+    }
+
+    pub fn cos(self) -> f64 {
+        libm::cos(self.to_rad())
+    }
+
+    pub fn tan(self) -> f64 {
+        libm::tan(self.to_rad())
+    }
+
+    /// −90° … 90°.
+    pub fn asin(sine: f64) -> Self {
+        Self::from_rad(libm::asin(sine))
+    }
+
+    /// 0° … 180°.
+    pub fn acos(cosine: f64) -> Self {
+        Self::from_rad(libm::acos(cosine))
+    }
+
+    /// The direction of the point (x, y): −180° … 180°.
+    #[inline]
+    pub fn atan2(y: f64, x: f64) -> Self {
+        Self::from_rad(libm::atan2(y, x))
+    }
+}
+
+/// Beyond it a double has no fraction.
+const FRACTION_LIMIT: f64 = 4_503_599_627_370_496.0;
+
+/// Half away from 0: `f64::round` without a branch, so that several numbers can be rounded at once.
+#[inline]
+pub fn round(value: f64) -> f64 {
+    if value.abs() < FRACTION_LIMIT { round_small(value) } else { value }
+}
+
+/// The same of numbers that have room for a fraction; the others are only near to what they were.
+#[inline]
+fn round_small(value: f64) -> f64 {
+    let magnitude = value.abs();
+    // In the sum there is no room for a fraction: it is the nearest whole number, of two the even one.
+    let even = (magnitude + FRACTION_LIMIT) - FRACTION_LIMIT;
+    let half_step = if magnitude - even == 0.5 { 1.0 } else { 0.0 };
+    (even + half_step).copysign(value)
+}
+
+/// The natural logarithm, the same bits everywhere like the sines.
+pub fn ln(value: f64) -> f64 {
+    libm::log(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn any_double_is_rounded_as_the_standard_library_does(value in any::<f64>(), near in -4e15..4e15) {
+            for value in [value, near, near / 1e9] {
+                prop_assert_eq!(round(value).to_bits(), value.round().to_bits());
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_nearest_is_the_same_within_a_size(value in any::<f64>(), near in -2e6..2e6, tenths in 0_i32..5) {
+            let (scale, most) = (10_f64.powi(tenths), 999_999_999.0);
+            for value in [value, near, near * 1e4, (near * 2.0).round() / 2.0 / scale] {
+                let wanted = Some(round_scaled(value, scale)).filter(|number| number.abs() <= most);
+                prop_assert_eq!(round_scaled_within(value, scale, most).map(f64::to_bits), wanted.map(f64::to_bits));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_beyond_a_size_is_not_rounded() {
+        for value in [1e9, 4e15, 1e300, f64::MAX, f64::INFINITY, f64::NAN] {
+            assert_eq!(
+                [
+                    round_scaled_within(value, 1.0, 999_999_999.0),
+                    round_scaled_within(-value, 1.0, 999_999_999.0)
+                ],
+                [None; 2]
+            );
+        }
+        assert_eq!(round_scaled_within(999_999.999_4, 1000.0, 999_999_999.0), Some(999_999_999.0));
+        assert_eq!(round_scaled_within(-0.5005, 1000.0, 999_999_999.0), Some(-501.0));
+    }
+
+    #[test]
+    fn rounding_is_that_of_the_standard_library_bit_for_bit() {
+        let near = [
+            0.0,
+            0.5,
+            1.0,
+            1.5,
+            2.5,
+            1e9 + 0.5,
+            FRACTION_LIMIT / 2.0 - 0.5,
+            FRACTION_LIMIT,
+            1e300,
+            f64::INFINITY,
+            f64::MAX,
+        ];
+        let values = near.into_iter().flat_map(|value| [value.next_down(), value, value.next_up()]);
+        for value in values.chain([f64::MIN_POSITIVE, 0.3, 123_456.789]).flat_map(|value| [value, -value]) {
+            assert_eq!(round(value).to_bits(), value.round().to_bits(), "{value:?}");
+        }
+        assert!(round(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn angles_are_degrees() {
+        assert!((Deg(30.0).sin() - 0.5).abs() < 1e-15);
+        assert!((Deg::atan2(1.0, -1.0).0 - 135.0).abs() < 1e-12);
+        assert_eq!(format!("{:.3}", Mm(1.5)), "1.500 mm");
+    }
+}

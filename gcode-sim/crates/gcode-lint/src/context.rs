@@ -1,0 +1,229 @@
+//! The programs under check, each with its text, its blocks, its ways and its calls.
+use std::collections::{BTreeMap, BTreeSet};
+
+use gcode_lang::control::Settings;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::Backtrace;
+use gcode_lang::program::{CallCode, Memory, Op, OpIndex, OpKind, Program, ProgramId};
+use gcode_lang::source::{SourceId, Span};
+use gcode_lang::syntax::{self, ast};
+
+use super::calls::{self, CallSite};
+use super::control_flow::ControlFlowGraph;
+
+/// Everything a rule may look at.
+#[derive(Debug)]
+pub(crate) struct CheckContext<'a> {
+    pub memory: &'a Memory,
+    pub settings: &'a Settings,
+    pub units: Vec<ProgramUnit<'a>>,
+    /// The names of all rules, as CHECK-OFF may have them.
+    pub rules: Vec<&'static str>,
+    unit_indices: BTreeMap<ProgramId, usize>,
+}
+
+/// One program.
+#[derive(Debug)]
+pub(crate) struct ProgramUnit<'a> {
+    /// As written: the tree keeps comments and points.
+    pub blocks: Vec<ast::Block>,
+    /// As it will run; block and operation have the same index.
+    pub program: &'a Program,
+    pub flow: ControlFlowGraph,
+    pub calls: Vec<CallSite>,
+    /// Who calls it: unit and place in its calls.
+    pub callers: Vec<(usize, usize)>,
+    /// The first block, and those where calls with Q start.
+    pub entry_blocks: Vec<OpIndex>,
+    /// Whether anything reaches each block.
+    pub is_reached: Vec<bool>,
+    pub role: Role,
+}
+
+/// How a program is entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// By the operator: all locals are vacant.
+    Main,
+    /// Only by calls that are seen here.
+    Called,
+    /// Nothing here calls it, and it returns: by calls that nobody sees.
+    Resident,
+}
+
+impl<'a> CheckContext<'a> {
+    pub(super) fn new(
+        memory: &'a Memory,
+        settings: &'a Settings,
+        programs: &[ProgramId],
+        rules: Vec<&'static str>,
+    ) -> Self {
+        let places = programs.iter().enumerate().map(|(unit, id)| (*id, unit)).collect();
+        let mut trees = trees(memory, programs);
+        let units = programs
+            .iter()
+            .map(|id| {
+                let program = memory.get(*id);
+                ProgramUnit {
+                    blocks: trees.remove(id).unwrap_or_default(),
+                    flow: ControlFlowGraph::new(program),
+                    calls: calls::call_sites(program, settings),
+                    callers: Vec::new(),
+                    entry_blocks: vec![0],
+                    is_reached: Vec::new(),
+                    role: Role::Main,
+                    program,
+                }
+            })
+            .collect();
+        let mut subject = Self { memory, settings, units, rules, unit_indices: places };
+        subject.link_calls();
+        subject
+    }
+
+    /// Tells each program who calls it, each call where it may return to, and what is reached.
+    fn link_calls(&mut self) {
+        for caller in 0..self.units.len() {
+            for site in 0..self.units[caller].calls.len() {
+                let call = &self.units[caller].calls[site];
+                let block = call.block;
+                // M98 Q alone starts in the same program.
+                let own = call.target == calls::CalledProgramName::Missing && call.start.is_some();
+                let Some(called) = self.called_unit(call).or(own.then_some(caller)) else {
+                    self.units[caller].flow.add_return_anywhere(block);
+                    continue;
+                };
+                if let Some(number) = call.start {
+                    let start = self.units[called].program.find_number(number, 0);
+                    self.units[called].entry_blocks.extend(start);
+                }
+                let returns = &self.units[called].flow;
+                let anywhere =
+                    returns.block_successors.iter().any(|ways| ways.is_exit && ways.jumps_anywhere);
+                let numbers: Vec<u32> =
+                    returns.jumps.iter().filter(|jump| jump.is_return).map(|jump| jump.number).collect();
+                let to: Vec<_> =
+                    numbers.iter().filter_map(|n| self.units[caller].program.find_number(*n, 0)).collect();
+                if !own {
+                    self.units[called].callers.push((caller, site));
+                }
+                self.units[caller].flow.add_return_targets(block, to);
+                if anywhere {
+                    self.units[caller].flow.add_return_anywhere(block);
+                }
+            }
+        }
+        for unit in &mut self.units {
+            unit.role = unit.determine_role();
+            unit.is_reached = unit.flow.reachable(unit.entry_blocks.iter().copied());
+        }
+    }
+
+    /// The unit that a call goes to, where it is here.
+    pub(crate) fn called_unit(&self, call: &CallSite) -> Option<usize> {
+        let id = call.target.find(self.memory)?;
+        self.unit_indices.get(&id).copied()
+    }
+}
+
+/// The trees of programs, read once more from the texts in memory: lowering doesn't keep them.
+fn trees(memory: &Memory, programs: &[ProgramId]) -> BTreeMap<ProgramId, Vec<ast::Block>> {
+    let programs: BTreeSet<_> = programs.iter().collect();
+    let mut ids: BTreeMap<SourceId, Vec<ProgramId>> = BTreeMap::new();
+    for id in memory.ids() {
+        ids.entry(memory.get(id).span.source).or_default().push(id);
+    }
+    let mut found = BTreeMap::new();
+    for (source, ids) in ids {
+        let read = syntax::parse(source, &memory.sources().get(source).bytes);
+        let wanted = ids.into_iter().zip(read).filter(|(id, _)| programs.contains(id));
+        found.extend(wanted.map(|(id, tree)| (id, tree.blocks)));
+    }
+    found
+}
+
+impl ProgramUnit<'_> {
+    fn determine_role(&self) -> Role {
+        if !self.callers.is_empty() {
+            return Role::Called;
+        }
+        let returns = self.program.ops().iter().any(|op| match op.kind() {
+            OpKind::Words(words) => words.call().is_some_and(|call| call.kind == CallCode::Return),
+            _ => false,
+        });
+        let ends = self.flow.block_successors.iter().zip(self.program.ops()).any(|(ways, op)| {
+            let returns = matches!(op.kind(), OpKind::Words(words) if words.call().is_some());
+            ways.is_exit && matches!(op.kind(), OpKind::Words(_)) && !returns
+        });
+        if returns && !ends { Role::Resident } else { Role::Main }
+    }
+
+    pub(crate) fn op(&self, block: OpIndex) -> &Op {
+        &self.program.ops()[block]
+    }
+
+    /// The call that a block makes; a block has one at most, and they are kept in the order of their blocks.
+    pub(crate) fn call_in(&self, block: OpIndex) -> Option<&CallSite> {
+        let place = self.calls.binary_search_by_key(&block, |call| call.block).ok()?;
+        self.calls.get(place)
+    }
+
+    /// A finding about a block.
+    pub(crate) fn finding(
+        &self,
+        severity: Severity,
+        code: &'static str,
+        block: OpIndex,
+        message: impl Into<String>,
+    ) -> RuleFinding {
+        let place = Backtrace { block: self.op(block).span, calls: None };
+        RuleFinding { block, diagnostic: Diagnostic::new(severity, code, message).with_backtrace(place) }
+    }
+
+    pub(crate) fn error(
+        &self,
+        code: &'static str,
+        block: OpIndex,
+        message: impl Into<String>,
+    ) -> RuleFinding {
+        self.finding(Severity::Error, code, block, message)
+    }
+
+    pub(crate) fn warning(
+        &self,
+        code: &'static str,
+        block: OpIndex,
+        message: impl Into<String>,
+    ) -> RuleFinding {
+        self.finding(Severity::Warning, code, block, message)
+    }
+
+    pub(crate) fn note(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> RuleFinding {
+        self.finding(Severity::Note, code, block, message)
+    }
+}
+
+/// What a rule says of a block.
+#[derive(Debug)]
+pub(crate) struct RuleFinding {
+    pub block: OpIndex,
+    pub diagnostic: Diagnostic,
+}
+
+impl RuleFinding {
+    /// The exact part of the block.
+    pub(crate) fn with_span(mut self, span: Span) -> Self {
+        self.diagnostic.span = Some(span);
+        self
+    }
+
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
+        self.diagnostic = self.diagnostic.help(help);
+        self
+    }
+
+    pub(crate) fn label(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.diagnostic.labels.push((span, text.into()));
+        self
+    }
+}

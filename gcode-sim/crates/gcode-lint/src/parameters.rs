@@ -1,0 +1,31 @@
+//! Blocks between G10 L50 or L52 and G11: their words are parameters, their N is a parameter's number.
+use gcode_lang::program::{OpKind, Program, WordOperand, Words};
+
+use super::literal;
+
+/// Whether each block is such a one; G10 itself and G11 are not.
+pub(crate) fn parameter_blocks(program: &Program) -> Vec<bool> {
+    let mut parameters = false;
+    let blocks = program.ops().iter().map(|op| {
+        let before = parameters;
+        if let OpKind::Words(words) = op.kind() {
+            parameters = if parameters { !has_g(words, 110) } else { starts_parameter_input(words) };
+        }
+        before && parameters
+    });
+    blocks.collect()
+}
+
+/// What G10 writes: its L.
+pub(crate) fn data_input_kind(words: &Words) -> Option<u32> {
+    let l = words.list.iter().find(|word| word.letter == b'L');
+    l.filter(|_| has_g(words, 100)).and_then(literal::word_count)
+}
+
+fn starts_parameter_input(words: &Words) -> bool {
+    matches!(data_input_kind(words), Some(50 | 52))
+}
+
+fn has_g(words: &Words, code: u32) -> bool {
+    words.list.iter().any(|word| matches!(word.value, WordOperand::G(c, _) if c == code))
+}

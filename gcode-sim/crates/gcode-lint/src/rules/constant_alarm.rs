@@ -1,0 +1,97 @@
+//! Arithmetic of numbers written out that always alarms: `SQRT[-4]`, `5/0`, `ACOS[1.5]`.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::expressions;
+use gcode_control::static_eval::{atan2, binary, function, power};
+use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::control::Settings;
+use gcode_lang::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind, Function};
+
+use super::unreadable::finding;
+
+pub(super) const NAME: &str = "constant-alarm";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let mut found = Vec::new();
+    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
+        let mut numbers = ConstantEvaluator { settings: context.settings, alarms: Vec::new() };
+        for expr in expressions::block_expressions(block) {
+            numbers.value(expr);
+        }
+        found.extend(numbers.alarms.iter().map(|alarm| finding(context, unit, NAME, index, alarm)));
+    }
+    found
+}
+
+/// Computes what needs no variable, and keeps the alarms.
+struct ConstantEvaluator<'a> {
+    settings: &'a Settings,
+    alarms: Vec<LocatedAlarm>,
+}
+
+impl ConstantEvaluator<'_> {
+    /// `None` where it needs a variable, or has raised an alarm.
+    fn value(&mut self, expr: &Expr) -> Option<f64> {
+        let computed = match &expr.kind {
+            ExprKind::Literal(number) => Ok(number.value()),
+            ExprKind::Bracket(inner) | ExprKind::Plus(inner) => Ok(self.value(inner)?),
+            ExprKind::Negate(inner) => Ok(-self.value(inner)?),
+            ExprKind::Binary(op, left, right) => {
+                let (left, right) = (self.value(left), self.value(right)?);
+                // Whatever is divided by 0, it alarms.
+                let is_division = matches!(op, BinaryOp::Div | BinaryOp::Mod);
+                let value =
+                    binary(*op, left.or(is_division.then_some(1.0))?, right, &self.settings.undocumented);
+                if left.is_none() && value.is_ok() {
+                    return None;
+                }
+                value
+            }
+            ExprKind::Call(name, form) => self.call(*name, form)?,
+            ExprKind::Variable(index) => {
+                self.value(index);
+                return None;
+            }
+            ExprKind::Named(_) | ExprKind::Parameter { .. } | ExprKind::AxisNumber(_) => return None,
+        };
+        computed.map_err(|alarm| self.alarms.push(alarm.located_at(expr.span))).ok()
+    }
+
+    fn call(&mut self, name: Function, form: &CallForm) -> Option<Result<f64, Alarm>> {
+        match form {
+            CallForm::One(inner) => {
+                let x = self.value(inner)?;
+                // ADP wants a variable and POW two numbers: such a block can't be read.
+                (!matches!(name, Function::Adp | Function::Pow)).then(|| function(name, x, self.settings))
+            }
+            CallForm::Slash(one, other) | CallForm::Comma(one, other) => {
+                let (one, other) = (self.value(one), self.value(other));
+                match name {
+                    Function::Atan => Some(atan2(one?, other?, self.settings)),
+                    Function::Pow => Some(power(one?, other?)),
+                    _ => None,
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn numbers_that_no_function_takes() {
+        let text = "O1\n#1=SQRT[-4]\n#2=#1/0\n#3=1/[2-2]\n#4=ACOS[1.5]\n#5=LN[0]\nIF[#1 MOD 0 GT 2]GOTO 9\n\
+                    X[ASIN[-2]]\n#[5/0]=1\n#6=2+SQRT[0-ABS[-9]]*#1\nN9 M30\n";
+        assert_eq!(lines(NAME, text), [2, 3, 4, 5, 6, 7, 8, 9, 10]);
+        let found = messages(NAME, text);
+        assert!(found[0].starts_with("PS0119: ") && found[1].starts_with("PS0112: "), "{found:?}");
+    }
+
+    #[test]
+    fn what_computes_and_what_only_a_run_knows() {
+        let text = "O1\n#1=SQRT[4]/2\n#2=SQRT[#1-9]\n#3=5/#4\n#5=ACOS[-1]\n#6=0/5\n#7=ATAN[1]/[0]\n#8=7 MOD 3\nM30\n";
+        assert_eq!(lines(NAME, text), NOWHERE);
+    }
+}

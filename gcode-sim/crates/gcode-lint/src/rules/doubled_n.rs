@@ -1,0 +1,51 @@
+//! A sequence number that stands twice: which of the two a jump takes depends on the control's parameters and on
+//! what it has read already.
+use std::collections::BTreeMap;
+
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::parameters;
+use gcode_lang::source::Span;
+
+pub(super) const NAME: &str = "doubled-n";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
+    let mut found = Vec::new();
+    let parameters = parameters::parameter_blocks(unit.program);
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| !parameters[*block]) {
+        let Some(number) = op.number.filter(|number| *number > 0) else { continue };
+        match first.get_mut(&number) {
+            None => {
+                first.insert(number, (op.span, false));
+            }
+            Some((_, told @ false)) => {
+                *told = true;
+                let line = context.memory.sources().line_column(first[&number].0).line;
+                let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.is_return);
+                let consequence = if jump {
+                    ": the control decides which of the two GOTO takes"
+                } else {
+                    ": a search finds one of the two"
+                };
+                let message = format!("N{number} is already defined in line {line}{consequence}");
+                found.push(unit.warning(NAME, block, message).help("give one of them another number"));
+            }
+            Some(_) => {}
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines};
+    use super::NAME;
+
+    #[test]
+    fn each_number_is_told_once() {
+        assert_eq!(lines(NAME, "O1\nN10 G0\nN010 G0\nN10 G0\nN20 M30\n"), [3]);
+        let parameters = "O1\nN1241 G10 L52\nN1241 P1 R1.\nN1241 P2 R1.\nG11\nN1241 M30\n";
+        assert_eq!(lines(NAME, parameters), [6], "behind G10 L52 N is no sequence number");
+        assert_eq!(lines(NAME, "O1\nN10 M30\nO2\nN10 M99\n(N10)\n"), NOWHERE, "each program has its own");
+    }
+}

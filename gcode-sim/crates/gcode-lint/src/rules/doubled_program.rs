@@ -1,0 +1,27 @@
+//! Two programs of one number or name: a control refuses the second when it reads it, and a run doesn't begin.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+
+pub(super) const NAME: &str = "doubled-program";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let refused = context.memory.duplicates().any(|program| std::ptr::eq(program, unit.program));
+    if !refused || unit.program.ops().is_empty() {
+        return Vec::new();
+    }
+    let label = unit.program.label();
+    let finding =
+        unit.error(NAME, 0, format!("program {label} is already defined above: a control refuses it"));
+    vec![finding.help("give one of them another number")]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines};
+    use super::NAME;
+
+    #[test]
+    fn a_number_belongs_to_one_program() {
+        assert_eq!(lines(NAME, "O1\nM30\nO0001\nM30\n"), [4]);
+        assert_eq!(lines(NAME, "O1\nM30\nO2\nM30\n"), NOWHERE);
+    }
+}

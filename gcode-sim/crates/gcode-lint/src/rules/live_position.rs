@@ -1,0 +1,143 @@
+//! What is of the moment, read or written while the machine may still move: macro statements run as soon as they are
+//! read, ahead of the motion before them, and #5021…, #5041…, the clocks, the signals and the codes of the block at
+//! work are those of that instant.
+//!
+//! #5001… (the end of the block before) and #5061… (kept by G31) don't depend on the moment.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::literal;
+use crate::variables;
+use std::ops::RangeInclusive;
+
+use gcode_lang::control::Settings;
+use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::program::{OpIndex, OpKind, Statement, WordOperand, Words};
+
+pub(super) const NAME: &str = "live-position";
+
+/// Inputs, clocks, codes of the block at work, positions, position deviations, handle interruption, distance to go.
+const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
+    [1000..=1035, 3001..=3002, 4201..=4330, 5021..=5060, 5101..=5140, 5181..=5200];
+
+/// Outputs.
+const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let pending = pending_moves(context.settings, unit);
+    let mut found = Vec::new();
+    for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
+        let Some(motion) = pending[block] else { continue };
+        let reads = variables::block_uses(written).reads.into_iter();
+        let live = reads.filter(|read| LIVE_VARIABLES.iter().any(|range| range.contains(&read.number)));
+        // One finding a block: a probe reads several axes at once.
+        if let Some(read) = live.take(1).next() {
+            let number = read.number;
+            let message = format!("#{number} is read while the preceding move may still be in progress");
+            let finding = unit.warning(NAME, block, message).with_span(read.span);
+            let finding = finding.label(unit.op(motion).span, "the move");
+            found.push(finding.help(HELP));
+        }
+        let target = variables::assignment(written).and_then(|(target, _)| literal::variable(target));
+        if let Some(number) = target.filter(|number| OUTPUTS.contains(number)) {
+            let message = format!("#{number} is set while the preceding move may still be in progress");
+            let finding = unit.warning(NAME, block, message);
+            found.push(finding.label(unit.op(motion).span, "the move").help(HELP));
+        }
+    }
+    found
+}
+
+const HELP: &str = "insert a block before it that waits for the move: G53, M00 or G31";
+
+/// For each block a move that may still be under way before it, where there is one.
+fn pending_moves(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {
+    let count = unit.flow.block_count();
+    let mut moving = vec![None; count];
+    let mut seen = vec![false; count];
+    let mut open = vec![(0, None)];
+    while let Some((block, motion)) = open.pop() {
+        if block >= count || seen[block] && (motion.is_none() || moving[block].is_some()) {
+            continue;
+        }
+        seen[block] = true;
+        moving[block] = moving[block].or(motion);
+        let op = unit.program.ops().get(block);
+        let after = match op.and_then(|op| move_effect(settings, op.kind())) {
+            Some(true) => Some(block),
+            Some(false) => None,
+            None => moving[block],
+        };
+        let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, moving[block]));
+        open.extend(unit.flow.successors(block).map(|to| (to, after)).chain(skipped));
+    }
+    moving.truncate(unit.flow.block_successors.len());
+    moving
+}
+
+/// Whether a block starts a move (true) or waits for all moves before it (false).
+fn move_effect(settings: &Settings, kind: &OpKind) -> Option<bool> {
+    match kind {
+        OpKind::Words(words) => of_words(settings, words),
+        // A message stops until the operator starts again.
+        OpKind::Statement(Statement::Assign { target, .. }) if target.is_variable(3006) => Some(false),
+        _ => None,
+    }
+}
+
+fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
+    let mut axis = false;
+    for word in &words.list {
+        match (word.letter, word.value) {
+            (b'G', WordOperand::G(_, found)) => match found.row_for(settings.codes).map(|row| row.effect) {
+                // G53 waits; G31 ends where its signal comes; G04 and G10 wait on some controls.
+                Some(Effect::OneShot(
+                    OneShot::MachineSystem | OneShot::Skip | OneShot::Dwell | OneShot::DataInput,
+                )) => return Some(false),
+                // Only sets coordinates.
+                Some(Effect::OneShot(OneShot::LocalSystem | OneShot::SetSystem | OneShot::PresetSystem)) => {
+                    return None;
+                }
+                _ => {}
+            },
+            // Coolant and spindle don't wait; what the machine's builder made of other codes nobody knows.
+            (b'M', _) if !matches!(literal::word_count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => {
+                return Some(false);
+            }
+            (letter, _) => axis |= word.axis.is_some() || settings.axes.find(letter).is_some(),
+        }
+    }
+    axis.then_some(true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines};
+    use super::NAME;
+
+    #[test]
+    fn a_move_may_be_under_way() {
+        assert_eq!(lines(NAME, "O1\nG0 X10.\n#100=#5041\n#101=#5023*2\nM30\n"), [3, 4]);
+        assert_eq!(lines(NAME, "O1\nG0 X10.\nM8\nIF[#5023 LT 0]GOTO 9\nN9 M30\n"), [4]);
+    }
+
+    #[test]
+    fn signals_and_clocks_are_of_the_moment_too() {
+        for read in ["#100=#1005", "#100=#3001", "#100=#4201", "IF[#1032 EQ 0]GOTO 9", "#100=[#_UI[3]]"] {
+            assert_eq!(lines(NAME, &format!("O1\nG0 X10.\n{read}\nN9 M30\n")), [3], "{read}");
+            assert_eq!(lines(NAME, &format!("O1\nG0 X10.\nM00\n{read}\nN9 M30\n")), NOWHERE, "{read}");
+        }
+        for written in ["#1100=1", "#1132=5", "IF[#1 EQ 1]THEN #1131=0"] {
+            assert_eq!(lines(NAME, &format!("O1\n#1=1\nG0 X10.\n{written}\nM30\n")), [4], "{written}");
+            assert_eq!(lines(NAME, &format!("O1\n#1=1\nG0 X10.\nG53\n{written}\nM30\n")), NOWHERE);
+        }
+        assert_eq!(lines(NAME, "O1\nG0 X10.\n#100=#4001+#3011+#1100\n#3003=1\nM30\n"), NOWHERE);
+    }
+
+    #[test]
+    fn what_waits_settles_it() {
+        for stop in ["M00", "G53", "#3006=1(LOOK)", "G31 Z-5. F50.", "M50"] {
+            assert_eq!(lines(NAME, &format!("O1\nG0 X10.\n{stop}\n#100=#5041\nM30\n")), NOWHERE, "{stop}");
+        }
+        assert_eq!(lines(NAME, "O1\nG0 X10.\n#100=#5001\n#101=#5063\nM30\n"), NOWHERE);
+        assert_eq!(lines(NAME, "O1\n#100=#5041\nG0 X10.\nM30\n"), NOWHERE);
+    }
+}

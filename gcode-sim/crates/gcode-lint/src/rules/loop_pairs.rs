@@ -1,0 +1,115 @@
+//! DO and END that don't pair: one of the two is missing, two loops of one number stand in one another, or two loops
+//! overlap.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::{Item, Statement};
+
+pub(super) const NAME: &str = "loop-pairs";
+
+pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let mut found = Vec::new();
+    let mut unpaired = Vec::new();
+    let mut open: Vec<(i64, usize, Span)> = Vec::new();
+    for (block, read) in unit.blocks.iter().enumerate() {
+        let Some((number, begins)) = read.items.iter().find_map(loop_word) else { continue };
+        let word = if begins { "DO" } else { "END" };
+        if !(1..=3).contains(&number) {
+            // Its DO is the fault.
+            if !begins && unpaired.contains(&number) {
+                continue;
+            }
+            unpaired.push(number);
+            let message = format!("PS0126: {word}{number}: a loop's number is 1, 2 or 3");
+            found.push(unit.error(NAME, block, message).help("number it 1, 2 or 3"));
+        } else if begins {
+            if let Some((.., outer)) = open.iter().find(|(n, ..)| *n == number) {
+                let message = format!("PS0124: DO{number} inside an open DO{number}");
+                let finding = unit.error(NAME, block, message).label(*outer, "the outer loop begins here");
+                found.push(finding.help("give the inner loop another number, 1 to 3"));
+            }
+            open.push((number, block, read.span));
+        } else {
+            let Some(place) = open.iter().rposition(|(n, ..)| *n == number) else {
+                let message = format!("PS1124: END{number} without a DO{number} before it");
+                found.push(unit.error(NAME, block, message).help("write its DO, or remove it"));
+                continue;
+            };
+            let crossed = open.split_off(place);
+            if let Some((inner, _, begun)) = crossed.get(1) {
+                let message = format!("PS0124: END{number} while DO{inner} is open: the loops overlap");
+                let finding =
+                    unit.error(NAME, block, message).label(*begun, format!("DO{inner} begins here"));
+                found.push(finding.help(format!("write END{inner} before END{number}")));
+                // Their ENDs come after this one and are no second fault.
+                open.extend(crossed.into_iter().skip(1));
+            }
+        }
+    }
+    for (number, block, _) in open {
+        let message = format!("PS0124: DO{number} has no END{number}");
+        found.push(unit.error(NAME, block, message).help(format!("write END{number} after the loop")));
+    }
+    found.retain(|finding| unit.is_reached[finding.block]);
+    found
+}
+
+/// The number of a loop, and whether it begins here.
+fn loop_word(item: &Item) -> Option<(i64, bool)> {
+    let statement = match item {
+        Item::Statement(statement) => statement,
+        // `WHILE(#1 GT 0)DO1` has a fault of its own; its END has none.
+        Item::Unreadable(unreadable) => {
+            return unreadable_loop_number(&unreadable.text).map(|number| (number, true));
+        }
+        Item::Word(_) | Item::Skip(_) => return None,
+    };
+    match &statement.node {
+        Statement::While { number, .. } | Statement::Do(number) => Some((number.node, true)),
+        Statement::End(number) => Some((number.node, false)),
+        _ => None,
+    }
+}
+
+/// The number behind the DO of a WHILE that can't be read.
+fn unreadable_loop_number(text: &[u8]) -> Option<i64> {
+    let text: Vec<u8> =
+        text.iter().filter(|b| !b.is_ascii_whitespace()).map(u8::to_ascii_uppercase).collect();
+    let place = text.windows(2).rposition(|two| two == b"DO").filter(|_| text.starts_with(b"WH"))?;
+    match text.get(place + 2) {
+        Some(digit @ b'1'..=b'3') => Some(i64::from(digit - b'0')),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn loops_pair_and_nest() {
+        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#1=#1+1\nM30\n"), [3]);
+        assert_eq!(lines(NAME, "O1\nEND1\nM30\n"), [2]);
+        assert_eq!(lines(NAME, "O1\nDO4\n#1=#500\nEND4\nM30\n"), [2]);
+        assert_eq!(
+            lines(
+                NAME,
+                "O1\n#1=0\nDO1\nDO2\n#1=#1+1\nIF[#1 GT 3]GOTO 5\nEND2\nEND1\nDO1\nGOTO 5\nEND1\nN5 M30\n"
+            ),
+            NOWHERE,
+        );
+    }
+
+    #[test]
+    fn one_fault_is_told_once() {
+        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE(#1 LT 3)DO1\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
+        assert_eq!(lines(NAME, "O1\n#1=0\nDO1\nDO1\n#1=#1+1\nEND1\nEND1\nM30\n"), [4]);
+    }
+
+    #[test]
+    fn overlapping_loops_are_one_fault() {
+        let text = "O1\n#1=0\nWHILE[#1 LT 3]DO1\nWHILE[#1 LT 2]DO2\n#1=#1+1\nEND1\nEND2\nM30\n";
+        let found = messages(NAME, text);
+        assert_eq!(found, ["PS0124: END1 while DO2 is open: the loops overlap"]);
+    }
+}

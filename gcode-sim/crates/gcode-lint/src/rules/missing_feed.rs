@@ -1,0 +1,119 @@
+//! A feed move before any F, whichever way the program has taken: PS0011.
+use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
+use gcode_lang::alarm::Alarm;
+use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::{OpIndex, OpKind, WordOperand, Words};
+
+use super::unreadable::finding;
+
+pub(super) const NAME: &str = "missing-feed";
+
+/// G01, G02 and G03, × 10.
+const FEEDS: [u32; 3] = [10, 20, 30];
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    // Whoever calls a program may have set it before.
+    if unit.role != Role::Main {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for (block, fed) in feed_before(context, unit).into_iter().enumerate() {
+        let OpKind::Words(words) = unit.op(block).kind() else { continue };
+        if fed == Some(false) && !has_feed_word(words) && is_feed_move(context, words) {
+            let alarm = Alarm::FeedZero.located_at(unit.op(block).span);
+            found.push(finding(context, unit, NAME, block, &alarm));
+        }
+    }
+    found
+}
+
+/// Whether some way to each block may have passed an F; `None` where no way leads to it.
+fn feed_before(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<bool>> {
+    let mut fed: Vec<Option<bool>> = vec![None; unit.flow.block_count()];
+    // Where a call with Q starts, anything may have been before.
+    let mut open: Vec<(OpIndex, bool)> =
+        unit.entry_blocks.iter().enumerate().map(|(nth, start)| (*start, nth > 0)).collect();
+    while let Some((block, before)) = open.pop() {
+        let Some(known) = fed.get_mut(block) else { continue };
+        if known.is_some_and(|known| known || !before) {
+            continue;
+        }
+        *known = Some(before);
+        let after = before || block < unit.flow.block_successors.len() && may_set_feed(context, unit, block);
+        open.extend(unit.flow.successors(block).map(|to| (to, after)));
+    }
+    fed.truncate(unit.flow.block_successors.len());
+    fed
+}
+
+/// Whether a block has an F, or calls what may have one.
+fn may_set_feed(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
+    let sets_feed = match unit.op(block).kind() {
+        OpKind::Words(words) => has_feed_word(words),
+        OpKind::If { .. } => true,
+        _ => false,
+    };
+    let called = unit.call_in(block).map(|call| context.called_unit(call));
+    sets_feed
+        || match called {
+            None => false,
+            Some(None) => true,
+            // What it calls in its turn is not looked at: it may.
+            Some(Some(called)) => {
+                let called = &context.units[called];
+                let written =
+                    |block| matches!(called.op(block).kind(), OpKind::Words(words) if has_feed_word(words));
+                !called.calls.is_empty() || (0..called.program.ops().len()).any(written)
+            }
+        }
+}
+
+fn has_feed_word(words: &Words) -> bool {
+    words.list.iter().any(|word| word.letter == b'F')
+}
+
+/// G01, G02 or G03 with an axis, and no other code that would take the axis words.
+fn is_feed_move(context: &CheckContext<'_>, words: &Words) -> bool {
+    let axis = words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
+    let mut feeds = false;
+    for word in &words.list {
+        let WordOperand::G(code, row) = word.value else { continue };
+        feeds |= FEEDS.contains(&code);
+        match row.row_for(context.settings.codes).map(|row| row.effect) {
+            Some(Effect::OneShot(_) | Effect::Cycle(Some(_))) | None => return false,
+            Some(_) => {}
+        }
+    }
+    feeds && axis && words.call().is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines};
+    use super::NAME;
+
+    #[test]
+    fn no_way_has_an_f() {
+        assert_eq!(lines(NAME, "O1\nG0 X5.\nG1 X10.\nM30\n"), [3]);
+        assert_eq!(
+            lines(NAME, "O1\nIF[#500 EQ 1]GOTO 5\nG2 X1. R5.\nN5 G1 X10.\nG1 Y5. F100.\nM30\n"),
+            [3, 4]
+        );
+        assert_eq!(lines(NAME, "O1\nM98 P2\nG1 X10.\nM30\nO2\nG0 X1.\nM99\n"), [3]);
+    }
+
+    #[test]
+    fn some_way_has_one() {
+        for text in [
+            "O1\nF100.\nG1 X10.\nM30\n",
+            "O1\nG1 X10. F#1\nG3 X5. R3.\nM30\n",
+            "O1\nIF[#500 EQ 1]GOTO 5\nF50.\nN5 G1 X10.\nM30\n",
+            "O1\nM98 P2\nG1 X10.\nM30\nO2\nF100.\nM99\n",
+            "O1\nM98 P7\nG1 X10.\nM30\n",
+            "O2\nG1 X10.\nM99\n",
+            "O1\nG1 G4 X1.\nG1\nG0 X5.\nG91 G1 G28 Z0.\nM30\n",
+        ] {
+            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+        }
+    }
+}

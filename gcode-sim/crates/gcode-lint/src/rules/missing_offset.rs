@@ -1,0 +1,46 @@
+//! An H or D that the control has no tool offset for (PS0030).
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::literal;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::program::OpKind;
+
+use super::unreadable::finding;
+
+pub(super) const NAME: &str = "missing-offset";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let max = context.settings.tool_offsets;
+    let mut found = Vec::new();
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
+        let OpKind::Words(words) = op.kind() else { continue };
+        // What a macro gets is its own affair.
+        if unit.call_in(block).is_some() {
+            continue;
+        }
+        for word in words.list.iter().filter(|word| matches!(word.letter, b'H' | b'D')) {
+            let Some(number) = literal::word_count(word).filter(|number| *number as usize > max) else {
+                continue;
+            };
+            let alarm = Alarm::OffsetNumber { number: i64::from(number) }.located_at(word.span);
+            let finding = finding(context, unit, NAME, block, &alarm);
+            found
+                .push(finding.help(format!(
+                    "correct the number: this control has {max}, or give --control OFFSETS=…"
+                )));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines};
+    use super::NAME;
+
+    /// 400 offsets unless the setting OFFSETS says otherwise.
+    #[test]
+    fn beyond_the_last_there_is_none() {
+        assert_eq!(lines(NAME, "O1\nG43 H999 Z5.\nG41 D401\nM30\n"), [2, 3]);
+        assert_eq!(lines(NAME, "O1\nG43 H1 Z5.\nG41 D400\nG43 H#1\nG65 P2 H999\nM30\nO2\nM99\n"), NOWHERE);
+    }
+}

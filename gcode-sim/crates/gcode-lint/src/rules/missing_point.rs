@@ -1,0 +1,173 @@
+//! A missing decimal point: on a control without calculator-type input `Z-3` is 0.003 mm.
+//!
+//! Programs that count in increments throughout (`X45000`) are left alone: they have no points, and numbers of 1 mm
+//! and more.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::literal::without_point;
+use crate::parameters;
+use gcode_lang::control::Settings;
+use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
+use gcode_lang::syntax::ast::Decimal;
+
+pub(super) const NAME: &str = "missing-point";
+
+/// Cycles whose Q is a length: G73, G76, G83, G87. Older controls take no point there.
+const WITH_Q: [u32; 4] = [730, 760, 830, 870];
+/// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
+const MIN_INTENDED_INCREMENTS: u64 = 100;
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let settings = context.settings;
+    if settings.uses_calculator_input || counts_in_increments(unit, settings) {
+        return Vec::new();
+    }
+    let is_inch =
+        unit.program.ops().iter().any(|op| block_words(op.kind()).is_some_and(|words| has(words, &[200])));
+    let parameters = parameters::parameter_blocks(unit.program);
+    let mut found = Vec::new();
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
+        let Some(words) = block_words(op.kind()).filter(|_| !parameters[block]) else { continue };
+        for word in measured_words(words, settings) {
+            let Some(number) = without_point(word) else { continue };
+            let is_count = (word.letter == b'Q' && words.call().is_none()) || has(words, &[40]);
+            if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
+                continue;
+            }
+            let written = spelled(word.letter, number);
+            let message = format!("{written} is {}", meaning(word.letter, number, words, settings, is_inch));
+            found.push(
+                unit.warning(NAME, block, message).with_span(word.span).help(format!("write {written}.")),
+            );
+        }
+    }
+    found
+}
+
+fn block_words(kind: &OpKind) -> Option<&Words> {
+    match kind {
+        OpKind::Words(words) => Some(words),
+        _ => None,
+    }
+}
+
+fn has(words: &Words, codes: &[u32]) -> bool {
+    words.list.iter().any(|word| matches!(word.value, WordOperand::G(code, _) if codes.contains(&code)))
+}
+
+/// The words of a block that are lengths, angles or seconds.
+fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a LoweredWord> {
+    let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
+    // The letters of a macro call that a control scales: all but D E F H M S T.
+    let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
+    let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
+    // K of a drilling cycle counts repetitions, and arcs have it with I or J or alone: a small K is left alone.
+    plain.filter(move |word| word.letter != b'K' || !is_drilling(words)).chain(scaled)
+}
+
+fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
+    let axis = settings.axes.find(word.letter).is_some();
+    match word.letter {
+        // Look-ahead.
+        _ if has(words, &[51]) => false,
+        letter if has(words, &[40]) => matches!(letter, b'X' | b'U'),
+        letter if has(words, &[100]) => match parameters::data_input_kind(words) {
+            Some(2 | 20) => axis,
+            Some(1 | 10..=13) => letter == b'R',
+            _ => false,
+        },
+        // I J K and P are factors.
+        _ if has(words, &[510]) => axis,
+        b'Q' => has(words, &WITH_Q),
+        b'I' | b'J' | b'K' | b'R' => true,
+        b'C' if word.comma => true,
+        _ => axis,
+    }
+}
+
+fn is_drilling(words: &Words) -> bool {
+    let arc = has(words, &[20, 30]);
+    !arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'))
+}
+
+/// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
+fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
+    let mut large = false;
+    for words in unit.program.ops().iter().filter_map(|op| block_words(op.kind())) {
+        for word in measured_words(words, settings) {
+            match word.value {
+                WordOperand::Literal(Decimal { places: Some(_), .. }) => return false,
+                WordOperand::Literal(number) => {
+                    large |= number.digits as f64 >= settings.increment.per_unit()
+                }
+                _ => {}
+            }
+        }
+    }
+    large
+}
+
+fn spelled(letter: u8, number: Decimal) -> String {
+    let sign = if number.negative { "-" } else { "" };
+    format!("{}{sign}{}", char::from(letter), number.digits)
+}
+
+/// `0.003 mm`.
+fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
+    let is_angle = match letter {
+        b'A' | b'B' | b'C' => true,
+        b'R' => has(words, &[680]),
+        b'I' | b'J' | b'K' => has(words, &[682]),
+        _ => false,
+    };
+    let is_dwell = has(words, &[40]);
+    let finer = if inch && !is_angle && !is_dwell { 10.0 } else { 1.0 };
+    let per_unit = settings.increment.per_unit() * finer;
+    let unit = match () {
+        () if words.call().is_some() => "for the macro",
+        () if is_dwell => "seconds",
+        () if is_angle => "degrees",
+        () if inch => "inch",
+        () => "mm",
+    };
+    format!("{} {unit}", number.value() / per_unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn a_point_is_missing() {
+        let found = messages(NAME, "O1\nG0 X10. Y20.\nG1 Z-3 F100\nG4 X2\nG0 B90\nG65 P2 A5\nM30\nO2\nM99\n");
+        assert_eq!(
+            found,
+            ["Z-3 is -0.003 mm", "X2 is 0.002 seconds", "B90 is 0.09 degrees", "A5 is 0.005 for the macro"]
+        );
+    }
+
+    #[test]
+    fn offsets_and_angles_of_codes_are_measures_too() {
+        let text =
+            "O1\nG0 X1.\nG10 L2 P1 X-100 Y0\nG10 L10 P1 R50\nG68 X0 Y0 R45\nG69\nG51 X10 Y0 P2000\nM30\n";
+        let found = messages(NAME, text);
+        assert_eq!(found, ["X-100 is -0.1 mm", "R50 is 0.05 mm", "R45 is 0.045 degrees", "X10 is 0.01 mm"]);
+        let tilted = messages(NAME, "O1\nG68.2 X0 Y0 Z0 I0 J90 K0\nG0 Z5.\nM30\n");
+        assert_eq!(tilted, ["J90 is 0.09 degrees"]);
+    }
+
+    #[test]
+    fn counts_zeros_and_increments_are_no_lengths() {
+        for text in [
+            "O1\nG0 X0 Y0.5\nG43 H1 Z100.\nM98 P2 L3\nG4 P500\nM30\nO2\nM99\n",
+            "O1\nG0 X45000 Y500\nG1 Z-3000 F200\nM30\n",
+            "O1\nG83 X1. Y1. Z-20. R2. Q500 K3 F100\nM30\n",
+            "O1\n#1=3\nG4 X500\nG0 X#1 Y[5]\nG10 L2 P1 X1.\nG51 X0 Y0 I2000 J2000\nM30\n",
+            "O1\nG65 P2 A5. D3 H2 T1 S5\nM30\nO2\nM99\n",
+            "O1\nG0 X1.\nG10 L52\nN6004 Q0 R1\nN1241 P1 R5.\nG11\nM30\n",
+            "O1\nG0 X1.\nG10 L3\nP1 L10\nG11\nM30\n",
+        ] {
+            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+        }
+    }
+}

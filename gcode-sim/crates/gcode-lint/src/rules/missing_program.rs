@@ -1,0 +1,49 @@
+//! Calls of programs that are neither in the file nor in the folders: PS0076, or PS0310 by name.
+use crate::calls::CalledProgramName;
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+
+pub(super) const NAME: &str = "missing-program";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let mut found = Vec::new();
+    let mut reported: Vec<&CalledProgramName> = Vec::new();
+    for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
+        // Each program once: what is missing is one thing, however often it is called.
+        if context.called_unit(call).is_some()
+            || call.target != CalledProgramName::Missing && reported.contains(&&call.target)
+        {
+            continue;
+        }
+        reported.push(&call.target);
+        let label = call.target.label();
+        let finding = match call.target {
+            CalledProgramName::Computed => continue,
+            // M98 Q alone starts in this program.
+            CalledProgramName::Missing if call.start.is_some() => continue,
+            CalledProgramName::Missing => unit
+                .error(NAME, call.block, "PS0076: a call without a program number")
+                .help("write the program number after P"),
+            CalledProgramName::Number(_) => unit
+                .error(NAME, call.block, format!("PS0076: program {label} is not found"))
+                .help("give the folder that holds it with --lib"),
+            CalledProgramName::Name(_) => unit
+                .error(NAME, call.block, format!("PS0310: program {label} is not found"))
+                .help("give the folder that holds it with --lib, or put it into the same file"),
+        };
+        found.push(finding.with_span(call.span));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::lines;
+    use super::NAME;
+
+    #[test]
+    fn called_programs_must_be_there() {
+        let text =
+            "O1\nM98 P30002\nG65 P3 A1.\nM98 P2 L2\n#1=2\nG65 P#1\nG65 A1.\nG65 P3 A2.\nM30\nO2\nM99\n";
+        assert_eq!(lines(NAME, text), [3, 7]);
+    }
+}

@@ -1,0 +1,28 @@
+//! A comment that isn't closed: what stands behind it on the line is comment too, and some controls refuse the line.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use gcode_lang::syntax::ast::CommentMark;
+
+pub(super) const NAME: &str = "open-comment";
+
+pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let mut found = Vec::new();
+    for (index, block) in unit.blocks.iter().enumerate() {
+        for comment in block.comments.iter().filter(|comment| comment.mark == CommentMark::Unclosed) {
+            let message = "the comment is not closed: it extends to the end of the line";
+            let help = "close it with ): some controls refuse the line";
+            found.push(unit.warning(NAME, index, message).with_span(comment.span).help(help));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::lines;
+    use super::NAME;
+
+    #[test]
+    fn the_rest_of_the_line_is_comment() {
+        assert_eq!(lines(NAME, "O1\nG0 X1. (OUT G1 Z-5.\nG0 X2. (BACK)\n(END\nM30\n"), [2, 4]);
+    }
+}

@@ -1,0 +1,24 @@
+//! `(` where `[` was meant: to a control round brackets are a comment, and what stands in them is gone.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use gcode_lang::alarm::Alarm;
+
+use super::unreadable::{alarm_blocks, finding};
+
+pub(super) const NAME: &str = "round-brackets";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let alarms = alarm_blocks(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RoundBrackets { .. }));
+    alarms.map(|(block, alarm)| finding(context, unit, NAME, block, alarm)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::lines;
+    use super::NAME;
+
+    #[test]
+    fn values_and_conditions_need_square_brackets() {
+        let text = "O1\n#1=ABS(#2)\nX(#1+1.)\nIF(#1 EQ 2)GOTO 5\n#3=[2.*3.] (#1+1.)\nN5 M30\n";
+        assert_eq!(lines(NAME, text), [2, 3, 4]);
+    }
+}

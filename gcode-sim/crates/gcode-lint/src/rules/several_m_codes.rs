@@ -1,0 +1,58 @@
+//! More M codes in a block than the control takes: the last counts and the others are lost, or it alarms.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::literal;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::program::{OpKind, m_codes};
+
+use super::unreadable::finding;
+
+pub(super) const NAME: &str = "several-m-codes";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let settings = context.settings;
+    let max = if settings.allows_three_m_codes { 3 } else { 1 };
+    let mut found = Vec::new();
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
+        let OpKind::Words(words) = op.kind() else { continue };
+        let mut kept = Vec::new();
+        for word in words.list.iter().filter(|word| word.letter == b'M') {
+            // A code that calls a macro is none of the control's.
+            let code =
+                literal::word_count(word).filter(|code| settings.code_calls.find_call(b'M', *code).is_none());
+            let Some(code) = code else { continue };
+            if kept.len() == max
+                && let Some(first) = kept.pop()
+            {
+                if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
+                    let alarm = Alarm::PluralM { first, second: code }.located_at(word.span);
+                    found.push(finding(context, unit, NAME, block, &alarm));
+                } else {
+                    let message =
+                        format!("M{first} is lost: of several M codes in a block only the last counts");
+                    let help = "write each in a block of its own; M3B=1 is for a control that accepts three";
+                    found.push(unit.warning(NAME, block, message).with_span(word.span).help(help));
+                }
+            }
+            kept.push(code);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn the_first_is_lost_or_would_have_stopped() {
+        let found = messages(NAME, "O1\nM3 S100 M8\nM30 M5\nM30\n");
+        assert_eq!(found[0], "M3 is lost: of several M codes in a block only the last counts");
+        assert!(found[1].starts_with("PS0335: ") && found.len() == 2, "{found:?}");
+    }
+
+    #[test]
+    fn one_and_a_call_are_one() {
+        assert_eq!(lines(NAME, "O1\nM98 P2 M8\nM8\nGOTO 5\nM3 M8\nN5 M30\nO2\nM9 M99\n"), NOWHERE);
+    }
+}

@@ -1,0 +1,80 @@
+//! Blocks that nothing reaches: behind M30, M99, GOTO or a #3000 without a number that something jumps to.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::control_flow::raises_alarm;
+use gcode_lang::program::{OpIndex, OpKind, Statement};
+
+pub(super) const NAME: &str = "unreachable";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let mut found: Vec<RuleFinding> = Vec::new();
+    let ops = unit.program.ops();
+    let mut block = 0;
+    while block < ops.len() {
+        if unit.is_reached[block] {
+            block += 1;
+            continue;
+        }
+        let end = (block..ops.len()).find(|next| unit.is_reached[*next]).unwrap_or(ops.len());
+        // Comments and numbers alone do nothing, an end behind an end or an alarm neither; an alarm that is lost is
+        // told by its own rule.
+        let missed: Vec<_> = (block..end).filter(|b| !is_harmless(unit, *b)).collect();
+        if let (Some(first), Some(last)) = (missed.first(), missed.last()) {
+            let line = |block: usize| context.memory.sources().line_column(ops[block].span).line;
+            let message = if first == last {
+                "this block is never reached".to_owned()
+            } else {
+                format!("this block and the following ones, up to line {}, are never reached", line(*last))
+            };
+            let help = "remove it, or jump to its number";
+            found.push(unit.warning(NAME, *first, message).help(help));
+        }
+        block = end;
+    }
+    found
+}
+
+/// What isn't missed where nothing reaches it.
+fn is_harmless(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
+    let kind = unit.op(block).kind();
+    match kind {
+        OpKind::Empty => true,
+        OpKind::Words(words) => unit.flow.block_successors[block].is_exit && words.list.len() <= 1,
+        // A loop that is always left on the way needs its END all the same.
+        OpKind::Statement(Statement::End { start, .. }) => unit.is_reached[*start],
+        _ => raises_alarm(kind),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn what_stands_behind_the_end_needs_a_jump() {
+        assert_eq!(lines(NAME, "O1\nG0 X1.\nM30\nG0 X2.\nM30\n"), [4]);
+        assert_eq!(lines(NAME, "O1\n#1=1\nIF[#1 EQ 2]GOTO 9\nM30\n(REMARK)\nN9 G0 X2.\nM30\n"), NOWHERE);
+        assert_eq!(lines(NAME, "O1\n#1=1\nGOTO#1\nN1 G0\nM30\nN9 G0 X2.\nM30\n"), NOWHERE, "#1 may be 9");
+        assert_eq!(lines(NAME, "O1\n/M30\nG0 X2.\nM30\n"), NOWHERE, "the switch may be on");
+    }
+
+    #[test]
+    fn an_end_behind_an_alarm_is_no_fault() {
+        assert_eq!(lines(NAME, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
+        assert_eq!(lines(NAME, "O1\n#3000=1(NO)\nG0 X1.\nM30\n"), [3]);
+        let left = "O1\nN3 WHILE[#500 LT 3]DO1\n#500=#500+1\nGOTO 3\nEND1\nM30\n";
+        assert_eq!(lines(NAME, left), NOWHERE, "a loop needs its END");
+    }
+
+    #[test]
+    fn a_called_program_may_return_behind_the_end() {
+        assert_eq!(lines(NAME, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99 P9\n"), NOWHERE);
+        assert_eq!(lines(NAME, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99\n"), [4]);
+    }
+
+    #[test]
+    fn a_run_of_blocks_is_one_finding() {
+        let found = messages(NAME, "O1\nGOTO 5\nG0 X1.\nG0 X2.\nN5 M30\n");
+        assert_eq!(found, ["this block and the following ones, up to line 4, are never reached"]);
+    }
+}

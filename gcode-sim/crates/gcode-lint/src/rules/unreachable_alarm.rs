@@ -1,0 +1,56 @@
+//! A #3000 that can't be reached: the check that its author relies on never happens.
+use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
+use crate::control_flow::raises_alarm;
+use crate::vacancy::{Locals, states, truth};
+use crate::variables;
+use gcode_lang::syntax::ast::Statement;
+
+pub(super) const NAME: &str = "unreachable-alarm";
+
+pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    // A called program must stand for all calls, not only those seen here.
+    let entry = if unit.role == Role::Main { Locals::UNSET } else { Locals::ANYTHING };
+    let states = states(unit, entry);
+    let mut found = Vec::new();
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(_, op)| raises_alarm(op.kind())) {
+        if !unit.is_reached[block] {
+            let help = "jump to its number, or remove it";
+            let message = "this alarm is never reached, so it never stops the program";
+            found.push(unit.warning(NAME, block, message).help(help));
+            continue;
+        }
+        let is_never_raised = match (&states[block], variables::statement(&unit.blocks, block)) {
+            (None, _) => true,
+            (Some(state), Some(Statement::IfThen { condition, .. })) => {
+                truth(condition, state) == Some(false)
+            }
+            _ => false,
+        };
+        if is_never_raised {
+            let message = "this alarm is never raised: the preceding blocks decide its condition";
+            let help = "test the variable before it is set";
+            found.push(unit.warning(NAME, block, message).with_span(op.span).help(help));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines};
+    use super::NAME;
+
+    #[test]
+    fn an_alarm_needs_a_way_to_it() {
+        let head = "O2\nIF[#24 EQ #0]GOTO 90\nX#24\nM99\n";
+        assert_eq!(lines(NAME, &format!("{head}N90 #3000=1(NO X)\n")), NOWHERE);
+        assert_eq!(lines(NAME, &format!("{head}N90 M99\nN91 #3000=1(NO X)\n")), [6]);
+    }
+
+    #[test]
+    fn a_condition_that_is_decided_already_raises_nothing() {
+        assert_eq!(lines(NAME, "O2\nIF[#24 EQ #0]THEN #24=0\nIF[#24 EQ #0]THEN #3000=1(NO X)\nM99\n"), [3]);
+        assert_eq!(lines(NAME, "O2\n#24=1.\nIF[#24 EQ #0]GOTO 9\nM99\nN9 #3000=1(NO X)\n"), [5]);
+        assert_eq!(lines(NAME, "O2\nIF[#24 EQ #0]THEN #3000=1(NO X)\nX#24\nM99\n"), NOWHERE);
+    }
+}

@@ -1,0 +1,100 @@
+//! A local variable that is read before anything has set it: its word disappears, or it counts as 0.
+use std::collections::BTreeMap;
+
+use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
+use crate::unset_reads::{entry_locals, unset_reads};
+use crate::vacancy::{Locals, states};
+use crate::variables::VariableUse;
+use gcode_lang::program::{OpIndex, argument_letter};
+use gcode_lang::source::Span;
+
+pub(super) const NAME: &str = "unset-variable";
+
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let mut unset: BTreeMap<(OpIndex, u32), (Span, VariableUse)> = BTreeMap::new();
+    match unit.role {
+        Role::Resident => {}
+        Role::Main => {
+            let states = states(unit, Locals::UNSET);
+            unset.extend(unset_reads(unit, &states));
+        }
+        Role::Called => {
+            for (caller, site) in &unit.callers {
+                let call = &context.units[*caller].calls[*site];
+                // A subprogram has its caller's locals, and a modal call keeps its own from call to call.
+                if !call.has_own_locals || call.is_modal {
+                    return Vec::new();
+                }
+                let states = states(unit, entry_locals(call));
+                // What a letter could have set is told at the call.
+                unset.extend(
+                    unset_reads(unit, &states)
+                        .filter(|((_, local), _)| argument_letter(*local as usize).is_none()),
+                );
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for ((block, local), (span, usage)) in unset {
+        let so = match usage {
+            VariableUse::Word => "its word is ignored",
+            VariableUse::PassedOn => "it is passed on vacant",
+            VariableUse::VacancyTest | VariableUse::Comparison => "a vacant variable is compared",
+            VariableUse::Computed => "it counts as 0",
+        };
+        let message = format!("#{local} is read but never set: {so}");
+        let help = format!("set #{local} before it is read, or correct its number");
+        found.push(unit.warning(NAME, block, message).with_span(span).help(help));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn what_was_never_set_is_told() {
+        assert_eq!(lines(NAME, "O1\n#1=2.\nG0 X#1 Y#2\n#3=#4*2\n#5=#6\nM30\n"), [3, 4, 5]);
+        assert_eq!(lines(NAME, "O1\nIF[#9 EQ #0]THEN #10=#9*2\nM30\n"), [2]);
+        assert_eq!(lines(NAME, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
+        let found = messages(NAME, "O1\nG0 Y#2\nM30\n");
+        assert_eq!(found, ["#2 is read but never set: its word is ignored"]);
+    }
+
+    #[test]
+    fn idioms_are_left_alone() {
+        for text in [
+            "O1\nIF[#24 EQ #0]THEN #24=1.\nX#24\nM30\n",
+            "O1\nIF[#24 NE #0]GOTO 5\n#24=1.\nN5 X#24\nM30\n",
+            "O1\n#1=#0\nX#1\n#2=#1\nM30\n",
+            "O1\n#1=2.+3.\nX#1\n#2=SQRT[#1]\nIF[#2 GT 1]THEN #3=#2*2\n#4=#2/2\nX#2 Y#4\nM30\n",
+            "O1\n#[10+5]=3.\nX#15\nM30\n",
+            "O1\nM98 P2\nX#5\nM30\nO2\n#5=3.\nM99\n",
+            "O1\n#3=#500\nX#3\n#4=#100\n#4=#4\nM30\n",
+            "O2\nX#24\n#27=#26*2\nM99\n",
+            "O1\nIF[#500 EQ 1]GOTO 5\n#1=2.\nN5 X#1\nM30\n",
+            "O1\nIF[#9 NE #0]THEN #10=#9*2\nIF[[#9 NE #0] AND [#9 LT 5]]GOTO 5\nN5 M30\n",
+            "O1\nIF[[#9 EQ #0] OR [#9 LT 5]]GOTO 5\nN5 M30\n",
+        ] {
+            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_first_pass_of_a_loop_counts() {
+        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nX#2\n#2=5.\n#1=#1+1\nEND1\nM30\n"), [4]);
+        assert_eq!(
+            lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#2=5.\nX#2\n#1=#1+1\nEND1\nX#2\nM30\n"),
+            NOWHERE
+        );
+    }
+
+    #[test]
+    fn a_macro_knows_what_its_calls_pass() {
+        let called = "O2\nX#24\n#30=#24+#31\nM99\n";
+        assert_eq!(lines(NAME, &format!("O1\nG65 P2 X1.\nM30\n{called}")), [6]);
+        assert_eq!(lines(NAME, "O1\nG65 P2 I1. I2.\nM30\nO2\nX#4 Y#7\nM99\n"), NOWHERE);
+    }
+}

@@ -1,0 +1,73 @@
+//! Locals that nothing has set: what a call leaves vacant, and what reads it.
+use std::rc::Rc;
+
+use gcode_lang::program::OpIndex;
+use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::{Expr, Statement};
+
+use super::calls::CallSite;
+use super::context::ProgramUnit;
+use super::first_reach::FirstReach;
+use super::literal::variable;
+use super::vacancy::{ANY_VALUE, Locals, NUMBER, States, guards};
+use super::variables::{self, VariableRead, VariableUse};
+
+/// The locals as a call hands them over.
+pub(super) fn entry_locals(call: &CallSite) -> Locals {
+    let mut entry = Locals::UNSET;
+    for argument in &call.arguments {
+        entry.0[argument.local] = if argument.is_number { NUMBER } else { ANY_VALUE };
+    }
+    entry
+}
+
+/// The reads of locals that are surely unset there, each block's local once.
+pub(super) fn unset_reads<'a>(
+    unit: &'a ProgramUnit<'a>,
+    states: &'a States,
+) -> impl Iterator<Item = ((OpIndex, u32), (Span, VariableUse))> + 'a {
+    let first = Rc::new(FirstReach::new(unit, states));
+    let reached = unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some());
+    reached.flat_map(move |(block, written)| {
+        let itself = variables::assignment(written)
+            .filter(|(target, value)| target.kind == value.kind || same_variable(target, value));
+        let reads = variables::block_uses(written).reads;
+        let minded = guarded_locals(unit, block, &reads);
+        let plain = reads.into_iter().filter(move |read| {
+            // `#1=#1` says nothing.
+            (1..=33).contains(&read.number)
+                && read.usage != VariableUse::VacancyTest
+                && itself.is_none()
+                && !minded.contains(&read.number)
+        });
+        let first = Rc::clone(&first);
+        plain
+            .filter(move |read| first.is_unset(block, read.number))
+            .map(move |read| ((block, read.number), (read.span, read.usage)))
+    })
+}
+
+/// The locals whose vacancy a condition minds: what is behind it reads them only where they are set, and what stands
+/// beside the test in it means no harm.
+fn guarded_locals(unit: &ProgramUnit<'_>, block: OpIndex, reads: &[VariableRead]) -> Vec<u32> {
+    use Statement::{IfGoto, IfThen, While};
+    let Some(IfThen { condition, .. } | IfGoto { condition, .. } | While { condition, .. }) =
+        variables::statement(&unit.blocks, block)
+    else {
+        return Vec::new();
+    };
+    let tested = reads.iter().filter(|read| read.usage == VariableUse::VacancyTest).map(|read| read.number);
+    // Behind IF[#9 EQ #0]THEN a #9 is a slip all the same.
+    tested.filter(|number| !is_computed_with(reads, *number) || guards(condition, *number)).collect()
+}
+
+/// Whether a local is used for more than comparing.
+fn is_computed_with(reads: &[VariableRead], number: u32) -> bool {
+    reads.iter().any(|read| {
+        read.number == number && !matches!(read.usage, VariableUse::VacancyTest | VariableUse::Comparison)
+    })
+}
+
+fn same_variable(left: &Expr, right: &Expr) -> bool {
+    variable(left).is_some() && variable(left) == variable(right)
+}

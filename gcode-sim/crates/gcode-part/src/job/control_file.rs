@@ -1,0 +1,169 @@
+//! The control file: settings of the control by their names or parameter numbers, as TOML.
+//!
+//! ```toml
+//! DIALECT = "fanuc-0i-f"
+//! NAT = 1
+//! 5115 = 0.5
+//! ROA = "A"
+//! "#1005" = 1
+//! ```
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::{Map, json};
+use toml::Value;
+
+use super::FileError;
+use crate::reader::{Reader, Spanned};
+use gcode_lang::control::{
+    ADDRESSES, CODE_RANGES, CodeCalls, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues, Settings,
+};
+
+/// Sets what the text of a control file says, the family of controls first and the rest in the order of the file.
+///
+/// # Errors
+/// An unknown key or a value that a setting doesn't take, with its line and what is allowed.
+pub fn apply(text: &str, settings: &mut Settings) -> Result<(), FileError> {
+    let reader = Reader { text };
+    let entries: BTreeMap<Spanned<String>, Value> = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+    let mut entries: Vec<_> = entries.into_iter().collect();
+    entries.sort_by_key(|(key, _)| (!key.as_ref().eq_ignore_ascii_case("DIALECT"), key.span().start));
+    for (key, value) in entries {
+        let name = key.as_ref();
+        let value = match value {
+            Value::String(text) => text,
+            Value::Integer(number) => number.to_string(),
+            Value::Float(number) => number.to_string(),
+            Value::Boolean(on) if is_switch(name) => u8::from(on).to_string(),
+            Value::Boolean(_) | Value::Datetime(_) | Value::Array(_) | Value::Table(_) => {
+                return Err(reader.error(&key, format!("key '{name}': a number or a text in quotes")));
+            }
+        };
+        settings.set(name, &value).map_err(|error| reader.error(&key, error.to_string()))?;
+    }
+    Ok(())
+}
+
+fn is_switch(key: &str) -> bool {
+    key.starts_with('#') || ROWS.iter().any(|row| row.key.eq_ignore_ascii_case(key) && row.is_switch())
+}
+
+/// A control file as it is written: its schema is that of the settings.
+pub struct ControlFile;
+
+impl JsonSchema for ControlFile {
+    fn schema_name() -> Cow<'static, str> {
+        "Control".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let settings = ROWS.iter().map(|row| (row.key.to_owned(), setting(row)));
+        let properties: Map<String, serde_json::Value> = settings.chain(calls()).collect();
+        let described = |text: &str, mut schema: serde_json::Value| {
+            schema["description"] = text.into();
+            schema
+        };
+        let program = json!({ "type": "integer", "minimum": 1, "maximum": 99_999_999 });
+        json_schema!({
+            "description": "Settings of the control by their names or parameter numbers.",
+            "type": "object",
+            "properties": properties,
+            "patternProperties": {
+                "^#10([0-2][0-9]|3[01])$": described("An input signal.", switch()),
+                "^[GM]-?[0-9]+([.][0-9])?$": described("A code that calls this program; G-201 is a modal call.", program),
+            },
+            "additionalProperties": false,
+        })
+    }
+}
+
+fn setting(row: &SettingRow) -> serde_json::Value {
+    let mut schema = match row.values {
+        SettingValues::Switch => switch(),
+        SettingValues::Words(words) => json!({ "type": "string", "enum": words() }),
+        SettingValues::Whole(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
+        SettingValues::Number(least, most, _) => {
+            json!({ "type": "number", "minimum": least, "maximum": most })
+        }
+        SettingValues::Text(pattern, _) => json!({ "type": "string", "pattern": pattern }),
+    };
+    schema["description"] = format!("{} [{}]", row.meaning, row.values).into();
+    schema
+}
+
+fn switch() -> serde_json::Value {
+    json!({ "enum": [0, 1, false, true] })
+}
+
+/// The parameters and addresses that make calls, by their numbers and letters.
+fn calls() -> impl Iterator<Item = (String, serde_json::Value)> {
+    let whole = |values: RangeInclusive<i64>, what: String| json!({ "description": what, "type": "integer", "minimum": values.start(), "maximum": values.end() });
+    let codes = SEQUENTIAL_CODES.iter().flat_map(move |family| {
+        let (letter, taken) = (char::from(family.letter), CodeCalls::reserved_codes(family.letter));
+        // A parameter that is 0 holds no code.
+        let taken: Vec<i64> =
+            taken.map(i64::from).filter(|code| *code != 0).flat_map(|code| [code, -code]).collect();
+        (family.first..=family.last).zip(family.program..).map(move |(number, program)| {
+            let what = format!("The {letter} code that calls O{program}, 0 for none.");
+            let mut schema = whole(family.codes(), what);
+            schema["not"] = json!({ "enum": taken });
+            (number.to_string(), schema)
+        })
+    });
+    let ranges = CODE_RANGES.iter().flat_map(move |range| {
+        let (letter, all) = (char::from(range.letter), 0..=99_999_999);
+        let first = if range.letter == b'G' { -9999..=99_999_999 } else { all.clone() };
+        let of = [(first, "the first code"), (all.clone(), "the first program"), (all, "how many")];
+        (range.first..).zip(of).map(move |(number, (values, what))| {
+            (number.to_string(), whole(values, format!("A range of {letter} codes that call: {what}.")))
+        })
+    });
+    let letters: Vec<u8> = std::iter::once(0).chain(ADDRESSES.iter().copied()).collect();
+    let by_number = [6090, 6091].map(|number| {
+        let what = "The character code of the address that calls, 0 for none.";
+        (number.to_string(), json!({ "description": what, "type": "integer", "enum": letters }))
+    });
+    let by_letter = ADDRESSES.iter().map(|letter| {
+        let programs: Vec<u32> = CodeCalls::address_programs(*letter).collect();
+        let what = "The program that the address calls, whatever its number.";
+        (char::from(*letter).to_string(), json!({ "description": what, "type": "integer", "enum": programs }))
+    });
+    codes.chain(ranges).chain(by_number).chain(by_letter)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_lang::control::Dialect;
+
+    #[test]
+    fn settings_come_by_name_and_by_number_and_the_family_first() {
+        let mut settings = Settings::default();
+        let text = "NAT = true\n5115 = 0.25\nMACRO-LEVELS = 4\nDIALECT = \"haas-ngc\"\n\"#1005\" = 1\n";
+        apply(text, &mut settings).unwrap();
+        assert_eq!(settings.dialect, Dialect::HaasNgc);
+        assert!(settings.returns_signed_angles);
+        assert_eq!(settings.macro_levels, 4, "the family would have set 9");
+        let mut wanted = Settings::default();
+        for (key, value) in
+            [("DIALECT", "haas-ngc"), ("NAT", "1"), ("5115", "0.25"), ("MACRO-LEVELS", "4"), ("#1005", "1")]
+        {
+            wanted.set(key, value).unwrap();
+        }
+        assert_eq!(settings, wanted);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        for (text, message) in [
+            ("NAT = 1\nNATT = 1\n", "line 2: no setting 'NATT': see `gcode-sim settings`"),
+            ("NAT = 2\n", "line 1: setting NAT is '2': 0 or 1"),
+            ("\nNAT = [1]\n", "line 2: key 'NAT': a number or a text in quotes"),
+        ] {
+            let error = apply(text, &mut Settings::default()).unwrap_err();
+            assert_eq!(error.to_string(), message);
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! The section `[sheet]` that a job of any family may have: what its set-up sheet says of people, time and money.
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::sections::in_range;
+use crate::reader::{FileError, Reader, Spanned};
+
+/// What only people know of a job. Whatever is left out stands empty on the sheet, to be filled in by hand.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SheetInfo {
+    pub part: Option<String>,
+    pub drawing: Option<String>,
+    pub revision: Option<String>,
+    pub material: Option<String>,
+    /// The machine's name in the shop.
+    pub machine: Option<String>,
+    pub minutes: Minutes,
+    pub rates: Option<Rates>,
+}
+
+/// What the simulation can't know of the time a part takes, in minutes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Minutes {
+    /// Set-up and alignment of one part.
+    pub setup: Option<f64>,
+    /// An operator stop, from the machine's standstill to its start.
+    pub stop: Option<f64>,
+    pub tool_change: Option<f64>,
+}
+
+/// Machine-hour rates of the job's machine and of alternative machines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rates {
+    /// Printed unchanged.
+    pub currency: String,
+    /// A machine hour.
+    pub rate: f64,
+    pub alternatives: Vec<AlternativeMachine>,
+}
+
+/// The same part on another machine. Omitted times are equal to those of the job's machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlternativeMachine {
+    pub machine: String,
+    /// Price of a machine hour, in the same currency.
+    pub rate: f64,
+    /// Of the program, in minutes.
+    pub run: Option<f64>,
+    pub minutes: Minutes,
+}
+
+impl Rates {
+    /// Reads the text of a file of rates: the keys of a job's `[sheet.rates]`.
+    ///
+    /// # Errors
+    /// A key that is unknown, missing or out of range, with its line and what is allowed.
+    pub fn parse(text: &str) -> Result<Self, FileError> {
+        let reader = Reader { text };
+        let file: FileRates = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+        file.check(&reader, "")
+    }
+}
+
+/// What the set-up sheet says of people, time and money. Whatever is left out is filled in by hand.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileSheet {
+    /// The part's name.
+    part: Option<String>,
+    /// The number of its drawing.
+    drawing: Option<String>,
+    /// The revision of its drawing.
+    revision: Option<String>,
+    /// What it is made of.
+    material: Option<String>,
+    /// The machine's name in the shop.
+    machine: Option<String>,
+    /// Set-up and alignment of one part, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
+    setup_minutes: Option<Spanned<f64>>,
+    /// An operator stop, from standstill to start, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
+    stop_minutes: Option<Spanned<f64>>,
+    /// A tool change, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
+    tool_change_minutes: Option<Spanned<f64>>,
+    /// Machine-hour rates.
+    rates: Option<FileRates>,
+}
+
+/// Machine-hour rates of the job's machine and of alternative machines.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FileRates {
+    /// Printed unchanged.
+    currency: String,
+    /// Price of a machine hour, in that currency.
+    #[schemars(range(min = 0.01, max = 1e9))]
+    rate: Spanned<f64>,
+    /// Alternative machines for the part.
+    beside: Option<Vec<FileBeside>>,
+}
+
+/// The same part on another machine. Omitted times are equal to those of the job's machine.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct FileBeside {
+    /// Its name in the shop.
+    machine: String,
+    /// Price of a machine hour, in the same currency.
+    #[schemars(range(min = 0.01, max = 1e9))]
+    rate: Spanned<f64>,
+    /// The program, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
+    run_minutes: Option<Spanned<f64>>,
+    /// Set-up and alignment of one part, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
+    setup_minutes: Option<Spanned<f64>>,
+    /// An operator stop, from standstill to start, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
+    stop_minutes: Option<Spanned<f64>>,
+    /// A tool change, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
+    tool_change_minutes: Option<Spanned<f64>>,
+}
+
+impl FileSheet {
+    /// The section of a job; a job without it has nothing to say.
+    pub(super) fn of(section: Option<Self>, reader: &Reader<'_>) -> Result<SheetInfo, FileError> {
+        section.map_or_else(|| Ok(SheetInfo::default()), |sheet| sheet.check(reader))
+    }
+
+    fn check(self, reader: &Reader<'_>) -> Result<SheetInfo, FileError> {
+        let minutes = |key: &str, value: &Option<_>| minutes(reader, "sheet.", key, value.as_ref());
+        Ok(SheetInfo {
+            minutes: Minutes {
+                setup: minutes("setup_minutes", &self.setup_minutes)?,
+                stop: minutes("stop_minutes", &self.stop_minutes)?,
+                tool_change: minutes("tool_change_minutes", &self.tool_change_minutes)?,
+            },
+            rates: self.rates.map(|rates| rates.check(reader, "sheet.rates.")).transpose()?,
+            part: self.part,
+            drawing: self.drawing,
+            revision: self.revision,
+            material: self.material,
+            machine: self.machine,
+        })
+    }
+}
+
+impl FileRates {
+    /// `prefix` is what stands before the keys' names in messages.
+    fn check(self, reader: &Reader<'_>, prefix: &str) -> Result<Rates, FileError> {
+        let beside = self.beside.unwrap_or_default().into_iter();
+        Ok(Rates {
+            rate: rate(reader, prefix, &self.rate)?,
+            alternatives: beside
+                .map(|beside| beside.check(reader, &format!("{prefix}beside.")))
+                .collect::<Result<_, _>>()?,
+            currency: self.currency,
+        })
+    }
+}
+
+impl FileBeside {
+    fn check(self, reader: &Reader<'_>, prefix: &str) -> Result<AlternativeMachine, FileError> {
+        let minutes = |key: &str, value: &Option<_>| minutes(reader, prefix, key, value.as_ref());
+        Ok(AlternativeMachine {
+            rate: rate(reader, prefix, &self.rate)?,
+            run: minutes("run_minutes", &self.run_minutes)?,
+            minutes: Minutes {
+                setup: minutes("setup_minutes", &self.setup_minutes)?,
+                stop: minutes("stop_minutes", &self.stop_minutes)?,
+                tool_change: minutes("tool_change_minutes", &self.tool_change_minutes)?,
+            },
+            machine: self.machine,
+        })
+    }
+}
+
+fn rate(reader: &Reader<'_>, prefix: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
+    reader.number(&format!("{prefix}rate"), value, "0.01 to 1000000000", in_range(0.01, 1e9))
+}
+
+fn minutes(
+    reader: &Reader<'_>,
+    prefix: &str,
+    key: &str,
+    value: Option<&Spanned<f64>>,
+) -> Result<Option<f64>, FileError> {
+    let read =
+        |value| reader.number(&format!("{prefix}{key}"), value, "0 to 1000000 minutes", in_range(0.0, 1e6));
+    value.map(read).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Job;
+
+    const BURR: &str = "family = \"burr\"\n[burr]\ndiameter = 12.0\nlength = 25.0\nflutes = 16\nhelix = 20.0\n\
+                        law = \"published\"\ntip_angle = 5.0\nchord_error = 0.002\n[machine]\nc_offset = [40.0, -15.0]\n";
+
+    fn words(section: &str) -> Result<SheetInfo, String> {
+        Job::parse(&format!("{BURR}{section}")).map(|job| job.sheet().clone()).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_job_may_say_nothing() {
+        assert_eq!(words("").unwrap(), SheetInfo::default());
+        assert_eq!(words("[sheet]\n").unwrap(), SheetInfo::default());
+    }
+
+    #[test]
+    fn everything_it_says_is_read() {
+        let words = words(
+            "[sheet]\npart = \"Burr <12>\"\nsetup_minutes = 20\nstop_minutes = 0\n[sheet.rates]\ncurrency = \"CNY\"\n\
+             rate = 250\n[[sheet.rates.beside]]\nmachine = \"other\"\nrate = 1e3\nrun_minutes = 4.5\n",
+        )
+        .unwrap();
+        assert_eq!((words.part.as_deref(), words.drawing.as_deref()), (Some("Burr <12>"), None));
+        assert_eq!(words.minutes, Minutes { setup: Some(20.0), stop: Some(0.0), tool_change: None });
+        let rates = words.rates.unwrap();
+        assert_eq!((rates.currency.as_str(), rates.rate), ("CNY", 250.0));
+        let other = AlternativeMachine {
+            machine: "other".into(),
+            rate: 1000.0,
+            run: Some(4.5),
+            minutes: Minutes::default(),
+        };
+        assert_eq!(rates.alternatives, [other]);
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_named_with_its_line() {
+        for (section, message) in [
+            ("[sheet]\nname = \"x\"\n", "line 13: key 'sheet.name' is unknown; allowed: part, drawing"),
+            (
+                "[sheet]\nsetup_minutes = -1\n",
+                "line 13: key 'sheet.setup_minutes' is -1: 0 to 1000000 minutes",
+            ),
+            ("[sheet.rates]\nrate = 1\n", "line 12: key 'sheet.rates.currency' is missing"),
+            (
+                "[sheet.rates]\ncurrency = \"EUR\"\nrate = 0\n",
+                "line 14: key 'sheet.rates.rate' is 0: 0.01 to 1000000000",
+            ),
+            (
+                "[sheet.rates]\ncurrency = \"EUR\"\nrate = 1\n[[sheet.rates.beside]]\nmachine = \"m\"\n",
+                "line 15: key 'sheet.rates.beside.rate' is missing",
+            ),
+        ] {
+            let told = words(section).unwrap_err();
+            assert!(told.starts_with(message), "{told}\n{message}");
+        }
+    }
+
+    #[test]
+    fn a_file_of_rates_has_the_same_keys() {
+        let text = "currency = \"EUR\"\nrate = 80\n[[beside]]\nmachine = \"5-axis\"\nrate = inf\n";
+        let told = Rates::parse(text).unwrap_err().to_string();
+        assert_eq!(told, "line 5: key 'beside.rate' is inf: 0.01 to 1000000000");
+        assert_eq!(Rates::parse(&text.replace("inf", "200")).unwrap().alternatives[0].rate, 200.0);
+    }
+}

@@ -1,0 +1,66 @@
+//! What a program is held against, by the kind of part: read from a hole list or a job file.
+use super::flutes::Flutes;
+use super::read::{self, ReferenceError};
+use super::reference::Reference;
+use crate::job::Job;
+
+/// What the part should get.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NominalPart {
+    /// Holes: `verify` says of each how far it is off.
+    Holes(Reference),
+    /// The flutes of a burr.
+    Flutes(Flutes),
+}
+
+impl NominalPart {
+    /// A job file, or a list of holes as JSON or CSV: told apart by how the text begins, since it may come from a
+    /// pipe.
+    pub fn parse(text: &str) -> Result<Self, ReferenceError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.trim().is_empty() {
+            let message = "the file is empty: give a hole list (JSON or CSV) or a job file".to_owned();
+            return Err(ReferenceError { line: None, message });
+        }
+        if text.trim_start().starts_with('{') {
+            return Reference::of_list(read::json(text)?).map(Self::Holes);
+        }
+        if read::is_csv(text) {
+            return Reference::of_list(read::csv(text)?).map(Self::Holes);
+        }
+        if read::has_semicolons(text) {
+            let message = "the columns are separated by ';': use ',' between them, and points in the numbers";
+            return Err(ReferenceError { line: Some(1), message: message.to_owned() });
+        }
+        if !text.contains("family") {
+            let message = "neither a hole list (JSON or CSV) nor a job file with its key 'family'".to_owned();
+            return Err(ReferenceError { line: None, message });
+        }
+        let job = Job::parse(text).map_err(|e| ReferenceError { line: e.line, message: e.message })?;
+        Self::from_job(&job)
+    }
+
+    /// Computed from the geometry of the job's part.
+    pub fn from_job(job: &Job) -> Result<Self, ReferenceError> {
+        match job {
+            Job::PinHoles(job) => super::pin_holes::reference(job).map(Self::Holes),
+            Job::Honeycomb(job) => super::honeycomb::reference(job).map(Self::Holes),
+            Job::Burr(job) => Ok(Self::Flutes(Flutes::from_job(job))),
+            Job::Alignment(_) => {
+                let message = "the family 'alignment' measures the position of a part and makes nothing, \
+                               so there is no reference to verify against: run its programs with gcode-sim \
+                               run --part JOB.toml"
+                    .to_owned();
+                Err(ReferenceError { line: None, message })
+            }
+        }
+    }
+
+    /// The holes, of a part that is to get holes and nothing else.
+    pub fn into_holes(self) -> Option<Reference> {
+        match self {
+            Self::Holes(reference) => Some(reference),
+            Self::Flutes(_) => None,
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Wanted holes that cut into each other: their axes come nearer, within their depths, than their radii allow.
+use nalgebra::{Point3, Vector3};
+
+use super::hole::Hole;
+
+/// Two holes, by their numbers in the list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overlap {
+    pub holes: [usize; 2],
+    /// Between the axes where they are nearest, from entry to bottom, mm.
+    pub distance: f64,
+    /// Of the two radii, mm.
+    pub radius_sum: f64,
+}
+
+impl Overlap {
+    /// In one sentence, with the ids.
+    pub fn sentence(&self, holes: &[Hole]) -> String {
+        let [one, other] = self.holes.map(|index| holes[index].id.as_deref().unwrap_or("?"));
+        format!(
+            "holes {one} and {other} overlap: their axes come within {:.3} mm, their radii add up to {:.3} mm",
+            self.distance, self.radius_sum
+        )
+    }
+}
+
+/// All pairs of holes with known diameters that overlap, in the order of the list.
+pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
+    let mut sized: Vec<_> = holes
+        .iter()
+        .enumerate()
+        .filter_map(|(index, hole)| {
+            let radius = hole.diameter? / 2.0;
+            let ends = [hole.entry[0], hole.entry[0] - hole.axis[0] * hole.depth];
+            let reach = [ends[0].min(ends[1]) - radius, ends[0].max(ends[1]) + radius];
+            Some((index, radius, reach))
+        })
+        .collect();
+    // Along x, so that only those are compared which can meet.
+    sized.sort_by(|a, b| a.2[0].total_cmp(&b.2[0]));
+    let mut found = Vec::new();
+    for (place, &(one, radius, reach)) in sized.iter().enumerate() {
+        for &(other, other_radius, _) in sized[place + 1..].iter().take_while(|next| next.2[0] < reach[1]) {
+            let (distance, radii) = (axis_distance(&holes[one], &holes[other]), radius + other_radius);
+            // Those that only touch have no material between them at one line; arithmetic can't tell.
+            if distance < radii - 1e-9 {
+                found.push(Overlap { holes: [one.min(other), one.max(other)], distance, radius_sum: radii });
+            }
+        }
+    }
+    found.sort_by_key(|overlap| overlap.holes);
+    found
+}
+
+/// How near the axes of two holes come from entry to bottom. The nearest pair of points is either inside both, where
+/// the axes' common perpendicular is, or has an end of one of them.
+fn axis_distance(one: &Hole, other: &Hole) -> f64 {
+    let [(p, u), (q, v)] =
+        [one, other].map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis) * -hole.depth));
+    let foot = |point: &Point3<f64>, from: &Point3<f64>, along: &Vector3<f64>| {
+        let part = (point - from).dot(along) / along.norm_squared().max(f64::MIN_POSITIVE);
+        (from + along * part.clamp(0.0, 1.0) - point).norm()
+    };
+    let ends = [foot(&p, &q, &v), foot(&(p + u), &q, &v), foot(&q, &p, &u), foot(&(q + v), &p, &u)];
+    let nearest = ends.into_iter().fold(f64::INFINITY, f64::min);
+    let (uu, uv, vv, w) = (u.norm_squared(), u.dot(&v), v.norm_squared(), q - p);
+    let sine = uu * vv - uv * uv;
+    if sine <= 1e-12 * uu * vv {
+        return nearest;
+    }
+    let along = (w.dot(&u) * vv - w.dot(&v) * uv) / sine;
+    let across = (w.dot(&u) * uv - w.dot(&v) * uu) / sine;
+    match [along, across].iter().all(|part| (0.0..=1.0).contains(part)) {
+        true => nearest.min((w - u * along + v * across).norm()),
+        false => nearest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hole(entry: [f64; 3], axis: [f64; 3], depth: f64, diameter: f64) -> Hole {
+        Hole { id: None, entry, axis, depth, diameter: Some(diameter), from: None }
+    }
+
+    #[test]
+    fn parallel_holes_overlap_below_the_sum_of_their_radii() {
+        let at = |x: f64, diameter: f64| hole([x, 0.0, 0.0], [0.0, 1.0, 0.0], 15.0, diameter);
+        // 3 + 2 = 5: at 5 mm they touch, at 4.9 they overlap, and the third is far away.
+        assert_eq!(overlaps(&[at(0.0, 6.0), at(5.0, 4.0), at(40.0, 6.0)]), []);
+        let found = overlaps(&[at(4.9, 4.0), at(40.0, 6.0), at(0.0, 6.0)]);
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].holes, found[0].radius_sum), ([0, 2], 5.0));
+        assert!((found[0].distance - 4.9).abs() < 1e-12);
+    }
+
+    /// Entries 20 mm apart, the axes leaning towards one another by 45°: they meet 10 mm below the surface.
+    #[test]
+    fn leaning_holes_overlap_where_they_are_deep_enough() {
+        let s = 0.5f64.sqrt();
+        let pair = |depth: f64| {
+            [
+                hole([-10.0, 0.0, 0.0], [-s, s, 0.0], depth, 2.0),
+                hole([10.0, 0.0, 0.0], [s, s, 0.0], depth, 2.0),
+            ]
+        };
+        // The bottoms are 20 − 2·depth·s apart: 2 mm at 12.73.
+        assert_eq!(overlaps(&pair(12.7)).len(), 0);
+        assert_eq!(overlaps(&pair(12.8)).len(), 1);
+        // Deep enough to cross: the axes meet.
+        assert!(overlaps(&pair(20.0))[0].distance < 1e-9);
+    }
+
+    /// Crossing at right angles with 3 mm between them, in the middle of both.
+    #[test]
+    fn crossing_holes_are_as_far_apart_as_their_common_perpendicular() {
+        let down = hole([0.0, 10.0, 0.0], [0.0, 1.0, 0.0], 20.0, 4.0);
+        let across = hole([10.0, 0.0, 3.0], [1.0, 0.0, 0.0], 20.0, 3.0);
+        assert!((overlaps(&[down.clone(), across])[0].distance - 3.0).abs() < 1e-12);
+        let farther = hole([10.0, 0.0, 3.5], [1.0, 0.0, 0.0], 20.0, 3.0);
+        assert_eq!(overlaps(&[down, farther]), []);
+    }
+}

@@ -1,0 +1,199 @@
+//! Which of many points lie near: a k-d tree, so that hundreds of thousands of holes stay n log n.
+use nalgebra::{Point3, Vector3};
+
+/// A part of so few points is looked at point by point: halving it further takes longer.
+pub(crate) const LEAF_SIZE: usize = 8;
+
+/// Points in an order that halves them again and again; the middle one of each part is its node.
+#[derive(Debug, Default)]
+pub struct PointTree {
+    nodes: Vec<Node>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node {
+    pub point: Point3<f64>,
+    pub index: u32,
+    /// Before the node lie points that are less in this coordinate, behind it those that are more.
+    axis: u8,
+}
+
+impl Node {
+    /// All coordinates are asked, whichever is outside: that takes less than a branch for each.
+    pub(crate) fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
+        let p = &self.point;
+        (0..3).fold(true, |inside, i| inside & (low[i] <= p[i]) & (p[i] <= high[i]))
+    }
+
+    /// The coordinate by which it halves its part, and where.
+    pub(crate) fn halves(&self) -> (usize, f64) {
+        let axis = usize::from(self.axis);
+        (axis, self.point[axis])
+    }
+}
+
+impl PointTree {
+    pub fn new(points: impl IntoIterator<Item = Point3<f64>>) -> Self {
+        let nodes = points.into_iter().zip(0u32..).map(|(point, index)| Node { point, index, axis: 0 });
+        let mut nodes: Vec<_> = nodes.collect();
+        if let Some(first) = nodes.first().map(|node| node.point) {
+            let (low, high) =
+                nodes.iter().fold((first, first), |(low, high), n| (low.inf(&n.point), high.sup(&n.point)));
+            halve(&mut nodes, low, high);
+        }
+        Self { nodes }
+    }
+
+    /// Tells `each` the index of every point in the box from `low` to `high`.
+    pub fn in_box(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
+        visit(&self.nodes, 0, low, high, each);
+    }
+
+    /// Tells `each` the indices of every two points whose coordinates differ by no more than `reach`, once.
+    pub fn pairs(&self, reach: f64, each: &mut impl FnMut(usize, usize)) {
+        let margin = Vector3::repeat(reach);
+        for (place, node) in self.nodes.iter().enumerate() {
+            let mut other = |other| each(node.index as usize, other);
+            visit(&self.nodes, place + 1, &(node.point - margin), &(node.point + margin), &mut other);
+        }
+    }
+
+    /// The index and the distance of the nearest point.
+    pub fn nearest(&self, to: &Point3<f64>) -> Option<(usize, f64)> {
+        self.nearest_matching(to, &|_, _| true)
+    }
+
+    /// The nearest of the points that `counts`, asked with index and distance.
+    pub fn nearest_matching(
+        &self,
+        to: &Point3<f64>,
+        counts: &impl Fn(usize, f64) -> bool,
+    ) -> Option<(usize, f64)> {
+        let mut best = None;
+        closest(&self.nodes, to, counts, &mut best);
+        best
+    }
+
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+}
+
+/// Halves points between `low` and `high` where that box is longest: holes often lie on a plane, and halving across it
+/// would tell nothing apart.
+fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
+    if nodes.len() <= LEAF_SIZE {
+        return;
+    }
+    let axis = (high - low).imax();
+    let middle = nodes.len() / 2;
+    // The index decides between equal ones, so that the same points always make the same tree.
+    let order = |a: &Node, b: &Node| a.point[axis].total_cmp(&b.point[axis]).then(a.index.cmp(&b.index));
+    nodes.select_nth_unstable_by(middle, order);
+    nodes[middle].axis = axis as u8;
+    let (mut end, mut start) = (high, low);
+    end[axis] = nodes[middle].point[axis];
+    start[axis] = end[axis];
+    let (before, behind) = nodes.split_at_mut(middle);
+    halve(before, low, end);
+    halve(&mut behind[1..], start, high);
+}
+
+/// The points in a box, without the first `but` of the nodes.
+fn visit(
+    nodes: &[Node],
+    skipped: usize,
+    low: &Point3<f64>,
+    high: &Point3<f64>,
+    each: &mut impl FnMut(usize),
+) {
+    let middle = nodes.len() / 2;
+    if nodes.len() <= LEAF_SIZE {
+        let inside = nodes.iter().skip(skipped).filter(|node| node.is_in(low, high));
+        inside.for_each(|node| each(node.index as usize));
+        return;
+    }
+    let node = &nodes[middle];
+    if skipped <= middle && node.is_in(low, high) {
+        each(node.index as usize);
+    }
+    let (axis, place) = node.halves();
+    if skipped < middle && low[axis] <= place {
+        visit(&nodes[..middle], skipped, low, high, each);
+    }
+    if skipped < nodes.len() && place <= high[axis] {
+        visit(&nodes[middle + 1..], skipped.saturating_sub(middle + 1), low, high, each);
+    }
+}
+
+fn closest(
+    nodes: &[Node],
+    to: &Point3<f64>,
+    matches: &impl Fn(usize, f64) -> bool,
+    best: &mut Option<(usize, f64)>,
+) {
+    let middle = nodes.len() / 2;
+    let mut look_at = |node: &Node| {
+        let distance = (node.point - to).norm();
+        let index = node.index as usize;
+        if best.is_none_or(|(at, least)| (distance, index) < (least, at)) && matches(index, distance) {
+            *best = Some((index, distance));
+        }
+    };
+    if nodes.len() <= LEAF_SIZE {
+        nodes.iter().for_each(look_at);
+        return;
+    }
+    look_at(&nodes[middle]);
+    let (axis, place) = nodes[middle].halves();
+    let beyond = to[axis] - place;
+    let (near, far) = match beyond < 0.0 {
+        true => (&nodes[..middle], &nodes[middle + 1..]),
+        false => (&nodes[middle + 1..], &nodes[..middle]),
+    };
+    closest(near, to, matches, best);
+    if best.is_none_or(|(_, least)| beyond.abs() <= least) {
+        closest(far, to, matches, best);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn the_tree_finds_what_looking_at_all_of_them_finds(
+            points in prop::collection::vec((-9i32..9, -9i32..9, -9i32..9), 1..60),
+            (x, y, z, r) in (-9.0..9.0, -9.0..9.0, -9.0..9.0, 0.0..6.0),
+        ) {
+            let points: Vec<_> =
+                points.iter().map(|(x, y, z)| Point3::new(f64::from(*x), f64::from(*y), f64::from(*z))).collect();
+            let tree = PointTree::new(points.iter().copied());
+            let (low, high) = (Point3::new(x - r, y - r, z - r), Point3::new(x + r, y + r, z + r));
+            let mut found = Vec::new();
+            tree.in_box(&low, &high, &mut |i| found.push(i));
+            found.sort_unstable();
+            let inside = |p: &Point3<f64>| (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i]);
+            let all: Vec<_> = (0..points.len()).filter(|i| inside(&points[*i])).collect();
+            prop_assert_eq!(found, all);
+
+            let mut pairs = Vec::new();
+            tree.pairs(r, &mut |one, other| pairs.push((one.min(other), one.max(other))));
+            pairs.sort_unstable();
+            let of = |one: usize| (one + 1..points.len()).map(move |other| (one, other));
+            let near = |(one, other): &(usize, usize)| (points[*one] - points[*other]).amax() <= r;
+            let all: Vec<_> = (0..points.len()).flat_map(of).filter(near).collect();
+            prop_assert_eq!(pairs, all);
+
+            let to = Point3::new(x, y, z);
+            let least = points.iter().map(|p| (p - to).norm()).fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(tree.nearest(&to).unwrap().1, least);
+            let odd_ones = points.iter().skip(1).step_by(2).map(|p| (p - to).norm());
+            let odd = tree.nearest_matching(&to, &|index, _| index % 2 == 1);
+            prop_assert_eq!(odd.map(|(_, distance)| distance), odd_ones.reduce(f64::min));
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Reads lists of wanted holes: JSON and CSV in the schema of `hole`; what can't be meant is refused with its place.
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+
+use super::hole::{Hole, HoleList, Unit};
+
+/// Why a reference can't be used: one sentence with the place and what to do.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}{message}", match line { Some(n) => format!("line {n}: "), None => String::new() })]
+pub struct ReferenceError {
+    pub line: Option<usize>,
+    pub message: String,
+}
+
+fn error(line: Option<usize>, message: impl Into<String>) -> ReferenceError {
+    ReferenceError { line, message: message.into() }
+}
+
+const COLUMNS: [&str; 9] = ["id", "x", "y", "z", "i", "j", "k", "depth", "diameter"];
+
+pub(super) fn json(text: &str) -> Result<HoleList, ReferenceError> {
+    serde_json::from_str(text).map_err(|e| {
+        let message = e.to_string();
+        let message = message.split(" at line ").next().unwrap_or_default();
+        error(Some(e.line()), format!("column {}: {message}", e.column()))
+    })
+}
+
+/// Whether the first line looks like a header of columns; a job file's first line never has a comma and no `=`.
+pub(super) fn is_csv(text: &str) -> bool {
+    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+    first.contains(',') && !first.contains('=') && !first.trim_start().starts_with('#')
+}
+
+/// A list as spreadsheets write it where the comma is the decimal point.
+pub(super) fn has_semicolons(text: &str) -> bool {
+    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+    let columns: Vec<_> = first.split(';').map(|name| name.trim().trim_matches('"')).collect();
+    1 < columns.len() && columns.iter().any(|name| COLUMNS.contains(name))
+}
+
+pub(super) fn csv(text: &str) -> Result<HoleList, ReferenceError> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
+    let column = |name: &str| header.iter().position(|h| h == name);
+    for name in COLUMNS {
+        if column(name).is_none() && name != "diameter" {
+            let all = COLUMNS.join(",");
+            return Err(error(Some(1), format!("column '{name}' is missing: the header is {all}")));
+        }
+    }
+    if let Some(other) = header.iter().find(|h| !COLUMNS.contains(h)) {
+        return Err(error(
+            Some(1),
+            format!("column '{other}' is unknown: the header is {}", COLUMNS.join(",")),
+        ));
+    }
+    let mut holes = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| csv_error(&e))?;
+        let line = record.position().map(|p| p.line() as usize);
+        let field = |name: &str| column(name).and_then(|c| record.get(c)).unwrap_or_default();
+        let number = |name: &str| {
+            let text = field(name);
+            text.parse::<f64>().map_err(|_| error(line, format!("column '{name}' is '{text}': a number")))
+        };
+        holes.push(Hole {
+            id: Some(field("id").to_owned()).filter(|id| !id.is_empty()),
+            entry: [number("x")?, number("y")?, number("z")?],
+            axis: [number("i")?, number("j")?, number("k")?],
+            depth: number("depth")?,
+            diameter: if field("diameter").is_empty() { None } else { Some(number("diameter")?) },
+            from: None,
+        });
+        let last = holes.len() - 1;
+        check(&holes[last], last).map_err(|message| error(line, message))?;
+    }
+    if holes.is_empty() {
+        return Err(error(None, "no hole after the header: one line for each"));
+    }
+    Ok(HoleList { unit: Unit::Mm, holes })
+}
+
+fn csv_error(e: &csv::Error) -> ReferenceError {
+    let line = e.position().map(|p| p.line() as usize);
+    match e.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            error(line, format!("{len} columns, the header has {expected_len}"))
+        }
+        _ => error(line, e.to_string()),
+    }
+}
+
+/// The holes with an id each and axes of length 1 exactly, or the first thing that's wrong with them.
+pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, ReferenceError> {
+    let mut ids = BTreeMap::new();
+    for (index, hole) in holes.iter_mut().enumerate() {
+        check(hole, index).map_err(|message| error(None, message))?;
+        hole.axis = Vector3::from(hole.axis).normalize().into();
+        let id = hole.id.get_or_insert_with(|| format!("#{}", index + 1));
+        if let Some(first) = ids.insert(id.clone(), index) {
+            let message = format!(
+                "id '{id}' is used twice, in hole {} and hole {}: give each its own",
+                first + 1,
+                index + 1
+            );
+            return Err(error(None, message));
+        }
+    }
+    Ok(holes)
+}
+
+/// Whether one hole can be meant.
+fn check(hole: &Hole, index: usize) -> Result<(), String> {
+    let name = match &hole.id {
+        Some(id) => format!("hole {} (id '{id}')", index + 1),
+        None => format!("hole {}", index + 1),
+    };
+    let numbers = hole.entry.iter().chain(&hole.axis).chain([&hole.depth]).chain(&hole.diameter);
+    if let Some(number) = numbers.clone().find(|n| !n.is_finite()) {
+        return Err(format!("{name}: a number is {number}: all must be finite"));
+    }
+    let length = Vector3::from(hole.axis).norm();
+    if length == 0.0 {
+        return Err(format!("{name}: the axis is 0, 0, 0: give the unit vector out of the part"));
+    }
+    // Lists rounded to a few digits are normalized; what is farther off was never meant as a direction of length 1.
+    if (length - 1.0).abs() > 1e-3 {
+        return Err(format!("{name}: the axis has the length {length:.7}: divide i, j, k by it"));
+    }
+    if hole.depth <= 0.0 {
+        return Err(format!("{name}: the depth is {}: a number above 0", hole.depth));
+    }
+    match hole.diameter {
+        Some(diameter) if diameter <= 0.0 => {
+            Err(format!("{name}: the diameter is {diameter}: a number above 0"))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::nominal::NominalPart;
+    use super::super::reference::Reference;
+    use super::*;
+
+    const HOLE: &str =
+        r#"{"unit": "mm", "holes": [{"id": "1", "entry": [1, 2, 3], "axis": [0, 0.6, 0.8], "depth": 5}]}"#;
+
+    fn refused(text: &str) -> String {
+        NominalPart::parse(text).unwrap_err().to_string()
+    }
+
+    fn read_holes(text: &str) -> Reference {
+        NominalPart::parse(text).unwrap().into_holes().unwrap()
+    }
+
+    #[test]
+    fn json_and_csv_say_the_same() {
+        let csv = "id,x,y,z,i,j,k,depth,diameter\r\n1, 1, 2, 3, 0, 0.6, 0.8, 5,\r\n";
+        assert_eq!(NominalPart::parse(HOLE).unwrap(), NominalPart::parse(csv).unwrap());
+    }
+
+    #[test]
+    fn a_hole_without_an_id_is_named_by_its_number() {
+        let csv = "id,x,y,z,i,j,k,depth,diameter\n,0,0,0,0,1,0,5,6\n";
+        assert_eq!(read_holes(csv).holes[0].id.as_deref(), Some("#1"));
+    }
+
+    #[test]
+    fn an_axis_rounded_to_a_few_digits_is_taken() {
+        let csv = "id,x,y,z,i,j,k,depth,diameter\n1,0,0,0,0.453,0.879,-0.149,5,6\n";
+        let axis = read_holes(csv).holes[0].axis;
+        assert!((Vector3::from(axis).norm() - 1.0).abs() < 1e-15, "{axis:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_refused_with_its_place() {
+        let row = |row: &str| format!("id,x,y,z,i,j,k,depth,diameter\n0,0,0,0,0,1,0,5,6\n{row}\n");
+        let cases = [
+            (row("1,0,0,zero,0,1,0,5,6"), "line 3: column 'z' is 'zero': a number"),
+            (row("1,0,0,nan,0,1,0,5,6"), "line 3: hole 2 (id '1'): a number is NaN: all must be finite"),
+            (
+                row("1,0,0,0,0,0,0,5,6"),
+                "line 3: hole 2 (id '1'): the axis is 0, 0, 0: give the unit vector out of the part",
+            ),
+            (
+                row("1,0,0,0,0,2,0,5,6"),
+                "line 3: hole 2 (id '1'): the axis has the length 2.0000000: divide i, j, k by it",
+            ),
+            (row("1,0,0,0,0,1,0,-5,6"), "line 3: hole 2 (id '1'): the depth is -5: a number above 0"),
+            (row("0,0,0,0,0,1,0,5,6"), "id '0' is used twice, in hole 1 and hole 2: give each its own"),
+            (row("1,0,0"), "line 3: 3 columns, the header has 9"),
+            (
+                "id,x,y,z,i,j,depth,diameter\n".to_owned(),
+                "line 1: column 'k' is missing: the header is id,x,y,z,i,j,k,depth,diameter",
+            ),
+            (HOLE.replace("depth", "deep"), "line 1: column 86: unknown field `deep`"),
+            (HOLE.replace("5}]}", "5}"), "line 1: column 91: EOF while parsing a list"),
+        ];
+        for (text, expected) in cases {
+            let found = refused(&text);
+            assert!(found.starts_with(expected), "{text}\n  says {found:?}\n  not  {expected:?}");
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! The part's surface as an implicit function, and where a line meets it: by its values and gradients alone.
+use nalgebra::{Point3, Unit, Vector3};
+
+/// A convex body; lengths in mm, in the part's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Surface {
+    /// Of revolution about y: `a` its equatorial, `b` its polar radius.
+    Ellipsoid { a: f64, b: f64 },
+    /// About x, without ends: what stands beyond them isn't known.
+    Cylinder { radius: f64 },
+}
+
+impl Surface {
+    /// Below 0 inside, 0 on the surface, above 0 outside.
+    pub fn value(&self, p: &Point3<f64>) -> f64 {
+        match *self {
+            Self::Ellipsoid { a, b } => {
+                let (x, y, z) = (p.x / a, p.y / b, p.z / a);
+                x * x + y * y + z * z - 1.0
+            }
+            Self::Cylinder { radius } => (p.y * p.y + p.z * p.z) / (radius * radius) - 1.0,
+        }
+    }
+
+    pub fn gradient(&self, p: &Point3<f64>) -> Vector3<f64> {
+        match *self {
+            Self::Ellipsoid { a, b } => {
+                Vector3::new(2.0 * p.x / (a * a), 2.0 * p.y / (b * b), 2.0 * p.z / (a * a))
+            }
+            Self::Cylinder { radius } => Vector3::new(0.0, 2.0 * p.y, 2.0 * p.z) / (radius * radius),
+        }
+    }
+
+    /// The unit normal out of the body; `None` where the gradient vanishes, as in the centre.
+    pub fn normal(&self, p: &Point3<f64>) -> Option<Unit<Vector3<f64>>> {
+        Unit::try_new(self.gradient(p), f64::MIN_POSITIVE)
+    }
+
+    /// How far below the surface a point lies, along the gradient there: the distance for a sphere, near the surface
+    /// and on an axis of the body. Below 0 outside, to first order.
+    pub fn depth(&self, p: &Point3<f64>) -> f64 {
+        let value = self.value(p);
+        let out = || self.normal(p).unwrap_or(Vector3::y_axis());
+        match (value < 0.0).then(|| self.exit(p, &out())).flatten() {
+            Some(exit) => (exit - p).norm(),
+            None => -value / self.gradient(p).norm(),
+        }
+    }
+
+    /// Whether a point is deeper below the surface than so many mm, as [`Self::depth`] counts: one that is stays inside
+    /// when it goes so far out.
+    pub fn is_deeper(&self, p: &Point3<f64>, than: f64) -> bool {
+        let beyond = || p + self.normal(p).unwrap_or(Vector3::y_axis()).into_inner() * than;
+        self.value(p) < 0.0 && self.value(&beyond()) < 0.0
+    }
+
+    /// Where a line leaves the body towards `out`; `None` where it misses the body.
+    pub fn exit(&self, on: &Point3<f64>, out: &Unit<Vector3<f64>>) -> Option<Point3<f64>> {
+        let at = |t: f64| on + out.into_inner() * t;
+        // From a point inside the body there is one way out.
+        let inside = if self.value(on) < 0.0 { 0.0 } else { self.innermost(on, out) };
+        // A line that touches is one that meets: what is left of the value there is rounding.
+        if self.value(&at(inside)) > 1e-12 {
+            return None;
+        }
+        let beyond = grow_until(inside, 1.0, |t| self.value(&at(t)) > 0.0);
+        Some(at(find_zero(inside, beyond, |t| self.value(&at(t)))))
+    }
+
+    /// Whether turning about an axis through a point leaves the body as it is, to the last digits.
+    pub fn is_round(&self, on: &Point3<f64>, about: &Unit<Vector3<f64>>) -> bool {
+        let (own, all) = match *self {
+            Self::Ellipsoid { a, b } => (Vector3::y_axis(), a == b),
+            Self::Cylinder { .. } => (Vector3::x_axis(), false),
+        };
+        let along = all || own.cross(about).norm() < 1e-12;
+        along && on.coords.cross(about).norm() < 1e-9
+    }
+
+    /// At least this far from a straight way; below 0 where that can't be said.
+    ///
+    /// For a convex function no value between two points is below both tangents, and the way to a point of the
+    /// body is at least the value over the slope.
+    pub fn clearance(&self, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+        let along = to - from;
+        let (low, high) = (self.value(from), self.value(to));
+        let (at_from, at_to) = (self.gradient(from), self.gradient(to));
+        let (falling, rising) = (at_from.dot(&along), at_to.dot(&along));
+        let least = if falling >= 0.0 || rising <= 0.0 {
+            low.min(high)
+        } else {
+            // Where the tangents low + falling·t and high − rising·(1 − t) meet.
+            low + falling * ((high - low - rising) / (falling - rising))
+        };
+        least / at_from.norm().max(at_to.norm())
+    }
+
+    /// The deepest point of a straight way; of one that only touches the body at an end, that end.
+    pub fn deepest_between(&self, from: &Point3<f64>, to: &Point3<f64>) -> Point3<f64> {
+        let Some(along) = Unit::try_new(to - from, 1e-9) else { return *from };
+        // The slope grows along the way, because the body is convex.
+        if self.gradient(from).dot(&along) >= 0.0 {
+            return *from;
+        }
+        if self.gradient(to).dot(&along) <= 0.0 {
+            return *to;
+        }
+        from + along.into_inner() * self.innermost(from, &along)
+    }
+
+    /// Where along a line the value is least: there its slope changes sign, once, because the body is convex.
+    fn innermost(&self, on: &Point3<f64>, along: &Unit<Vector3<f64>>) -> f64 {
+        let slope = |t: f64| self.gradient(&(on + along.into_inner() * t)).dot(along);
+        let high = grow_until(0.0, 1.0, |t| slope(t) > 0.0);
+        let low = grow_until(0.0, -1.0, |t| slope(t) <= 0.0);
+        find_zero(low, high, slope)
+    }
+}
+
+/// The first of `from` + `step`·1, 2, 4, 8 … where `reached` holds.
+fn grow_until(from: f64, mut step: f64, reached: impl Fn(f64) -> bool) -> f64 {
+    while !reached(from + step) && step.abs() < 1e12 {
+        step *= 2.0;
+    }
+    from + step
+}
+
+/// Where `value` changes from 0 or less at `low` to more at `high`, to the last bit: as [`bisect`], in a few steps where
+/// that takes fifty. A step goes where the chord is 0; an end that stays counts half the next time (the Illinois method).
+/// What isn't found by chords is found by halves.
+fn find_zero(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
+    let (mut below, mut above) = (value(low), value(high));
+    let (mut was_above, mut chords) = (None, 40_u32);
+    loop {
+        let middle = low + (high - low) / 2.0;
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        // A step beside an end that is the place already brings the other end there.
+        let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());
+        let chord = low - below * ((high - low) / (above - below));
+        let by_chord = chords > 0 && high - low > 2.0 * least && chord.is_finite();
+        let t = if by_chord { chord.clamp(low + least, high - least) } else { middle };
+        chords = chords.saturating_sub(1);
+        let at = value(t);
+        let is_above = at > 0.0;
+        let again = was_above == Some(is_above);
+        if is_above {
+            (high, above) = (t, at);
+            below /= if again { 2.0 } else { 1.0 };
+        } else {
+            (low, below) = (t, at);
+            above /= if again { 2.0 } else { 1.0 };
+        }
+        was_above = Some(is_above);
+    }
+}
+
+/// Where `above` changes from false at `low` to true at `high`, to the last bit.
+pub fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = low + (high - low) / 2.0;
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if above(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn a_sphere_is_left_where_pythagoras_says() {
+        let sphere = Surface::Ellipsoid { a: 5.0, b: 5.0 };
+        let up = Vector3::y_axis();
+        let exit = sphere.exit(&Point3::new(3.0, -80.0, 0.0), &up).unwrap();
+        assert!((exit - Point3::new(3.0, 4.0, 0.0)).norm() < 1e-14, "{exit}");
+        assert!(sphere.exit(&Point3::new(5.1, 0.0, 0.0), &up).is_none());
+        let touching = sphere.exit(&Point3::new(5.0, 9.0, 0.0), &up).unwrap();
+        assert!((touching - Point3::new(5.0, 0.0, 0.0)).norm() < 1e-6, "{touching}");
+    }
+
+    #[test]
+    fn depth_is_the_distance_to_the_surface() {
+        let sphere = Surface::Ellipsoid { a: 100.0, b: 100.0 };
+        for (y, depth) in [(99.9, 0.1), (40.0, 60.0), (-97.0, 3.0), (0.0, 100.0)] {
+            let found = sphere.depth(&Point3::new(0.0, y, 0.0));
+            assert!((found - depth).abs() < 1e-9, "{found} at {y}");
+        }
+        let flat = Surface::Ellipsoid { a: 1000.0, b: 400.0 };
+        assert!((flat.depth(&Point3::new(0.0, 322.0, 0.0)) - 78.0).abs() < 1e-9);
+        assert!((sphere.depth(&Point3::new(0.0, 100.1, 0.0)) + 0.1).abs() < 1e-3);
+    }
+
+    proptest! {
+        #[test]
+        fn deeper_than_is_asked_as_depth_counts(
+            (a, b) in (1.0..300.0f64, 1.0..300.0f64),
+            (x, y, z) in (-1.2..1.2f64, -1.2..1.2f64, -1.2..1.2f64),
+            than in 0.0..20.0f64,
+        ) {
+            let p = Point3::new(x * a, y * b, z * a);
+            for surface in [Surface::Ellipsoid { a, b }, Surface::Cylinder { radius: a }] {
+                let depth = surface.depth(&p);
+                prop_assume!((depth - than).abs() > 1e-9);
+                prop_assert_eq!(surface.is_deeper(&p, than), than < depth);
+            }
+        }
+    }
+
+    #[test]
+    fn a_way_past_the_body_is_deepest_in_its_middle() {
+        let sphere = Surface::Ellipsoid { a: 10.0, b: 10.0 };
+        let (from, to) = (Point3::new(-20.0, 6.0, 0.0), Point3::new(30.0, 6.0, 0.0));
+        assert!((sphere.deepest_between(&from, &to) - Point3::new(0.0, 6.0, 0.0)).norm() < 1e-6);
+        let away = Point3::new(0.0, 10.0, 0.0);
+        assert_eq!(sphere.deepest_between(&away, &Point3::new(0.0, 50.0, 0.0)), away);
+    }
+
+    proptest! {
+        #[test]
+        fn chords_lead_where_halves_do(a in 0.0..1e-3, b in -1.0..1.0, c in 0.0..1.0) {
+            let value = |t: f64| a * t * t + b * t - c;
+            let high = grow_until(0.0, 1.0, |t| value(t) > 0.0);
+            prop_assume!(value(high) > 0.0);
+            let steps = std::cell::Cell::new(0);
+            let by_chords = find_zero(0.0, high, |t| {
+                steps.set(steps.get() + 1);
+                value(t)
+            });
+            let by_halves = bisect(0.0, high, |t| value(t) > 0.0);
+            prop_assert!((by_chords - by_halves).abs() <= 1e-12 * high.max(1.0), "{by_chords} {by_halves}");
+            prop_assert!(steps.get() <= 45, "{} steps", steps.get());
+        }
+
+        /// The bound on the distance never promises too much: no point of the body is nearer.
+        #[test]
+        fn clearance_is_kept(
+            (a, b) in (1.0..50.0, 1.0..50.0f64),
+            ends in prop::array::uniform6(-120.0..120.0),
+            (t, latitude, azimuth) in (0.0..1.0, -1.57..1.57, -4.0..4.0f64),
+        ) {
+            let (a, b): (f64, f64) = (a, b);
+            let surface = Surface::Ellipsoid { a, b };
+            let (from, to) = (Point3::new(ends[0], ends[1], ends[2]), Point3::new(ends[3], ends[4], ends[5]));
+            let r = a * libm::cos(latitude);
+            let body = Point3::new(r * libm::cos(azimuth), b * libm::sin(latitude), r * libm::sin(azimuth));
+            let way: Point3<f64> = from + (to - from) * t;
+            prop_assert!(surface.clearance(&from, &to) <= (way - body).norm() + 1e-9);
+        }
+
+        /// A line through a point of the surface given by its latitude is left there.
+        #[test]
+        fn a_line_is_left_at_the_point_it_was_laid_through(
+            (a, b) in (1.0..2000.0, 1.0..2000.0),
+            (latitude, azimuth) in (0.01..1.57, -9.0..9.0f64),
+        ) {
+            let (a, b): (f64, f64) = (a, b);
+            let surface = Surface::Ellipsoid { a, b };
+            let r = a * libm::cos(latitude);
+            let p = Point3::new(r * libm::cos(azimuth), b * libm::sin(latitude), r * libm::sin(azimuth));
+            let exit = surface.exit(&Point3::new(p.x, 0.0, p.z), &Vector3::y_axis()).unwrap();
+            prop_assert!((exit - p).norm() < 1e-9 * a.max(b), "{} {}", exit, p);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! What is different about an arc besides where it ends: its sense, its radius, where its centre is.
+use super::steps::{ROUNDED, Step};
+use gcode_lang::motion::PlanarArc;
+use gcode_lang::units::Deg;
+
+/// In words, unless it goes with how far the arc's ends have moved: I, J and K count from where it begins, R is the distance
+/// of its centre, and the parallels of one arc have one centre.
+pub(super) fn reshaped(
+    (old, a): (&Step, &PlanarArc),
+    (new, b): (&Step, &PlanarArc),
+    is_moved: bool,
+    tolerance: f64,
+) -> Option<String> {
+    let tolerance = if is_moved { tolerance.max(ROUNDED) } else { tolerance };
+    let near = |a: f64, b: f64| (a - b).abs() <= tolerance;
+    let (ends, ends_now) = (seen_from_centre(old, a), seen_from_centre(new, b));
+    let alike = |end: usize| near(ends[end].0, ends_now[end].0) && near(ends[end].1, ends_now[end].1);
+    let radius = |ends: [(f64, f64); 2]| libm::hypot(ends[1].0, ends[1].1);
+    let is_long = |arc: &PlanarArc| arc.sweep.0.abs() > 180.0;
+    let same_sweep = (a.sweep.0 - b.sweep.0).abs() <= 1e-3;
+    let same_centre = near(a.centre.0, b.centre.0) && near(a.centre.1, b.centre.1);
+    let same_way = a.plane == b.plane && (a.sweep.0 > 0.0) == (b.sweep.0 > 0.0);
+    let goes_along = alike(0)
+        || near(radius(ends), radius(ends_now)) && is_long(a) == is_long(b)
+        || same_centre && same_sweep && is_moved;
+    if same_way && goes_along {
+        return None;
+    }
+    Some(format!(
+        "an arc of radius {:.4} sweeps {:+.3}° about {:.4} {:.4} instead of one of {:.4} {:+.3}° about {:.4} {:.4}",
+        radius(ends_now),
+        b.sweep.0,
+        b.centre.0,
+        b.centre.1,
+        radius(ends),
+        a.sweep.0,
+        a.centre.0,
+        a.centre.1
+    ))
+}
+
+/// Where an arc begins and ends.
+fn seen_from_centre(step: &Step, arc: &PlanarArc) -> [(f64, f64); 2] {
+    let (x, y) = (step.at[arc.plane.0] - arc.centre.0, step.at[arc.plane.1] - arc.centre.1);
+    let back = Deg(-arc.sweep.0);
+    [(x * back.cos() - y * back.sin(), x * back.sin() + y * back.cos()), (x, y)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::steps::StepKind;
+    use super::*;
+    use gcode_lang::motion::Position;
+
+    /// From (10, 0) by R10 about 0 0 to (0, 10), moved by `x`; with what `other` makes of the arc.
+    fn arc(x: f64, other: impl Fn(&mut PlanarArc)) -> (Step, PlanarArc) {
+        let mut arc = PlanarArc { plane: (0, 1), centre: (x, 0.0), sweep: Deg(90.0) };
+        other(&mut arc);
+        let place = |x: f64, y: f64| Position([x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let (from, to) = (place(10.0 + x, 0.0), place(x, 10.0));
+        let kind = StepKind::Arc(arc, 100.0);
+        (Step { kind, from, to, at: to, place: 0, set_by: None, condition: 0 }, arc)
+    }
+
+    fn told(x: f64, other: impl Fn(&mut PlanarArc)) -> bool {
+        let (was, is) = (arc(0.0, |_| ()), arc(x, other));
+        reshaped((&was.0, &was.1), (&is.0, &is.1), x != 0.0, 0.001).is_some()
+    }
+
+    #[test]
+    fn an_arc_that_is_moved_as_a_whole_is_the_same() {
+        assert!(!told(0.0, |_| ()) && !told(0.01, |_| ()) && !told(300.0, |_| ()));
+    }
+
+    #[test]
+    fn sense_side_and_centre_are_told_whatever_else_moves() {
+        for x in [0.0, 0.01, 300.0] {
+            // About (10, 10) from (10, 0) to (0, 10): G02, and by R-10 the long way about (0, 0).
+            assert!(
+                told(x, |arc| *arc = PlanarArc { centre: (10.0 + x, 10.0), sweep: Deg(-90.0), ..*arc }),
+                "{x}"
+            );
+            assert!(told(x, |arc| arc.sweep = Deg(-270.0)), "{x}");
+            assert!(
+                told(x, |arc| *arc = PlanarArc { centre: (10.0 + x, 10.0), sweep: Deg(270.0), ..*arc }),
+                "{x}"
+            );
+            // R12: its centre is on the line between the ends' middle and the old one, √(144 − 50) from the middle.
+            let centre = 5.0 - (94.0_f64 / 2.0).sqrt();
+            let sweep = Deg(2.0 * Deg::asin(50.0_f64.sqrt() / 12.0).0);
+            assert!(told(x, |arc| *arc = PlanarArc { centre: (centre + x, centre), sweep, ..*arc }), "{x}");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! What steps, places and distances are called in an entry.
+use super::steps::{Category, Step, StepKind, UnsimulatedKind, difference};
+use gcode_lang::motion::{Axes, Position, SpindleDirection, StopKind};
+
+/// What a change of such a step is called.
+pub(super) fn code(kind: &StepKind) -> &'static str {
+    match kind.category() {
+        Category::Move => "move",
+        Category::Dwell => "dwell",
+        Category::Tool | Category::Silent(UnsimulatedKind::Tool) => "tool",
+        Category::Length => "tool-length",
+        Category::Spindle | Category::Silent(UnsimulatedKind::Speed) => "spindle",
+        Category::Coolant => "coolant",
+        Category::Auxiliary | Category::Silent(UnsimulatedKind::MCode) => "m-code",
+        Category::Stop => "stop",
+        Category::Silent(UnsimulatedKind::Skip) => "block-skip",
+        Category::Silent(UnsimulatedKind::Path) => "path-mode",
+        Category::Silent(UnsimulatedKind::GCode) => "g-code",
+        Category::Silent(UnsimulatedKind::Switch) => "switch",
+        Category::Silent(UnsimulatedKind::Signal) => "signal",
+    }
+}
+
+pub(super) fn describe(kind: &StepKind, axes: &Axes) -> String {
+    match kind {
+        StepKind::Dwell(seconds) => format!("a dwell of {seconds} s"),
+        StepKind::Tool(number) => format!("tool T{number}"),
+        StepKind::Length(offset) => match coordinates(offset, axes, 0.0, false).as_str() {
+            "" => "a tool length offset of 0".to_owned(),
+            values => format!("tool length offset {values}"),
+        },
+        StepKind::Spindle(SpindleDirection::Off, _) => "spindle stop".to_owned(),
+        StepKind::Spindle(SpindleDirection::Clockwise, speed) => format!("M03 S{speed}"),
+        StepKind::Spindle(SpindleDirection::Counterclockwise, speed) => format!("M04 S{speed}"),
+        StepKind::Coolant(true, None) => "coolant on".to_owned(),
+        StepKind::Coolant(false, None) => "coolant off".to_owned(),
+        StepKind::Coolant(_, Some(code)) | StepKind::Auxiliary(code) => format!("M{code:02}"),
+        StepKind::Stop(StopKind::M00, ..) => "the stop M00".to_owned(),
+        StepKind::Stop(StopKind::M01, ..) => "the stop M01".to_owned(),
+        StepKind::Stop(StopKind::Message, text, named) => {
+            let values = named.iter().map(|(number, value)| format!(", #{number} = {}", short(*value)));
+            format!("the stop #3006 ({text}){}", values.collect::<String>())
+        }
+        StepKind::Silent(UnsimulatedKind::Skip, text) => format!("the block skip {text}"),
+        StepKind::Silent(UnsimulatedKind::Tool, text) => format!("{text} without M06"),
+        StepKind::Silent(UnsimulatedKind::Speed, text) => format!("{text} without M03 or M04"),
+        StepKind::Silent(_, text) => text.clone(),
+        StepKind::Rapid | StepKind::Feed(_) | StepKind::Arc(..) | StepKind::Probe(_) => kind.one(),
+    }
+}
+
+/// Where a move ends, in machine coordinates without the tool's length.
+pub(super) fn point(step: &Step, axes: &Axes) -> String {
+    let way = difference(&step.to, &step.from);
+    let moving: Vec<String> = axes
+        .iter()
+        .filter(|(axis, _)| way[*axis] != 0.0)
+        .map(|(axis, letter)| format!("{letter}{:.4}", step.at[axis]))
+        .collect();
+    if moving.is_empty() { "its start point".to_owned() } else { moving.join(" ") }
+}
+
+/// The axes whose values are beyond `least`.
+pub(super) fn coordinates(values: &Position, axes: &Axes, least: f64, signed: bool) -> String {
+    let far = axes.iter().filter(|(axis, _)| values[*axis].abs() > least);
+    let told = far.map(|(axis, letter)| match signed {
+        true => format!("{letter} {:+.4}", values[axis]),
+        false => format!("{letter} {:.4}", values[axis]),
+    });
+    told.collect::<Vec<_>>().join(" ")
+}
+
+/// A feed without digits nobody can set.
+pub(super) fn short(rate: f64) -> f64 {
+    (rate * 1e4).round() / 1e4
+}

@@ -1,0 +1,100 @@
+//! How often and by which tools a hole is made: all passes on its line, those as well that a tool makes again for nothing.
+use std::collections::BTreeSet;
+
+use super::align::common;
+use super::record::Record;
+use super::steps::StepKind;
+
+/// What makes each hole of a record; nothing for one that only makes another one again.
+pub(super) struct Passes {
+    /// The hole itself, or the first one on its line.
+    first: Vec<usize>,
+    /// The holes that make each one again, in their order.
+    pub again: Vec<Vec<usize>>,
+    /// The steps that cut it, in their order.
+    pub steps: Vec<Vec<usize>>,
+    /// The tools of these steps; nothing where one has none.
+    pub tools: Vec<Vec<u32>>,
+}
+
+impl Passes {
+    pub(super) fn of(record: &Record) -> Self {
+        let first: Vec<usize> = record.holes.iter().map(|hole| hole.first_on_line).collect();
+        let mut steps = vec![Vec::new(); record.holes.len()];
+        let mut again = vec![Vec::new(); record.holes.len()];
+        for (hole, feeds) in record.feeds.iter().enumerate() {
+            steps[first[hole]].extend(feeds);
+            if first[hole] != hole {
+                again[first[hole]].push(hole);
+            }
+        }
+        steps.iter_mut().for_each(|steps| steps.sort_unstable());
+        let in_spindle = record.steps.iter().scan(None, |tool, step| {
+            if let StepKind::Tool(number) = step.kind {
+                *tool = Some(number);
+            }
+            Some(*tool)
+        });
+        let in_spindle: Vec<Option<u32>> = in_spindle.collect();
+        let of = |steps: &Vec<usize>| steps.iter().map(|step| in_spindle[*step]).collect::<Option<_>>();
+        let tools = steps.iter().map(|steps| of(steps).unwrap_or_default()).collect();
+        Self { first, again, steps, tools }
+    }
+
+    /// The holes that aren't others made again.
+    pub(super) fn firsts(&self) -> Vec<usize> {
+        (0..self.first.len()).filter(|hole| self.first[*hole] == *hole).collect()
+    }
+}
+
+impl Record {
+    /// The tools that make each hole, in their order; none where one isn't known, or where it only makes another one
+    /// again.
+    pub fn made_by(&self) -> Vec<Vec<u32>> {
+        Passes::of(self).tools
+    }
+}
+
+/// Which passes are gone and which are new, and the tools that are gone, each with those there now; `None` where as many are made.
+pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<(String, BTreeSet<(u32, u32)>)> {
+    if was.len() == is.len() || was.is_empty() || is.is_empty() {
+        return None;
+    }
+    let common = common(was.len(), is.len(), |i, j| was[i] == is[j]);
+    let of = |all: &[u32], kept: &dyn Fn(usize) -> bool| -> Vec<u32> {
+        all.iter().enumerate().filter(|(k, _)| !kept(*k)).map(|(_, tool)| *tool).collect()
+    };
+    let gone = of(was, &|k| common.iter().any(|(i, _)| *i == k));
+    let new = of(is, &|k| common.iter().any(|(_, j)| *j == k));
+    let mut words = Vec::new();
+    if !gone.is_empty() {
+        let times = if gone.iter().any(|tool| is.contains(tool)) { "fewer passes" } else { "no longer made" };
+        words.push(format!("{times} by {}", in_words(&gone)));
+    }
+    if !new.is_empty() {
+        let again = new.iter().any(|tool| was.contains(tool));
+        words.push(match (again, is) {
+            (true, [_, _]) => "now made twice".to_owned(),
+            (true, _) if new.len() == 1 => format!("one more pass by {}", in_words(&new)),
+            (true, _) => format!("{} more passes, by {}", new.len(), in_words(&new)),
+            (false, _) => format!("also made by {}", in_words(&new)),
+        });
+    }
+    words.push(format!("in total by {}", in_words(is)));
+    let swapped = gone.iter().flat_map(|gone| is.iter().map(|tool| (*gone, *tool))).collect();
+    Some((words.join(", "), swapped))
+}
+
+/// `T1`, `T1 and T2`, `T1, T2 and T1`; a tool that follows itself is counted, `T1 and T2 (3 times)`.
+pub(super) fn in_words(tools: &[u32]) -> String {
+    let name = |run: &[u32]| match run {
+        [tool] => format!("T{tool}"),
+        _ => format!("T{} ({} times)", run[0], run.len()),
+    };
+    let names: Vec<String> = tools.chunk_by(|a, b| a == b).map(name).collect();
+    match names.as_slice() {
+        [] => String::new(),
+        [only] => only.clone(),
+        [before @ .., last] => format!("{} and {last}", before.join(", ")),
+    }
+}

@@ -1,0 +1,425 @@
+//! A record as a file: JSON with one step, one block and one hole a line, so that a change of it can be read.
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+
+use nalgebra::{Point3, Unit, Vector3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::initial_commands::FirstCommand;
+use super::legacy_records::present_words;
+use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
+use super::record::{BlockLocation, EndState, Record, Totals};
+use super::steps::{Step, StepKind, UnsimulatedKind, difference};
+use gcode_inspect::holes::DrilledHole;
+use gcode_lang::motion::{Axes, Backtrace, PlanarArc, Position, SpindleDirection, StopKind};
+use gcode_lang::units::Deg;
+
+/// What a file of this kind begins with; another number is another form of it.
+const VERSION: u32 = 1;
+
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AcceptedFile {
+    version: u32,
+    axes: String,
+    /// The main program's name as a control shows it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    program: Option<String>,
+    totals: Totals,
+    ending: EndState,
+    places: Vec<BlockLocation>,
+    /// The first commands of the program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    begun: Option<Vec<FirstCommand>>,
+    steps: Vec<StepLine>,
+    holes: Vec<Hole>,
+}
+
+/// A step: its action, the end positions of the axes it moves (mm and degrees), and the number of its block.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
+enum StepLine {
+    Rapid {
+        to: BTreeMap<char, f64>,
+        place: usize,
+    },
+    Feed {
+        to: BTreeMap<char, f64>,
+        f: f64,
+        place: usize,
+    },
+    Arc {
+        to: BTreeMap<char, f64>,
+        plane: [char; 2],
+        centre: [f64; 2],
+        sweep: f64,
+        f: f64,
+        place: usize,
+    },
+    Probe {
+        to: BTreeMap<char, f64>,
+        f: f64,
+        place: usize,
+    },
+    Dwell {
+        seconds: f64,
+        place: usize,
+    },
+    Tool {
+        number: u32,
+        place: usize,
+    },
+    Length {
+        offset: BTreeMap<char, f64>,
+        place: usize,
+    },
+    Spindle {
+        turning: StoredSpindle,
+        speed: f64,
+        place: usize,
+    },
+    Coolant {
+        on: bool,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        m: Option<u32>,
+        place: usize,
+    },
+    Auxiliary {
+        m: u32,
+        place: usize,
+    },
+    Stop {
+        kind: StoredStop,
+        text: String,
+        named: Vec<(u32, f64)>,
+        place: usize,
+    },
+    /// A command of a block without motion.
+    Silent {
+        what: UnsimulatedKind,
+        code: String,
+        place: usize,
+    },
+    /// Not a step: a modal condition from here on. Holes do not count it among their steps.
+    Under {
+        what: ModalAspect,
+        code: String,
+        place: Option<usize>,
+    },
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
+enum StoredSpindle {
+    #[serde(rename = "off")]
+    Off,
+    #[serde(rename = "M03")]
+    Clockwise,
+    #[serde(rename = "M04")]
+    Counterclockwise,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
+enum StoredStop {
+    M00,
+    M01,
+    #[serde(rename = "#3006")]
+    Message,
+}
+
+/// A hole in the part's frame, and the steps that cut it.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Hole {
+    entry: [f64; 3],
+    axis: [f64; 3],
+    depth: f64,
+    diameter: Option<f64>,
+    tool: Option<u32>,
+    steps: Vec<usize>,
+    /// The hole that this one repeats, counted from 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    again: Option<usize>,
+}
+
+/// Why a file of accepted results can't be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct StoreError(String);
+
+impl Record {
+    /// The record as a text.
+    pub fn to_json(&self) -> Result<String, StoreError> {
+        let mut at = Position::default();
+        let mut steps = Vec::with_capacity(self.steps.len());
+        let mut under = ModalConditions::default();
+        for (index, step) in self.steps.iter().enumerate() {
+            let now = self.under(index);
+            for what in ModalAspect::ALL.into_iter().filter(|what| now.word(*what) != under.word(*what)) {
+                let ModalSetting { text, place } = now.word(what).clone();
+                steps.push(StepLine::Under { what, code: text, place });
+            }
+            under.clone_from(now);
+            steps.push(self.line(step, &at));
+            at = step.at;
+        }
+        let holes = self.holes.iter().zip(&self.feeds).enumerate().map(|(number, (hole, steps))| Hole {
+            entry: hole.entry.coords.into(),
+            axis: hole.axis.into_inner().into(),
+            depth: hole.depth,
+            diameter: hole.diameter,
+            tool: hole.tool,
+            steps: steps.clone(),
+            again: (hole.first_on_line != number).then_some(hole.first_on_line),
+        });
+        let axes: String = self.axes.iter().map(|(_, letter)| letter).collect();
+        let mut text = String::from("{\n");
+        let _ = writeln!(text, "\"version\": {VERSION},\n\"axes\": \"{axes}\",");
+        if let Some(program) = &self.program {
+            let _ = writeln!(text, "\"program\": {},", json(program)?);
+        }
+        let _ = writeln!(text, "\"totals\": {},\n\"ending\": {},", json(&self.totals)?, json(&self.ending)?);
+        let _ = writeln!(text, "\"places\": {},", lines(&self.places)?);
+        if let Some(begun) = &self.begun {
+            let _ = writeln!(text, "\"begun\": {},", lines(begun)?);
+        }
+        let _ = writeln!(text, "\"steps\": {},", lines(&steps)?);
+        let _ = writeln!(text, "\"holes\": {}", lines(&holes.collect::<Vec<_>>())?);
+        text.push_str("}\n");
+        Ok(text)
+    }
+
+    /// Reads what [`Record::to_json`] has written.
+    ///
+    /// # Errors
+    /// What isn't such a text, with the line where it isn't.
+    pub fn from_json(text: &str) -> Result<Self, StoreError> {
+        let file: AcceptedFile = serde_json::from_str(text).map_err(|error| StoreError(error.to_string()))?;
+        if file.version != VERSION {
+            return Err(StoreError(format!(
+                "version {} is unknown: this program reads version {VERSION}",
+                file.version
+            )));
+        }
+        let axes =
+            Axes::new(&file.axes).ok_or_else(|| StoreError(format!("axes '{}' are not valid", file.axes)))?;
+        let mut reader = Steps {
+            axes: &axes,
+            at: Position::default(),
+            length: Position::default(),
+            conditions: vec![ModalConditions::default()],
+        };
+        let steps = file.steps.into_iter().filter_map(|line| reader.step(line).transpose());
+        let steps = steps.collect::<Result<Vec<_>, _>>()?;
+        let conditions = reader.conditions;
+        let named = conditions.iter().flat_map(|condition| &condition.0).filter_map(|word| word.place);
+        if let Some(place) = named.max().filter(|place| file.places.len() <= *place) {
+            return Err(StoreError(format!("a mode names block {place}, which does not exist")));
+        }
+        if let Some(step) = steps.iter().find(|step| file.places.len() <= step.place) {
+            return Err(StoreError(format!("a step names block {}, which does not exist", step.place)));
+        }
+        let mut feeds = Vec::with_capacity(file.holes.len());
+        let mut holes = Vec::with_capacity(file.holes.len());
+        for hole in file.holes {
+            if hole.steps.iter().any(|step| steps.len() <= *step) {
+                return Err(StoreError("a hole names a step that does not exist".to_owned()));
+            }
+            if hole.again.is_some_and(|first| {
+                holes.get(first).is_none_or(|hole: &DrilledHole| hole.first_on_line != first)
+            }) {
+                return Err(StoreError("a hole repeats one that does not precede it".to_owned()));
+            }
+            holes.push(hole.found(holes.len())?);
+            feeds.push(hole.steps);
+        }
+        let mut begun = file.begun.iter().flatten();
+        if let Some(begun) = begun.find(|begun| file.places.len() <= begun.place) {
+            return Err(StoreError(format!(
+                "{} names block {}, which does not exist",
+                begun.text, begun.place
+            )));
+        }
+        let (places, mut ending, totals) = (file.places, file.ending, file.totals);
+        ending.words = present_words(&ending.words);
+        let unfinished = BTreeSet::new();
+        let (begun, program) = (file.begun, file.program);
+        Ok(Self {
+            axes,
+            steps,
+            holes,
+            feeds,
+            unfinished,
+            places,
+            conditions,
+            begun,
+            program,
+            ending,
+            sources: None,
+            totals,
+        })
+    }
+
+    fn line(&self, step: &Step, before: &Position) -> StepLine {
+        let place = step.place;
+        let to = moved(&self.axes, before, &step.at);
+        match &step.kind {
+            StepKind::Rapid => StepLine::Rapid { to, place },
+            StepKind::Feed(f) => StepLine::Feed { to, f: *f, place },
+            StepKind::Arc(arc, f) => StepLine::Arc {
+                to,
+                plane: [self.axes.letter(arc.plane.0), self.axes.letter(arc.plane.1)],
+                centre: [arc.centre.0, arc.centre.1],
+                sweep: arc.sweep.0,
+                f: *f,
+                place,
+            },
+            StepKind::Probe(f) => StepLine::Probe { to, f: *f, place },
+            StepKind::Dwell(seconds) => StepLine::Dwell { seconds: *seconds, place },
+            StepKind::Tool(number) => StepLine::Tool { number: *number, place },
+            StepKind::Length(offset) => {
+                StepLine::Length { offset: moved(&self.axes, &Position::default(), offset), place }
+            }
+            StepKind::Spindle(turning, speed) => {
+                let turning = match turning {
+                    SpindleDirection::Off => StoredSpindle::Off,
+                    SpindleDirection::Clockwise => StoredSpindle::Clockwise,
+                    SpindleDirection::Counterclockwise => StoredSpindle::Counterclockwise,
+                };
+                StepLine::Spindle { turning, speed: *speed, place }
+            }
+            StepKind::Coolant(on, m) => StepLine::Coolant { on: *on, m: *m, place },
+            StepKind::Auxiliary(m) => StepLine::Auxiliary { m: *m, place },
+            StepKind::Stop(kind, text, named) => {
+                let kind = match kind {
+                    StopKind::M00 => StoredStop::M00,
+                    StopKind::M01 => StoredStop::M01,
+                    StopKind::Message => StoredStop::Message,
+                };
+                StepLine::Stop { kind, text: text.clone(), named: named.clone(), place }
+            }
+            StepKind::Silent(what, code) => StepLine::Silent { what: *what, code: code.clone(), place },
+        }
+    }
+}
+
+/// The axes that stand elsewhere than before.
+fn moved(axes: &Axes, before: &Position, at: &Position) -> BTreeMap<char, f64> {
+    let moved = axes.iter().filter(|(axis, _)| before[*axis] != at[*axis]);
+    moved.map(|(axis, letter)| (letter, at[axis])).collect()
+}
+
+fn json(value: &impl Serialize) -> Result<String, StoreError> {
+    serde_json::to_string(value).map_err(|error| StoreError(error.to_string()))
+}
+
+/// A list with one element a line.
+fn lines(values: &[impl Serialize]) -> Result<String, StoreError> {
+    let all = values.iter().map(json).collect::<Result<Vec<_>, _>>()?;
+    Ok(if all.is_empty() { "[]".to_owned() } else { format!("[\n{}\n]", all.join(",\n")) })
+}
+
+/// Follows the axes through the steps of a file.
+struct Steps<'a> {
+    axes: &'a Axes,
+    at: Position,
+    length: Position,
+    conditions: Vec<ModalConditions>,
+}
+
+impl Steps<'_> {
+    /// `None` where the line is no step.
+    fn step(&mut self, line: StepLine) -> Result<Option<Step>, StoreError> {
+        let before = self.at;
+        let (kind, place) = match line {
+            StepLine::Rapid { to, place } => (self.go(&to, StepKind::Rapid)?, place),
+            StepLine::Feed { to, f, place } => (self.go(&to, StepKind::Feed(f))?, place),
+            StepLine::Probe { to, f, place } => (self.go(&to, StepKind::Probe(f))?, place),
+            StepLine::Arc { to, plane: [first, second], centre, sweep, f, place } => {
+                let plane = (self.axis(first)?, self.axis(second)?);
+                let arc = PlanarArc { plane, centre: (centre[0], centre[1]), sweep: Deg(sweep) };
+                (self.go(&to, StepKind::Arc(arc, f))?, place)
+            }
+            StepLine::Dwell { seconds, place } => (StepKind::Dwell(seconds), place),
+            StepLine::Tool { number, place } => (StepKind::Tool(number), place),
+            StepLine::Length { offset, place } => {
+                self.length = self.put(&offset, Position::default())?;
+                (StepKind::Length(self.length), place)
+            }
+            StepLine::Spindle { turning, speed, place } => {
+                let turning = match turning {
+                    StoredSpindle::Off => SpindleDirection::Off,
+                    StoredSpindle::Clockwise => SpindleDirection::Clockwise,
+                    StoredSpindle::Counterclockwise => SpindleDirection::Counterclockwise,
+                };
+                (StepKind::Spindle(turning, speed), place)
+            }
+            StepLine::Coolant { on, m, place } => (StepKind::Coolant(on, m), place),
+            StepLine::Auxiliary { m, place } => (StepKind::Auxiliary(m), place),
+            StepLine::Stop { kind, text, named, place } => {
+                let kind = match kind {
+                    StoredStop::M00 => StopKind::M00,
+                    StoredStop::M01 => StopKind::M01,
+                    StoredStop::Message => StopKind::Message,
+                };
+                (StepKind::Stop(kind, text, named), place)
+            }
+            StepLine::Silent { what, code, place } => (StepKind::Silent(what, code), place),
+            StepLine::Under { what, code, place } => {
+                let mut next = self.conditions.last().cloned().unwrap_or_default();
+                next.set(what, ModalSetting { text: code, place });
+                self.conditions.push(next);
+                return Ok(None);
+            }
+        };
+        let (from, to) = (difference(&before, &self.length), difference(&self.at, &self.length));
+        Ok(Some(Step {
+            kind,
+            from,
+            to,
+            at: self.at,
+            place,
+            set_by: None,
+            condition: self.conditions.len() - 1,
+        }))
+    }
+
+    fn go(&mut self, to: &BTreeMap<char, f64>, kind: StepKind) -> Result<StepKind, StoreError> {
+        self.at = self.put(to, self.at)?;
+        Ok(kind)
+    }
+
+    fn put(&self, values: &BTreeMap<char, f64>, mut position: Position) -> Result<Position, StoreError> {
+        for (letter, value) in values {
+            position[self.axis(*letter)?] = *value;
+        }
+        Ok(position)
+    }
+
+    fn axis(&self, letter: char) -> Result<usize, StoreError> {
+        let found = u8::try_from(letter).ok().and_then(|letter| self.axes.find(letter));
+        found.ok_or_else(|| StoreError(format!("a step names axis {letter}, which does not exist")))
+    }
+}
+
+impl Hole {
+    fn found(&self, number: usize) -> Result<DrilledHole, StoreError> {
+        let axis = Vector3::from(self.axis);
+        if (axis.norm() - 1.0).abs() > 1e-9 {
+            return Err(StoreError("a hole's axis is not a unit vector".to_owned()));
+        }
+        Ok(DrilledHole {
+            entry: Point3::from(self.entry),
+            // Made of length 1 once more it would not be the number that was written.
+            axis: Unit::new_unchecked(axis),
+            depth: self.depth,
+            diameter: self.diameter,
+            tool: self.tool,
+            backtrace: Backtrace::default(),
+            axis_position: Position::default(),
+            tool_axis_deviation: Deg::ZERO,
+            earlier_passes: Vec::new(),
+            first_on_line: self.again.unwrap_or(number),
+        })
+    }
+}

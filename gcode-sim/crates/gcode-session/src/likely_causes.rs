@@ -1,0 +1,57 @@
+//! What may explain a verdict: work offsets that nothing has set, numbers without a point in the program's text.
+use super::Run;
+use gcode_inspect::machine::Machine;
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::{Memory, NoLibrary};
+use gcode_lint::{check_loaded, rules};
+
+/// `explain`: whether there is something that a slip may explain.
+pub(super) fn likely_causes(run: &Run, machine: &Machine, explain: bool) -> Vec<Diagnostic> {
+    let mut found: Vec<Diagnostic> = unset_work_offsets(run, machine, "holes").collect();
+    if explain {
+        let checked = check_loaded(reload(run), run.control.settings(), &mut NoLibrary);
+        let points = checked.findings.into_iter().filter(|finding| finding.code == rules::MISSING_POINT);
+        found.extend(points.map(|mut finding| {
+            finding.message = finding.message.replacen(" is ", " without a decimal point is ", 1);
+            finding
+        }));
+    }
+    found
+}
+
+/// The programs of the run, loaded anew in the same order: places in them stay what they are.
+fn reload(run: &Run) -> Memory {
+    let mut memory = Memory::default();
+    for (_, source) in run.control.memory().sources().iter() {
+        memory.load(source.name.clone(), source.bytes.clone());
+    }
+    memory
+}
+
+/// Work offsets that the run moved in and of which the machine file says nothing, nor the program itself: each counts as 0,
+/// as G54 does, so that what is `made` comes out alike whichever is in effect.
+pub(super) fn unset_work_offsets<'r>(
+    run: &'r Run,
+    machine: &'r Machine,
+    made: &'r str,
+) -> impl Iterator<Item = Diagnostic> + 'r {
+    let unset = run.control.unset_work_systems().iter();
+    unset.map(move |(system, place)| offset_finding(*system, machine, made).with_backtrace(place.clone()))
+}
+
+fn offset_finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {
+    let name = match system {
+        WorkSystem::Standard(_) => format!("G{}", system.code() / 10),
+        WorkSystem::Additional(number) => format!("G54.1 P{number}"),
+    };
+    let known: Vec<_> = machine.offsets.iter().map(|offset| format!("G{}", offset.code)).collect();
+    let given = match known.as_slice() {
+        [] => format!("no work offset; all count as zero here, and the {made} are computed as with G54"),
+        known => format!("{} only; this one counts as zero here", known.join(", ")),
+    };
+    let message =
+        format!("the program uses work offset {name}, which is unknown: the machine file gives {given}");
+    Diagnostic::warning("work-offset", message)
+        .help("check that it is the offset set up on the machine; its values there are not checked")
+}

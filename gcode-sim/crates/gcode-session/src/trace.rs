@@ -1,0 +1,225 @@
+//! What a run did block by block: how often each was executed, and what the variables in it were.
+use std::collections::BTreeMap;
+
+use gcode_control::{Control, Observer, Outcome, Value};
+use gcode_lang::source::{SourceId, Span};
+use gcode_lang::syntax::parse;
+
+/// As many values of one block are kept; a block that fills a table by computed numbers has thousands.
+const MAX_VALUES: usize = 40;
+
+/// Reading a clock tells a control that the program waits, and these have nothing to show besides: alarm, clocks, date.
+const IGNORED_VARIABLES: [u32; 5] = [3000, 3001, 3002, 3011, 3012];
+
+/// Every block that was executed.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    blocks: BTreeMap<(SourceId, u32), ExecutedBlock>,
+    /// The variables that the blocks of each text name by number.
+    named_variables: BTreeMap<(SourceId, u32), Vec<u32>>,
+    read_sources: Vec<SourceId>,
+    current: Option<CurrentBlock>,
+}
+
+/// The block at hand.
+#[derive(Clone, Debug)]
+struct CurrentBlock {
+    block: Span,
+    level: usize,
+    assigned: Vec<u32>,
+}
+
+/// One block of the text.
+#[derive(Clone, Debug)]
+pub struct ExecutedBlock {
+    pub block: Span,
+    pub count: u64,
+    pub values: Vec<VariableValues>,
+    /// There were more variables than are kept.
+    pub is_truncated: bool,
+}
+
+/// What one variable was in one block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VariableValues {
+    pub number: u32,
+    pub role: VariableRole,
+    pub count: u64,
+    pub first: Value,
+    pub last: Value,
+    /// The least and the greatest of the numbers it was; `None` where it was never one.
+    pub range: Option<(f64, f64)>,
+}
+
+/// What the block does with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum VariableRole {
+    /// It is named; its value before the block.
+    Read,
+    /// Its value behind the block.
+    Assigned,
+    /// A local of the program that is called: an argument.
+    Argument,
+}
+
+impl Trace {
+    /// The blocks in the order of the texts.
+    pub fn blocks(&self) -> impl Iterator<Item = &ExecutedBlock> {
+        self.blocks.values()
+    }
+
+    /// Reads a text for the variables in it, once.
+    fn read_source(&mut self, control: &Control, source: SourceId) {
+        if self.read_sources.contains(&source) {
+            return;
+        }
+        self.read_sources.push(source);
+        let bytes = &control.memory().sources().get(source).bytes;
+        for block in parse(source, bytes).iter().flat_map(|program| &program.blocks) {
+            let mut numbers = gcode_lint::variables_read(block);
+            numbers.retain(|number| !IGNORED_VARIABLES.contains(number));
+            if !numbers.is_empty() {
+                self.named_variables.insert((source, block.span.start), numbers);
+            }
+        }
+    }
+}
+
+impl Observer for Trace {
+    fn before_block(&mut self, control: &mut Control) {
+        self.current = None;
+        let Some(block) = control.next_block() else { return };
+        self.read_source(control, block.source);
+        let key = (block.source, block.start);
+        let executed = self.blocks.entry(key).or_insert_with(|| ExecutedBlock {
+            block,
+            count: 0,
+            values: Vec::new(),
+            is_truncated: false,
+        });
+        executed.count += 1;
+        for number in self.named_variables.get(&key).into_iter().flatten() {
+            if let Ok(value) = control.variable(*number) {
+                executed.record_value(*number, VariableRole::Read, value);
+            }
+        }
+        let mut assigned = control.next_assigned_variables();
+        assigned.retain(|number| !IGNORED_VARIABLES.contains(number));
+        self.current = Some(CurrentBlock { block, level: control.vars().level(), assigned });
+    }
+
+    fn after_block(&mut self, control: &Control) {
+        // A block that alarms has changed nothing.
+        if matches!(control.outcome(), Some(Outcome::Alarm(_))) {
+            return;
+        }
+        let Some(now) = self.current.take() else { return };
+        let Some(executed) = self.blocks.get_mut(&(now.block.source, now.block.start)) else { return };
+        for number in now.assigned {
+            if let Ok(value) = control.variable(number) {
+                executed.record_value(number, VariableRole::Assigned, value);
+            }
+        }
+        if control.vars().level() > now.level {
+            let locals = control.vars().locals();
+            for number in (1..=33).filter(|number| !locals.get(*number).is_vacant()) {
+                executed.record_value(number as u32, VariableRole::Argument, locals.get(number));
+            }
+        }
+    }
+}
+
+impl ExecutedBlock {
+    fn record_value(&mut self, number: u32, role: VariableRole, value: Value) {
+        let at = self.values.iter().position(|values| values.number == number && values.role == role);
+        match at {
+            Some(at) => self.values[at].add(value),
+            None if self.values.len() < MAX_VALUES => {
+                self.values.push(VariableValues::new(number, role, value))
+            }
+            None => self.is_truncated = true,
+        }
+    }
+}
+
+impl VariableValues {
+    fn new(number: u32, role: VariableRole, value: Value) -> Self {
+        let range = value.as_number().map(|number| (number, number));
+        Self { number, role, count: 1, first: value, last: value, range }
+    }
+
+    fn add(&mut self, value: Value) {
+        self.count += 1;
+        self.last = value;
+        if let Some(number) = value.as_number() {
+            let (low, high) = self.range.unwrap_or((number, number));
+            self.range = Some((low.min(number), high.max(number)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Request, run_observed};
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::program::NoLibrary;
+
+    fn trace(text: &str) -> Trace {
+        let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
+        let mut trace = Trace::default();
+        run_observed(&request, &mut NoLibrary, &mut (), &mut trace).unwrap();
+        trace
+    }
+
+    /// The times of the lines, counted from 1; lines that weren't executed are left out.
+    fn times(text: &str) -> Vec<(usize, u64)> {
+        let line = |executed: &ExecutedBlock| text[..executed.block.start as usize].lines().count() + 1;
+        trace(text).blocks().map(|executed| (line(executed), executed.count)).collect()
+    }
+
+    #[test]
+    fn blocks_are_counted_and_those_jumped_over_are_not() {
+        let text = "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#1=#1+1\nEND1\nGOTO9\n#2=1\nN9 M30\n";
+        // The loop's condition is looked at a fourth time, and doesn't hold.
+        assert_eq!(times(text), [(2, 1), (3, 4), (4, 3), (5, 3), (6, 1), (8, 1)]);
+    }
+
+    #[test]
+    fn a_variable_in_a_loop_has_a_first_a_last_and_a_range() {
+        let trace = trace("O1\n#1=3\nWHILE[#1 GT 0]DO1\n#1=#1-1\nEND1\nM30\n");
+        let block = trace.blocks().nth(2).unwrap();
+        let number = Value::Number;
+        let read = VariableValues {
+            number: 1,
+            role: VariableRole::Read,
+            count: 3,
+            first: number(3.0),
+            last: number(1.0),
+            range: Some((1.0, 3.0)),
+        };
+        let assigned = VariableValues {
+            role: VariableRole::Assigned,
+            first: number(2.0),
+            last: number(0.0),
+            range: Some((0.0, 2.0)),
+            ..read
+        };
+        assert_eq!(block.values, [read, assigned]);
+    }
+
+    #[test]
+    fn a_call_shows_its_arguments() {
+        let trace = trace("O1\nG65 P2 A4.5 X2.\nM30\nO2\n#2=#1\nM99\n");
+        let passed: Vec<_> =
+            trace.blocks().next().unwrap().values.iter().map(|v| (v.number, v.role)).collect();
+        assert_eq!(passed, [(1, VariableRole::Argument), (24, VariableRole::Argument)], "A is #1, X is #24");
+    }
+
+    #[test]
+    fn a_block_that_alarms_assigns_nothing() {
+        let trace = trace("O1\n#1=2/0\nM30\n");
+        let block = trace.blocks().next().unwrap();
+        assert_eq!((block.count, block.values.len()), (1, 0));
+    }
+}

@@ -1,0 +1,53 @@
+//! A result never takes the place of a file that it is made of, and standard input is read once.
+use std::path::Path;
+
+use super::UsageError;
+
+/// Refuses to write to `result` where that is one of `inputs`, whatever links lead there.
+pub fn check_not_input(result: &Path, inputs: &[&Path]) -> Result<(), UsageError> {
+    // What can't be found isn't there yet.
+    let Ok(place) = result.canonicalize() else { return Ok(()) };
+    let is_it = |input: &&&Path| input.canonicalize().is_ok_and(|other| other == place);
+    match inputs.iter().find(is_it) {
+        None => Ok(()),
+        Some(input) => {
+            let (result, input) = (result.display(), input.display());
+            Err(UsageError::new(format!(
+                "{result} is an input, {input}, and would be overwritten: name another file"
+            )))
+        }
+    }
+}
+
+/// Refuses two inputs that are both standard input: the second would find nothing left.
+pub(super) fn one_pipe(inputs: &[&Path]) -> Result<(), UsageError> {
+    if inputs.iter().filter(|path| **path == Path::new("-")).count() > 1 {
+        return Err(UsageError::new("only one file can be '-': standard input can be read once"));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::output;
+
+    #[test]
+    fn what_is_read_is_not_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let (program, other) = (folder.path().join("O1.nc"), folder.path().join("page.html"));
+        output::write(&program, b"O1\nM30\n").unwrap();
+        let round_about = folder.path().join(".").join("O1.nc");
+        assert!(check_not_input(&round_about, &[&other, &program]).is_err());
+        assert!(check_not_input(&other, &[&program]).is_ok(), "nothing is there yet");
+        output::write(&other, b"").unwrap();
+        assert!(check_not_input(&other, &[&program, Path::new("-")]).is_ok());
+    }
+
+    #[test]
+    fn standard_input_is_read_once() {
+        let (pipe, file) = (Path::new("-"), Path::new("O1.nc"));
+        assert!(one_pipe(&[pipe, file]).is_ok());
+        assert!(one_pipe(&[pipe, file, pipe]).is_err());
+    }
+}
