@@ -1,4 +1,5 @@
 //! Reads Fanuc Custom Macro B: text to blocks, blocks to operations; alarms, settings and the seam to the machine.
+#![warn(missing_docs)]
 pub mod alarm;
 pub mod control;
 pub mod diag;

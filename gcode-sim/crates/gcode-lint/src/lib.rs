@@ -4,6 +4,8 @@
 //! one to another (`flow`), what is called from where (`calls`), which locals are vacant where (`vacancy`) and read
 //! there (`unset`). The rules, a file each in [`rules`], look at that and say what they find. A comment
 //! `(CHECK-OFF NAME)` on a block, or at the head of a program for all of it, silences a rule there (`silence`).
+#![warn(missing_docs)]
+
 mod calls;
 mod components;
 mod context;

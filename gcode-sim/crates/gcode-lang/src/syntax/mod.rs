@@ -1,8 +1,9 @@
-//! Text to tree: reading never fails, and nothing but this module knows the parser library.
+//! Reader: text to tree. Reading never fails, and only this module uses the parser library.
 //!
-//! A file is read line by line ([`FileItems`]): the line's comments are found and blanked (`comment`), then its
-//! block is read (`block`) from words (`word`, `numbers`) and statements (`statement`, `output`), which hold expressions
-//! (`expr`, `function`) and numbers (`number`). What can't be read stays in its block as text with its alarm.
+//! A file is read line by line ([`FileItems`]). The comments of a line are found and blanked (`comment`),
+//! then its block is read (`block`): words (`word`, `numbers`) and statements (`statement`, `output`), which
+//! contain expressions (`expr`, `function`) and numbers (`number`). Unreadable text stays in its block
+//! together with its alarm.
 pub mod ast;
 mod block;
 mod comment;
