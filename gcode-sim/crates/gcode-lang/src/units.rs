@@ -79,15 +79,15 @@ macro_rules! unit {
     };
 }
 
-unit!(/// A length in millimetres.
+unit!(/// Length in millimetres.
     Mm, " mm");
-unit!(/// An angle in degrees.
+unit!(/// Angle in degrees.
     Deg, "°");
-unit!(/// A feed in millimetres a minute.
+unit!(/// Feed in millimetres per minute.
     MmPerMin, " mm/min");
-unit!(/// A spindle speed in revolutions a minute.
+unit!(/// Spindle speed in revolutions per minute.
     Rpm, " r/min");
-unit!(/// A time in seconds.
+unit!(/// Time in seconds.
     Seconds, " s");
 
 impl Deg {
