@@ -31,18 +31,20 @@ use gcode_lang::program::{Library, Memory, Program, ProgramId};
 use gcode_lang::source::{Bytes, Span};
 pub use variables::variables_read;
 
-/// What was found, and the texts it was found in.
+/// Result of a check: the findings and the texts they refer to.
 #[derive(Debug)]
 pub struct CheckResult {
+    /// Checked programs with their texts.
     pub memory: Memory,
-    /// How many programs were looked at: those of the file, and those they call.
+    /// Number of checked programs: those of the file and those they call.
     pub programs: usize,
-    /// In the order of the programs and their blocks.
+    /// Findings in the order of the programs and their blocks.
     pub findings: Vec<Diagnostic>,
 }
 
-/// Checks all programs of a file and those that they call. A file without any program has no findings and
-/// `programs` is 0.
+/// Checks all programs of a file and the programs that they call.
+///
+/// A file without a program has no findings, and `programs` is 0.
 pub fn check(
     name: impl Into<String>,
     bytes: impl Into<Bytes>,
@@ -54,7 +56,7 @@ pub fn check(
     check_loaded(memory, settings, library)
 }
 
-/// As [`check`], of programs that have been loaded.
+/// Checks the programs in memory as [`check`] does.
 pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> CheckResult {
     let programs = load_called_programs(&mut memory, settings, library);
     let context = CheckContext::new(&memory, settings, &programs, rules::names());
@@ -62,7 +64,7 @@ pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl 
     CheckResult { programs: programs.len(), memory, findings }
 }
 
-/// The programs in memory, then those that they call, as far as they can be found.
+/// Returns the programs in memory, followed by the programs that they call, as far as these are found.
 fn load_called_programs(
     memory: &mut Memory,
     settings: &Settings,
@@ -86,16 +88,17 @@ fn load_called_programs(
 }
 
 impl CheckResult {
-    /// Whether something stands against the program; notes don't.
+    /// Returns true if there is an error or a warning; notes do not count.
     pub fn has_findings(&self) -> bool {
         self.count(Severity::Warning) + self.count(Severity::Error) > 0
     }
 
+    /// Returns the number of findings of one severity.
     pub fn count(&self, severity: Severity) -> usize {
         self.findings.iter().filter(|finding| finding.severity == severity).count()
     }
 
-    /// The program a place belongs to.
+    /// Returns the program that contains a place.
     pub fn program(&self, span: Span) -> Option<&Program> {
         self.memory.program_at(span)
     }
