@@ -1,6 +1,6 @@
 //! The wanted holes: computed from a job's geometry, or read from a list.
 use super::hole::{Hole, HoleList, Unit};
-use super::honeycomb::Pattern;
+use super::pattern::Pattern;
 use super::process::ProcessLimits;
 use super::read;
 pub(crate) use super::read::ReferenceError;

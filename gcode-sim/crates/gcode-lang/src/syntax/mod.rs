@@ -2,7 +2,7 @@
 //!
 //! A file is read line by line ([`FileItems`]). The comments of a line are found and blanked (`comment`),
 //! then its block is read (`block`): words (`word`, `numbers`) and statements (`statement`, `output`), which
-//! contain expressions (`expr`, `function`) and numbers (`number`). Unreadable text stays in its block
+//! contain expressions (`expr`) and numbers (`number`). Unreadable text stays in its block
 //! together with its alarm.
 pub mod ast;
 mod block;
@@ -12,7 +12,6 @@ mod dividers;
 mod expr;
 mod file;
 mod file_items;
-mod function;
 mod number;
 mod numbers;
 mod outline;

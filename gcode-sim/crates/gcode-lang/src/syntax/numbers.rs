@@ -2,11 +2,13 @@
 //!
 //! The words are read one at a time, without a tree.
 use super::ast::Decimal;
-use super::block::MAX_SEQUENCE_NUMBER;
 use super::digits::{Window, number};
 use super::number::WORD_LIMIT;
 use super::token::{Input, is_space, unspaced};
 use crate::source::{SourceId, Span};
+
+/// Largest sequence number.
+pub(super) const MAX_SEQUENCE_NUMBER: u32 = 99_999_999;
 
 /// Address followed immediately by its number.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -72,6 +72,7 @@ pub struct FluteVerdict {
 
 /// The helix angle at one polar angle: measured, and by both laws.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Law")]
 pub struct LawAngles {
     #[serde(rename = "theta")]
     pub polar: f64,

@@ -1,10 +1,12 @@
 //! Lowering of blocks: tree to operations. A block that cannot run becomes the alarm it raises when reached.
+mod expr;
+
 use super::bytecode::{AssignmentTarget, Bytecode, Instruction, Slot};
-use super::expr::ExprContext;
 use super::{Assign, DialectSyntax, GuardedOp, Op, OpBody, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
+pub(super) use expr::ExprContext;
 
 /// Most skips inside one block, one per switch.
 const MAX_INNER_SKIPS: usize = 9;
