@@ -132,7 +132,7 @@ fn line_starts(bytes: &[u8]) -> Vec<u32> {
 
 /// Returns the length of the first line of a text without its end. Sixteen bytes are compared at a time.
 #[inline]
-pub fn line_length(text: &[u8]) -> usize {
+pub(crate) fn line_length(text: &[u8]) -> usize {
     const ONES: u64 = u64::from_ne_bytes([1; 8]);
     let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
     // Sets the top bit of every byte up to CR, LF included. A byte above a match may get a false bit.
@@ -163,7 +163,7 @@ const MAX_CARRIAGE_RETURNS: usize = 4;
 
 /// Returns the length of the line end at the start of `rest`: CRs with at most one LF, 0 if none.
 #[inline]
-pub fn end_of_line(rest: &[u8]) -> usize {
+pub(crate) fn end_of_line(rest: &[u8]) -> usize {
     match rest {
         // The most common line end.
         [b'\n', behind, ..] if *behind != b'\r' => 1,

@@ -1,9 +1,21 @@
-//! What can be known of a program without running it: faults that a control would meet, and slips it would not notice.
+//! Checker of programs without a run: program text in, findings out.
 //!
-//! The program and the ones it calls by number are read into one subject (`subject`): their blocks with the ways from
-//! one to another (`flow`), what is called from where (`calls`), which locals are vacant where (`vacancy`) and read
-//! there (`unset`). The rules, a file each in [`rules`], look at that and say what they find. A comment
-//! `(CHECK-OFF NAME)` on a block, or at the head of a program for all of it, silences a rule there (`silence`).
+//! A finding is a fault at which a control raises an alarm, or a mistake that the control does not notice. The
+//! programs of the file and those they call form one context (`context`): the control flow between their blocks
+//! (`control_flow`), their calls (`calls`), the vacancy of local variables (`vacancy`) and the reads of unset ones
+//! (`unset_reads`). Each rule, a row of [`rules::ALL`], reports its findings about this context. A comment
+//! `(CHECK-OFF NAME)` on a block, or in the head of a program, turns a rule off there (`suppression`).
+//!
+//! ```
+//! use gcode_lang::control::Settings;
+//! use gcode_lang::program::NoLibrary;
+//!
+//! let text = *b"O1\nG0 X1.5\nGOTO 90\nM30\n";
+//! let result = gcode_lint::check("O1.nc", text, &Settings::default(), &mut NoLibrary);
+//! assert_eq!(result.findings.len(), 1);
+//! assert_eq!(result.findings[0].code, "missing-n");
+//! assert_eq!(result.findings[0].message, "PS0128: sequence number N90 is not in O0001");
+//! ```
 #![warn(missing_docs)]
 
 mod calls;
@@ -22,7 +34,7 @@ mod variables;
 
 use std::collections::BTreeSet;
 
-pub use calls::{CalledProgramName, called_programs as called};
+pub use calls::{CalledProgramName, called_programs};
 
 use context::CheckContext;
 use gcode_lang::control::Settings;

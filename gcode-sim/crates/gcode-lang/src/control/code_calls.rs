@@ -277,7 +277,7 @@ impl CodeCalls {
     ///
     /// `G-201=9010` is a modal call. M codes call O9001 to O9009 as subprograms and any other program as a
     /// macro. `None` for an invalid code or program.
-    pub fn set_code(&mut self, key: &str, program: u32) -> Option<()> {
+    pub(super) fn set_code(&mut self, key: &str, program: u32) -> Option<()> {
         let letter = key.bytes().next()?.to_ascii_uppercase();
         let number = key.get(1..)?.trim();
         if number.is_empty() {

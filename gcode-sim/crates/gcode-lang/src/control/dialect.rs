@@ -3,15 +3,13 @@ use super::{Dialect, Settings};
 
 /// Settings of a family of controls; a later setting overrides them.
 #[derive(Debug)]
-pub struct DialectRow {
+struct DialectRow {
     /// Family.
-    pub dialect: Dialect,
-    /// Name on the command line.
-    pub name: &'static str,
+    dialect: Dialect,
     /// Family whose settings apply first.
-    pub base: Option<Dialect>,
+    base: Option<Dialect>,
     /// Keys of [`super::ROWS`] with their values.
-    pub settings: &'static [(&'static str, &'static str)],
+    settings: &'static [(&'static str, &'static str)],
 }
 
 /// All families; settings that a row omits have their default.
@@ -19,8 +17,8 @@ pub struct DialectRow {
 /// Sources: 31i and 0i-F, operator's manuals B-64484EN and B-64604EN; Haas, Mill Operator's Manual 96-8210,
 /// and its predecessor 96-8000 where that is silent.
 #[rustfmt::skip]
-pub const DIALECTS: &[DialectRow] = &[
-    DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", base: None, settings: &[
+const DIALECTS: &[DialectRow] = &[
+    DialectRow { dialect: Dialect::Fanuc31i, base: None, settings: &[
         ("CODES", "fanuc-31i"), ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("OFFSETS", "400"), ("WORK-SYSTEMS", "300"),
         ("MORE-COMMONS", "98000-98499"), ("ALIASED-COMMONS", "0"), ("VARIABLE-BITS", "0"), ("OFFSET-VARIABLES", "fanuc"),
         ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"),
@@ -30,12 +28,12 @@ pub const DIALECTS: &[DialectRow] = &[
         ("TAP-DWELL-R", "1"),
     ] },
     // Four simultaneous axes, so no five-axis codes; 48 additional work coordinate systems, 300 by option.
-    DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", base: Some(Dialect::Fanuc31i), settings: &[
+    DialectRow { dialect: Dialect::Fanuc0iF, base: Some(Dialect::Fanuc31i), settings: &[
         ("CODES", "fanuc-0i-f"), ("WORK-SYSTEMS", "48"),
     ] },
     // Nine macro levels in all; offsets: #2001 length and #2201 its wear, #2401 diameter and #2601 its wear;
     // #3000=n shows 1000 + n; DPRNT prints all digits, its format has at most seven; IF without THEN.
-    DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", base: None, settings: &[
+    DialectRow { dialect: Dialect::HaasNgc, base: None, settings: &[
         ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
         ("MORE-COMMONS", "10000-10999"), ("ALIASED-COMMONS", "1"), ("VARIABLE-BITS", "1"), ("OFFSET-VARIABLES", "haas"),
         ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"),
@@ -88,13 +86,13 @@ mod tests {
             let like = row.base.and_then(|like| DIALECTS.iter().find(|other| other.dialect == like));
             assert!(
                 like.is_none_or(|like| like.base.is_none()),
-                "{}: like one that is like another",
-                row.name
+                "{:?}: like one that is like another",
+                row.dialect
             );
             settings.apply_dialect(row.dialect);
             assert_eq!(settings.dialect, row.dialect);
             settings.apply_dialect(Dialect::default());
-            assert_eq!(settings, Settings::default(), "{} leaves something behind", row.name);
+            assert_eq!(settings, Settings::default(), "{:?} leaves something behind", row.dialect);
         }
     }
 }

@@ -11,7 +11,6 @@ use crate::units::{MmPerMin, round_scaled};
 pub use code_calls::{
     ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
 };
-pub use dialect::{DIALECTS, DialectRow};
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues};
 pub use undocumented::{ArgumentScale, UndocumentedChoices};
@@ -58,7 +57,7 @@ impl Increment {
     }
 }
 
-/// Family of controls. Its limits and differences are rows of [`DIALECTS`].
+/// Family of controls. Its limits and differences are rows of a table in `dialect`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Dialect {
     /// Fanuc 31i, the default.
@@ -99,13 +98,13 @@ impl CodeSet {
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::Haas)];
 
     /// Code sets of a row that applies to every control.
-    pub const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
+    pub(crate) const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
     /// Code sets of the Fanuc controls.
-    pub const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
+    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
     /// Code sets of the controls with five simultaneous axes.
-    pub const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
+    pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
     /// Code set of the Haas controls.
-    pub const HAAS: &'static [Self] = &[Self::Haas];
+    pub(crate) const HAAS: &'static [Self] = &[Self::Haas];
 }
 
 /// Numbering of the tool offset variables.

@@ -27,7 +27,7 @@ const fn offset(name: &'static str, number: u32, series_15: u32) -> NameRow {
 
 /// All names except those of the additional work coordinate systems, which [`find`] computes.
 #[rustfmt::skip]
-pub const NAMES: &[NameRow] = &[
+const NAMES: &[NameRow] = &[
     numbered("_UI", 1000, 0, 31), numbered("_UIL", 1032, 0, 3), numbered("_UO", 1100, 0, 31), numbered("_UOL", 1132, 0, 3),
     single("_ALM", 3000), single("_CLOCK1", 3001), single("_CLOCK2", 3002), single("_CNTL1", 3003), single("_CNTL2", 3004),
     single("_SETDT", 3005), single("_MSGSTP", 3006), single("_MRIMG", 3007), single("_PRSTR", 3008),
@@ -50,7 +50,7 @@ pub const NAMES: &[NameRow] = &[
 ];
 
 /// Names of the tool offset memories A and B; the simulated control has memory C.
-pub const OTHER_MEMORIES: [&str; 3] = ["_OFS", "_OFSG", "_OFSW"];
+pub(super) const OTHER_MEMORIES: [&str; 3] = ["_OFS", "_OFSG", "_OFSW"];
 
 /// Returns the variables that a name stands for.
 pub fn find(name: &str) -> Option<NameRow> {

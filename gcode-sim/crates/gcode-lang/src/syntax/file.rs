@@ -5,7 +5,7 @@ use crate::source::{SourceId, Span};
 
 /// One program of a file, with its blocks in the form of the caller.
 #[derive(Debug)]
-pub struct ProgramParts<C, B> {
+pub(crate) struct ProgramParts<C, B> {
     /// O number or name.
     pub name: ProgramName,
     /// Place of the O word, or of the first block.

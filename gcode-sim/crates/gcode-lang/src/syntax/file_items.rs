@@ -240,7 +240,7 @@ impl Iterator for FileItems<'_> {
 }
 
 /// Returns the text without the trailer of a sender: 0x1A or blank tape.
-pub fn without_trailer(bytes: &[u8]) -> &[u8] {
+pub(crate) fn without_trailer(bytes: &[u8]) -> &[u8] {
     let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
     &bytes[..kept.map_or(0, |last| last + 1)]
 }
@@ -259,7 +259,7 @@ fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
 }
 
 /// Returns the end of the text before `place`, without its trailing spaces.
-pub fn end_without_spaces(bytes: &[u8], place: u32) -> u32 {
+pub(crate) fn end_without_spaces(bytes: &[u8], place: u32) -> u32 {
     let text = &bytes[..place as usize];
     text.iter().rposition(|b| !is_space(*b)).map_or(0, |last| last as u32 + 1)
 }

@@ -16,15 +16,17 @@ mod number;
 mod numbers;
 mod outline;
 mod output;
-pub mod print;
+mod print;
 #[cfg(test)]
 mod property_tests;
 mod statement;
 mod token;
 mod word;
 
-pub use file::{ProgramParts, parse};
-pub use file_items::{FileItem, FileItems, end_without_spaces, without_trailer};
-pub use numbers::{NumberWord, NumberWords};
-pub use outline::{BlockOutline, block_at, outline, sequence_number_at};
-pub use print::print;
+pub(crate) use file::ProgramParts;
+pub use file::parse;
+pub use file_items::{FileItem, FileItems};
+pub(crate) use file_items::{end_without_spaces, without_trailer};
+pub(crate) use numbers::{NumberWord, NumberWords};
+pub(crate) use outline::{BlockOutline, block_at, outline, sequence_number_at};
+pub use print::{print, print_decimal};

@@ -12,7 +12,7 @@ pub(super) const MAX_SEQUENCE_NUMBER: u32 = 99_999_999;
 
 /// Address followed immediately by its number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NumberWord {
+pub(crate) struct NumberWord {
     /// `A` to `Z` except O.
     pub letter: u8,
     /// Number as written.
@@ -26,7 +26,7 @@ pub struct NumberWord {
 /// It ends with the line or before the first other element: a comment, a statement, a lower-case letter or
 /// further digits of the last number. It also ends shortly before the end of the text.
 #[derive(Debug)]
-pub struct NumberWords<'a> {
+pub(crate) struct NumberWords<'a> {
     source: SourceId,
     text: Input<'a>,
     /// Offset after the sequence number, or of the block start without one.
@@ -42,7 +42,7 @@ impl<'a> NumberWords<'a> {
     ///
     /// `None` if the block begins with an N that is not a plain sequence number.
     #[inline]
-    pub fn new(source: SourceId, text: Input<'a>, start: u32) -> Option<Self> {
+    pub(crate) fn new(source: SourceId, text: Input<'a>, start: u32) -> Option<Self> {
         let mut numbers =
             Self { source, text, words_start: start, position: start as usize, sequence_number: None };
         if text.get(start as usize) == Some(&b'N') {
@@ -58,7 +58,7 @@ impl<'a> NumberWords<'a> {
     }
 
     /// Returns true at the end of the line.
-    pub fn is_at_end(&self) -> bool {
+    pub(crate) fn is_at_end(&self) -> bool {
         matches!(self.behind_spaces(), [] | [b'\n' | b'\r', ..])
     }
 

@@ -10,7 +10,7 @@ use crate::source::{SourceId, Span};
 
 /// Block of an outline.
 #[derive(Debug)]
-pub enum BlockOutline {
+pub(crate) enum BlockOutline {
     /// Block that is not read; it is neither DO nor END. The span includes trailing spaces.
     Words(Span),
     /// Block that begins its line.
@@ -21,7 +21,7 @@ pub enum BlockOutline {
 
 impl BlockOutline {
     /// Returns the place of the block.
-    pub fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         match self {
             Self::Words(span) => *span,
             Self::Tree(block) | Self::WithinLine(block) => block.span,
@@ -32,7 +32,7 @@ impl BlockOutline {
 /// Returns the programs of a file as [`super::parse`] finds them, each block converted by `convert`.
 ///
 /// Neither the trees nor the lines of a long file are kept.
-pub fn outline<C: Default, B>(
+pub(crate) fn outline<C: Default, B>(
     source: SourceId,
     bytes: &[u8],
     mut convert: impl FnMut(&mut C, BlockOutline) -> B,
@@ -76,7 +76,7 @@ pub fn outline<C: Default, B>(
 }
 
 /// Reads the block at the line start `start`, taken from an outline, of a text without its trailer.
-pub fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
+pub(crate) fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
     FileItems::starting_at(source, bytes, start).find_map(|piece| match piece {
         FileItem::Block(block) => Some(block),
         _ => None,
@@ -84,7 +84,7 @@ pub fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
 }
 
 /// Returns the sequence number of the block at `start`, `None` without one.
-pub fn sequence_number_at(source: SourceId, bytes: &[u8], start: u32) -> Option<u32> {
+pub(crate) fn sequence_number_at(source: SourceId, bytes: &[u8], start: u32) -> Option<u32> {
     match bytes.get(start as usize)? {
         b'N' => {
             // A comment may interrupt the number; only the complete block settles it.

@@ -31,7 +31,7 @@ pub fn print(program: &Program) -> Vec<u8> {
 }
 
 /// Appends a block without its line end. Comments keep their positions between the words.
-pub fn print_block(block: &Block, out: &mut Vec<u8>) {
+fn print_block(block: &Block, out: &mut Vec<u8>) {
     let begin = out.len();
     let mut comments = block.comments.iter().peekable();
     if let Some(switch) = &block.skip {
@@ -94,14 +94,14 @@ fn print_word(word: &Word) -> String {
         None => char::from(word.address.letter).to_string(),
     };
     match &word.value {
-        WordValue::Literal(number) => format!("{comma}{letter}{}", decimal(*number)),
+        WordValue::Literal(number) => format!("{comma}{letter}{}", print_decimal(*number)),
         WordValue::Expr(value) => format!("{comma}{letter}{}", expr(value)),
         WordValue::Name(name) => format!("{comma}{letter}<{name}>"),
     }
 }
 
 /// Prints a number with its digits after the point: `12.5`, `5.`; `.5` becomes `0.5`.
-pub fn decimal(number: Decimal) -> String {
+pub fn print_decimal(number: Decimal) -> String {
     let sign = if number.negative { "-" } else { "" };
     match number.places {
         None => format!("{sign}{}", number.digits),
@@ -115,9 +115,9 @@ pub fn decimal(number: Decimal) -> String {
 }
 
 /// Prints an expression in the notation of a control.
-pub fn expr(value: &Expr) -> String {
+fn expr(value: &Expr) -> String {
     match &value.kind {
-        ExprKind::Literal(number) => decimal(*number),
+        ExprKind::Literal(number) => print_decimal(*number),
         ExprKind::Variable(index) => format!("#{}", expr(index)),
         ExprKind::Named(name) => match &name.index {
             Some(index) => format!("[#{}[{}]]", name.text, expr(index)),
@@ -155,7 +155,7 @@ fn operator(op: BinaryOp) -> &'static str {
 }
 
 /// Prints a condition without the brackets of its IF or WHILE.
-pub fn condition(value: &Condition) -> String {
+fn condition(value: &Condition) -> String {
     match value {
         Condition::Compare { left, relation, spelling: written, right, .. } => {
             let relation = match (relation, written) {
@@ -184,11 +184,6 @@ pub fn condition(value: &Condition) -> String {
         }
         Condition::Bracket(inner) => format!("[{}]", condition(inner)),
     }
-}
-
-/// Prints a statement in the notation of a control.
-pub fn print_statement(statement: &Statement) -> String {
-    statement_text(statement, false)
 }
 
 /// Prints a statement with its keywords in full, or abbreviated to two letters if `short`.
