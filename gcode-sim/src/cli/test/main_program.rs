@@ -5,7 +5,7 @@ use crate::cli::{UsageError, input};
 use gcode_lang::control::Settings;
 use gcode_lang::program::Memory;
 use gcode_lang::syntax::ast::ProgramName;
-use gcode_lint::{CalledProgramName, called};
+use gcode_lint::{CalledProgramName, called_programs};
 
 /// `main.nc`, the only program, or the only one that no other calls: where a main program stands with its macros.
 pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageError> {
@@ -37,7 +37,7 @@ fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
         let mut memory = Memory::default();
         memory.load(path.display().to_string(), input::bytes(path)?);
         let calls: Vec<CalledProgramName> =
-            memory.ids().flat_map(|id| called(memory.lower_program(id), &settings)).collect();
+            memory.ids().flat_map(|id| called_programs(memory.lower_program(id), &settings)).collect();
         let names: Vec<ProgramName> = memory.programs().iter().map(|p| p.name.clone()).collect();
         files.push((path, names, calls));
     }
