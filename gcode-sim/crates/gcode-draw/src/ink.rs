@@ -1,13 +1,13 @@
-//! What a painter is asked for, in pixels from the picture's top left corner.
+//! Drawing commands in pixels from the picture's top left corner.
 
-/// A place on the sheet, pixels: to the right and down.
+/// A point of the sheet, pixels to the right and down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Px {
     pub x: f64,
     pub y: f64,
 }
 
-/// Shorthand for a place on the sheet.
+/// Builds a [`Px`].
 pub(super) const fn px(x: f64, y: f64) -> Px {
     Px { x, y }
 }
@@ -17,18 +17,22 @@ impl Px {
         libm::hypot(self.x - other.x, self.y - other.y)
     }
 
-    /// The place `length` pixels further in a direction.
+    /// Returns the point `length` pixels further in a direction.
     pub(super) fn toward(self, direction: [f64; 2], length: f64) -> Self {
         px(self.x + direction[0] * length, self.y + direction[1] * length)
     }
 }
 
-/// An upright rectangle, pixels.
+/// An axis-parallel rectangle, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rect {
+    /// Left edge.
     pub left: f64,
+    /// Top edge.
     pub top: f64,
+    /// Right edge.
     pub right: f64,
+    /// Bottom edge.
     pub bottom: f64,
 }
 
@@ -68,12 +72,12 @@ impl Rect {
             && inner.bottom <= self.bottom
     }
 
-    /// The point of the rectangle that is nearest to `to`.
+    /// Returns the point of the rectangle that is nearest to `to`.
     pub(super) fn nearest(&self, to: Px) -> Px {
         px(to.x.clamp(self.left, self.right), to.y.clamp(self.top, self.bottom))
     }
 
-    /// How far its farthest corner is from `from`.
+    /// Returns the distance from `from` to the farthest corner.
     pub(super) fn farthest(&self, from: Px) -> f64 {
         let x = (from.x - self.left).abs().max((from.x - self.right).abs());
         let y = (from.y - self.top).abs().max((from.y - self.bottom).abs());
@@ -85,16 +89,17 @@ impl Rect {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rgb(pub u8, pub u8, pub u8);
 
+/// Dash pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dash {
     Solid,
-    /// Pixels on, pixels off, and so on.
+    /// Dash and gap, pixels.
     Pattern([f64; 2]),
-    /// Long, gap, short, gap: a centre line.
+    /// Centre line: long dash, gap, short dash, gap, in multiples of this length.
     Chain(f64),
 }
 
-/// Where a text stands against its place.
+/// Horizontal alignment of a text to its reference point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     Left,
@@ -102,7 +107,7 @@ pub enum Align {
     Right,
 }
 
-/// One thing to paint. Later ones cover earlier ones.
+/// One drawing command; later ones cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawCommand {
     Line {
@@ -128,7 +133,7 @@ pub enum DrawCommand {
         radius: f64,
         color: Rgb,
     },
-    /// `at` is on the base line; `size` is the em in pixels.
+    /// Text with `at` on the base line; `size` is the em in pixels.
     Text {
         at: Px,
         align: Align,
