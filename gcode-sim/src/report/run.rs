@@ -1,4 +1,4 @@
-//! What `run` answers: the end state of a control, its operator stops, and if asked for every move.
+//! The result of `run`: the end state of a control, its operator stops, and optionally every move.
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -19,20 +19,20 @@ pub struct RunReport {
     pub outcome: &'static str,
     pub alarm: Option<AlarmReport>,
     pub stops: Vec<StopReport>,
-    /// What the program printed, line by line; bytes that are no text as `\xNN`.
+    /// Lines that the program printed; bytes that are not text as `\xNN`.
     pub output: Vec<String>,
     /// M codes left to the machine builder's logic.
     pub passed_on: Vec<PassedOnReport>,
-    /// What the control did without a word.
+    /// Actions of the control without an alarm that are probably unintended.
     pub notes: Vec<NoteReport>,
     #[serde(serialize_with = "variables")]
     #[schemars(with = "BTreeMap<String, f64>")]
     pub variables: Vec<(u32, f64)>,
-    /// What `--show` asked for; null is vacant.
+    /// Variables of `--show`; null is vacant.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "shown")]
     #[schemars(with = "BTreeMap<String, Option<f64>>")]
     pub system: Vec<(u32, Option<f64>)>,
-    /// The end point in the active work coordinate system.
+    /// End point in the active work coordinate system.
     pub position: Coordinates,
     pub machine: Coordinates,
     pub blocks: u64,
@@ -62,7 +62,7 @@ pub struct StopReport {
     pub text: String,
 }
 
-/// An M code without an effect on the control, and the first block that has it.
+/// An M code without an effect on the control, and its first block.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PassedOnReport {
     pub code: String,
@@ -70,7 +70,7 @@ pub struct PassedOnReport {
     pub line: u32,
 }
 
-/// One kind of thing that is no alarm and hardly meant, and the first block that has it.
+/// A condition without an alarm that is probably unintended, and its first block.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct NoteReport {
     pub code: &'static str,
@@ -120,7 +120,7 @@ impl std::fmt::Display for Coordinates {
     }
 }
 
-/// Nobody wants to read −0.
+/// Replaces −0 by 0.
 fn plain(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value }
 }
@@ -133,13 +133,13 @@ fn shown<S: Serializer>(all: &[(u32, Option<f64>)], serializer: S) -> Result<S::
     serializer.collect_map(all.iter().map(|(number, value)| (format!("#{number}"), value.map(plain))))
 }
 
-/// More moves than this aren't written down: a loop that never ends must not fill the memory.
+/// Largest number of recorded moves: a loop that never ends must not fill the memory.
 pub const MOST_MOVES: usize = 1_000_000;
 
-/// Writes down every move that goes somewhere, and every dwell.
+/// Records every move that changes the position, and every dwell.
 #[derive(Debug, Default)]
 pub struct Moves {
-    /// There were more than [`MOST_MOVES`].
+    /// Whether there are more moves than [`MOST_MOVES`].
     pub too_many: bool,
     at: Position,
     found: Vec<(&'static str, Position, f64, Option<f64>, Span)>,
@@ -171,7 +171,7 @@ impl EventSink for Moves {
 }
 
 impl RunReport {
-    /// The end state of a run; `path` and the values of `system` variables are there if asked for.
+    /// Builds the report of a run; `moves` and the values of `system` variables are optional.
     pub fn new(run: &Run, moves: Option<&Moves>, system: Vec<(u32, Value)>) -> Self {
         let control = &run.control;
         let axes = &control.settings().axes;
@@ -225,7 +225,7 @@ impl RunReport {
         }
     }
 
-    /// The same for people.
+    /// Formats the result for a terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let word = match self.outcome {
