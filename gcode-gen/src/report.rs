@@ -1,4 +1,4 @@
-//! What `emit` and `sheet` answer, as text and as data, and the schemas of that.
+//! The results of `emit` and `sheet`, as text and as data, and their schemas.
 use std::fmt::Write;
 
 use gcode_sim::report::figures::{count, near, signed_to};
@@ -20,29 +20,29 @@ pub const FORMATS: &[Format] = &[
 /// The document of `emit --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct EmitReport<'c> {
-    /// Says what kind of numbers these are.
+    /// Basis of the numbers.
     pub basis: &'static str,
-    /// Why nothing is written, in words; null where the programs hold.
+    /// Reason why nothing is written, in words; null if the programs pass.
     pub refused: Option<String>,
-    /// The files.
+    /// The files that were written.
     pub written: Vec<String>,
     /// Macros of an earlier job in the folder, which these programs don't call.
     pub left_over: Vec<String>,
-    /// Running time, operator stops left out; null where nothing could be run.
+    /// Running time without operator stops, seconds; null if nothing could be run.
     pub seconds: Option<f64>,
-    /// What `verify` says of the programs; null of measurements, and where nothing could be run.
+    /// Verdict of `verify` on the programs; null for measurements, and if nothing could be run.
     pub verdict: Option<&'c PackageVerdict>,
     #[serde(skip)]
     table: &'c str,
 }
 
 impl<'c> EmitReport<'c> {
-    /// Of programs that hold.
+    /// Builds the report of programs that pass.
     pub fn new(checked: &'c CheckedPackage, written: Vec<String>, left_over: Vec<String>) -> Self {
         Self { written, left_over, ..Self::of(Some(checked), None) }
     }
 
-    /// Of programs that aren't written; `checked` where they could be run.
+    /// Builds the report of programs that are not written; `checked` is given if they could be run.
     pub fn refused(checked: Option<&'c CheckedPackage>, why: String) -> Self {
         Self::of(checked, Some(why))
     }
@@ -61,7 +61,7 @@ impl<'c> EmitReport<'c> {
         }
     }
 
-    /// The same for people.
+    /// Formats the result for a terminal.
     pub fn text(&self) -> String {
         let mut text = self.table.to_owned();
         let minutes = self.seconds.unwrap_or_default() / 60.0;
@@ -76,44 +76,45 @@ impl<'c> EmitReport<'c> {
 /// The document of `sheet --format json`. Times in minutes.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct SheetReport {
-    /// Says what kind of numbers these are.
+    /// Basis of the numbers.
     pub basis: &'static str,
-    /// Why nothing is written, in words; null where the programs hold.
+    /// Reason why nothing is written, in words; null if the programs pass.
     pub refused: Option<String>,
-    /// The file.
+    /// The file that was written.
     pub written: Option<String>,
-    /// What a part takes; null where the programs don't hold.
+    /// Time of one part; null if the programs fail.
     pub time: Option<TimeReport>,
-    /// On the job's machine first, then on those beside it; none where no rate was given.
+    /// Costs on the job's machine, then on the others; empty if no rate is given.
     pub costs: Vec<CostReport>,
 }
 
-/// What a part takes on the job's machine.
+/// Time of one part on the job's machine.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct TimeReport {
-    /// The program, minutes.
+    /// Running time of the program, minutes.
     pub run: f64,
     pub stops: usize,
     pub tool_changes: usize,
-    /// The machine is taken for so many minutes: what was given for set-up, stops and tool changes included.
+    /// Machine time, minutes, including those given for set-up, stops and tool changes.
     pub all: f64,
-    /// The keys of the job's `[sheet]` that aren't given and so aren't counted.
+    /// Keys of the job's `[sheet]` that are not given and therefore not counted.
     pub not_counted: Vec<&'static str>,
 }
 
-/// What a part costs on one machine.
+/// Cost of one part on one machine.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CostReport {
-    /// Null for the job's own.
+    /// Name of the machine; null for the job's own.
     pub machine: Option<String>,
     pub currency: String,
     pub cost: f64,
-    /// By how many percent of it the job's own machine is dearer, below 0 cheaper; null where that can't be compared.
+    /// Cost difference of the job's own machine in percent of this one, below 0 if cheaper; null if not
+    /// comparable.
     pub change: Option<f64>,
 }
 
 impl SheetReport {
-    /// Of a sheet that is written to a file; costs in one currency, the job's own machine first.
+    /// Builds the report of a sheet written to a file; costs in one currency, the job's own machine first.
     pub fn new(written: String, taken: &MachineTime, currency: &str, costs: &[Cost]) -> Self {
         let cost = |cost: &Cost| CostReport {
             machine: cost.machine.clone(),
@@ -132,12 +133,12 @@ impl SheetReport {
         Self { basis: BASIS, refused: None, written: Some(written), time: Some(time), costs }
     }
 
-    /// Of programs that don't hold.
+    /// Builds the report of programs that fail.
     pub fn refused(why: String) -> Self {
         Self { basis: BASIS, refused: Some(why), written: None, time: None, costs: Vec::new() }
     }
 
-    /// The same for people: time and money in two or three lines.
+    /// Formats time and money in two or three lines for a terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
         if let Some(TimeReport { run, stops, tool_changes, all, .. }) = &self.time {
