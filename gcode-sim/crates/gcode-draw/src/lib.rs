@@ -40,8 +40,9 @@ pub use scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title, Zon
 pub use sheet::{Sheet, lay_out};
 pub use size::Size;
 pub use views::development::development;
-pub use views::flutes::{Fault, FlutePoint, FluteView, side_view, tip_view};
-pub use views::helix::{HelixAt, HelixCourses, helix_graph};
+pub use views::flute_view::{Fault, FlutePoint, FluteView, HelixAt, HelixCourses};
+pub use views::flutes::{side_view, tip_view};
+pub use views::helix::helix_graph;
 pub use views::purpose::PicturePurpose;
 pub use views::side::Side;
 pub use views::top::{Cylinder, DrawnHole, PathKind, PathPiece, TopView, top_view};

@@ -4,43 +4,7 @@
 //! the right and y up.
 use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
-use super::helix::HelixCourses;
-
-/// What pictures of a burr are made of; mm and degrees.
-#[derive(Clone, Debug)]
-pub struct FluteView {
-    /// Of the program.
-    pub name: String,
-    pub verdict: (HoleStatus, String),
-    /// Further lines of the title block.
-    pub lines: Vec<String>,
-    /// Along the axis and away from it, from the shank's end of the flutes to the pole.
-    pub outline: Vec<[f64; 2]>,
-    /// Of the circle at which the flutes end.
-    pub tip_radius: f64,
-    /// Of each pass, in the order in which they are ground.
-    pub flutes: Vec<Vec<FlutePoint>>,
-    pub faults: Vec<Fault>,
-    pub helix: HelixCourses,
-}
-
-/// Where something is wrong.
-#[derive(Clone, Debug)]
-pub struct Fault {
-    pub spot: FlutePoint,
-    /// Counted from 0; none where no pass is.
-    pub pass: Option<usize>,
-    pub standing: HoleStatus,
-    /// What is wrong there, each in few words; empty where another mark of the same finding says it.
-    pub what: Vec<&'static str>,
-}
-
-/// A point of a flute in the part's frame, and the direction out of the surface there.
-#[derive(Clone, Copy, Debug)]
-pub struct FlutePoint {
-    pub at: [f64; 3],
-    pub out: [f64; 3],
-}
+use super::flute_view::{Fault, FlutePoint, FluteView};
 
 /// Edge-on is not seen.
 const FACING: f64 = 1e-6;
@@ -178,6 +142,7 @@ fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
 
 #[cfg(test)]
 mod tests {
+    use super::super::flute_view::HelixCourses;
     use super::*;
 
     fn view(out: [[f64; 3]; 4]) -> FluteView {

@@ -2,41 +2,7 @@
 use super::super::chart::{Chart, ChartMarker, Curve, Graph};
 use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{LegendItem, Sample, Scene, Title};
-use super::flutes::FluteView;
-
-/// Helix angles along the flutes, left-hand ones below 0. The way is that along the tooth bottom's outline from the shank's
-/// end, mm; angles are degrees.
-#[derive(Clone, Debug, Default)]
-pub struct HelixCourses {
-    /// Of each pass, in the order in which they are ground.
-    pub passes: Vec<Vec<HelixAt>>,
-    /// The pass that is farthest from the law, counted from 0.
-    pub worst: usize,
-    /// Either way.
-    pub tolerance: f64,
-    /// Names of the law asked for and of the other one.
-    pub laws: [&'static str; 2],
-    /// What both laws have, where nothing is ground.
-    pub wanted: Vec<HelixAt>,
-    /// Places along the nose, with the polar angle there.
-    pub nose: Vec<(f64, String)>,
-}
-
-/// At one place of the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HelixAt {
-    pub way: f64,
-    pub found: f64,
-    /// By the law asked for, and by the other one.
-    pub wanted: f64,
-    pub other: f64,
-}
-
-impl HelixAt {
-    fn off(&self) -> f64 {
-        self.found - self.wanted
-    }
-}
+use super::flute_view::{FluteView, HelixAt, HelixCourses};
 
 /// A band of less than this part of a graph's height is a mere line.
 const THIN: f64 = 0.1;
