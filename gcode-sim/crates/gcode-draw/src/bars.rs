@@ -41,7 +41,7 @@ impl Bars {
 
     /// Places names at the left, bars behind the longest name, and leaves room for the longest value at the
     /// right.
-    pub fn lay_out(&self, size: Size) -> Sheet {
+    fn lay_out(&self, size: Size) -> Sheet {
         let font = Font::embedded();
         let text = size.text();
         let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height())).grown(-2.0 * text);

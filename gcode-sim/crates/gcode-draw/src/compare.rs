@@ -18,7 +18,7 @@ pub struct Difference {
     pub sizes: [(u32, u32); 2],
     /// The first picture, faded. A differing pixel is blue if it is darker in the first picture and vermilion
     /// if it is darker in the second; a frame encloses the differences.
-    pub picture: RgbImage,
+    pub(super) picture: RgbImage,
 }
 
 impl Difference {

@@ -2,9 +2,9 @@
 
 /// A point of the sheet, pixels to the right and down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Px {
-    pub x: f64,
-    pub y: f64,
+pub(super) struct Px {
+    pub(super) x: f64,
+    pub(super) y: f64,
 }
 
 /// Builds a [`Px`].
@@ -37,35 +37,35 @@ pub struct Rect {
 }
 
 impl Rect {
-    pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+    pub(super) fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
         Self { left, top, right: left + width, bottom: top + height }
     }
 
-    pub fn width(&self) -> f64 {
+    pub(super) fn width(&self) -> f64 {
         self.right - self.left
     }
 
-    pub fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         self.bottom - self.top
     }
 
-    pub fn centre(&self) -> Px {
+    pub(super) fn centre(&self) -> Px {
         px((self.left + self.right) / 2.0, (self.top + self.bottom) / 2.0)
     }
 
     #[must_use]
-    pub fn grown(&self, by: f64) -> Self {
+    pub(super) fn grown(&self, by: f64) -> Self {
         Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
     }
 
-    pub fn overlaps(&self, other: &Self) -> bool {
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
         self.left < other.right
             && other.left < self.right
             && self.top < other.bottom
             && other.top < self.bottom
     }
 
-    pub fn contains(&self, inner: &Self) -> bool {
+    pub(super) fn contains(&self, inner: &Self) -> bool {
         self.left <= inner.left
             && self.top <= inner.top
             && inner.right <= self.right
@@ -87,11 +87,11 @@ impl Rect {
 
 /// An opaque colour, sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rgb(pub u8, pub u8, pub u8);
+pub(super) struct Rgb(pub(super) u8, pub(super) u8, pub(super) u8);
 
 /// Dash pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Dash {
+pub(super) enum Dash {
     Solid,
     /// Dash and gap, pixels.
     Pattern([f64; 2]),
@@ -101,7 +101,7 @@ pub enum Dash {
 
 /// Horizontal alignment of a text to its reference point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Align {
+pub(super) enum Align {
     Left,
     Centre,
     Right,
@@ -109,7 +109,7 @@ pub enum Align {
 
 /// One drawing command; later ones cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
-pub enum DrawCommand {
+pub(super) enum DrawCommand {
     Line {
         points: Vec<Px>,
         closed: bool,

@@ -28,7 +28,7 @@ impl Plot {
     }
 
     /// Places title and notes above the chart.
-    pub fn lay_out(&self, size: Size) -> Sheet {
+    fn lay_out(&self, size: Size) -> Sheet {
         let font = Font::embedded();
         let text = size.text();
         let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height())).grown(-2.0 * text);

@@ -57,7 +57,7 @@ pub enum HoleStatus {
 
 impl HoleStatus {
     /// Returns true if the hole needs no attention.
-    pub fn is_good(self) -> bool {
+    pub(super) fn is_good(self) -> bool {
         matches!(self, Self::Good | Self::Unjudged)
     }
 }

@@ -5,91 +5,91 @@ use super::role::{HoleStatus, Pen, Point};
 /// One drawing in mm, as a view builds it and [`lay_out`](crate::lay_out) places it on a sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    pub title: Title,
-    pub axes: Vec<Axis>,
-    pub strokes: Vec<Stroke>,
-    pub marks: Vec<Mark>,
+    pub(super) title: Title,
+    pub(super) axes: Vec<Axis>,
+    pub(super) strokes: Vec<Stroke>,
+    pub(super) marks: Vec<Mark>,
     /// Diameter of the tolerance zone round every mark with a deviation, mm.
-    pub zone: Option<f64>,
-    pub legend: Vec<LegendItem>,
+    pub(super) zone: Option<f64>,
+    pub(super) legend: Vec<LegendItem>,
     /// Chart that replaces the drawing.
-    pub chart: Option<Chart>,
+    pub(super) chart: Option<Chart>,
 }
 
 /// The title block.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Title {
-    pub name: String,
+pub(super) struct Title {
+    pub(super) name: String,
     /// Name of the view and its direction.
-    pub view: String,
+    pub(super) view: String,
     /// Position tolerance for the feature control frame: diameter of the zone, mm.
-    pub position: Option<f64>,
+    pub(super) position: Option<f64>,
     /// Overall verdict.
-    pub verdict: Option<(HoleStatus, String)>,
+    pub(super) verdict: Option<(HoleStatus, String)>,
     /// Further lines, one fact each.
-    pub lines: Vec<String>,
+    pub(super) lines: Vec<String>,
     /// Restriction on the use of the picture, such as “predicted by simulation”.
-    pub caution: String,
+    pub(super) caution: String,
 }
 
 /// An axis of the part: a centre line through its origin, with arrow and name at the positive end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
-    pub name: String,
+pub(super) struct Axis {
+    pub(super) name: String,
     /// Unit vector of the positive direction.
-    pub direction: Point,
+    pub(super) direction: Point,
 }
 
 /// A line of the drawing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stroke {
-    pub shape: Shape,
-    pub pen: Pen,
+pub(super) struct Stroke {
+    pub(super) shape: Shape,
+    pub(super) pen: Pen,
     /// Text on the line, if there is room.
-    pub caption: Option<String>,
+    pub(super) caption: Option<String>,
 }
 
 /// Geometry of a stroke, mm.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub(super) enum Shape {
     Line(Vec<Point>),
     Circle { centre: Point, radius: f64 },
 }
 
 /// A hole, or another position with a symbol.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
+pub(super) struct Mark {
     /// Nominal position; the actual one if there is no nominal.
-    pub at: Point,
-    pub radius: f64,
-    pub standing: HoleStatus,
+    pub(super) at: Point,
+    pub(super) radius: f64,
+    pub(super) standing: HoleStatus,
     /// Label lines, most important first; lines without room are omitted from the end.
-    pub label: Vec<String>,
+    pub(super) label: Vec<String>,
     /// Projection of the unit vector out of the part.
-    pub direction: Option<Point>,
-    pub misfit: Option<ZoneDeviation>,
+    pub(super) direction: Option<Point>,
+    pub(super) misfit: Option<ZoneDeviation>,
     /// Actual position, if a nominal one is given too.
-    pub found: Option<Point>,
+    pub(super) found: Option<Point>,
 }
 
 /// Actual − nominal at both ends of a hole, mm, seen along the nominal axis: inside the zone's circle is
 /// inside tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ZoneDeviation {
-    pub entry: Point,
-    pub bottom: Point,
+pub(super) struct ZoneDeviation {
+    pub(super) entry: Point,
+    pub(super) bottom: Point,
 }
 
 /// A line of the legend.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LegendItem {
-    pub sample: Sample,
-    pub text: String,
+pub(super) struct LegendItem {
+    pub(super) sample: Sample,
+    pub(super) text: String,
 }
 
 /// The sample at the left of a legend line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sample {
+pub(super) enum Sample {
     Standing(HoleStatus),
     /// Replaces `Standing` for holes that the sheet draws to scale, without a symbol.
     Plain(HoleStatus),

@@ -18,8 +18,8 @@ use super::words::Words;
 /// A laid-out picture: every command has its position in pixels.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    pub size: Size,
-    pub inks: Vec<DrawCommand>,
+    pub(super) size: Size,
+    pub(super) inks: Vec<DrawCommand>,
     /// Labels of holes and lines with their boxes; none overlaps another.
     pub labels: Vec<(Rect, Vec<String>)>,
     /// Omissions that the picture itself states.

@@ -31,17 +31,17 @@ impl Size {
     }
 
     /// Returns the width in pixels.
-    pub fn width(self) -> u32 {
+    pub(super) fn width(self) -> u32 {
         self.width
     }
 
     /// Returns the height in pixels.
-    pub fn height(self) -> u32 {
+    pub(super) fn height(self) -> u32 {
         self.height
     }
 
     /// Returns the height of ordinary text in pixels: it grows with the picture and stays legible.
-    pub fn text(self) -> f64 {
+    pub(super) fn text(self) -> f64 {
         let short = f64::from(self.width.min(self.height));
         ((6.5 + short / 110.0) * 2.0).round().clamp(21.0, 120.0) / 2.0
     }
