@@ -1,4 +1,4 @@
-//! What two revisions do differently, each change with its blocks and the calls that led to them.
+//! The changes between two revisions, each with its blocks and the calls that led to them.
 use maud::{Markup, html};
 
 use super::lines::Lines;
@@ -41,7 +41,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> 
     }
 }
 
-/// The block before and now.
+/// Returns the block of the old and of the new revision.
 fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[ReviewSide<'_>]) -> Markup {
     let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {
@@ -53,7 +53,7 @@ fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[Revie
     }
 }
 
-/// A block and the calls that led to it, each a link to its line.
+/// Returns a block and the calls that led to it, each a link to its line.
 pub(super) fn chain(place: &BlockLocation, lines: &Lines) -> Markup {
     html! {
         (block(place, lines))
