@@ -66,7 +66,17 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
         put(text, &format!("missing  {}", some(&verdict.missing, |id| id.clone(), ", ")));
     }
     if !verdict.extra.is_empty() {
-        put(text, &format!("extra    {}", some(&verdict.extra, |extra| extra.why.clone(), "\n         ")));
+        put(
+            text,
+            &format!(
+                "extra    {}",
+                some(
+                    &verdict.extra,
+                    |extra| extra.why.trim_start_matches("extra ").to_owned(),
+                    "\n         "
+                )
+            ),
+        );
     }
 }
 
