@@ -69,7 +69,14 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
     if !verdict.extra.is_empty() {
         append_line(
             text,
-            &format!("extra    {}", list_first(&verdict.extra, |extra| extra.why.clone(), "\n         ")),
+            &format!(
+                "extra    {}",
+                list_first(
+                    &verdict.extra,
+                    |extra| extra.why.trim_start_matches("extra ").to_owned(),
+                    "\n         "
+                )
+            ),
         );
     }
 }

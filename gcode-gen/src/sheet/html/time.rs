@@ -119,7 +119,7 @@ fn uncounted(own: &MachineTime) -> Markup {
     html! {
         @if !keys.is_empty() {
             p.note {
-                "Not counted, because the job's section " code { "[sheet]" } " doesn't say it: " (keys.join(", ")) "."
+                "Not counted, because the job's section " code { "[sheet]" } " does not give it: " (keys.join(", ")) "."
             }
         }
     }
