@@ -33,7 +33,10 @@ pub fn messages(old: &str, new: &str) -> Vec<String> {
     texts(&found(old, new))
 }
 
-/// Entries as `code: message`.
+/// Entries as `code: message`, with all that stands beside the headline: `code: message | also code: message`.
 pub fn texts(found: &[Change]) -> Vec<String> {
-    found.iter().map(|change| format!("{}: {}", change.code, change.message)).collect()
+    let effects = |change: &Change| -> Vec<String> {
+        change.effects().map(|(code, message)| format!("{code}: {message}")).collect()
+    };
+    found.iter().map(|change| effects(change).join(" | also ")).collect()
 }

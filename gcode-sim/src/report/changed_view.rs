@@ -59,8 +59,8 @@ pub fn of_changes(
         let hole = pair.old? + 1;
         Some(format!("largest movement: hole\u{a0}{hole}, {} mm", near(pair.moved, 4)))
     });
-    let others: Vec<&Change> =
-        compared.changes.iter().filter(|change| !is_of_one_hole(&change.code)).collect();
+    let effects = compared.changes.iter().flat_map(Change::effects);
+    let others: Vec<(&str, &str)> = effects.filter(|(code, _)| !is_of_one_hole(code)).collect();
     let path = path([old, new], machine, compared);
     let more = path.has_other_rapids.then(|| "rapids are not drawn: see --page".to_owned());
     let lines = farthest.into_iter().chain(told(&others)).chain(more).collect();
@@ -76,7 +76,7 @@ pub fn of_changes(
         holes,
         question: PicturePurpose::Change,
         others: others.len(),
-        ends: others.iter().find(|change| change.code == "outcome").map(|_| {
+        ends: others.iter().find(|(code, _)| *code == "outcome").map(|_| {
             let stops = |record: &Record| record.outcome() != "end";
             match (stops(&old.record), stops(&new.record)) {
                 (_, true) => "the new program stops before its end",
@@ -91,12 +91,12 @@ pub fn of_changes(
 }
 
 /// The changes that no hole's sign shows, those of a kind together.
-fn told(others: &[&Change]) -> Vec<String> {
+fn told(others: &[(&str, &str)]) -> Vec<String> {
     let mut kinds: Vec<(&str, &str, usize)> = Vec::new();
-    for change in others {
-        match kinds.iter_mut().find(|(code, ..)| *code == change.code) {
+    for (code, message) in others {
+        match kinds.iter_mut().find(|(known, ..)| known == code) {
             Some((.., more)) => *more += 1,
-            None => kinds.push((&change.code, &change.message, 0)),
+            None => kinds.push((code, message, 0)),
         }
     }
     let line = |(code, message, more): &(&str, &str, usize)| match more {

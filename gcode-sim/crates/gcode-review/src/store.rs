@@ -254,6 +254,7 @@ impl Record {
             program,
             ending,
             sources: None,
+            reached: BTreeMap::new(),
             totals,
         })
     }
