@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use gcode_review::{Change, Record, Revision, changes};
-use gcode_tests::changes::texts;
+use gcode_tests::changes::effect_texts;
 use gcode_tests::workspace;
 
 use crate::accepted::{folders, mains, request};
@@ -94,7 +94,9 @@ fn is_named(slip: Slip, found: &[Change]) -> bool {
         Slip::Stop => only.code == "stop" && only.message.starts_with("the stop M00 is removed"),
         Slip::Feed => only.code == "feed",
         // A tool of another diameter or length: the entry names both.
-        Slip::Tool => only.effects().any(|(_, text)| text.contains("made by T") || text.starts_with("tool T")),
+        Slip::Tool => {
+            only.effects().any(|(_, text)| text.contains("made by T") || text.starts_with("tool T"))
+        }
         Slip::Place => ["hole-", "move-", "work-offset"].iter().any(|code| only.code.starts_with(code)),
     }
 }
@@ -133,7 +135,7 @@ fn one_slip_is_one_entry_that_names_it() {
             let is_idle = effect(&new) == before;
             tried[kind as usize] += usize::from(!is_idle);
             if if is_idle { !found.is_empty() } else { !is_named(kind, &found) } {
-                let told = texts(&found).into_iter().map(|entry| format!("    {entry}\n"));
+                let told = effect_texts(&found).into_iter().map(|entry| format!("    {entry}\n"));
                 wrong.push_str(&format!("{name}: {kind:?}: {block}\n{}", told.collect::<String>()));
             }
         }

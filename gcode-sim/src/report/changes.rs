@@ -174,7 +174,8 @@ pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, Stri
     // What is gone has no line in the file as it is now: its old one is told in words.
     let was = old.as_ref().filter(|_| new.is_none());
     let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
-    let also: String = also.iter().map(|effect| format!("\nalso {}: {}", effect.code, effect.message)).collect();
+    let also: String =
+        also.iter().map(|effect| format!("\nalso {}: {}", effect.code, effect.message)).collect();
     let calls = new.as_ref().map_or(&[][..], |place| &place.calls);
     Finding {
         code: code.to_string(),

@@ -42,7 +42,10 @@ impl ConditionGroup<'_> {
 
     /// The blocks that have put it in force.
     fn set_by<'a>(&self, old: &'a Record, new: &'a Record) -> [Option<&'a BlockLocation>; 2] {
-        [self.was.place.and_then(|place| old.places.get(place)), self.is.place.and_then(|place| new.places.get(place))]
+        [
+            self.was.place.and_then(|place| old.places.get(place)),
+            self.is.place.and_then(|place| new.places.get(place)),
+        ]
     }
 
     fn effect(&self, old: &Record, new: &Record) -> Effect {

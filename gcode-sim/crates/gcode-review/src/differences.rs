@@ -78,7 +78,11 @@ pub(super) fn differences(
             (None, StepPair::Same(..)) => paired(steps, *link).filter_map(feed).for_each(add),
             (None, StepPair::Changed(i, j)) => {
                 let (was, is) = (&steps.0[i], &steps.1[j]);
-                if was.is_move() { moved(was, is, tolerance, &mut add) } else { add(command(was, is)) }
+                if was.is_move() {
+                    moved(was, is, tolerance, &mut add)
+                } else {
+                    add(command(was, is))
+                }
                 feed((was, is)).into_iter().for_each(add);
             }
         }
@@ -114,7 +118,10 @@ fn moved(old: &Step, new: &Step, tolerance: f64, add: &mut impl FnMut(Difference
     let is_moved = !near(&way, &Position::default(), tolerance);
     if let (StepKind::Arc(a, _), StepKind::Arc(b, _)) = (&old.kind, &new.kind) {
         let is_moved = is_moved || !near(&new.from, &old.from, tolerance);
-        reshaped((old, a), (new, b), is_moved, tolerance).map(DifferenceKind::ArcShape).into_iter().for_each(&mut *add);
+        reshaped((old, a), (new, b), is_moved, tolerance)
+            .map(DifferenceKind::ArcShape)
+            .into_iter()
+            .for_each(&mut *add);
     }
     if is_moved {
         add(DifferenceKind::EndPoint(way));

@@ -3,9 +3,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::align::common;
+use super::cause::words;
 use super::change::Effect;
 use super::hole_groups::HoleEffect;
-use super::cause::words;
 use super::record::{BlockLocation, Record};
 use gcode_lang::syntax::parse;
 
@@ -44,7 +44,8 @@ impl Edits {
             }
         }
         for (side, by_step) in edits.by_step.iter_mut().enumerate() {
-            let reached = edits.all.iter().enumerate().filter_map(|(edit, one)| Some((one.reached[side]?, edit)));
+            let reached =
+                edits.all.iter().enumerate().filter_map(|(edit, one)| Some((one.reached[side]?, edit)));
             by_step.extend(reached);
             by_step.sort_unstable();
         }
@@ -92,7 +93,11 @@ impl Edits {
     }
 
     /// The edit that an effect at these blocks and steps comes from: theirs, else the last one executed before the steps.
-    pub(super) fn cause(&self, blocks: [Option<&BlockLocation>; 2], steps: [Option<usize>; 2]) -> Option<usize> {
+    pub(super) fn cause(
+        &self,
+        blocks: [Option<&BlockLocation>; 2],
+        steps: [Option<usize>; 2],
+    ) -> Option<usize> {
         let only = || self.is_single().then_some(0);
         self.of(blocks).or_else(only).or_else(|| self.last_before(steps))
     }
@@ -100,27 +105,22 @@ impl Edits {
     fn last_before(&self, steps: [Option<usize>; 2]) -> Option<usize> {
         let last = |side: usize| {
             let (step, by_step) = (steps[side]?, &self.by_step[side]);
-            let (reached, edit) = by_step[..by_step.partition_point(|(reached, _)| *reached <= step)].last()?;
+            let (reached, edit) =
+                by_step[..by_step.partition_point(|(reached, _)| *reached <= step)].last()?;
             Some((step - reached, *edit))
         };
         [last(0), last(1)].into_iter().flatten().min().map(|(_, edit)| edit)
     }
 
-    /// The blocks of the edit that an effect comes from, where it names others and is known to come from it.
-    pub(super) fn blocks(
-        &self,
-        causes: &[usize],
-        named: [Option<&BlockLocation>; 2],
-    ) -> Option<[Option<BlockLocation>; 2]> {
-        let edit = *causes.first()?;
-        let blocks = &self.all[edit].blocks;
+    /// The blocks of the only edit, where an effect names others.
+    pub(super) fn blocks(&self, named: [Option<&BlockLocation>; 2]) -> Option<&[Option<BlockLocation>; 2]> {
+        let [Edit { blocks, .. }] = &self.all[..] else { return None };
         let is_named = (0..2).all(|side| match (named[side], &blocks[side]) {
-            (Some(block), Some(_)) => self.of_side(side, block).is_some_and(|edit| causes.contains(&edit)),
+            (Some(block), Some(_)) => self.of_side(side, block).is_some(),
             (None, None) => true,
             _ => false,
         });
-        let is_known = self.is_single() || self.of(named).is_some();
-        (!is_named && is_known).then(|| blocks.clone())
+        (!is_named).then_some(blocks)
     }
 
     /// Edits of these lines alone.
@@ -174,7 +174,8 @@ impl<'a> Causes<'a> {
 
     /// Of an effect about holes: every edit of a feed or a tool that makes it so.
     pub(super) fn of_holes(&self, HoleEffect { effect, steps, tools }: &HoleEffect) -> Vec<usize> {
-        let place = |side: usize, place: usize| self.edits.of_side(side, self.records[side].places.get(place)?);
+        let place =
+            |side: usize, place: usize| self.edits.of_side(side, self.records[side].places.get(place)?);
         let tools = (0..2).filter_map(|side| place(side, tools[side]?));
         let feed = |side: usize| {
             let places = steps[side].iter().map(move |step| self.records[side].steps[*step].place);
@@ -267,7 +268,8 @@ fn gaps(before: &[TextBlock], now: &[TextBlock]) -> Vec<[Range<usize>; 2]> {
         }
         (i, j) = (to_i + 1, to_j + 1);
     }
-    let text = |blocks: &[TextBlock]| blocks.iter().map(|block| block.words.as_str()).collect::<Vec<_>>().join("\n");
+    let text =
+        |blocks: &[TextBlock]| blocks.iter().map(|block| block.words.as_str()).collect::<Vec<_>>().join("\n");
     let new = gaps.iter().filter(|gap| gap[0].is_empty());
     let mut moved: BTreeMap<String, Range<usize>> =
         new.map(|gap| (text(&now[gap[1].clone()]), gap[1].clone())).collect();

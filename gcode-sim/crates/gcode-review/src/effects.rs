@@ -31,7 +31,10 @@ struct Group {
 enum Numbers {
     None,
     /// By how much each axis ends elsewhere at most, without signs; and whether the machine stands where it stood everywhere.
-    Shift { most: Position, is_compensated: bool },
+    Shift {
+        most: Position,
+        is_compensated: bool,
+    },
     /// How many times as fast a move is, at least and at most.
     Factor(f64, f64),
     /// The spindle's speed before and now.
@@ -58,14 +61,24 @@ impl<'a> Effects<'a> {
             let is_place = known.places == group.places;
             known.code == group.code
                 && match (&known.numbers, &group.numbers) {
-                    (Numbers::Shift { .. }, Numbers::Shift { .. }) => known.text == group.text || known.is_with(&group),
-                    (Numbers::Speeds(..), _) => known.numbers == group.numbers && (known.text == group.text || is_place),
+                    (Numbers::Shift { .. }, Numbers::Shift { .. }) => {
+                        known.text == group.text || known.is_with(&group)
+                    }
+                    (Numbers::Speeds(..), _) => {
+                        known.numbers == group.numbers && (known.text == group.text || is_place)
+                    }
                     (Numbers::Factor(..), _) => known.text == group.text || is_place,
-                    _ => known.text == group.text || is_place && matches!(group.code, "move-added" | "move-lost"),
+                    _ => {
+                        known.text == group.text
+                            || is_place && matches!(group.code, "move-added" | "move-lost")
+                    }
                 }
         };
         // A shift by the same comes before one with the same cause.
-        let same = self.all.iter().position(|known| known.code == group.code && known.text == group.text && is_alike(known));
+        let same = self
+            .all
+            .iter()
+            .position(|known| known.code == group.code && known.text == group.text && is_alike(known));
         match same.or_else(|| self.all.iter().position(is_alike)) {
             Some(known) => self.all[known].join(group),
             None => self.all.push(group),
@@ -81,7 +94,8 @@ impl<'a> Effects<'a> {
         let mut what = step.kind.name();
         let (code, text) = match (kind, was, is) {
             (DifferenceKind::EndPoint(way), ..) => {
-                let is_compensated = was.zip(is).is_some_and(|(was, is)| near(&was.at, &is.at, self.tolerance));
+                let is_compensated =
+                    was.zip(is).is_some_and(|(was, is)| near(&was.at, &is.at, self.tolerance));
                 let mut most = *way;
                 (0..MAX_AXES).for_each(|axis| most[axis] = way[axis].abs());
                 numbers = Numbers::Shift { most, is_compensated };
@@ -124,7 +138,8 @@ impl<'a> Effects<'a> {
             }
         };
         let is_paired = was.is_some() && is.is_some();
-        let is_set = matches!(numbers, Numbers::Factor(..) | Numbers::Speeds(..)) || code == "tool" && is_paired;
+        let is_set =
+            matches!(numbers, Numbers::Factor(..) | Numbers::Speeds(..)) || code == "tool" && is_paired;
         let place = |step: &Step| if is_set { step.editable_at() } else { step.place };
         let places = [was.map(place), is.map(place)];
         let blocks = [0, 1].map(|side| places[side].and_then(|place| self.records[side].places.get(place)));
@@ -158,10 +173,14 @@ impl<'a> Effects<'a> {
         };
         match (&group.numbers, group.varies, &group.counts[..]) {
             (Numbers::Shift { most, is_compensated }, varies, counts) => {
-                let most = || format!("up to {}", coordinates(most, &self.records[0].axes, self.tolerance, false));
+                let most =
+                    || format!("up to {}", coordinates(most, &self.records[0].axes, self.tolerance, false));
                 let by = if varies { most() } else { text.clone() };
-                let as_programmed =
-                    if *is_compensated { " as programmed; the machine position is unchanged because of another length offset" } else { "" };
+                let as_programmed = if *is_compensated {
+                    " as programmed; the machine position is unchanged because of another length offset"
+                } else {
+                    ""
+                };
                 shifted(counts, &format!("{by}{as_programmed}"))
             }
             (Numbers::Factor(least, most), true, _) => {
@@ -184,7 +203,11 @@ impl Group {
     /// Moves of one edit, or of the same blocks where no edit is theirs.
     fn is_with(&self, other: &Self) -> bool {
         let is_edit = self.is_direct && other.is_direct;
-        if is_edit { other.causes.iter().all(|edit| self.causes.contains(edit)) } else { self.places == other.places }
+        if is_edit {
+            other.causes.iter().all(|edit| self.causes.contains(edit))
+        } else {
+            self.places == other.places
+        }
     }
 
     fn join(&mut self, other: Self) {
@@ -201,7 +224,10 @@ impl Group {
             (_, false) => {}
         }
         match (&mut self.numbers, other.numbers) {
-            (Numbers::Shift { most, is_compensated }, Numbers::Shift { most: others, is_compensated: is_other }) => {
+            (
+                Numbers::Shift { most, is_compensated },
+                Numbers::Shift { most: others, is_compensated: is_other },
+            ) => {
                 (0..MAX_AXES).for_each(|axis| most[axis] = most[axis].max(others[axis]));
                 *is_compensated &= is_other;
             }

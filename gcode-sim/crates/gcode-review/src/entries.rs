@@ -18,6 +18,7 @@ const PRECEDENCE: [&str; 42] = [
     "hole-tool",
     "hole-pass",
     "hole-order",
+    "move-order",
     "start",
     "work-system",
     "tool-length",
@@ -29,7 +30,6 @@ const PRECEDENCE: [&str; 42] = [
     "m-code",
     "spindle",
     "stop",
-    "move-order",
     "move-kind",
     "move-arc",
     "move-shifted",
@@ -74,16 +74,25 @@ pub(super) fn entries(effects: Vec<CausedEffect>, edits: &Edits) -> Vec<Change> 
         all.sort_by_key(|(_, (_, effect))| rank(&effect.code));
         let mut all = all.into_iter();
         let Some((number, (causes, headline))) = all.next() else { continue };
-        let blocks = edits.blocks(&causes, [headline.old.as_ref(), headline.new.as_ref()]);
         let mut change = Change::from(headline);
-        if let Some(blocks) = blocks {
-            [change.old, change.new] = blocks;
+        if !causes.is_empty()
+            && is_motion(&change.code)
+            && let Some(blocks) = edits.blocks([change.old.as_ref(), change.new.as_ref()])
+        {
+            [change.old, change.new] = blocks.clone();
         }
         change.also = all.map(|(_, (_, effect))| effect).collect();
         entries.push((number, change));
     }
     entries.sort_by_key(|(number, _)| *number);
     entries.into_iter().map(|(_, change)| change).collect()
+}
+
+/// Whether the blocks of such an effect are those of moves, which may be others than the one that is edited.
+fn is_motion(code: &str) -> bool {
+    let codes =
+        ["feed", "dwell", "tool", "tool-length", "cutter-side", "work-system", "cycle", "return-level"];
+    ["hole-", "move-"].iter().any(|begin| code.starts_with(begin)) || codes.contains(&code)
 }
 
 /// The first edit that an edit is joined with.
@@ -121,7 +130,8 @@ mod tests {
             effect(&[2], "spindle"),
             effect(&[1], "hole-moved"),
         ];
-        let shown = |change: &Change| change.effects().map(|(code, _)| code.to_owned()).collect::<Vec<_>>().join(" ");
+        let shown =
+            |change: &Change| change.effects().map(|(code, _)| code.to_owned()).collect::<Vec<_>>().join(" ");
         let shown: Vec<String> = entries(all, &edits).iter().map(shown).collect();
         assert_eq!(shown, ["mode", "spindle feed", "hole-moved move-shifted"]);
     }

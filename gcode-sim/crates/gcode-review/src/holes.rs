@@ -128,7 +128,8 @@ impl HoleComparer<'_> {
             let is_one_by_one = aspects.is_elsewhere() && was.len() == is.len();
             let passes = was.iter().copied().zip(is.iter().copied()).filter(|_| is_one_by_one);
             let strayed = aspects.strayed.iter().map(|pass| pass.steps);
-            let others: Vec<(usize, usize)> = strayed.chain(passes).filter(|feeds| is_elsewhere(*feeds)).collect();
+            let others: Vec<(usize, usize)> =
+                strayed.chain(passes).filter(|feeds| is_elsewhere(*feeds)).collect();
             let feeds = if is_elsewhere(feeds) { feeds } else { others.first().copied().unwrap_or(feeds) };
             let [was, is] = self.blocks(feeds);
             let cause = cause(was, is);
@@ -252,7 +253,11 @@ impl HoleComparer<'_> {
             let message = format!("{}: {lost}, {first}{}", named(&run), described(&self.old.holes[run[0]]));
             let change = Effect::new("hole-lost", message).with_old(place(self.old, run[0]));
             let effect = change.with_new(rapid.and_then(|step| self.new.places.get(step.place)));
-            changes.push(HoleEffect { effect, steps: [self.passes.0.of_holes(&run), Vec::new()], tools: [None, None] });
+            changes.push(HoleEffect {
+                effect,
+                steps: [self.passes.0.of_holes(&run), Vec::new()],
+                tools: [None, None],
+            });
         }
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
         let more: Vec<usize> = of_new.iter().copied().filter(|hole| !known.contains(hole)).collect();
@@ -263,7 +268,11 @@ impl HoleComparer<'_> {
                 n => format!("{n} holes added: the first {first}"),
             };
             let effect = Effect::new("hole-added", message).with_new(place(self.new, run[0]));
-            changes.push(HoleEffect { effect, steps: [Vec::new(), self.passes.1.of_holes(&run)], tools: [None, None] });
+            changes.push(HoleEffect {
+                effect,
+                steps: [Vec::new(), self.passes.1.of_holes(&run)],
+                tools: [None, None],
+            });
         }
         changes
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::initial_commands::FirstCommand;
 use super::modal_conditions::ModalConditions;
-use super::recorder::{FirstExecutions, EndCause, ExecutedBlocks, MOST_STEPS, Recorder, SharedRecorder};
+use super::recorder::{EndCause, ExecutedBlocks, FirstExecutions, MOST_STEPS, Recorder, SharedRecorder};
 use super::steps::{Step, StepKind};
 use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue, mode_name};
 use gcode_inspect::holes::DrilledHole;
@@ -181,7 +181,17 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
     let Recorder {
-        mut steps, places, mut conditions, mut set, assigned, written, begun, reached, last, end, ..
+        mut steps,
+        places,
+        mut conditions,
+        mut set,
+        assigned,
+        written,
+        begun,
+        reached,
+        last,
+        end,
+        ..
     } = recorder;
     let mut begun: Vec<FirstCommand> = begun.into_values().collect();
     if conditions.is_empty() {
