@@ -79,7 +79,10 @@ fn of_two_words_each_effect_is_told() {
         ]
     );
     let one = PART.replace("G81 X10. Y0 Z-4. R2.", "G81 X10. Y0 Z-4. R-2.");
-    assert_eq!(effects(PART, &one), [""]);
+    assert_eq!(
+        effects(PART, &one),
+        ["move-shifted: a rapid ends at a different point: Z -4.0000 (2 moves)"]
+    );
 }
 
 /// T1 drills 25 mm deep, T2 taps 18 mm of it: what the tap does is told whatever else happens to the hole.

@@ -115,7 +115,8 @@ fn a_lost_spot_drilling_leaves_the_drills_diameter() {
     let reamed = program("X10. Y0", "T3 M6\nG43 H3 Z50.\nG98 G85 X10. Y0 Z-4.5 R2. F50\nG80\n");
     assert_eq!(
         effect_texts(&found_by(&machine, &reamed, &one)),
-        ["hole-diameter: hole 1: Φ6 instead of Φ6.2, no longer made by T3, in total by T1 and T2"]
+        ["hole-diameter: hole 1: Φ6 instead of Φ6.2, no longer made by T3, in total by T1 and T2 | tool: tool T3 is \
+          removed | move-lost: a rapid to X10.0000 is removed (5 moves of its block)"]
     );
 }
 

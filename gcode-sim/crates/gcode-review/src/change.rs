@@ -91,7 +91,7 @@ impl From<Effect> for Change {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Effect {
-    /// What it is called, as [`Change::code`].
+    /// What it is called: docs/changes.md has a section for each.
     pub code: Cow<'static, str>,
     /// What is different, with numbers and units; makes sense alone.
     pub message: String,
