@@ -1,7 +1,7 @@
 //! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what
 //! the cut is made with otherwise because of that.
 use gcode_review::Change;
-use gcode_tests::changes::{find_changes, messages};
+use gcode_tests::changes::{effects, find_changes, messages};
 
 /// The lines of an entry, before and now.
 fn lines(change: &Change) -> [Option<u32>; 2] {
@@ -128,8 +128,12 @@ fn a_section_is_told_with_what_it_is_made_with_then() {
         ["move-order: 8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000"]
     );
     // The sections change places, their tools don't.
-    let others = messages(&milled(&left, "", &right), &milled(&tool(3, RIGHT), "", &tool(4, LEFT)));
-    let order: Vec<_> = others.iter().filter(|entry| entry.starts_with("move-order: ")).collect();
+    let others = effects(&milled(&left, "", &right), &milled(&tool(3, RIGHT), "", &tool(4, LEFT)));
+    let order: Vec<_> = others
+        .iter()
+        .flat_map(|entry| entry.split(" | "))
+        .filter(|one| one.starts_with("move-order: "))
+        .collect();
     assert!(
         order.iter().any(|entry| {
             entry.ends_with(", with T4 instead of T3, G43 H4 instead of G43 H3, M03 S400 instead of M03 S300")
@@ -137,14 +141,12 @@ fn a_section_is_told_with_what_it_is_made_with_then() {
         "{others:#?}"
     );
     let between = "S500\nM8\n";
-    let found = messages(&milled(LEFT, between, RIGHT), &milled(RIGHT, between, LEFT));
-    assert!(
-        found.contains(
-            &"move-order: 8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000, \
-              with M03 S500 instead of M03 S900, M08 instead of coolant off"
-                .to_owned()
-        ),
-        "{found:#?}"
+    assert_eq!(
+        effects(&milled(LEFT, between, RIGHT), &milled(RIGHT, between, LEFT)),
+        [
+            "move-order: 8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000, with M03 S500 \
+          instead of M03 S900, M08 instead of coolant off | spindle: S500 is executed later than before | coolant: \
+          M08 is executed later than before"
+        ]
     );
-    assert!(found.contains(&"spindle: S500 is executed later than before".to_owned()), "{found:#?}");
 }

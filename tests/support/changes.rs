@@ -33,7 +33,21 @@ pub fn messages(old: &str, new: &str) -> Vec<String> {
     texts(&find_changes(old, new))
 }
 
-/// Entries as `code: message`.
+/// Entries as `code: message`, their headlines.
 pub fn texts(found: &[Change]) -> Vec<String> {
     found.iter().map(|change| format!("{}: {}", change.code, change.message)).collect()
+}
+
+/// What is different between two programs, each entry with all that stands beside its headline: `code: message | code: message`.
+pub fn effects(old: &str, new: &str) -> Vec<String> {
+    effect_texts(&find_changes(old, new))
+}
+
+/// Entries with all that stands beside their headlines.
+pub fn effect_texts(found: &[Change]) -> Vec<String> {
+    let whole = |change: &Change| {
+        let effects = change.effects().map(|(code, message)| format!("{code}: {message}"));
+        effects.collect::<Vec<_>>().join(" | ")
+    };
+    found.iter().map(whole).collect()
 }

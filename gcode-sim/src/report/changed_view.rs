@@ -67,8 +67,8 @@ pub fn of_changes(
         let hole = pair.old? + 1;
         Some(format!("largest movement: hole\u{a0}{hole}, {} mm", rounded(pair.moved, 4)))
     });
-    let others: Vec<&Change> =
-        compared.changes.iter().filter(|change| !is_of_one_hole(&change.code)).collect();
+    let effects = compared.changes.iter().flat_map(Change::effects);
+    let others: Vec<(&str, &str)> = effects.filter(|(code, _)| !is_of_one_hole(code)).collect();
     let path = path([old, new], machine, compared);
     let more = path.has_other_rapids.then(|| "rapids are not drawn: see --page".to_owned());
     let lines = farthest.into_iter().chain(other_change_lines(&others)).chain(more).collect();
@@ -86,7 +86,7 @@ pub fn of_changes(
         holes,
         purpose: PicturePurpose::Change,
         other_differences: others.len(),
-        ending: others.iter().find(|change| change.code == "outcome").map(|_| {
+        ending: others.iter().find(|(code, _)| *code == "outcome").map(|_| {
             let stops = |record: &Record| record.outcome() != "end";
             match (stops(&old.record), stops(&new.record)) {
                 (_, true) => "the new program stops before its end",
@@ -101,12 +101,12 @@ pub fn of_changes(
 }
 
 /// Returns the changes that no hole's symbol shows, one line for each kind.
-fn other_change_lines(others: &[&Change]) -> Vec<String> {
+fn other_change_lines(others: &[(&str, &str)]) -> Vec<String> {
     let mut kinds: Vec<(&str, &str, usize)> = Vec::new();
-    for change in others {
-        match kinds.iter_mut().find(|(code, ..)| *code == change.code) {
+    for (code, message) in others {
+        match kinds.iter_mut().find(|(known, ..)| known == code) {
             Some((.., more)) => *more += 1,
-            None => kinds.push((&change.code, &change.message, 0)),
+            None => kinds.push((code, message, 0)),
         }
     }
     let line = |(code, message, more): &(&str, &str, usize)| match more {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::diag::Severity;
-use gcode_review::{BlockLocation, Change, Record, Totals, UnexecutedChange};
+use gcode_review::{BlockLocation, Change, Effect, Record, Totals, UnexecutedChange};
 
 /// The document of `diff --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -145,7 +145,15 @@ pub(super) fn append_entries(text: &mut String, changes: &[Change], indent: &str
 
 /// One change with its blocks and the calls that led to them.
 fn append_entry(text: &mut String, change: &Change, indent: &str) {
+    const SHOWN: usize = 6;
     let _ = writeln!(text, "{indent}{:<14} {}", change.code, change.message);
+    for Effect { code, message, .. } in change.also.iter().take(SHOWN) {
+        let _ = writeln!(text, "{indent}    also {code}: {message}");
+    }
+    if SHOWN < change.also.len() {
+        let more = change.also.len() - SHOWN;
+        let _ = writeln!(text, "{indent}    … and {more} more: --format json has them all");
+    }
     for (word, place) in [("old", &change.old), ("new", &change.new)] {
         let Some(place) = place else { continue };
         let _ = writeln!(text, "{indent}    {word} {}", line(place));
@@ -162,15 +170,17 @@ fn line(place: &BlockLocation) -> String {
 
 /// A change for a code review, at its place in the new revision; `files` are those of the programs by their names.
 pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
-    let Change { code, message, old, new, anchor: near } = change;
+    let Change { code, message, old, new, anchor: near, also } = change;
     // What is gone has no line in the file as it is now: its old one is told in words.
     let was = old.as_ref().filter(|_| new.is_none());
     let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
+    let also: String =
+        also.iter().map(|effect| format!("\nalso {}: {}", effect.code, effect.message)).collect();
     let calls = new.as_ref().map_or(&[][..], |place| &place.calls);
     Finding {
         code: code.to_string(),
         severity: Severity::Error,
-        message: format!("{before}{message}{}", was.unwrap_or_default()),
+        message: format!("{before}{message}{}{also}", was.unwrap_or_default()),
         at: new.as_ref().or(near.as_ref()).and_then(|place| place_in(place, files)),
         related: calls
             .iter()

@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::align::StepPair;
-use super::change::Change;
+use super::change::Effect;
 use super::modal_conditions::ModalAspect;
 use super::record::Record;
 use gcode_control::{Modal, modal_code};
@@ -36,7 +36,7 @@ pub(super) struct FirstCommand {
 }
 
 /// What the old revision commands before moves that both make, and the new one doesn't.
-pub(super) fn compare(old: &Record, new: &Record, links: &[StepPair]) -> Vec<Change> {
+pub(super) fn compare(old: &Record, new: &Record, links: &[StepPair]) -> Vec<Effect> {
     let (Some(was), Some(is)) = (&old.begun, &new.begun) else { return Vec::new() };
     let moves = moves_of_both(old, new, links);
     let mut groups: Vec<MissingCommands<'_>> = Vec::new();
@@ -130,7 +130,7 @@ struct MissingCommands<'a> {
 }
 
 impl MissingCommands<'_> {
-    fn change(&self, old: &Record, new: &Record) -> Change {
+    fn change(&self, old: &Record, new: &Record) -> Effect {
         let names: Vec<&str> = self.all.iter().map(|begun| begun.text.as_str()).collect();
         let one = names.len() == 1;
         let names = match names.as_slice() {
@@ -158,7 +158,7 @@ impl MissingCommands<'_> {
                 )
             }
         };
-        Change::new("start", message)
+        Effect::new("start", message)
             .with_old(old.places.get(self.all[0].place))
             .with_new(new.places.get(new.steps[self.first.steps.1].place))
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::initial_commands::FirstCommand;
 use super::modal_conditions::ModalConditions;
-use super::recorder::{EndCause, ExecutedBlocks, MOST_STEPS, Recorder, SharedRecorder};
+use super::recorder::{EndCause, ExecutedBlocks, FirstExecutions, MOST_STEPS, Recorder, SharedRecorder};
 use super::steps::{Step, StepKind};
 use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue, mode_name};
 use gcode_inspect::holes::DrilledHole;
@@ -41,6 +41,8 @@ pub struct Record {
     pub(super) ending: EndState,
     /// What was read; nothing of what was read from a file.
     pub(super) sources: Option<Sources>,
+    /// When the run first executed each block; nothing of what was read from a file.
+    pub(super) reached: FirstExecutions,
     pub totals: Totals,
 }
 
@@ -178,8 +180,19 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     recorder.forget_taken_up();
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
-    let Recorder { mut steps, places, mut conditions, mut set, assigned, written, begun, last, end, .. } =
-        recorder;
+    let Recorder {
+        mut steps,
+        places,
+        mut conditions,
+        mut set,
+        assigned,
+        written,
+        begun,
+        reached,
+        last,
+        end,
+        ..
+    } = recorder;
     let mut begun: Vec<FirstCommand> = begun.into_values().collect();
     if conditions.is_empty() {
         conditions.push(ModalConditions::default());
@@ -204,6 +217,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
         },
         ending: ending(run, &by, (last.as_ref(), end)),
         sources: Some(run.control.memory().sources().clone()),
+        reached,
         begun: Some(begun),
         program: run.control.memory().programs().first().map(Program::label),
         conditions,

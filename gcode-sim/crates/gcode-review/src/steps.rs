@@ -208,26 +208,6 @@ impl Step {
 /// How far rounded end points of moves that go together may be apart, mm or degrees.
 pub(super) const ROUNDED: f64 = 0.0025;
 
-/// A move of a hole's old and new revision, each with the hole's feed: it has moved as the hole has, in every axis or in
-/// none, or stands as far above the hole's bottom on its line as before.
-pub(super) fn goes_with(
-    (old, feed_old): (&Step, &Step),
-    (new, feed_new): (&Step, &Step),
-    deeper: f64,
-    tolerance: f64,
-) -> bool {
-    if std::mem::discriminant(&old.kind) != std::mem::discriminant(&new.kind) {
-        return false;
-    }
-    let (shift, hole) = (difference(&new.to, &old.to), difference(&feed_new.to, &feed_old.to));
-    // A hole that is moved: the ends of its other moves are rounded each for itself.
-    let rounded = if near(&hole, &Position::default(), tolerance) { tolerance } else { ROUNDED };
-    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= rounded;
-    let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
-    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == StepKind::Rapid);
-    moved_alike || is_as_far_above((old, feed_old), (new, feed_new), deeper)
-}
-
 /// Whether a move stands on the line of the hole's feed, as far above the hole's bottom as before.
 pub(super) fn is_as_far_above(
     (old, feed_old): (&Step, &Step),

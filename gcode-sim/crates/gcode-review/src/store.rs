@@ -256,6 +256,7 @@ impl Record {
             program,
             ending,
             sources: None,
+            reached: BTreeMap::new(),
             totals,
         })
     }

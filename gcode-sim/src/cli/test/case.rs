@@ -174,6 +174,8 @@ fn files(
     against: Option<&FirstFailure>,
 ) -> BTreeMap<String, String> {
     let places = changes.iter().filter_map(|change| change.new.as_ref().or(change.anchor.as_ref()));
+    let places =
+        places.chain(changes.iter().flat_map(|change| &change.also).filter_map(|effect| effect.new.as_ref()));
     let places = places.chain(against.and_then(|against| against.place.as_ref()));
     let named: BTreeSet<&str> = places
         .flat_map(|place| std::iter::once(place).chain(&place.calls))

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use super::lines::Lines;
 use super::words::shown;
 use super::{Difference, MOST_CHANGES, ReviewSide, listed};
-use gcode_review::{BlockLocation, UnexecutedChange};
+use gcode_review::{BlockLocation, Effect, UnexecutedChange};
 
 pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let all = &difference.compared.changes;
@@ -23,6 +23,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> 
                 li {
                     code.code { (change.code) } " " (shown(&change.message))
                     (both(&change.old, &change.new, sides))
+                    @if !change.also.is_empty() { (also(&change.also, sides)) }
                 }
             }
         }
@@ -36,6 +37,17 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> 
             }
             @if MOST_CHANGES < difference.unexecuted.len() {
                 p.note { "The first " (MOST_CHANGES) " of " (difference.unexecuted.len()) " are listed." }
+            }
+        }
+    }
+}
+
+/// Lists the further effects of the same edit.
+fn also(effects: &[Effect], sides: &[ReviewSide<'_>]) -> Markup {
+    html! {
+        ul.also {
+            @for Effect { code, message, old, new } in listed(effects) {
+                li { "also " code.code { (code) } " " (shown(message)) (both(old, new, sides)) }
             }
         }
     }
