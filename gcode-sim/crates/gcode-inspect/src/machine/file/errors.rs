@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::sections::{Collector, FileHead, FileLinear, FilePart, FileRotary};
 use super::spread::{FileSpread, LENGTH};
+use gcode_part::reader::bounds::Bounded;
 use crate::machine::Machine;
 use crate::machine::sources::{ErrorSource, SampleParameters};
 use gcode_part::reader::FileError;
@@ -74,12 +75,7 @@ impl FileErrors {
         if let Some(linear) = &self.linear {
             let mut collector = collect();
             collector.linear(linear)?;
-            let wave = match &linear.wave {
-                Some(wave) => reader.number("errors.linear.wave", wave, "mm, 1 to 100000", |v| {
-                    (1.0..=100_000.0).contains(&v)
-                })?,
-                None => 500.0,
-            };
+            let wave = linear.wave.as_ref().map_or(500.0, Bounded::get);
             keep(collector.found, seed(&linear.seed), wave);
         }
         if let Some(rotary) = &self.rotary {

@@ -4,7 +4,8 @@ use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::{AXES, lengths, letter, sign};
+use super::{AXES, letter, vector};
+use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
 use crate::machine::{AxisLink, Chain};
 use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
@@ -25,11 +26,9 @@ pub(super) struct FileLink {
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
     slides: Option<Spanned<String>>,
     /// 1 where a positive command turns the part right-handed, or moves it in the positive direction; else -1.
-    #[schemars(extend("enum" = [1, -1]))]
-    sign: Spanned<i64>,
+    sign: Sign,
     /// A point on the axis, machine coordinates, mm [default: the part's origin].
-    #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
-    centre: Option<FixedArray<Spanned<f64>, 3>>,
+    centre: Option<FixedArray<Bounded<MachinePoint>, 3>>,
 }
 
 /// One of both; what slides has no centre.
@@ -60,7 +59,7 @@ impl FileLink {
             let message = format!("key 'table.letter': {} is used twice", axes.letter(axis));
             return Err(reader.error(&self.letter, message));
         }
-        let sign = sign(reader, "table.sign", &self.sign)?;
+        let sign = f64::from(self.sign.get());
         let kinds = (&self.turns, &self.slides);
         let (key, direction) = match kinds {
             (Some(about), None) => ("turns", about),
@@ -81,9 +80,7 @@ impl FileLink {
                 Err(reader.error(x, "key 'table.centre' is for 'turns' only"))
             }
             (_, "slides") => Ok(AxisLink::slide(axis, unit, sign)),
-            (Some(centre), _) => {
-                Ok(AxisLink::turn(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
-            }
+            (Some(centre), _) => Ok(AxisLink::turn(axis, unit, Point3::from(vector(centre)), sign)),
             (None, _) => Ok(AxisLink::turn(axis, unit, origin, sign)),
         }
     }

@@ -3,6 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::spread::{ANGLE, FileSpread, FileVector, Kind, LENGTH};
+use gcode_part::reader::bounds::{Bounded, Wavelength};
 use crate::machine::sources::{ErrorSource, Quantity};
 use crate::machine::{HeadKind, Machine};
 use gcode_lang::motion::AxisIndex;
@@ -38,8 +39,7 @@ pub(super) struct FileLinear {
     #[schemars(transform = LENGTH.bounds())]
     pub(super) z: Option<Spanned<FileSpread>>,
     /// The error swings once on so many mm of the axis [default: 500].
-    #[schemars(range(min = 1.0, max = 100_000.0))]
-    pub(super) wave: Option<Spanned<f64>>,
+    pub(super) wave: Option<Bounded<Wavelength>>,
     /// Another seed is another machine of the same make [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
