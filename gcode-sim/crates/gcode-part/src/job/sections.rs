@@ -2,8 +2,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::reader::bounds::{Bounded, Depth, KeyRange, PositionTolerance, Retract, Sign};
 use super::{JobControl, Rotary};
+use crate::reader::bounds::{Bounded, Depth, KeyRange, PositionTolerance, Retract, Sign};
 use crate::reader::{FileError, Reader, Spanned, names};
 use gcode_lang::control::{Dialect, Increment};
 

@@ -8,7 +8,8 @@ use super::bounds::OUT_OF_RANGE;
 /// Rewords `message`, which is about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
     // What the root lacks is reported at no byte at all.
-    let place = span.clone().filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
+    let place =
+        span.clone().filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
     if let Some(field) = quoted(message, "missing field ") {
         let name = place.inside(field);
         // The one list of tables that a job can't do without.

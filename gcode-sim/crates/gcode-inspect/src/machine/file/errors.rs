@@ -5,10 +5,10 @@ use serde_json::Value;
 
 use super::sections::{Collector, FileHead, FileLinear, FilePart, FileRotary};
 use super::spread::{FileSpread, LENGTH};
-use gcode_part::reader::bounds::Bounded;
 use crate::machine::Machine;
 use crate::machine::sources::{ErrorSource, SampleParameters};
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::Bounded;
 use gcode_part::reader::{Reader, Spanned};
 
 /// Of a touch probe.

@@ -5,11 +5,11 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::{ROTARY_LETTERS, letter};
-use gcode_part::reader::bounds::{Angle, Bounded, Sign};
 use crate::machine::{Chain, Head, HeadKind};
 use gcode_lang::motion::Axes;
 use gcode_lang::units::Deg;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Angle, Bounded, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
 /// How the tool is inclined.
@@ -97,9 +97,7 @@ impl FileHead {
                 let allowed = "key 'head.direction' is [x, y, z] from the tip to the spindle, not all 0";
                 HeadKind::Fixed(unit.ok_or_else(|| reader.error(direction, allowed))?)
             }
-            Kind::Manual => {
-                HeadKind::Manual { start: self.angle.as_ref().map(|angle| Deg(angle.get())) }
-            }
+            Kind::Manual => HeadKind::Manual { start: self.angle.as_ref().map(|angle| Deg(angle.get())) },
             Kind::Axis => {
                 let value = self.letter.as_ref().ok_or_else(|| needs("letter"))?;
                 let axis = letter(reader, "head.letter", value, axes)?;

@@ -5,10 +5,10 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::{AXES, letter, vector};
-use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
 use crate::machine::{AxisLink, Chain};
 use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
 /// An axis that carries the part.

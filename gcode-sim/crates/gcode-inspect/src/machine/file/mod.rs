@@ -28,8 +28,8 @@ use wheel::FileWheel;
 
 use super::{Chain, Head, HeadKind, Machine, Tool};
 use gcode_lang::control::{Dialect, Increment};
-use gcode_part::reader::bounds::{Bounded, KeyRange};
 use gcode_lang::motion::{Axes, AxisIndex};
+use gcode_part::reader::bounds::{Bounded, KeyRange};
 use gcode_part::reader::{FileError, FixedArray, Reader, Spanned, names};
 
 /// The machine that a program runs on. Every section may be left out: without any it is that of the paper.

@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::vector;
-use gcode_part::reader::bounds::{Angle, Bounded, MachinePoint};
 use crate::machine::Placement;
 use gcode_lang::units::Deg;
 use gcode_part::reader::FixedArray;
+use gcode_part::reader::bounds::{Angle, Bounded, MachinePoint};
 
 /// Where the part lies on the machine, and how far off.
 #[derive(Default, Deserialize, JsonSchema)]

@@ -2,9 +2,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use gcode_part::reader::bounds::{Bounded, ProbeDelay, StylusLength};
 use crate::machine::Probe;
 use gcode_lang::units::Seconds;
+use gcode_part::reader::bounds::{Bounded, ProbeDelay, StylusLength};
 
 /// A touch probe.
 #[derive(Deserialize, JsonSchema)]

@@ -3,11 +3,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::spread::{ANGLE, FileSpread, FileVector, Kind, LENGTH};
-use gcode_part::reader::bounds::{Bounded, Wavelength};
 use crate::machine::sources::{ErrorSource, Quantity};
 use crate::machine::{HeadKind, Machine};
 use gcode_lang::motion::AxisIndex;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Bounded, Wavelength};
 use gcode_part::reader::{Reader, Spanned};
 
 /// The set-up of the part.

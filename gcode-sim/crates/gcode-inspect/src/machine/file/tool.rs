@@ -2,10 +2,10 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use gcode_part::reader::bounds::{Bounded, GaugeLength, OffsetNumber, ToolDiameter};
 use crate::machine::{Head, HeadKind, Tool};
 use gcode_part::reader::FileError;
 use gcode_part::reader::Reader;
+use gcode_part::reader::bounds::{Bounded, GaugeLength, OffsetNumber, ToolDiameter};
 
 /// A tool.
 #[derive(Deserialize, JsonSchema)]

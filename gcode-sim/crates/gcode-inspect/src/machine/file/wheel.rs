@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{ROTARY_LETTERS, letter, vector};
-use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
 use crate::machine::{Chain, Head, HeadKind, Wheel};
 use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned};
 
 /// A grinder's wheel, which stays where it is while the table moves the part.

@@ -3,9 +3,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Chord, EllipsePath};
-use crate::reader::bounds::{Bounded, ChordError, KeyRange, PathFeed, Radius};
 use crate::job::sections::within;
 use crate::job::{FileError, JobControl, Reader, Surface};
+use crate::reader::bounds::{Bounded, ChordError, KeyRange, PathFeed, Radius};
 
 /// The outline in the plane z = 0 that an edge finder follows.
 #[derive(Default, Deserialize, JsonSchema)]

@@ -8,14 +8,14 @@ use super::runout::FileRunout;
 use super::{Alignment, Chord, SineTable};
 use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
-use crate::reader::bounds::{
-    Bounded, Candidates, ChordError, KeyRange, Length, ProbeFeed, ProbeLength, Radius, Sign, SineTableAngle,
-    SineTableLength, Uneven,
-};
 use crate::job::sections::{FileControl, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader, Surface};
 use crate::reader::Spanned;
+use crate::reader::bounds::{
+    Bounded, Candidates, ChordError, KeyRange, Length, ProbeFeed, ProbeLength, Radius, Sign, SineTableAngle,
+    SineTableLength, Uneven,
+};
 use gcode_lang::units::{Deg, Mm};
 
 /// The part along y that the surface's normal must have where O8202 touches it along y.

@@ -3,8 +3,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Runout;
-use crate::reader::bounds::{Bounded, PartShift};
 use crate::job::{FileError, Reader, Surface};
+use crate::reader::bounds::{Bounded, PartShift};
 use crate::reader::{FixedArray, Spanned};
 
 /// An indicator against the part while the table turns.

@@ -3,13 +3,13 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm};
-use crate::reader::bounds::{
-    AngleTolerance, Bounded, BurrDiameter, BurrLength, ChordError, ContactSpeed, FluteCount, KeyRange, PlungeRate, SideRadius,
-    Sign, TableOffset, TipAngle, TipRadius, ToothDepth, WheelClearance, WheelSpeed,
-};
 use crate::job::sections::{FileControl, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, JobControl, Reader};
+use crate::reader::bounds::{
+    AngleTolerance, Bounded, BurrDiameter, BurrLength, ChordError, ContactSpeed, FluteCount, KeyRange,
+    PlungeRate, SideRadius, Sign, TableOffset, TipAngle, TipRadius, ToothDepth, WheelClearance, WheelSpeed,
+};
 use crate::reader::{Spanned, names};
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::units::Deg;
@@ -157,10 +157,10 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, FileError> {
     let shape = burr.shape(reader, profile)?;
     let increment = control.increment.size();
     let most = ChordError::MAX;
-    let chord = format!(
-        "{increment} to {most} mm: rounding to the least increment of {increment} uses half of it"
-    );
-    let chord_error = reader.number("burr.chord_error", &burr.chord_error, &chord, within(increment, most))?;
+    let chord =
+        format!("{increment} to {most} mm: rounding to the least increment of {increment} uses half of it");
+    let chord_error =
+        reader.number("burr.chord_error", &burr.chord_error, &chord, within(increment, most))?;
     Ok(Burr {
         control,
         shape,
@@ -187,7 +187,8 @@ impl FileBurr {
         let most = BurrLength::MAX;
         let allowed = format!("{long:.3} (the nose alone) to {most} mm");
         // As long as the nose is to the digit that a job would say it with.
-        let length = reader.number("burr.length", &self.length, &allowed, within(long - 0.000_5, most))?.max(long);
+        let length =
+            reader.number("burr.length", &self.length, &allowed, within(long - 0.000_5, most))?.max(long);
         let tooth_depth = match &self.tooth_depth {
             Some(depth) => {
                 let allowed = format!("0 to {radius} mm (the radius)");
@@ -195,13 +196,7 @@ impl FileBurr {
             }
             None => 0.0,
         };
-        Ok(BurrShape {
-            radius,
-            length,
-            nose,
-            tip_angle: self.tip_angle.get(),
-            tooth_depth,
-        })
+        Ok(BurrShape { radius, length, nose, tip_angle: self.tip_angle.get(), tooth_depth })
     }
 
     /// As many as have room beside each other at the tip, were they as wide as twice the chord error.

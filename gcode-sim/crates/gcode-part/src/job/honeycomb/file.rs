@@ -3,12 +3,13 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing, SpecifiedFields};
-use crate::reader::bounds::{
-    Bounded, Depth, Divisions, DrillNumber, FeedRate, KeyRange, Length, OuterDiameter, Radius, Retract, SpindleSpeed,
-};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader};
+use crate::reader::bounds::{
+    Bounded, Depth, Divisions, DrillNumber, FeedRate, KeyRange, Length, OuterDiameter, Radius, Retract,
+    SpindleSpeed,
+};
 use crate::reader::{Spanned, names};
 
 /// A hexagonal pattern of radial holes on a cylinder about x.

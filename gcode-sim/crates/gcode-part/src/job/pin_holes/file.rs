@@ -7,10 +7,10 @@ use serde_json::json;
 
 use super::tools::{FileTool, HoleToolSpec, assign, default_tools};
 use super::{AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool};
-use crate::reader::bounds::{Azimuth, Bounded, Depth, Length, Radius, Retract, ToolLength};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader};
+use crate::reader::bounds::{Azimuth, Bounded, Depth, Length, Radius, Retract, ToolLength};
 use crate::reader::{Spanned, names};
 
 /// Pin holes in a surface of revolution: drilled along its axis or its normals.

@@ -3,9 +3,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Tool;
-use crate::reader::bounds::{Bounded, FeedRate, Length, SpindleSpeed, ToolLength, ToolNumber};
 use crate::job::{FileError, Reader};
 use crate::reader::Spanned;
+use crate::reader::bounds::{Bounded, FeedRate, Length, SpindleSpeed, ToolLength, ToolNumber};
 
 /// A tool.
 #[derive(Deserialize, JsonSchema)]
