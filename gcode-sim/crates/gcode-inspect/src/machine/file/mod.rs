@@ -278,7 +278,10 @@ tilt = [0.0, 0.0, 1.0]
                 "table = []\n[offsets]\nG53 = { X = 1.0 }\n",
                 "line 2: key 'offsets.G53' is unknown: G54 to G59",
             ),
-            ("table = []\n[part]\ntilt = [0.0, nan, 0.0]\n", "line 3: key 'part.tilt' is NaN: -360 to 360 degrees"),
+            (
+                "table = []\n[part]\ntilt = [0.0, nan, 0.0]\n",
+                "line 3: key 'part.tilt' is NaN: -360 to 360 degrees",
+            ),
             (
                 "table = []\n[[tool]]\nnumber = 1\nlength = 5.0\n",
                 "line 4: key 'tool.length' acts along the tool",
