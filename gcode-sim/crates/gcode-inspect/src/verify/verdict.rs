@@ -136,15 +136,15 @@ impl From<&Site> for PartPoint {
 pub(super) fn verdict(
     comparison: &Comparison<'_>,
     rounding: &RoundingDeviation<'_>,
-    objections: Vec<HoleFinding>,
-    findings: &[Diagnostic],
+    mut findings: Vec<HoleFinding>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
+    findings.sort_by_key(|finding| finding.is_motion);
     let mut codes_by_hole: Vec<Vec<String>> = vec![Vec::new(); comparison.nominal.len()];
     let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
-    for objection in objections.iter().filter(|objection| failed(&objection.finding)) {
-        if let Some(wanted) = objection.nominal {
-            codes_by_hole[wanted].push(objection.finding.code.clone());
+    for HoleFinding { nominal, finding, .. } in findings.iter().filter(|one| failed(&one.finding)) {
+        if let Some(nominal) = *nominal {
+            codes_by_hole[nominal].push(finding.code.clone());
         }
     }
     let holes: Vec<HoleVerdict> = comparison
@@ -156,11 +156,9 @@ pub(super) fn verdict(
             hole_verdict(comparison, pair, *rounding, objections, locate)
         })
         .collect();
-    let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
+    let fails = findings.iter().any(|one| failed(&one.finding));
     let worst = (0..holes.len())
         .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
-    let about_holes = objections.iter().map(|o| (o.nominal, &o.finding, false));
-    let reported = about_holes.chain(findings.iter().map(|f| (None, f, true)));
     Verdict {
         basis: "predicted by simulation, not measured",
         tolerance: comparison.tolerances.position,
@@ -171,21 +169,17 @@ pub(super) fn verdict(
         rounding: rounding.position_deviations.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
         extra: comparison.extra.iter().map(|index| extra_hole(comparison, *index, locate)).collect(),
-        findings: reported
-            .map(|(wanted, finding, from_motion)| {
-                finding_of(finding, wanted.map(|index| comparison.id(index)), from_motion, locate)
+        findings: findings
+            .iter()
+            .map(|one| {
+                let hole = one.nominal.map(|index| comparison.id(index));
+                finding_of(&one.finding, hole, one.is_motion, locate)
             })
             .collect(),
         neighbours: None,
         not_checked: Vec::new(),
         holes,
-        diagnostics: limit_per_kind(
-            objections
-                .into_iter()
-                .filter(|o| !o.is_folded)
-                .map(|o| o.finding)
-                .chain(findings.iter().cloned()),
-        ),
+        diagnostics: limit_per_kind(findings.into_iter().filter(|one| !one.is_folded).map(|one| one.finding)),
     }
 }
 

@@ -1,10 +1,15 @@
 //! What the TOML reader complains of, in the words of a job file: the full name of the key, and what is allowed.
 use std::ops::Range;
 
+use toml::de::{DeTable, DeValue};
+
+use super::bounds::OUT_OF_RANGE;
+
 /// Rewords `message`, which is about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
     // What the root lacks is reported at no byte at all.
-    let place = span.filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
+    let place =
+        span.clone().filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
     if let Some(field) = quoted(message, "missing field ") {
         let name = place.child_name(field);
         // The one list of tables that a job can't do without.
@@ -24,6 +29,9 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     {
         return format!("key '{}' has {found} values: {wanted} are required", place.name());
     }
+    if let Some(wrong) = message.strip_prefix(OUT_OF_RANGE) {
+        return format!("key '{}' is {wrong}", key_of_value(text, span.map_or(0, |s| s.start)));
+    }
     let Some(mismatch) = message.strip_prefix("invalid type: ") else { return message.to_owned() };
     let Some((found, expected)) = mismatch.split_once(", expected ") else { return message.to_owned() };
     let expected = match expected {
@@ -35,6 +43,25 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         other => other,
     };
     format!("key '{}' is {}: {expected} is required", place.name(), found.replace('`', ""))
+}
+
+/// The full name of the key whose value begins at this byte.
+fn key_of_value(text: &str, start: usize) -> String {
+    fn find<'t>(table: &'t DeTable<'_>, start: usize) -> Option<Vec<&'t str>> {
+        table.iter().find_map(|(key, value)| {
+            let tables: Vec<&DeTable<'_>> = match value.get_ref() {
+                DeValue::Table(inner) => vec![inner],
+                DeValue::Array(all) => all.iter().filter_map(|item| item.get_ref().as_table()).collect(),
+                _ => Vec::new(),
+            };
+            let below = tables.into_iter().find_map(|table| find(table, start));
+            let mut path = below.or_else(|| (value.span().start == start).then(Vec::new))?;
+            path.insert(0, key.get_ref().as_ref());
+            Some(path)
+        })
+    }
+    let table = DeTable::parse(text);
+    table.ok().and_then(|table| Some(find(table.get_ref(), start)?.join("."))).unwrap_or_default()
 }
 
 /// The first word in backquotes behind `before`.

@@ -2,7 +2,7 @@
 //! once, instead of hole by hole only.
 use nalgebra::Unit;
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
 use crate::holes::DrilledHole;
 use crate::machine::{LinkMotion, Machine};
 use crate::verify::HolePair;
@@ -53,11 +53,8 @@ impl MirrorImage {
     }
 }
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, .. } = inspection;
     let Some(MirrorImage { axis, agreeing: agree, .. }) = MirrorImage::of(comparison) else { return };
     let name = ["x", "y", "z"][axis];
     let lie = format!(

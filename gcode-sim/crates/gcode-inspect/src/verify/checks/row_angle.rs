@@ -1,6 +1,6 @@
 //! The rows of a honeycomb stand at the angle with which the pattern closes: another one is told with the distance it
 //! makes round the circumference and the diameter it would be right for.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use crate::verify::causes::describe_causes;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
@@ -11,7 +11,8 @@ use gcode_part::Pattern;
 /// What rounding to the rotary's increment, 0.01° at the coarsest, may make of a turn.
 const ROUNDING_ALLOWANCE: Deg = Deg(0.03);
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let (usual, wanted) = (rows.typical_gap, rows.nominal_gap(pattern));

@@ -1,5 +1,5 @@
 //! In a row the holes stand at the pitch with which the pattern closes: another one is told with what it adds up to.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use crate::verify::causes::describe_causes;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
@@ -8,7 +8,8 @@ use gcode_lang::diag::Diagnostic;
 /// Pitches nearer than this, in mm, are the same: holes are rounded to the increment.
 const PITCH_TOLERANCE: f64 = 0.002;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let Some((spacing, row)) = rows.spacing else { return };

@@ -175,11 +175,7 @@ depth = 12.0
                 "pitch = 10.0\ndivisions = 91",
                 "line 14: key 'pattern.divisions' excludes 'pitch': each follows from the other",
             ),
-            (
-                "pitch = 10.0",
-                "divisions = 1",
-                "line 13: key 'pattern.divisions' is 1: a whole number from 2 to 100000",
-            ),
+            ("pitch = 10.0", "divisions = 1", "line 13: key 'pattern.divisions' is 1: 2 to 100000"),
             (
                 "pitch = 10.0",
                 "pitch = 4.9",
