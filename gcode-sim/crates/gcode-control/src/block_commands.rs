@@ -1,6 +1,7 @@
 //! What a block commands that would otherwise be as it was left: modal codes, the places of axes, offsets.
+use super::control::Control;
+use super::registers::Registers;
 use super::words::computed_row;
-use super::{Control, Executor};
 use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
 use gcode_lang::program::modes::Distance;
 use gcode_lang::program::{OpKind, Statement, Words};
@@ -22,12 +23,12 @@ impl Control {
     /// What [`Control::next_block`] commands; nothing for a block that is skipped.
     pub fn next_commands(&self) -> BlockCommands {
         let mut commands = BlockCommands::default();
-        self.inspect_next(|core, op| {
-            if core.is_skipped(op) {
+        self.inspect_next(|registers, op| {
+            if registers.is_skipped(op) {
                 return;
             }
-            if let OpKind::Words(words) = core.guarded_operation(op.kind()) {
-                core.collect_commands(words, &mut commands);
+            if let OpKind::Words(words) = registers.guarded_operation(op.kind()) {
+                registers.collect_commands(words, &mut commands);
             }
         });
         commands
@@ -35,7 +36,7 @@ impl Control {
 
     /// Whether [`Control::next_block`] will do all that it says: it isn't skipped, and no condition stands in the way.
     pub fn is_next_unconditional(&self) -> bool {
-        let is_unconditional = self.inspect_next(|core, op| {
+        let is_unconditional = self.inspect_next(|registers, op| {
             let condition = match op.kind() {
                 OpKind::If { condition, .. }
                 | OpKind::Statement(
@@ -48,28 +49,28 @@ impl Control {
                 | OpKind::Alarm(_) => None,
             };
             let is_true =
-                condition.is_none_or(|condition| core.evaluate_condition(condition).unwrap_or(true));
-            is_true && !core.is_skipped(op)
+                condition.is_none_or(|condition| registers.evaluate_condition(condition).unwrap_or(true));
+            is_true && !registers.is_skipped(op)
         });
         is_unconditional.unwrap_or(true)
     }
 }
 
-impl Executor {
+impl Registers {
     fn collect_commands(&self, words: &Words, commanded: &mut BlockCommands) {
         // Behind G65 and M98 letters are arguments.
         if words.call().is_some() {
             return;
         }
         let words = match words.skipped_form() {
-            Some((switch, short)) if self.is_skip_on(*switch) => short,
+            Some((switch, short)) if self.data.is_skip_on(*switch) => short,
             _ => words,
         };
         let mut distance = self.state.modal.distance;
         let mut one_shot = None;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
             let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
-            let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
+            let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
             match row.effect {
                 Effect::OneShot(one) => one_shot = Some(one),
                 Effect::Distance(new) => distance = new,
@@ -85,7 +86,7 @@ impl Executor {
         } else if is_axis_positioned(one_shot, distance) {
             let letters = words.list.iter().filter(|word| !word.comma && word.axis.is_none());
             let valued = letters.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
-            let axes = valued.filter(|word| self.settings.axes.find(word.letter).is_some());
+            let axes = valued.filter(|word| self.data.settings.axes.find(word.letter).is_some());
             commanded.axes.extend(axes.map(|word| char::from(word.letter)));
         }
     }

@@ -1,7 +1,7 @@
 //! The G codes of a block put in force, and what else than a move uses its axis words.
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::state::{CycleState, PolarPoint};
 use super::transform_order;
 use super::words::BlockWords;
@@ -22,7 +22,7 @@ pub(super) enum AxisWordUse {
     Tilt,
 }
 
-impl Executor {
+impl Planner<'_> {
     /// 1. Modal G codes in the order they stand in; the answer is what uses the axis words instead of a move.
     #[inline]
     pub(super) fn apply_modal_codes(
@@ -40,7 +40,7 @@ impl Executor {
         Ok(None)
     }
 
-    /// As [`Executor::modal_codes`], of a block with other codes than those of group 01.
+    /// As [`Planner::apply_modal_codes`], of a block with other codes than those of group 01.
     #[inline(never)]
     fn apply_all_codes(
         &self,
@@ -71,7 +71,7 @@ impl Executor {
             }
         }
         let modal = state.modal;
-        if modal.plane != before.plane && self.lookahead.is_offset() {
+        if modal.plane != before.plane && self.registers.lookahead.is_offset() {
             return Err(Alarm::PlaneInCompensation.located_at(span));
         }
         if modal.plane != before.plane && state.transform.rotation.is_some() {
@@ -83,7 +83,7 @@ impl Executor {
         {
             return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(span));
         }
-        locate(transform_order::check(block_words, &before, state, self.names_axis(block_words)), span)?;
+        locate(transform_order::check(block_words, &before, state, self.data.names_axis(block_words)), span)?;
         if modal.scaling == Scaling::Off {
             state.transform.scaling = None;
         }
@@ -96,9 +96,9 @@ impl Executor {
         }
         if modal.work != before.work {
             state.last_end_point = None;
-            self.recompute_position(state);
-        } else if state.transform != self.state.transform {
-            self.apply_transform_change(state);
+            self.data.recompute_position(state);
+        } else if state.transform != self.registers.state.transform {
+            self.data.apply_transform_change(state);
         }
         if modal.cycle.is_some() && !is_cycle_active {
             let axis = locate(self.drilling_axis(block_words, state), span)?;

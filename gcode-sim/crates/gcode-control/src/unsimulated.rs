@@ -1,9 +1,10 @@
 //! What a block says that moves nothing in a run and means something on a machine: block skips, codes without effect here.
+use super::control::Control;
+use super::registers::Registers;
 use super::words::{computed_row, count};
-use super::{Control, Executor};
 use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
-use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::{OpKind, WordOperand, Words};
+use gcode_lang::program::m_codes::MCodeEffect;
+use gcode_lang::program::{OpKind, WordOperand, Words, m_codes};
 
 /// Of a block that is about to be done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,13 +27,13 @@ impl Control {
     /// What [`Control::next_block`] says so; nothing for a block that is skipped.
     pub fn next_unsimulated(&self) -> UnsimulatedCodes {
         let mut unsimulated = UnsimulatedCodes::default();
-        self.inspect_next(|core, op| {
-            if core.is_skipped(op) {
+        self.inspect_next(|registers, op| {
+            if registers.is_skipped(op) {
                 return;
             }
             unsimulated.block_skips.extend(op.skip().map(skip_text));
-            match core.guarded_operation(op.kind()) {
-                OpKind::Words(words) => core.collect_unsimulated(words, &mut unsimulated),
+            match registers.guarded_operation(op.kind()) {
+                OpKind::Words(words) => registers.collect_unsimulated(words, &mut unsimulated),
                 OpKind::Statement(_) => {
                     unsimulated.writes = self.next_assigned_variables().iter().any(|number| *number >= 1000);
                 }
@@ -48,11 +49,11 @@ fn skip_text(switch: u8) -> String {
     if switch <= 1 { "/".to_owned() } else { format!("/{switch}") }
 }
 
-impl Executor {
+impl Registers {
     fn collect_unsimulated(&self, words: &Words, silent: &mut UnsimulatedCodes) {
         silent.writes |= self.state.is_in_parameter_input;
         let words = match words.skipped_form() {
-            Some((switch, short)) if self.is_skip_on(*switch) => short,
+            Some((switch, short)) if self.data.is_skip_on(*switch) => short,
             Some((switch, _)) => {
                 silent.block_skips.push(skip_text(*switch));
                 words
@@ -63,7 +64,7 @@ impl Executor {
             let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
-                match m_codes::find(code, self.settings.codes) {
+                match m_codes::find(code, self.data.settings.codes) {
                     Some(MCodeEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
                     Some(MCodeEffect::Orient) => {
                         silent.m_codes.push(self.with_words(words, format!("M{code:02}"), b"PR"));
@@ -73,7 +74,7 @@ impl Executor {
                 }
                 continue;
             }
-            let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
+            let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
             let text = || self.with_values(words, row.code);
             match row.effect {
                 Effect::NoEffect if [50, 51, 90].contains(&row.code) => silent.path_codes.push(text()),
