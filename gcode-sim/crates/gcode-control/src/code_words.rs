@@ -1,12 +1,11 @@
 //! Words with a code in a block: F S T D H, and the letters that have no use there.
 use super::checked::ExecResult;
-use super::patterns::takes_l;
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::words::{BlockWords, letters};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::g_codes::{Effect, OneShot};
-use gcode_lang::program::modes::{CutterSide, Scaling, StrokeCheck};
+use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::modes::{CutterSide, StrokeCheck};
 use gcode_lang::source::Span;
 
 impl Planner<'_> {
@@ -56,10 +55,8 @@ impl Planner<'_> {
         plan: &BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
-        let has_smoothness = block_words.has_non_motion_code(|effect| effect == Effect::Smoothness);
-        if let Some(letter) =
-            block_words.first_letter_of(letters(if has_smoothness { b"NO" } else { b"ENO" }))
-        {
+        let owned = block_words.letters_of_codes();
+        if let Some(letter) = block_words.first_letter_of(letters(b"ENO") & !owned) {
             return Err(
                 Alarm::ImproperAddress { letter: char::from(letter) }.located_at(block_words.span(letter))
             );
@@ -75,22 +72,15 @@ impl Planner<'_> {
         if has_limits && (self.data.names_axis(block_words) || block_words.has_any(b"IJK")) {
             return Err(Alarm::NotSimulated { what: "G22 with limits".into() }.located_at(span));
         }
-        let keeps_tool = |effect| {
-            use OneShot::{DataInput, Dwell};
-            matches!(effect, Effect::OneShot(Dwell | DataInput) | Effect::Scaling(Scaling::Off))
-        };
-        if block_words.has(b'T') && block_words.has_non_motion_code(keeps_tool) {
+        if block_words.has(b'T') && block_words.g_codes().any(|row| row.facts.words.refuses_tool) {
             return Err(Alarm::TNotAllowed.located_at(block_words.span(b'T')));
         }
-        let has_repeat_code = || {
-            block_words.g_codes().any(takes_l)
-                || self.data.settings.cycle_repeat_letter == b'L' && plan.state.modal.cycle.is_some()
-        };
-        if block_words.has(b'L') && !has_repeat_code() {
+        let repeats_cycle =
+            self.data.settings.cycle_repeat_letter == b'L' && plan.state.modal.cycle.is_some();
+        if block_words.has_letters(letters(b"L") & !owned) && !repeats_cycle {
             return Err(Alarm::ImproperAddress { letter: 'L' }.located_at(block_words.span(b'L')));
         }
-        let is_dwell = block_words.has_non_motion_code(|effect| effect == Effect::OneShot(OneShot::Dwell));
-        let axes = letters(if is_dwell { b"ABCVWXYZ" } else { b"ABCUVWXYZ" });
+        let axes = letters(b"ABCUVWXYZ") & !owned;
         if let Some(letter) = block_words.first_letter_of(axes & !self.data.settings.axes.letter_bits()) {
             return Err(
                 Alarm::ImproperAddress { letter: char::from(letter) }.located_at(block_words.span(letter))

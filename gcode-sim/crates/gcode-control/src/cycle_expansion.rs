@@ -252,3 +252,72 @@ pub(super) struct BoltHolePattern {
     pub(super) start: f64,
     pub(super) angle_step: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use gcode_lang::control::Settings;
+    use gcode_lang::program::cycles;
+
+    use super::*;
+    use crate::state::{CycleLevel, CycleState};
+
+    fn at(x: f64, z: f64) -> Position {
+        let mut position = Position::default();
+        (position[0], position[2]) = (x, z);
+        position
+    }
+
+    /// The moves of a hole at X10 from the initial level 50, R 2 and Z −10.
+    fn moves(cycle: &'static Cycle, return_to: ReturnTo, q: Option<f64>) -> Vec<(&'static str, f64)> {
+        let level = |value| CycleLevel { value, is_incremental: false, is_commanded: true };
+        let cycle_state = CycleState {
+            axis: Some(2),
+            initial: 50.0,
+            r: level(2.0),
+            z: level(-10.0),
+            q,
+            ..CycleState::default()
+        };
+        let (programmed, machine) = (at(0.0, 50.0), at(0.0, 50.0));
+        let mut from = State { programmed, machine, cycle: cycle_state, ..State::default() };
+        from.modal.return_to = return_to;
+        let plan = CyclePlan {
+            cycle,
+            start_state: from,
+            first_hole: at(10.0, 50.0),
+            hole_step: Position::default(),
+            polar_repeats: None,
+            pattern: None,
+            repeats: 1,
+            axis: 2,
+            shift: (0, 0.0),
+            rate: MmPerMin(100.0),
+            dwell: 0.0,
+            stretch: 1.0,
+        };
+        let mut moves = Vec::new();
+        ControlData::new(Settings::default()).expand_cycle(&plan, &mut |kind, _| match kind {
+            EventKind::Rapid { to } => moves.push(("rapid", to[2])),
+            EventKind::Feed { to, .. } => moves.push(("feed", to[2])),
+            _ => {}
+        });
+        moves
+    }
+
+    #[test]
+    fn a_hole_is_drilled_from_r_to_z_and_left_for_the_level_in_force() {
+        let down = [("rapid", 50.0), ("rapid", 2.0), ("feed", -10.0)];
+        assert_eq!(moves(&cycles::DRILL, ReturnTo::Initial, None), [&down[..], &[("rapid", 50.0)]].concat());
+        assert_eq!(moves(&cycles::DRILL, ReturnTo::R, None), [&down[..], &[("rapid", 2.0)]].concat());
+    }
+
+    #[test]
+    fn pecks_go_q_deeper_each() {
+        let feeds = |cycle| {
+            let moves = moves(cycle, ReturnTo::R, Some(5.0)).into_iter();
+            moves.filter(|(kind, _)| *kind == "feed").map(|(_, z)| z).collect::<Vec<_>>()
+        };
+        assert_eq!(feeds(&cycles::PECK_DRILL), [-3.0, -8.0, -10.0]);
+        assert_eq!(feeds(&cycles::PECK_DRILL_SHORT), [-3.0, -8.0, -10.0]);
+    }
+}

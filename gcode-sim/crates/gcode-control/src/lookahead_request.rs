@@ -10,20 +10,10 @@ use super::words::BlockWords;
 use crate::contour::Point;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::Backtrace;
-use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::program::code_facts::LookaheadUse;
+use gcode_lang::program::g_codes::{self, Effect};
 use gcode_lang::program::modes::{CutterSide, Motion, Plane};
 use gcode_lang::source::Span;
-
-/// What goes somewhere without compensation.
-pub(super) fn suspends_compensation(act: Option<AxisWordUse>) -> bool {
-    use OneShot::{CheckReference, FromReference, MachineSystem, Reference, SecondReference, Skip};
-    matches!(
-        act,
-        Some(AxisWordUse::OneShot(
-            CheckReference | FromReference | MachineSystem | Reference | SecondReference | Skip
-        ))
-    )
-}
 
 impl Planner<'_> {
     /// Whether compensation, a corner word or a move that waits could concern a block.
@@ -57,11 +47,11 @@ impl Planner<'_> {
             return Err(Alarm::NotSimulated { what }.located_at(span));
         }
         let motion = plan.state.modal.motion;
-        let refused_code = match act {
-            Some(AxisWordUse::OneShot(OneShot::OneSide)) => Some("G60"),
-            None if motion == Motion::Thread && plan.commands_axes => Some("G33"),
-            _ => None,
-        };
+        let uses =
+            |lookahead: LookaheadUse| block_words.g_codes().find(|row| row.facts.lookahead == lookahead);
+        let threads = act.is_none() && motion == Motion::Thread && plan.commands_axes;
+        let thread = threads.then(|| g_codes::name(motion.code()));
+        let refused_code = uses(LookaheadUse::Refused).map(|row| g_codes::name(row.code)).or(thread);
         if let Some(code) = refused_code
             && (distance.is_some() || self.registers.lookahead.is_offset())
         {
@@ -75,11 +65,9 @@ impl Planner<'_> {
             matches!(row.effect, Effect::Cutter(side) if side != CutterSide::Off)
                 && self.registers.state.modal.cutter == plan.state.modal.cutter
         });
-        let corner_arc = match act {
-            Some(AxisWordUse::OneShot(OneShot::CornerArc)) => {
-                Some(self.corner_arc(block_words, plan, span)?)
-            }
-            _ => None,
+        let corner_arc = match uses(LookaheadUse::CornerArc) {
+            Some(_) => Some(self.corner_arc(block_words, plan, span)?),
+            None => None,
         };
         let request = LookaheadRequest {
             plane,
@@ -87,14 +75,14 @@ impl Planner<'_> {
             wall_direction: towards,
             is_restated: restates_side,
             suspends_compensation: plan.cycle_plan.is_some()
-                || suspends_compensation(act)
+                || uses(LookaheadUse::Suspends).is_some()
                 || plan.commands_axes && plan.state.modal.cycle.is_some(),
             blocks_lookahead: !plan.stops.is_empty() || matches!(plan.flow, BlockFlow::End),
             counts_as_block: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
             has_zero_length: act.is_none() && (names_plane_axis(plane.0) || names_plane_axis(plane.1)),
             is_cut: act.is_none()
                 && matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise),
-            is_dwell: act == Some(AxisWordUse::OneShot(OneShot::Dwell)),
+            is_dwell: uses(LookaheadUse::Dwell).is_some(),
             blend: plan.corner,
             corner_arc,
             backtrace: Backtrace { block: span, calls: self.flow.frame.calls.clone() },

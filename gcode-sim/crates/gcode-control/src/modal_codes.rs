@@ -6,6 +6,7 @@ use super::state::{CycleState, PolarPoint};
 use super::transform_order;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
+use gcode_lang::program::code_facts::{CoordinateUse, LookaheadUse};
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::modes::{CutterSide, Mirror, Polar, Rotation, Scaling};
 use gcode_lang::source::Span;
@@ -79,7 +80,7 @@ impl Planner<'_> {
         }
         if before.scaling == Scaling::On
             && modal.scaling == Scaling::On
-            && let Some(row) = block_words.g_codes().find(|row| row.effect.needs_plain_coordinates())
+            && let Some(row) = block_words.g_codes().find(|row| row.facts.coordinates != CoordinateUse::Free)
         {
             return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(span));
         }
@@ -121,19 +122,12 @@ fn axis_use_of(
     block_words: &BlockWords,
     cutter: CutterSide,
 ) -> Result<Option<AxisWordUse>, Alarm> {
+    if row.facts.lookahead == LookaheadUse::Alarms && cutter != CutterSide::Off {
+        return Err(Alarm::ToolOffsetInCompensation);
+    }
+    block_words.mark_letters_read(row.facts.words.without_effect);
     Ok(match row.effect {
-        Effect::NotSimulated if (450..=480).contains(&row.code) && cutter != CutterSide::Off => {
-            return Err(Alarm::ToolOffsetInCompensation);
-        }
         Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help)),
-        Effect::NoEffect => {
-            block_words.mark_read(b"IPQR");
-            None
-        }
-        Effect::Smoothness => {
-            block_words.mark_read(b"EP");
-            None
-        }
         Effect::OneShot(one) => Some(AxisWordUse::OneShot(one)),
         Effect::AdditionalWork => Some(AxisWordUse::AdditionalWork),
         Effect::Scaling(Scaling::On) => Some(AxisWordUse::Scale),
@@ -158,7 +152,9 @@ fn axis_use_of(
         | Effect::NumberedWork(_)
         | Effect::Cutting(_)
         | Effect::Polar(_)
-        | Effect::LookAhead => None,
+        | Effect::LookAhead
+        | Effect::NoEffect
+        | Effect::Smoothness => None,
     })
 }
 

@@ -8,7 +8,8 @@ use super::state::State;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, Position};
-use gcode_lang::program::g_codes::OneShot;
+use gcode_lang::program::code_facts::WithoutAxes;
+use gcode_lang::program::g_codes::{GCodeRow, OneShot};
 use gcode_lang::program::modes::{Distance, WorkSystem};
 use gcode_lang::source::Span;
 use gcode_lang::units::Seconds;
@@ -23,7 +24,7 @@ impl Planner<'_> {
         span: Span,
     ) -> ExecResult<()> {
         if !self.data.names_axis(given) {
-            plan.notes.extend(note_without_axis(act));
+            plan.notes.extend(given.g_codes().filter_map(|row| self.note_without_axis(row)));
         }
         match act {
             AxisWordUse::OneShot(one) => self.execute_one_shot(one, given, plan, span),
@@ -42,6 +43,17 @@ impl Planner<'_> {
             AxisWordUse::MirrorOn | AxisWordUse::MirrorOff => {
                 self.plan_mirror(act == AxisWordUse::MirrorOn, given, plan)
             }
+        }
+    }
+
+    /// The note of a code in a block that names no axis.
+    fn note_without_axis(&self, row: &GCodeRow) -> Option<Note> {
+        let code = row.code;
+        match row.facts.without_axes {
+            WithoutAxes::Same => None,
+            WithoutAxes::AllOrNothing if self.data.settings.homes_all_axes => None,
+            WithoutAxes::Nothing | WithoutAxes::AllOrNothing => Some(Note::NoAxis { code }),
+            WithoutAxes::CentreDefaulted => Some(Note::CentreDefaulted { code }),
         }
     }
 
@@ -199,26 +211,4 @@ impl Planner<'_> {
         plan.commands_axes = true;
         Ok(())
     }
-}
-
-/// What there is to tell of a code in a block that names no axis.
-fn note_without_axis(act: AxisWordUse) -> Option<Note> {
-    let code = match act {
-        AxisWordUse::Scale => return Some(Note::CentreDefaulted { code: 510 }),
-        AxisWordUse::Rotate => return Some(Note::CentreDefaulted { code: 680 }),
-        AxisWordUse::MirrorOn => 511,
-        AxisWordUse::OneShot(one) => match one {
-            OneShot::CheckReference => 270,
-            OneShot::FromReference => 290,
-            OneShot::Skip => 310,
-            OneShot::LocalSystem => 520,
-            OneShot::MachineSystem => 530,
-            OneShot::OneSide => 600,
-            OneShot::SetSystem => 920,
-            OneShot::PresetSystem => 921,
-            _ => return None,
-        },
-        AxisWordUse::AdditionalWork | AxisWordUse::MirrorOff | AxisWordUse::Tilt => return None,
-    };
-    Some(Note::NoAxis { code })
 }

@@ -5,7 +5,7 @@ use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::g_codes::{GCodeRow, HolePattern};
+use gcode_lang::program::g_codes::HolePattern;
 use gcode_lang::program::modes::Plane;
 use gcode_lang::source::Span;
 
@@ -46,13 +46,4 @@ impl Planner<'_> {
         let pattern = BoltHolePattern { count, radius: radius.abs(), start, angle_step };
         self.plan_cycle(plan, block_words, cycle, Some(pattern), span)
     }
-}
-
-/// Whether L of a block belongs to one of its codes.
-pub(super) fn takes_l(row: &GCodeRow) -> bool {
-    use gcode_lang::program::g_codes::{Effect, OneShot};
-    matches!(
-        row.effect,
-        Effect::OneShot(OneShot::DataInput | OneShot::CirclePocket(_) | OneShot::BoltHoles(_))
-    )
 }

@@ -1,6 +1,5 @@
 //! The reference position: G27 checks it, G28 and G30 go there, G29 comes back.
 use super::checked::ExecResult;
-use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::words::BlockWords;
@@ -35,10 +34,6 @@ impl Planner<'_> {
         plan: &mut BlockPlan,
         reference: Position,
     ) -> ExecResult<()> {
-        if !self.data.names_axis(block_words) {
-            let code = block_words.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
-            plan.notes.push(Note::NoAxis { code });
-        }
         let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
         self.push_rapid(plan, &endpoint.machine);
         let mut home = plan.state.machine;

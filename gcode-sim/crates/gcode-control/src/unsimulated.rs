@@ -2,7 +2,8 @@
 use super::control::Control;
 use super::registers::Registers;
 use super::words::{computed_row, count};
-use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
+use gcode_lang::program::code_facts::{Letters, Unsimulated};
+use gcode_lang::program::g_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
 use gcode_lang::program::{OpKind, WordOperand, Words, m_codes};
 
@@ -67,44 +68,45 @@ impl Registers {
                 match m_codes::find(code, self.data.settings.codes) {
                     Some(MCodeEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
                     Some(MCodeEffect::Orient) => {
-                        silent.m_codes.push(self.with_words(words, format!("M{code:02}"), b"PR"));
+                        silent.m_codes.push(self.with_words(
+                            words,
+                            format!("M{code:02}"),
+                            Letters::of(b"PR"),
+                        ));
                     }
                     Some(MCodeEffect::End) => silent.end_code = Some(code),
-                    _ => {}
+                    Some(
+                        MCodeEffect::Stop
+                        | MCodeEffect::OptionalStop
+                        | MCodeEffect::SpindleForward
+                        | MCodeEffect::SpindleReverse
+                        | MCodeEffect::SpindleStop
+                        | MCodeEffect::ToolChange
+                        | MCodeEffect::CoolantOn
+                        | MCodeEffect::CoolantOff
+                        | MCodeEffect::InterruptOn
+                        | MCodeEffect::InterruptOff
+                        | MCodeEffect::Call
+                        | MCodeEffect::NotSimulated,
+                    )
+                    | None => {}
                 }
                 continue;
             }
             let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
-            let text = || self.with_values(words, row.code);
-            match row.effect {
-                Effect::NoEffect if [50, 51, 90].contains(&row.code) => silent.path_codes.push(text()),
-                Effect::LookAhead | Effect::Smoothness => silent.path_codes.push(text()),
-                Effect::NoEffect => silent.g_codes.push(text()),
-                Effect::OneShot(
-                    OneShot::DataInput | OneShot::SetSystem | OneShot::PresetSystem | OneShot::LocalSystem,
-                ) => silent.writes = true,
-                Effect::OneShot(OneShot::OneSide) => silent.path_codes.push("G60".to_owned()),
-                Effect::OneShot(OneShot::Reference | OneShot::CheckReference | OneShot::FromReference) => {
-                    silent.g_codes.push(format!("G{}", spelled(row.code)));
-                }
-                Effect::OneShot(OneShot::SecondReference) => {
-                    silent.g_codes.push(self.with_words(words, "G30".to_owned(), b"P"));
-                }
-                _ => {}
+            let text = |letters| self.with_words(words, g_codes::name(row.code), letters);
+            match row.facts.unsimulated {
+                Unsimulated::No => {}
+                Unsimulated::Path(letters) => silent.path_codes.push(text(letters)),
+                Unsimulated::Code(letters) => silent.g_codes.push(text(letters)),
+                Unsimulated::Writes => silent.writes = true,
             }
         }
     }
 
-    /// A code with the words that belong to it; exact stop has none.
-    fn with_values(&self, words: &Words, code: u32) -> String {
-        let name = if code.is_multiple_of(10) { format!("G{:02}", code / 10) } else { two_digits(code) };
-        self.with_words(words, name, if code == 90 { b"" } else { b"EIPQR" })
-    }
-
     /// A name and what stands behind these letters.
-    fn with_words(&self, words: &Words, name: String, letters: &[u8]) -> String {
-        let of_code = |letter: u8| letters.contains(&letter);
-        let values = words.list.iter().filter(|word| of_code(word.letter) && !word.comma);
+    fn with_words(&self, words: &Words, name: String, letters: Letters) -> String {
+        let values = words.list.iter().filter(|word| letters.has(word.letter) && !word.comma);
         let shown = values.filter_map(|word| {
             if matches!(word.value, WordOperand::G(..)) {
                 return None;
@@ -114,11 +116,6 @@ impl Registers {
         });
         name + &shown.collect::<String>()
     }
-}
-
-/// `G05.1`
-fn two_digits(code: u32) -> String {
-    if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::checked::{ExecResult, integer, locate};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{CodeSet, Settings};
+use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::Motion;
 use gcode_lang::program::{LoweredWord, g_codes, m_codes};
@@ -177,6 +178,19 @@ impl BlockWords {
         for letter in letters {
             self.get(*letter);
         }
+    }
+
+    /// As [`BlockWords::mark_read`].
+    pub(super) fn mark_letters_read(&self, letters: Letters) {
+        self.read_letters.set(self.read_letters.get() | letters.bits());
+    }
+
+    /// The letters that are refused without one of its codes, as bits.
+    pub(super) fn letters_of_codes(&self) -> u32 {
+        if !self.has_other_g_codes {
+            return 0;
+        }
+        self.g_codes().fold(0, |letters, row| letters | row.facts.words.own.bits())
     }
 
     /// The first word, by its letter, that nothing in the block had a use for.

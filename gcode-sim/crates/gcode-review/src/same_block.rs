@@ -66,5 +66,5 @@ fn is_of_moves(kind: &StepKind) -> bool {
         return false;
     };
     let code = text.split(' ').next();
-    code.is_some_and(|code| ["G27", "G28", "G29", "G30", "G60", "M19"].contains(&code))
+    code.is_some_and(|code| code == "M19" || gcode_lang::program::g_codes::shows_in_moves(code))
 }
