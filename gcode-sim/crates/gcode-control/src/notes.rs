@@ -1,7 +1,5 @@
 //! What a control does without a word and a programmer hardly means: told once for each kind, with its first block.
-use super::Control;
 use gcode_lang::program::g_codes::spelled;
-use gcode_lang::source::Span;
 
 /// A thing worth telling that is no alarm on a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -218,12 +216,5 @@ impl Note {
                 ("large-alarm-number", message, "use a smaller number")
             }
         }
-    }
-}
-
-impl Control {
-    /// Each note with the first block it is about.
-    pub fn notes(&self) -> impl Iterator<Item = (Note, Span)> + '_ {
-        self.executor.notes.iter().map(|(note, block)| (*note, *block))
     }
 }

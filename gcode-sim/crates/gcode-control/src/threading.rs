@@ -1,7 +1,7 @@
 //! G33: a straight cut that keeps step with the spindle.
-use super::Executor;
-use super::evaluation::ExecResult;
+use super::checked::ExecResult;
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::words::{BlockWords, WordNumber};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, MAX_AXES, Position, SpindleDirection};
@@ -9,7 +9,7 @@ use gcode_lang::program::modes::Unit;
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
-impl Executor {
+impl Planner<'_> {
     /// F is the lead along the axis with the longest way, in every feed mode; Q, the angle it starts at, moves nothing.
     pub(super) fn plan_thread(
         &self,

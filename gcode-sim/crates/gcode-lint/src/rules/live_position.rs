@@ -10,7 +10,7 @@ use crate::variables;
 use std::ops::RangeInclusive;
 
 use gcode_lang::control::Settings;
-use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::program::code_facts::Timing;
 use gcode_lang::program::{OpIndex, OpKind, Statement, WordOperand, Words};
 
 pub(super) const NAME: &str = "live-position";
@@ -89,17 +89,15 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
     let mut axis = false;
     for word in &words.list {
         match (word.letter, word.value) {
-            (b'G', WordOperand::G(_, found)) => match found.row_for(settings.codes).map(|row| row.effect) {
-                // G53 waits; G31 ends at its signal; G04 and G10 wait on some controls.
-                Some(Effect::OneShot(
-                    OneShot::MachineSystem | OneShot::Skip | OneShot::Dwell | OneShot::DataInput,
-                )) => return Some(false),
-                // These codes only set coordinates.
-                Some(Effect::OneShot(OneShot::LocalSystem | OneShot::SetSystem | OneShot::PresetSystem)) => {
-                    return None;
+            (b'G', WordOperand::G(_, found)) => {
+                match found.row_for(settings.codes).map(|row| row.facts.timing) {
+                    // G53 waits; G31 ends at its signal; G04 and G10 wait on some controls.
+                    Some(Timing::Waits) => return Some(false),
+                    // These codes only set coordinates.
+                    Some(Timing::MovesNothing) => return None,
+                    Some(Timing::ReadAhead) | None => {}
                 }
-                _ => {}
-            },
+            }
             // Coolant and spindle codes do not wait; the effect of the machine builder's codes is unknown.
             (b'M', _) if !matches!(literal::word_count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => {
                 return Some(false);

@@ -1,7 +1,7 @@
 //! Rule: a feed move that no F precedes on any path, PS0011.
 use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::code_facts::AxisWords;
 use gcode_lang::program::{OpIndex, OpKind, WordOperand, Words};
 
 use super::unreadable::finding;
@@ -79,9 +79,8 @@ fn is_feed_move(context: &CheckContext<'_>, words: &Words) -> bool {
     for word in &words.list {
         let WordOperand::G(code, row) = word.value else { continue };
         feeds |= FEEDS.contains(&code);
-        match row.row_for(context.settings.codes).map(|row| row.effect) {
-            Some(Effect::OneShot(_) | Effect::Cycle(Some(_))) | None => return false,
-            Some(_) => {}
+        if row.row_for(context.settings.codes).is_none_or(|row| row.facts.axis_words != AxisWords::Move) {
+            return false;
         }
     }
     feeds && axis && words.call().is_none()

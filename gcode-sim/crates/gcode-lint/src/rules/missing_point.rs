@@ -1,19 +1,20 @@
-//! Rule: a missing decimal point. Without calculator-type input `Z-3` is 0.003 mm.
+//! A missing decimal point: on a control without calculator-type input `Z-3` is 0.003 mm.
 //!
-//! Programs that count in increments throughout (`X45000`) are exempt: they have no decimal point, and a
-//! number of 1 mm or more.
+//! Programs that count in increments throughout (`X45000`) are left alone: they have no points, and numbers of 1 mm
+//! and more.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal::without_point;
 use crate::parameters;
 use gcode_lang::control::Settings;
+use gcode_lang::program::code_facts::Measured;
+use gcode_lang::program::g_codes::{Effect, GCodeRow};
+use gcode_lang::program::modes::{Motion, Unit};
 use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
 use gcode_lang::syntax::ast::Decimal;
 
 pub(super) const NAME: &str = "missing-point";
 
-/// Cycles whose Q is a length: G73, G76, G83, G87. Older controls accept no decimal point there.
-const WITH_Q: [u32; 4] = [730, 760, 830, 870];
-/// Number of increments from which a peck or a dwell may be intended: many programs write `G4 X500`.
+/// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
 const MIN_INTENDED_INCREMENTS: u64 = 100;
 
 pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
@@ -21,15 +22,18 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     if settings.uses_calculator_input || counts_in_increments(unit, settings) {
         return Vec::new();
     }
-    let is_inch =
-        unit.program.ops().iter().any(|op| block_words(op.kind()).is_some_and(|words| has(words, &[200])));
+    let is_inch = unit.program.ops().iter().any(|op| {
+        block_words(op.kind())
+            .is_some_and(|words| g_codes(words).any(|row| row.effect == Effect::Unit(Unit::Inch)))
+    });
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let Some(words) = block_words(op.kind()).filter(|_| !parameters[block]) else { continue };
         for word in measured_words(words, settings) {
             let Some(number) = without_point(word) else { continue };
-            let is_count = (word.letter == b'Q' && words.call().is_none()) || has(words, &[40]);
+            let is_count =
+                (word.letter == b'Q' && words.call().is_none()) || measured(words) == Measured::Seconds;
             if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
@@ -50,34 +54,49 @@ fn block_words(kind: &OpKind) -> Option<&Words> {
     }
 }
 
-fn has(words: &Words, codes: &[u32]) -> bool {
-    words.list.iter().any(|word| matches!(word.value, WordOperand::G(code, _) if codes.contains(&code)))
+/// The rows of a block's G codes, whatever the control.
+fn g_codes(words: &Words) -> impl Iterator<Item = &'static GCodeRow> + '_ {
+    words.list.iter().filter_map(|word| match word.value {
+        WordOperand::G(_, found) => found.row_for_any(),
+        WordOperand::Literal(_)
+        | WordOperand::Number(_)
+        | WordOperand::Variable { .. }
+        | WordOperand::Code(_) => None,
+    })
 }
 
-/// Iterates over the words of a block that are lengths, angles or seconds.
+/// What the words of a block measure: of several codes the one that leaves fewest.
+fn measured(words: &Words) -> Measured {
+    g_codes(words).map(|row| row.facts.words.measured).max().unwrap_or(Measured::AsInMove)
+}
+
+/// The words of a block that are lengths, angles or seconds.
 fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a LoweredWord> {
     let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
-    // The arguments of a macro call that a control scales: all but D E F H M S T.
+    // The letters of a macro call that a control scales: all but D E F H M S T.
     let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
     let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
-    // K of a drilling cycle counts repeats; it is a length only in an arc or with I or J.
+    // K of a drilling cycle counts repetitions, and arcs have it with I or J or alone: a small K is left alone.
     plain.filter(move |word| word.letter != b'K' || !is_drilling(words)).chain(scaled)
 }
 
 fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
     let axis = settings.axes.find(word.letter).is_some();
+    match measured(words) {
+        Measured::Nothing => return false,
+        Measured::Seconds => return matches!(word.letter, b'X' | b'U'),
+        Measured::ByTable => {
+            return match parameters::data_input_kind(words) {
+                Some(2 | 20) => axis,
+                Some(1 | 10..=13) => word.letter == b'R',
+                _ => false,
+            };
+        }
+        Measured::Axes => return axis,
+        Measured::AsInMove => {}
+    }
     match word.letter {
-        // G05.1: the words select lookahead functions.
-        _ if has(words, &[51]) => false,
-        letter if has(words, &[40]) => matches!(letter, b'X' | b'U'),
-        letter if has(words, &[100]) => match parameters::data_input_kind(words) {
-            Some(2 | 20) => axis,
-            Some(1 | 10..=13) => letter == b'R',
-            _ => false,
-        },
-        // I J K and P are factors.
-        _ if has(words, &[510]) => axis,
-        b'Q' => has(words, &WITH_Q),
+        b'Q' => g_codes(words).any(|row| matches!(row.effect, Effect::Cycle(Some(cycle)) if cycle.uses_q())),
         b'I' | b'J' | b'K' | b'R' => true,
         b'C' if word.comma => true,
         _ => axis,
@@ -85,13 +104,12 @@ fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
 }
 
 fn is_drilling(words: &Words) -> bool {
-    let arc = has(words, &[20, 30]);
+    let arc = g_codes(words)
+        .any(|row| matches!(row.effect, Effect::Motion(Motion::Clockwise | Motion::Counterclockwise)));
     !arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'))
 }
 
-/// Returns true for a program that counts in increments on purpose.
-///
-/// Such a program has no decimal point and at least one number of 1 mm or more.
+/// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
 fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
     let mut large = false;
     for words in unit.program.ops().iter().filter_map(|op| block_words(op.kind())) {
@@ -113,15 +131,13 @@ fn spelled(letter: u8, number: Decimal) -> String {
     format!("{}{sign}{}", char::from(letter), number.digits)
 }
 
-/// Returns the value of a number with its unit, `0.003 mm`.
+/// `0.003 mm`.
 fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
     let is_angle = match letter {
         b'A' | b'B' | b'C' => true,
-        b'R' => has(words, &[680]),
-        b'I' | b'J' | b'K' => has(words, &[682]),
-        _ => false,
+        letter => g_codes(words).any(|row| row.facts.words.angles.has(letter)),
     };
-    let is_dwell = has(words, &[40]);
+    let is_dwell = measured(words) == Measured::Seconds;
     let finer = if inch && !is_angle && !is_dwell { 10.0 } else { 1.0 };
     let per_unit = settings.increment.per_unit() * finer;
     let unit = match () {

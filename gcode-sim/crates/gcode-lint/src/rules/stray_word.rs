@@ -2,7 +2,6 @@
 //! (PS0009).
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
 
 use super::unreadable::finding;
@@ -33,21 +32,21 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 
 fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Option<Alarm> {
     let axes = &context.settings.axes;
-    let has = |effect: Effect| {
-        words.list.iter().any(|word| match word.value {
-            WordOperand::G(_, row) => {
-                row.row_for(context.settings.codes).is_some_and(|row| row.effect == effect)
-            }
-            _ => false,
-        })
-    };
+    let mut codes = words.list.iter().filter_map(|word| match word.value {
+        WordOperand::G(_, found) => found.row_for(context.settings.codes),
+        WordOperand::Literal(_)
+        | WordOperand::Number(_)
+        | WordOperand::Variable { .. }
+        | WordOperand::Code(_) => None,
+    });
+    let is_of_code = codes.any(|row| row.facts.words.own.has(word.letter));
     if word.comma {
         // `,A` is an angle of direct drawing dimension programming, which the simulator does not execute.
         return (!matches!(word.letter, b'R' | b'C' | b'A')).then_some(Alarm::CornerWords);
     }
     let refused = match word.letter {
-        b'E' => !has(Effect::Smoothness),
-        b'U' if has(Effect::OneShot(OneShot::Dwell)) => false,
+        _ if is_of_code => false,
+        b'E' => true,
         b'A' | b'B' | b'C' | b'U' | b'V' | b'W' | b'X' | b'Y' | b'Z' => axes.find(word.letter).is_none(),
         _ => false,
     };
