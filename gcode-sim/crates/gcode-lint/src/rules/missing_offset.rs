@@ -1,4 +1,4 @@
-//! An H or D that the control has no tool offset for (PS0030).
+//! Rule: an H or D beyond the tool offsets of the control, PS0030.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal;
 use gcode_lang::alarm::Alarm;
@@ -13,7 +13,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
-        // What a macro gets is its own affair.
+        // H and D in a block with a call may be arguments.
         if unit.call_in(block).is_some() {
             continue;
         }
@@ -37,7 +37,7 @@ mod tests {
     use super::super::testing::{NOWHERE, lines};
     use super::NAME;
 
-    /// 400 offsets unless the setting OFFSETS says otherwise.
+    /// The default of the setting OFFSETS is 400.
     #[test]
     fn beyond_the_last_there_is_none() {
         assert_eq!(lines(NAME, "O1\nG43 H999 Z5.\nG41 D401\nM30\n"), [2, 3]);

@@ -1,4 +1,4 @@
-//! Calls of programs that are neither in the file nor in the folders: PS0076, or PS0310 by name.
+//! Rule: a call of a program that is neither in the file nor in the folders, PS0076, or PS0310 by name.
 use crate::calls::CalledProgramName;
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 
@@ -8,7 +8,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     let mut found = Vec::new();
     let mut reported: Vec<&CalledProgramName> = Vec::new();
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
-        // Each program once: what is missing is one thing, however often it is called.
+        // One finding per missing program, regardless of the number of calls.
         if context.called_unit(call).is_some()
             || call.target != CalledProgramName::Missing && reported.contains(&&call.target)
         {
