@@ -1,6 +1,6 @@
 //! Laws of `diff`: a program and itself are the same, whatever its numbers, comments and spaces.
 use gcode_review::{Record, changes};
-use gcode_tests::changes::{effects, found, messages, revision};
+use gcode_tests::changes::{effects, find_changes, messages, revision};
 use proptest::prelude::*;
 
 /// A block and what it may look like after a rewrite: `{}` stands for the number of a local.
@@ -38,7 +38,7 @@ proptest! {
 
     #[test]
     fn what_a_rewrite_keeps_is_no_change(blocks in prop::collection::vec(0..BLOCKS.len(), 0..24)) {
-        let found = found(&program(&blocks, 1), &rewritten(&program(&blocks, 14)));
+        let found = find_changes(&program(&blocks, 1), &rewritten(&program(&blocks, 14)));
         prop_assert!(found.is_empty(), "{found:?}");
     }
 
@@ -65,7 +65,7 @@ proptest! {
         let mut lines: Vec<&str> = old.lines().collect();
         let at = 2 + at.min(blocks.len());
         lines.insert(at, "G4 P123");
-        let found = found(&old, &(lines.join("\n") + "\n"));
+        let found = find_changes(&old, &(lines.join("\n") + "\n"));
         let codes: Vec<_> = found.iter().map(|change| &*change.code).collect();
         prop_assert_eq!(codes, ["dwell"]);
     }
@@ -160,7 +160,7 @@ fn a_block_skip_before_a_statement_is_told_at_its_block() {
     let old = "O1\n#100=5.\nG0 X#100\nIF[#100 GT 9.]GOTO 9\nM98 P2\nN9 M30\nO2\nG0 Y1.\nM99\n";
     for block in ["#100=5.", "IF[#100", "M98 P2"] {
         let new = old.replace(block, &format!("/{block}"));
-        let found = found(old, &new);
+        let found = find_changes(old, &new);
         let codes: Vec<_> = found.iter().map(|change| &*change.code).collect();
         assert_eq!(codes, ["block-skip"], "{block}");
         let place = found[0].new.as_ref().unwrap();
@@ -173,7 +173,7 @@ fn a_block_skip_before_a_statement_is_told_at_its_block() {
 fn what_is_left_names_the_block_that_wrote_it() {
     let old = "O1\n#500=1.\nG65 P2 A2.\nM30\nO2\n#501=#1\n#502=7.\nG10 L2 P1 X#1\n#2005=#1\nM99\n";
     let new = old.replace("A2.", "A3.");
-    let found = found(old, &new);
+    let found = find_changes(old, &new);
     let shown: Vec<String> = found
         .iter()
         .flat_map(|change| {
@@ -309,7 +309,7 @@ fn a_switch_of_the_control_is_one_entry() {
 fn another_end_is_one_entry_that_names_its_block() {
     let old = "O1\nG0 X1.\nM30\n";
     let shown = |new: &str| -> Vec<String> {
-        let found = found(old, new);
+        let found = find_changes(old, new);
         let line = |place: &Option<gcode_review::BlockLocation>| place.as_ref().map(|place| place.line);
         let each = found.iter();
         each.map(|c| format!("{} {:?} {:?}: {}", c.code, line(&c.old), line(&c.new), c.message)).collect()

@@ -26,7 +26,7 @@ struct Texts {
 }
 
 impl Texts {
-    fn given(&mut self, found: Option<(String, Vec<u8>)>) -> Option<(String, Vec<u8>)> {
+    fn with_text(&mut self, found: Option<(String, Vec<u8>)>) -> Option<(String, Vec<u8>)> {
         let (name, bytes) = found?;
         self.read.insert(name.clone(), String::from_utf8_lossy(&bytes).into_owned());
         match &self.other {
@@ -39,12 +39,12 @@ impl Texts {
 impl Library for Texts {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
         let found = self.folders.program(number);
-        self.given(found)
+        self.with_text(found)
     }
 
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
         let found = self.folders.named(name);
-        self.given(found)
+        self.with_text(found)
     }
 }
 
@@ -90,7 +90,7 @@ struct Tally {
 }
 
 /// Every `nth` word of the examples, changed.
-fn tried(nth: usize, only: &str) -> (BTreeMap<String, Tally>, String) {
+fn count_effects(nth: usize, only: &str) -> (BTreeMap<String, Tally>, String) {
     let (mut tallies, mut wrong) = (BTreeMap::<String, Tally>::new(), String::new());
     let mut number = 0;
     for main in mains() {
@@ -166,7 +166,8 @@ fn is_named(slip: &Slip, change: &Change) -> bool {
 #[test]
 fn a_word_of_the_examples_changed_is_one_entry() {
     let only = std::env::var("EVERY_WORD").ok();
-    let (tallies, wrong) = tried(if only.is_some() { 1 } else { 9 }, only.as_deref().unwrap_or_default());
+    let (tallies, wrong) =
+        count_effects(if only.is_some() { 1 } else { 9 }, only.as_deref().unwrap_or_default());
     if only.is_some() {
         for (letter, tally) in &tallies {
             writeln!(std::io::stderr(), "{letter}: {tally:?}").unwrap();

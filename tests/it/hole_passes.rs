@@ -1,7 +1,7 @@
 //! Passes of a hole that aren't its last, and what leads to them and back: a changed pilot is told at its hole, and nothing is
 //! told with it that it doesn't explain.
 use gcode_inspect::machine::Machine;
-use gcode_tests::changes::{effects, found_on, messages};
+use gcode_tests::changes::{effects, find_changes_on, messages};
 
 /// T1 makes both holes 4 mm deep, T2 the first of them to its end at 12 mm.
 const PART: &str = "O1\nG90 G54 G0 X0 Y0\nT1 M6\nG43 H1 Z50.\nG98 G81 X10. Y0 Z-4. R2. F100\nX20. Z-4.\nG80\n\
@@ -79,10 +79,7 @@ fn of_two_words_each_effect_is_told() {
         ]
     );
     let one = PART.replace("G81 X10. Y0 Z-4. R2.", "G81 X10. Y0 Z-4. R-2.");
-    assert_eq!(
-        effects(PART, &one),
-        ["move-shifted: a rapid ends at a different point: Z -4.0000 (2 moves)"]
-    );
+    assert_eq!(effects(PART, &one), ["move-shifted: a rapid ends at a different point: Z -4.0000 (2 moves)"]);
 }
 
 /// T1 drills 25 mm deep, T2 taps 18 mm of it: what the tap does is told whatever else happens to the hole.
@@ -164,7 +161,7 @@ fn a_cycle_that_is_another_one_at_some_holes_names_them() {
 }
 
 /// What is told of spindle and coolant that a cut relied on, in the only entry.
-fn state_told(old: &str, new: &str) -> Vec<String> {
+fn state_messages(old: &str, new: &str) -> Vec<String> {
     let entries = effects(old, new);
     assert_eq!(entries.len(), 1, "{entries:#?}");
     let mut all: Vec<String> = entries[0].split(" | ").map(str::to_owned).collect();
@@ -187,7 +184,7 @@ fn spot_and_drill(spindle: &str, coolant: &str) -> String {
 fn without_spot(spindle: &str, coolant: &str) -> (Vec<String>, Vec<String>) {
     let old = spot_and_drill(spindle, coolant);
     let new = old.replace(SPOT, "");
-    (state_told(&old, &new), state_told(&new, &old))
+    (state_messages(&old, &new), state_messages(&new, &old))
 }
 
 /// A tool that relied on the section that is deleted is told, and one that relies on a section that is new.
@@ -231,7 +228,7 @@ fn spindle_and_coolant_that_the_next_hole_of_the_same_tool_relied_on_are_told() 
     };
     let old = program("S1500\nM7\nX20.\n");
     assert_eq!(
-        state_told(&old, &program("")),
+        state_messages(&old, &program("")),
         [
             "spindle: M03 S1500 is removed: O0001:5 N9 is cut with M03 S800 instead of M03 S1500",
             "coolant: M07 is removed: O0001:5 N9 is cut with coolant off instead of M07",
@@ -239,10 +236,10 @@ fn spindle_and_coolant_that_the_next_hole_of_the_same_tool_relied_on_are_told() 
     );
     // Switched back before it: nothing relied on them.
     let old = program("S1500\nM7\nX20.\nS800\nM9\n");
-    assert_eq!(state_told(&old, &program("")), [""; 0]);
+    assert_eq!(state_messages(&old, &program("")), [""; 0]);
     // A hole is new, and the spindle stands behind it.
     assert_eq!(
-        state_told(&program(""), &program("X20.\nM5\n")),
+        state_messages(&program(""), &program("X20.\nM5\n")),
         ["spindle: spindle stop is added: O0001:7 N9 is cut with the spindle stopped instead of M03 S800"]
     );
 }
@@ -277,11 +274,11 @@ fn a_spindle_that_a_new_tool_change_stops_is_told() {
     };
     let section = "G80\nT2 M6\nS800 M3\nG81 X20. Z-4. R2. F100\nG80\nT1 M6\n";
     assert_eq!(
-        state_told(&program(""), &program(section)),
+        state_messages(&program(""), &program(section)),
         ["spindle: tool T1 is added: if M06 stops the spindle, O0001:12 is cut with the spindle stopped \
           instead of M03 S800"]
     );
-    assert_eq!(state_told(&program(""), &program(&format!("{section}M3\n"))), [""; 0]);
+    assert_eq!(state_messages(&program(""), &program(&format!("{section}M3\n"))), [""; 0]);
 }
 
 /// The pilot's tool is 80 mm long. Set 0.01 mm shorter and programmed 0.01 mm less deep, its tip ends where it did.
@@ -291,7 +288,7 @@ fn a_pass_that_another_length_makes_up_for_says_so() {
     let old = format!("O1\nG10 L10 P1 R80.\nG10 L10 P2 R90.\n{}", PART.strip_prefix("O1\n").unwrap());
     let told = |edits: &[(&str, &str)]| {
         let new = edits.iter().fold(old.clone(), |text, (from, to)| text.replacen(from, to, 1));
-        let found = found_on(&Machine::parse(machine).unwrap(), &old, &new);
+        let found = find_changes_on(&Machine::parse(machine).unwrap(), &old, &new);
         let passes =
             found.iter().flat_map(|change| change.effects()).filter(|(code, _)| *code == "hole-pass");
         passes.map(|(_, message)| message.to_owned()).collect::<Vec<_>>()

@@ -1,7 +1,7 @@
 //! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what
 //! the cut is made with otherwise because of that.
 use gcode_review::Change;
-use gcode_tests::changes::{effects, found, messages};
+use gcode_tests::changes::{effects, find_changes, messages};
 
 /// The lines of an entry, before and now.
 fn lines(change: &Change) -> [Option<u32>; 2] {
@@ -32,7 +32,7 @@ fn passes_in_another_order_are_one_entry_at_their_own_block() {
     for tool in 0..3 {
         let mut lists = [LIST; 3];
         lists[tool] = SWAPPED;
-        let found = found(&old, &reamed(lists));
+        let found = find_changes(&old, &reamed(lists));
         let number = tool + 1;
         let message =
             format!("hole 2: pass {number} of 3, by T{number}, made in a different order, after hole 3");
@@ -42,7 +42,7 @@ fn passes_in_another_order_are_one_entry_at_their_own_block() {
         assert_eq!(lines(&found[0]), [Some(line), Some(line + 1)]);
     }
     // The hole with all its passes.
-    let found = found(&old, &reamed([SWAPPED; 3]));
+    let found = find_changes(&old, &reamed([SWAPPED; 3]));
     assert_eq!(found.len(), 1, "{found:#?}");
     assert_eq!(found[0].message, "hole 2: made in a different order, after hole 3");
     assert_eq!(lines(&found[0]), [Some(8), Some(9)]);
@@ -98,7 +98,7 @@ fn milled(first: &str, between: &str, then: &str) -> String {
 
 #[test]
 fn swapped_sections_are_one_entry() {
-    let found = found(&milled(LEFT, "", RIGHT), &milled(RIGHT, "", LEFT));
+    let found = find_changes(&milled(LEFT, "", RIGHT), &milled(RIGHT, "", LEFT));
     assert_eq!(found.len(), 1, "{found:#?}");
     let message = "8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000";
     assert_eq!((&*found[0].code, &*found[0].message), ("move-order", message));
@@ -113,7 +113,7 @@ fn swapped_sections_are_one_entry() {
     // What is milled twice and once less is no other order.
     let twice = milled(LEFT, LEFT, RIGHT);
     let codes: Vec<_> =
-        self::found(&twice, &milled(LEFT, "", RIGHT)).into_iter().map(|one| one.code).collect();
+        self::find_changes(&twice, &milled(LEFT, "", RIGHT)).into_iter().map(|one| one.code).collect();
     assert!(!codes.is_empty() && codes.iter().all(|code| code == "move-lost"), "{codes:?}");
 }
 

@@ -1,10 +1,10 @@
 //! One cause is one entry, at the block that somebody has edited, and nothing it says is false.
 use gcode_inspect::machine::Machine;
 use gcode_review::Change;
-use gcode_tests::changes::{effect_texts, found_on, texts};
+use gcode_tests::changes::{effect_texts, find_changes_on, texts};
 
 fn found_by(machine: &str, old: &str, new: &str) -> Vec<Change> {
-    found_on(&Machine::parse(machine).unwrap(), old, new)
+    find_changes_on(&Machine::parse(machine).unwrap(), old, new)
 }
 
 fn found(old: &str, new: &str) -> Vec<Change> {
@@ -115,8 +115,10 @@ fn a_lost_spot_drilling_leaves_the_drills_diameter() {
     let reamed = program("X10. Y0", "T3 M6\nG43 H3 Z50.\nG98 G85 X10. Y0 Z-4.5 R2. F50\nG80\n");
     assert_eq!(
         effect_texts(&found_by(&machine, &reamed, &one)),
-        ["hole-diameter: hole 1: Φ6 instead of Φ6.2, no longer made by T3, in total by T1 and T2 | tool: tool T3 is \
-          removed | move-lost: a rapid to X10.0000 is removed (5 moves of its block)"]
+        [
+            "hole-diameter: hole 1: Φ6 instead of Φ6.2, no longer made by T3, in total by T1 and T2 | tool: tool T3 is \
+          removed | move-lost: a rapid to X10.0000 is removed (5 moves of its block)"
+        ]
     );
 }
 

@@ -42,16 +42,16 @@ pub struct CheckedPackage {
     pub report: String,
     /// What is drawn of it, each with its file's name without `.png`.
     pub pictures: Vec<(String, Scene)>,
-    pub judgement: PackageVerdict,
+    pub verdict: PackageVerdict,
 }
 
-/// The verdict, by what the part gets.
+/// The verdict, by kind of part.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PackageVerdict {
     Holes(Verdict),
     Flutes(FluteVerdict),
-    /// Of a part that is measured and gets nothing.
+    /// For a part that is measured and not machined.
     Measured,
 }
 
@@ -83,13 +83,13 @@ pub fn check(job: &Job, package: &Package) -> Result<CheckedPackage, CheckError>
     {
         return Err(CheckError::Impossible(why));
     }
-    match NominalPart::of_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
+    match NominalPart::from_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
         NominalPart::Holes(reference) => holes::check(job, package, &reference),
         NominalPart::Flutes(wanted) => flutes::check(package, &wanted),
     }
 }
 
-pub(crate) fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
+pub(crate) fn broken_package(what: &str, error: &dyn std::fmt::Display) -> CheckError {
     CheckError::Broken(format!("{what}: {error}"))
 }
 

@@ -130,7 +130,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Ok(arguments) => arguments,
         Err(status) => return status,
     };
-    arguments.colours.obey();
+    arguments.colours.apply();
     let done = match &arguments.command {
         Command::New { family, output } => new::run(family, output.as_deref()),
         Command::Emit { job, out, format } => emit::run(job, out, *format),
@@ -140,7 +140,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Man(folder) => packaging::man::<Arguments>(folder),
     };
     done.unwrap_or_else(|refusal: UsageError| {
-        output::tell(&format!("error: {refusal}\n"));
-        ExitStatus::Refused
+        output::print_message(&format!("error: {refusal}\n"));
+        ExitStatus::Invalid
     })
 }

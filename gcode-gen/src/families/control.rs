@@ -19,7 +19,7 @@ pub(crate) fn alarm_thousands(dialect: Dialect) -> &'static str {
 pub(super) fn machine_file(control: JobControl) -> String {
     let (dialect, increment) = (control.dialect.name(), control.increment.name());
     format!(
-        "# The machine and control that the programs beside this file are for; lengths in mm, angles in degrees.\n\
+        "# The machine and control of the programs next to this file; lengths in mm, angles in degrees.\n\
          [control]\n\
          dialect = \"{dialect}\"\n\
          increment = \"{increment}\"\n"
@@ -30,7 +30,7 @@ pub(super) fn machine_file(control: JobControl) -> String {
 pub(super) fn rotary_table(rotary: Rotary, about: char, axis: &str) -> String {
     format!(
         "\n\
-         # The rotary table carries the part about {about}; {axis}.\n\
+         # The rotary table rotates the part about {about}; {axis}.\n\
          [[table]]\n\
          letter = \"{}\"\n\
          turns = \"{about}\"\n\

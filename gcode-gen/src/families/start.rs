@@ -17,49 +17,55 @@ use crate::nc::program::Program as Text;
 pub(super) struct Start {
     pub(super) control: JobControl,
     /// n of its `#3000=n` where coordinates are scaled, mirrored, turned or polar: that of its macro.
-    pub(super) changed: u32,
+    pub(super) changed_alarm: u32,
     /// n where the work zero is shifted.
-    pub(super) shifted: u32,
+    pub(super) shifted_alarm: u32,
     /// The axes whose shift is an alarm, in the order of their numbers on the control, from 1.
     pub(super) axes: &'static str,
     /// The rotaries whose local shift is cancelled, for their axes have other numbers on every machine.
-    pub(super) cancelled: String,
+    pub(super) cancelled_rotaries: String,
 }
 
 impl Start {
     /// What the head says of it: alarms of its own, shifts, coordinates.
     pub(super) fn remarks(&self) -> Vec<String> {
         let k = alarm_thousands(self.control.dialect);
-        let mut lines =
-            vec![format!("ALARMS {k}{:03} {k}{:03} HERE BEFORE ANYTHING MOVES", self.changed, self.shifted)];
-        lines.extend(remarks(self.axes, &self.cancelled));
+        let mut lines = vec![format!(
+            "ALARMS {k}{:03} {k}{:03} HERE BEFORE ANYTHING MOVES",
+            self.changed_alarm, self.shifted_alarm
+        )];
+        lines.extend(remarks(self.axes, &self.cancelled_rotaries));
         lines
     }
 
     pub(super) fn blocks(&self, text: &mut Text) {
         let dialect = self.control.dialect;
-        text.block(Block::of(format!("IF[{}]THEN #3000={}({CHANGED})", changed(dialect), self.changed)));
-        modes(text);
+        text.block(Block::of(format!(
+            "IF[{}]THEN #3000={}({CHANGED_TEXT})",
+            changed_condition(dialect),
+            self.changed_alarm
+        )));
+        emit_modes(text);
         for (axis, letter) in (1..).zip(self.axes.chars()) {
-            let external = external(dialect, &format!("{}", 5200 + axis));
+            let external = external_offset_term(dialect, &format!("{}", 5200 + axis));
             text.block(Block::of(format!(
                 "IF[ABS[#{}-#{}{external}-#{}]GT {}]THEN #3000={}(G52 OR G92 SHIFT IN {letter})",
                 5020 + axis,
                 5040 + axis,
                 5220 + axis,
-                number(rounding(self.control.increment)),
-                self.shifted
+                number(shift_threshold(self.control.increment)),
+                self.shifted_alarm
             )));
         }
-        cancel(&self.cancelled, text);
+        emit_cancel(&self.cancelled_rotaries, text);
     }
 }
 
 /// As the control shows it.
-const CHANGED: &str = "G16 G51 G51.1 G68 IN FORCE";
+const CHANGED_TEXT: &str = "G16 G51 G51.1 G68 IN FORCE";
 
 /// What is true where coordinates are scaled, mirrored, turned or polar, terms joined by OR. A Haas has neither G16 nor #4022.
-pub(super) fn changed(dialect: Dialect) -> &'static str {
+pub(super) fn changed_condition(dialect: Dialect) -> &'static str {
     match dialect {
         Dialect::HaasNgc => "[#4011 EQ 51]OR[#4016 EQ 68]",
         Dialect::Fanuc31i | Dialect::Fanuc0iF => {
@@ -69,7 +75,7 @@ pub(super) fn changed(dialect: Dialect) -> &'static str {
 }
 
 /// The external offset in a variable, taken off. On a Haas #5201 is the shift by G52 itself, which has to stay in.
-pub(super) fn external(dialect: Dialect, variable: &str) -> String {
+pub(super) fn external_offset_term(dialect: Dialect, variable: &str) -> String {
     match dialect {
         Dialect::HaasNgc => String::new(),
         Dialect::Fanuc31i | Dialect::Fanuc0iF => format!("-#{variable}"),
@@ -77,18 +83,18 @@ pub(super) fn external(dialect: Dialect, variable: &str) -> String {
 }
 
 /// More than rounding makes, in mm, and less than the least shift there is: half an increment in x and y each is 0.707 of one.
-pub(super) fn rounding(increment: Increment) -> f64 {
+pub(super) fn shift_threshold(increment: Increment) -> f64 {
     0.75 * increment.size()
 }
 
 /// The modes that all main programs begin in.
-pub(super) fn modes(text: &mut Text) {
+pub(super) fn emit_modes(text: &mut Text) {
     text.block(Block::of("G21"));
     text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
 }
 
 /// A local shift of rotaries is taken off, where there are any.
-pub(super) fn cancel(rotaries: &str, text: &mut Text) {
+pub(super) fn emit_cancel(rotaries: &str, text: &mut Text) {
     if !rotaries.is_empty() {
         text.block(rotaries.chars().fold(Block::of("G52"), |block, letter| block.word(letter, "0.")));
     }

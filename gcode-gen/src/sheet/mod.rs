@@ -26,7 +26,7 @@ pub struct Sheet<'a> {
     package: &'a Package,
     checked: &'a CheckedPackage,
     record: Record,
-    needed: Vec<RequiredSetting>,
+    required_settings: Vec<RequiredSetting>,
     rates: Option<&'a Rates>,
     /// Names and PNGs.
     pictures: Vec<(String, Vec<u8>)>,
@@ -50,7 +50,7 @@ impl<'a> Sheet<'a> {
             job,
             package,
             checked,
-            needed: settings::needed(job, package, &record.begins)?,
+            required_settings: settings::required_settings(job, package, &record.program_starts)?,
             record,
             rates,
             pictures,
@@ -58,13 +58,14 @@ impl<'a> Sheet<'a> {
     }
 
     /// The time that a part takes.
-    pub fn taken(&self) -> MachineTime {
-        cost::taken(self.job.sheet(), &self.record)
+    pub fn machine_time(&self) -> MachineTime {
+        cost::machine_time(self.job.sheet(), &self.record)
     }
 
     /// What it costs, on the job's own machine first, and the currency; nothing where no rate was given.
     pub fn costs(&self) -> (&str, Vec<Cost>) {
-        self.rates.map_or(("", Vec::new()), |rates| (&rates.currency, cost::costs(rates, &self.taken())))
+        self.rates
+            .map_or(("", Vec::new()), |rates| (&rates.currency, cost::costs(rates, &self.machine_time())))
     }
 
     /// One self-contained HTML file.

@@ -2,13 +2,13 @@
 use gcode_lang::motion::StopKind;
 use gcode_lang::units::Deg;
 use gcode_part::job::{Alignment, HeadKind, Job, PinHoles};
-use gcode_sim::report::figures::{near, short};
+use gcode_sim::report::figures::{rounded, short};
 
 use super::record::OperatorStop;
 
-pub fn duty(job: &Job, stop: &OperatorStop) -> Vec<String> {
+pub fn instructions(job: &Job, stop: &OperatorStop) -> Vec<String> {
     if let (Job::PinHoles(job), StopKind::Message, [(variable, angle)]) =
-        (job, stop.kind, stop.named.as_slice())
+        (job, stop.kind, stop.variables.as_slice())
         && job.machine.head.kind == HeadKind::Manual
         && *variable == job.macros.common
     {
@@ -20,7 +20,7 @@ pub fn duty(job: &Job, stop: &OperatorStop) -> Vec<String> {
         return steps;
     }
     let mut steps = Vec::new();
-    for (variable, value) in &stop.named {
+    for (variable, value) in &stop.variables {
         steps.push(format!("#{variable} is {} now.", short(*value)));
     }
     steps.push(match stop.kind {
@@ -56,7 +56,7 @@ fn set_head(job: &PinHoles, angle: f64) -> Vec<String> {
 /// The stops of the measurements, told by the first variable that they name. Its value isn't shown: the simulated part stands
 /// right, and what it leaves there is rounding.
 fn set_up(job: &Alignment, stop: &OperatorStop) -> Option<Vec<String>> {
-    let (first, _) = stop.named.first()?;
+    let (first, _) = stop.variables.first()?;
     let steps = match first {
         580 => vec![
             "Read #580 to #583 at the control: the part is off by #580 in X and #581 in Z (mm), and tilted by #582 about X and \
@@ -116,7 +116,7 @@ fn shim() -> String {
         "#582 above 0: the top leans towards Z+, so shim the side towards Z+. Below 0: the top leans \
          towards Z−, shim the side towards Z−. A shim is {} mm thick for each 0.01° and metre between the \
          supports in Z. A shimmed part also moves in Z: correct #581 after the next measurement.",
-        near(1000.0 * Deg(0.01).sin(), 4)
+        rounded(1000.0 * Deg(0.01).sin(), 4)
     )
 }
 

@@ -22,7 +22,7 @@ enum Colour {
 
 impl Colours {
     /// From here on everything printed obeys the flag.
-    pub fn obey(self) {
+    pub fn apply(self) {
         match self.colour {
             Colour::Auto => {}
             Colour::Always => anstream::ColorChoice::Always.write_global(),
@@ -37,9 +37,9 @@ pub fn parse<A: Parser>(arguments: impl IntoIterator<Item = OsString>) -> Result
     A::try_parse_from(arguments).map_err(|error| {
         let text = error.render().ansi().to_string();
         if !error.use_stderr() && output::print(&text).is_ok() {
-            return ExitStatus::Holds;
+            return ExitStatus::Passed;
         }
-        output::tell(&text);
-        ExitStatus::Refused
+        output::print_message(&text);
+        ExitStatus::Invalid
     })
 }

@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
         programs.into_iter().chain(arguments.run.files()).chain(arguments.reference.as_deref()).collect();
     overwrite_guard::one_pipe(&files)?;
     for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        overwrite_guard::keep(result, &files)?;
+        overwrite_guard::check_not_input(result, &files)?;
     }
     arguments.page.as_deref().map(page::is_html).transpose()?;
     let mut before = arguments.run.clone();
@@ -71,11 +71,12 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     }
     let (mut old_request, mut old_folders) = options::request(&before.of(&arguments.old))?;
     let (mut new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
-    unused_machine::tell(&arguments.run.of(&arguments.new), &new_request);
-    let reference = arguments.reference.as_deref().map(wanted_holes).transpose()?;
+    unused_machine::warn_unused_machine(&arguments.run.of(&arguments.new), &new_request);
+    let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     for request in [&mut old_request, &mut new_request] {
-        request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
+        request.conduct =
+            reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     }
     let refused = |error: gcode_session::SessionError| UsageError::new(error.to_string());
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
@@ -96,7 +97,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
         FindingFormat::Text => output::print(&report.text())?,
         FindingFormat::Sarif => {
             let findings = findings(&compared, &new, &new_request.name);
-            output::json(&sarif::log(&findings, &options::started_in()))?
+            output::json(&sarif::log(&findings, &options::working_folder()))?
         }
     }
     if let Some(path) = &arguments.picture {
@@ -138,13 +139,13 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
             documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
         };
         page::write(&review, path)?;
-        page::tell(path, arguments.format == FindingFormat::Text)?;
+        page::report_written(path, arguments.format == FindingFormat::Text)?;
     }
-    let mut status = if compared.changes.is_empty() { ExitStatus::Holds } else { ExitStatus::Fails };
+    let mut status = if compared.changes.is_empty() { ExitStatus::Passed } else { ExitStatus::Failed };
     for revision in [&old, &new] {
         let sources = revision.simulation.run.control.memory().sources();
         for finding in revision.stopped() {
-            output::tell(&diagnostic::render(finding, sources));
+            output::print_message(&diagnostic::render(finding, sources));
             status = ExitStatus::Stopped;
         }
     }
@@ -165,8 +166,8 @@ fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding>
 }
 
 /// The page's reference.
-fn wanted_holes(path: &Path) -> Result<Reference, UsageError> {
-    match options::wanted(path)? {
+fn read_reference_holes(path: &Path) -> Result<Reference, UsageError> {
+    match options::read_nominal(path)? {
         NominalPart::Holes(reference) => Ok(reference),
         NominalPart::Flutes(_) => Err(UsageError::new(format!(
             "--reference {}: a page verifies holes, and this is a burr: omit the reference",

@@ -90,7 +90,7 @@ impl Folders {
         found
     }
 
-    fn holder(&mut self, of: impl Fn(&Contents) -> Option<&PathBuf>) -> Option<PathBuf> {
+    fn find_holder(&mut self, of: impl Fn(&Contents) -> Option<&PathBuf>) -> Option<PathBuf> {
         if self.contents.is_none() {
             self.contents = Some(self.read_contents());
         }
@@ -107,7 +107,7 @@ impl Library for Folders {
         let (bytes, path) = match named.filter(|(bytes, _)| holds(bytes)) {
             Some(found) => found,
             None => {
-                let path = self.holder(|contents| contents.numbers.get(&number))?;
+                let path = self.find_holder(|contents| contents.numbers.get(&number))?;
                 (self.bytes(&path)?, path)
             }
         };
@@ -115,7 +115,7 @@ impl Library for Folders {
     }
 
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
-        let path = match self.holder(|contents| contents.names.get(name)) {
+        let path = match self.find_holder(|contents| contents.names.get(name)) {
             Some(path) => path,
             // A file of this name that says neither name nor number itself.
             None => self.find(|path| path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case(name)))?,

@@ -40,11 +40,11 @@ use gcode_session::Run;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitStatus {
     /// Done, and what was asked about holds.
-    Holds,
+    Passed,
     /// Done, and the answer is no.
-    Fails,
+    Failed,
     /// The request can't be used.
-    Refused,
+    Invalid,
     /// The control stopped with an alarm, or a limit ended the run.
     Stopped,
 }
@@ -52,9 +52,9 @@ pub enum ExitStatus {
 impl From<ExitStatus> for ExitCode {
     fn from(status: ExitStatus) -> Self {
         Self::from(match status {
-            ExitStatus::Holds => 0,
-            ExitStatus::Fails => 1,
-            ExitStatus::Refused => 2,
+            ExitStatus::Passed => 0,
+            ExitStatus::Failed => 1,
+            ExitStatus::Invalid => 2,
             ExitStatus::Stopped => 3,
         })
     }
@@ -77,7 +77,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Ok(arguments) => arguments,
         Err(status) => return status,
     };
-    arguments.colours.obey();
+    arguments.colours.apply();
     let done = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Holes(arguments) => holes::run(&arguments),
@@ -97,17 +97,17 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Compare(arguments) => compare::run(&arguments),
     };
     done.unwrap_or_else(|refusal| {
-        output::tell(&format!("error: {refusal}\n"));
-        ExitStatus::Refused
+        output::print_message(&format!("error: {refusal}\n"));
+        ExitStatus::Invalid
     })
 }
 
 /// Tells what a run did in silence, and why it stopped before its end, if it did.
 fn stopped(run: &Run) -> Option<ExitStatus> {
     let sources = run.control.memory().sources();
-    run.notes().for_each(|note| output::tell(&diagnostic::render(&note, sources)));
-    let finding = run.stopped()?;
-    output::tell(&diagnostic::render(&finding, sources));
+    run.note_findings().for_each(|note| output::print_message(&diagnostic::render(&note, sources)));
+    let finding = run.stop_finding()?;
+    output::print_message(&diagnostic::render(&finding, sources));
     Some(ExitStatus::Stopped)
 }
 
@@ -115,11 +115,11 @@ fn stopped(run: &Run) -> Option<ExitStatus> {
 fn findings(all: &[Diagnostic], run: &Run) -> ExitStatus {
     let sources = run.control.memory().sources();
     for finding in all {
-        output::tell(&diagnostic::render(finding, sources));
+        output::print_message(&diagnostic::render(finding, sources));
     }
     match all.iter().map(|finding| finding.severity).max() {
         Some(Severity::Alarm) => ExitStatus::Stopped,
-        Some(Severity::Error) => ExitStatus::Fails,
-        _ => ExitStatus::Holds,
+        Some(Severity::Error) => ExitStatus::Failed,
+        _ => ExitStatus::Passed,
     }
 }

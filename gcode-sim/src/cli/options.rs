@@ -15,7 +15,7 @@ use gcode_session::Request;
 pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), UsageError> {
     let ProgramArguments { program, conditions: arguments } = program;
     let machine = match &arguments.machine {
-        Some(path) => machine(path)?,
+        Some(path) => read_machine(path)?,
         None => Machine::default(),
     };
     let folders = Folders::new(program, &arguments.libraries)?;
@@ -46,13 +46,13 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     }
     request.limits = Limits { blocks: arguments.max_blocks };
     if let Some(path) = &arguments.part {
-        probed(&mut request, path, arguments.machine.as_deref())?;
+        apply_part(&mut request, path, arguments.machine.as_deref())?;
     }
     Ok((request, folders))
 }
 
 /// Puts a part on the machine that can be probed; `file` is the machine's.
-fn probed(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), UsageError> {
+fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), UsageError> {
     let refused = |why: &dyn std::fmt::Display| UsageError::new(format!("{}, {why}", path.display()));
     if request.settings.skip_signal.is_some() {
         return Err(UsageError::new("--part: SKIP already sets the skip signal: omit one of them"));
@@ -84,7 +84,7 @@ fn probed(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(),
 /// Whether the machine turns the part as the job says. Of two signs no fit could tell which is the right one.
 fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), String> {
     let letter = rotary.letter;
-    let turns = machine.axes.find(letter as u8).and_then(|axis| machine.table.turns(axis));
+    let turns = machine.axes.find(letter as u8).and_then(|axis| machine.table.rotary_sign(axis));
     let Some(sign) = turns else {
         return Err(format!(
             "key 'machine.rotary.letter' is {letter}, and {file} has no [[table]] with this letter that \
@@ -102,19 +102,19 @@ fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), Stri
 }
 
 /// A machine file.
-pub(super) fn machine(path: &Path) -> Result<Machine, UsageError> {
+pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
     Machine::parse(&input::text(path)?)
         .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }
 
 /// A hole list or a job file.
-pub(super) fn wanted(path: &Path) -> Result<NominalPart, UsageError> {
+pub(super) fn read_nominal(path: &Path) -> Result<NominalPart, UsageError> {
     NominalPart::parse(&input::text(path)?)
         .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }
 
 /// The folder that the program was started in, which results name files from.
-pub(super) fn started_in() -> String {
+pub(super) fn working_folder() -> String {
     std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default()
 }
 

@@ -25,7 +25,7 @@ pub fn json(document: &impl serde::Serialize) -> Result<(), UsageError> {
 }
 
 /// Tells something that isn't the result.
-pub fn tell(text: &str) {
+pub fn print_message(text: &str) {
     // Where even standard error is closed there is nobody left to tell.
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use super::UsageError;
 
 /// Refuses to write to `result` where that is one of `inputs`, whatever links lead there.
-pub fn keep(result: &Path, inputs: &[&Path]) -> Result<(), UsageError> {
+pub fn check_not_input(result: &Path, inputs: &[&Path]) -> Result<(), UsageError> {
     // What can't be found isn't there yet.
     let Ok(place) = result.canonicalize() else { return Ok(()) };
     let is_it = |input: &&&Path| input.canonicalize().is_ok_and(|other| other == place);
@@ -38,10 +38,10 @@ mod tests {
         let (program, other) = (folder.path().join("O1.nc"), folder.path().join("page.html"));
         output::write(&program, b"O1\nM30\n").unwrap();
         let round_about = folder.path().join(".").join("O1.nc");
-        assert!(keep(&round_about, &[&other, &program]).is_err());
-        assert!(keep(&other, &[&program]).is_ok(), "nothing is there yet");
+        assert!(check_not_input(&round_about, &[&other, &program]).is_err());
+        assert!(check_not_input(&other, &[&program]).is_ok(), "nothing is there yet");
         output::write(&other, b"").unwrap();
-        assert!(keep(&other, &[&program, Path::new("-")]).is_ok());
+        assert!(check_not_input(&other, &[&program, Path::new("-")]).is_ok());
     }
 
     #[test]

@@ -28,7 +28,7 @@ pub fn completions<A: CommandFactory>(arguments: &ShellArguments) -> Result<Exit
     let mut text = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, name, &mut text);
     output::print(&String::from_utf8_lossy(&text))?;
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }
 
 /// Writes `gcode-sim.1`, `gcode-sim-run.1` and so on, all or none.
@@ -38,7 +38,7 @@ pub fn man<A: CommandFactory>(arguments: &ManArguments) -> Result<ExitStatus, Us
         pages.into_iter().map(|(name, text)| (arguments.folder.join(name), text)).collect();
     let files: Vec<(&Path, &[u8])> = files.iter().map(|(path, text)| (path.as_path(), &text[..])).collect();
     output::write_all(&files)?;
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }
 
 /// The page of the program and one for each of its commands, with their names.

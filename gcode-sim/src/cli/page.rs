@@ -12,7 +12,7 @@ use gcode_review::Revision;
 use gcode_session::{Request, Trace};
 
 /// A program's run with all that a page shows of it.
-pub(super) fn watched(
+pub(super) fn simulate_traced(
     request: &Request,
     folders: &mut Folders,
     surface: Option<Surface>,
@@ -61,7 +61,7 @@ pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), UsageError> {
 }
 
 /// Says where the page is, among results that are text.
-pub(super) fn tell(path: &Path, is_text: bool) -> Result<(), UsageError> {
+pub(super) fn report_written(path: &Path, is_text: bool) -> Result<(), UsageError> {
     if is_text { output::print(&format!("page: {}\n", path.display())) } else { Ok(()) }
 }
 

@@ -13,7 +13,7 @@ use gcode_session::Request;
 const WIDTH: usize = 60;
 
 /// Does the work, and meanwhile shows how much of `all` is counted.
-pub(super) fn watched<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() -> T) -> T {
+pub(super) fn with_progress<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() -> T) -> T {
     let bar = || {
         let part = (counted.load(Ordering::Relaxed) as f64 / all.max(1) as f64).min(1.0);
         format!("[{:<40}] {:3.0} %", "#".repeat((part * 40.0) as usize), part * 100.0)
@@ -61,11 +61,11 @@ fn show(line: &impl Fn() -> String, done: &AtomicBool) {
     std::thread::park_timeout(Duration::from_secs(1));
     let mut shown = false;
     while !done.load(Ordering::Relaxed) {
-        output::tell(&format!("\r{:<WIDTH$}", line()));
+        output::print_message(&format!("\r{:<WIDTH$}", line()));
         shown = true;
         std::thread::park_timeout(Duration::from_millis(100));
     }
     if shown {
-        output::tell(&format!("\r{:WIDTH$}\r", ""));
+        output::print_message(&format!("\r{:WIDTH$}\r", ""));
     }
 }

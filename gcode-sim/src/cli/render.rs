@@ -73,8 +73,11 @@ impl View {
 }
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<ExitStatus, UsageError> {
-    overwrite_guard::keep(&arguments.output, &arguments.program.files(arguments.reference.as_deref())?)?;
-    match arguments.reference.as_deref().map(options::wanted).transpose()? {
+    overwrite_guard::check_not_input(
+        &arguments.output,
+        &arguments.program.files(arguments.reference.as_deref())?,
+    )?;
+    match arguments.reference.as_deref().map(options::read_nominal).transpose()? {
         Some(NominalPart::Holes(reference)) => holes(arguments, Some(reference)),
         Some(NominalPart::Flutes(wanted)) => flutes(arguments, wanted),
         None => holes(arguments, None),
@@ -83,10 +86,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitStatus, UsageError>
 
 fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let surface = reference.as_ref().and_then(|r| r.surface);
-    request.conduct = reference.as_ref().map(|r| r.conduct.clone()).unwrap_or_default();
+    request.conduct = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
     let simulation =
         progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, surface))
             .map_err(|e| UsageError::new(e.to_string()))?;
@@ -112,12 +115,12 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Ex
     };
     write(&scene, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
-    Ok(super::stopped(&simulation.run).unwrap_or(ExitStatus::Holds))
+    Ok(super::stopped(&simulation.run).unwrap_or(ExitStatus::Passed))
 }
 
 fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
     let grinding =
@@ -136,7 +139,7 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus,
     };
     write(&scene, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
-    Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Holds))
+    Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Passed))
 }
 
 /// Says what was drawn, and where it is.

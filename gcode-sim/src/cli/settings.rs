@@ -18,5 +18,5 @@ pub(super) fn run(arguments: &SettingsArguments) -> Result<ExitStatus, UsageErro
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }

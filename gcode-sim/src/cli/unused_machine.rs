@@ -11,7 +11,7 @@ use gcode_session::Request;
 const NAME: &str = "machine.toml";
 
 /// Says so where no `--machine` is given and one is at hand, or where the program's own remarks name one.
-pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
+pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_some() {
         return;
     }
@@ -25,11 +25,11 @@ pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
     } else {
         return;
     };
-    output::tell(&format!("note: {what}\n"));
+    output::print_message(&format!("note: {what}\n"));
 }
 
 /// Of a machine `check` needs nothing but its control: says so where the program's head names another one than is assumed.
-pub(super) fn tell_of_control(arguments: &ProgramArguments, request: &Request) {
+pub(super) fn warn_unused_control(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_some() {
         return;
     }
@@ -51,7 +51,9 @@ pub(super) fn tell_of_control(arguments: &ProgramArguments, request: &Request) {
     }
     if !differ.is_empty() {
         let differ = differ.join("; ");
-        output::tell(&format!("warning: the program's head gives {differ}: give --machine {NAME}\n"));
+        output::print_message(&format!(
+            "warning: the program's head gives {differ}: give --machine {NAME}\n"
+        ));
     }
 }
 

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use gcode_draw::{Bar, Bars};
-use gcode_inspect::budget::{Budget, Question, Share, Statistics};
+use gcode_inspect::budget::{Budget, BudgetRequest, ErrorShare, Statistics};
 use gcode_inspect::machine::Distribution;
 
 /// Diameters and lengths in mm.
@@ -52,18 +52,25 @@ struct SourceRow {
 
 impl From<Statistics> for BudgetRow {
     fn from(of: Statistics) -> Self {
-        Self { mean: of.mean, p50: of.p50, p95: of.p95, p997: of.p997, max: of.max, within: of.within }
+        Self {
+            mean: of.mean,
+            p50: of.p50,
+            p95: of.p95,
+            p997: of.p997,
+            max: of.max,
+            within: of.share_in_tolerance,
+        }
     }
 }
 
-impl From<&Share> for SourceRow {
-    fn from(of: &Share) -> Self {
-        Self { source: of.source.clone(), spread: None, moves: of.moves, share: of.share }
+impl From<&ErrorShare> for SourceRow {
+    fn from(of: &ErrorShare) -> Self {
+        Self { source: of.source.clone(), spread: None, moves: of.displacement, share: of.share }
     }
 }
 
 impl BudgetReport {
-    pub fn new(question: &Question<'_>, found: &Budget) -> Self {
+    pub fn new(question: &BudgetRequest<'_>, found: &Budget) -> Self {
         let holes = found.holes.iter().map(|hole| HoleRow {
             id: hole.id.clone(),
             row: hole.statistics.into(),
@@ -73,7 +80,7 @@ impl BudgetReport {
         let spread = |name: &str| {
             let source =
                 question.sources.iter().find(|source| source.quantity.name(question.machine) == name)?;
-            Some(match source.spread {
+            Some(match source.distribution {
                 Distribution::Fixed(value) => format!("fixed {value}"),
                 Distribution::Normal(value) => format!("normal {value}"),
                 Distribution::Uniform(value) => format!("uniform {value}"),

@@ -10,7 +10,7 @@ use gcode_lint::CheckResult;
 /// The document of `check --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CheckReport {
-    /// How many programs were looked at, the called ones included.
+    /// Number of programs checked, called ones included.
     pub programs: usize,
     pub findings: Vec<FindingReport>,
 }
@@ -28,7 +28,7 @@ pub struct FindingReport {
     /// The block as written.
     pub block: Option<String>,
     pub help: Option<String>,
-    /// Second places: where a loop begins, where a call stands.
+    /// Secondary locations: the start of a loop, a call.
     pub labels: Vec<LabelReport>,
 }
 

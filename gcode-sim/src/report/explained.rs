@@ -15,7 +15,7 @@ pub struct ExplainReport {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PageReport {
     pub code: &'static str,
-    /// What the code means in a few words.
+    /// The meaning of the code in a few words.
     pub title: &'static str,
     /// The whole page, Markdown; a list of all codes has none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -31,7 +31,7 @@ impl ExplainReport {
             code: page.code,
             title: page.title(),
             text: Some(page.text),
-            shown: page.shown(),
+            shown: page.plain_text(),
         };
         let pages: Vec<_> = explain::pages(code).map(page).collect();
         (!pages.is_empty()).then_some(Self { pages })

@@ -1,7 +1,7 @@
 //! Figures as tables show them: rounded, with their signs, counted.
 
 /// Rounded; never "-0.000".
-pub fn near(value: f64, places: usize) -> String {
+pub fn rounded(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
     match text.strip_prefix('-') {
         Some(zero) if zero.bytes().all(|b| b == b'0' || b == b'.') => zero.to_owned(),
@@ -14,7 +14,7 @@ pub fn signed(value: f64) -> String {
 }
 
 pub fn signed_to(value: f64, places: usize) -> String {
-    let text = near(value, places);
+    let text = rounded(value, places);
     match value > 0.0 && text.bytes().any(|b| b.is_ascii_digit() && b != b'0') {
         true => format!("+{text}"),
         false => text,
@@ -32,5 +32,5 @@ pub fn count(number: usize, what: &str) -> String {
 
 /// As short as six places allow: `6`, `5.9`, `66.132`.
 pub fn short(value: f64) -> String {
-    near(value, 6).trim_end_matches('0').trim_end_matches('.').to_owned()
+    rounded(value, 6).trim_end_matches('0').trim_end_matches('.').to_owned()
 }

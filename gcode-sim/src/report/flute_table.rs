@@ -90,7 +90,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
 }
 
 /// What is wanted, in words.
-pub fn wanted(burr: &NominalFlutes) -> String {
+pub fn nominal_table(burr: &NominalFlutes) -> String {
     let mut text = format!(
         "{} flutes, law {}, from {:.3} mm behind the end of the cylinder to polar angle {}, the pole {:.3} \
          mm in front of it\n",

@@ -18,7 +18,7 @@ pub fn document(report: &TestReport) -> Result<String, String> {
 fn case(case: &CaseReport) -> TestCase {
     // A failure is told as it is on the terminal, and in a few words for lists.
     let mut text = String::new();
-    case.tell(&mut text);
+    case.append_text(&mut text);
     let (code, message) = match (case.answer, &case.against, case.changes.first()) {
         (CaseAnswer::Refused, ..) => ("case-refused", case.error.clone().unwrap_or_default()),
         (CaseAnswer::Changed, _, Some(first)) => {
@@ -27,7 +27,7 @@ fn case(case: &CaseReport) -> TestCase {
             (&*first.code, format!("{}: {}{and}", first.code, first.message))
         }
         (_, Some(against), _) => (&*against.code, format!("{}: {}", against.code, against.message)),
-        (CaseAnswer::Older, ..) => ("case-older", format!("{OLDER_TEXT}; {}", case.left_open())),
+        (CaseAnswer::Older, ..) => ("case-older", format!("{OLDER_TEXT}; {}", case.unrecorded_text())),
         (CaseAnswer::New, ..) => ("case-new", "nothing accepted yet".to_owned()),
         (CaseAnswer::Same | CaseAnswer::Changed, None, _) => {
             return named(case, TestCaseStatus::success());

@@ -22,17 +22,17 @@ impl RenderReport {
 /// The document of `compare --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CompareReport {
-    /// Nothing differs by more than the tolerance, the sizes neither.
+    /// The pictures have equal sizes and no difference beyond the tolerance.
     pub same: bool,
     /// Width and height of both pictures, pixels.
     pub sizes: [[u32; 2]; 2],
-    /// How many pixels differ.
+    /// Number of different pixels.
     pub pixels: u64,
     /// The largest difference of a colour value, 0 to 255.
     pub largest: u8,
-    /// Left, top, right and bottom of what differs, both ends included.
+    /// Left, top, right and bottom of the differences, both ends included.
     pub bounds: Option<[u32; 4]>,
-    /// The file that marks what differs, where one was written.
+    /// The file with the differences marked, if one was written.
     pub picture: Option<String>,
 }
 

@@ -180,7 +180,7 @@ fn rule(code: &str) -> Rule {
         id: code.to_owned(),
         short_description: pages.first().map(|page| Text { text: page.title().to_owned() }),
         help: (!pages.is_empty()).then(|| Help {
-            text: joined(&explain::Page::shown),
+            text: joined(&explain::Page::plain_text),
             markdown: joined(&|page| page.text.to_owned()),
         }),
     }

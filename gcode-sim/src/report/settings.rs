@@ -14,9 +14,9 @@ pub struct SettingsReport {
 
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct SettingReport {
-    /// What `--control` is given before the `=`; several of a kind are named by the first and the last.
+    /// The key for `--control`, before the `=`; a range is given by its first and last key.
     pub key: String,
-    /// What it decides, with the parameter's number where a control has one.
+    /// Its meaning, with the parameter's number where a control has one.
     pub meaning: String,
     /// The values that it takes, in words.
     pub allowed: String,

@@ -1,6 +1,6 @@
 //! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
-use super::figures::{count, near, signed, signed_to};
-use super::verdict_summary::{made_by, put, summary};
+use super::figures::{count, rounded, signed, signed_to};
+use super::verdict_summary::{append_line, made_by, summary};
 use gcode_inspect::verify::{HoleGeometry, HoleVerdict, Verdict};
 
 /// How much of it, and in which order.
@@ -37,7 +37,10 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
     } else {
         lines(&mut text, &holes);
         if holes.len() < all {
-            put(&mut text, &format!("the worst {} of {all} holes; --full lists them all\n", holes.len()));
+            append_line(
+                &mut text,
+                &format!("the worst {} of {all} holes; --full lists them all\n", holes.len()),
+            );
         }
     }
     summary(&mut text, verdict);
@@ -64,7 +67,7 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
         return;
     }
     let wide = holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(4, 12);
-    put(
+    append_line(
         text,
         &format!(
             "{:<wide$} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  verdict",
@@ -72,20 +75,20 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
         ),
     );
     for hole in holes {
-        let [x, y, z] = hole.nominal.entry.map(|v| near(v, 3));
+        let [x, y, z] = hole.nominal.entry.map(|v| rounded(v, 3));
         let [dx, dy, dz] = off(hole).map(signed);
-        put(
+        append_line(
             text,
             &format!(
                 "{:<wide$} {x:>9} {y:>9} {z:>9} {dx:>8} {dy:>8} {dz:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  {}",
                 hole.id,
-                near(hole.at_entry, 4),
-                near(hole.at_bottom, 4),
-                near(hole.tilt, 4),
+                rounded(hole.at_entry, 4),
+                rounded(hole.at_bottom, 4),
+                rounded(hole.tilt, 4),
                 signed(hole.depth_error),
-                near(hole.position_deviation, 4),
-                near(hole.out_of_tolerance, 4),
-                said(hole)
+                rounded(hole.position_deviation, 4),
+                rounded(hole.out_of_tolerance, 4),
+                remarks_of(hole)
             ),
         );
     }
@@ -95,15 +98,15 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
 /// Every column, a line each for nominal, actual and deviation.
 fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     let head = ["x", "y", "z", "i", "j", "k", "d", "l"].map(|name| format!("{name:>10}")).concat();
-    put(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
+    append_line(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
     let columns = |placed: &HoleGeometry| {
-        let [x, y, z] = placed.entry.map(|v| near(v, 4));
-        let [i, j, k] = placed.axis.map(|v| near(v, 6));
-        let d = placed.diameter.map_or("-".to_owned(), |d| near(d, 3));
-        [x, y, z, i, j, k, d, near(placed.depth, 4)].map(|column| format!("{column:>10}")).concat()
+        let [x, y, z] = placed.entry.map(|v| rounded(v, 4));
+        let [i, j, k] = placed.axis.map(|v| rounded(v, 6));
+        let d = placed.diameter.map_or("-".to_owned(), |d| rounded(d, 3));
+        [x, y, z, i, j, k, d, rounded(placed.depth, 4)].map(|column| format!("{column:>10}")).concat()
     };
-    put(text, &format!("{:<11}{}", " nominal", columns(&hole.nominal)));
-    put(text, &format!("{:<11}{}", " actual", columns(&hole.actual)));
+    append_line(text, &format!("{:<11}{}", " nominal", columns(&hole.nominal)));
+    append_line(text, &format!("{:<11}{}", " actual", columns(&hole.actual)));
     let (nominal, actual) = (&hole.nominal, &hole.actual);
     let axis = [0, 1, 2].map(|i| signed_to(actual.axis[i] - nominal.axis[i], 6));
     let diameter = match (actual.diameter, nominal.diameter) {
@@ -112,22 +115,22 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     };
     let rest = [diameter, signed(hole.depth_error)];
     let all = off(hole).map(signed).into_iter().chain(axis).chain(rest);
-    put(
+    append_line(
         text,
         &format!("{:<11}{}", " deviation", all.map(|column| format!("{column:>10}")).collect::<String>()),
     );
-    put(
+    append_line(
         text,
         &format!(
             " position   Φ{}, tolerance Φ{tolerance}, out of tolerance by {} (entry {}, bottom {}, tilt {}°)",
-            near(hole.position_deviation, 4),
-            near(hole.out_of_tolerance, 4),
-            near(hole.at_entry, 4),
-            near(hole.at_bottom, 4),
-            near(hole.tilt, 4)
+            rounded(hole.position_deviation, 4),
+            rounded(hole.out_of_tolerance, 4),
+            rounded(hole.at_entry, 4),
+            rounded(hole.at_bottom, 4),
+            rounded(hole.tilt, 4)
         ),
     );
-    put(text, &format!(" verdict    {}; made by {}", said(hole), made_by(hole)));
+    append_line(text, &format!(" verdict    {}; made by {}", remarks_of(hole), made_by(hole)));
     text.push('\n');
 }
 
@@ -135,7 +138,7 @@ fn off(hole: &HoleVerdict) -> [f64; 3] {
     [0, 1, 2].map(|i| hole.actual.entry[i] - hole.nominal.entry[i])
 }
 
-fn said(hole: &HoleVerdict) -> String {
+fn remarks_of(hole: &HoleVerdict) -> String {
     let why: Vec<_> = hole.objections.iter().map(|code| code.trim_start_matches("hole-")).collect();
     if hole.ok { "pass".to_owned() } else { format!("FAIL {}", why.join(", ")) }
 }

@@ -15,7 +15,7 @@ use gcode_part::job::Alignment;
 use gcode_session::{Request, Run, run};
 use gcode_sim::report::diagnostic;
 
-use super::{CheckError, CheckedPackage, PackageVerdict, Programs, told};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, broken_package};
 use crate::families::alignment;
 use crate::package::{Package, file_name};
 
@@ -35,10 +35,10 @@ type Trial = fn(&TrialProgram<'_>) -> Result<TrialResult, CheckError>;
 
 /// What each main program has to find.
 const TRIALS: &[(u32, Trial)] = &[
-    (alignment::RUNOUT, runout::tried),
-    (alignment::SINE_TABLE, sine::tried),
-    (alignment::CHORD, chord::tried),
-    (alignment::ELLIPSE, ellipse::tried),
+    (alignment::RUNOUT, runout::run_trial),
+    (alignment::SINE_TABLE, sine::run_trial),
+    (alignment::CHORD, chord::run_trial),
+    (alignment::ELLIPSE, ellipse::run_trial),
 ];
 
 pub(super) fn check(job: &Alignment, package: &Package) -> Result<CheckedPackage, CheckError> {
@@ -48,11 +48,11 @@ pub(super) fn check(job: &Alignment, package: &Package) -> Result<CheckedPackage
         seconds: 0.0,
         report: String::new(),
         pictures: Vec::new(),
-        judgement: PackageVerdict::Measured,
+        verdict: PackageVerdict::Measured,
     };
     for main in &package.mains {
         let trial = TRIALS.iter().find(|(number, _)| number == main);
-        let (_, trial) = trial.ok_or_else(|| told(&file_name(*main), &"it has no trial"))?;
+        let (_, trial) = trial.ok_or_else(|| broken_package(&file_name(*main), &"it has no trial"))?;
         let tried = trial(&TrialProgram { job, package, main: *main })?;
         checked.refusals.extend(tried.refusals);
         checked.warnings.extend(tried.warnings);
@@ -75,12 +75,12 @@ impl TrialProgram<'_> {
     }
 
     fn broken(&self, error: &dyn std::fmt::Display) -> CheckError {
-        told(&self.name(), error)
+        broken_package(&self.name(), error)
     }
 
     /// The machine of the package's own machine file.
     fn machine(&self) -> Result<Machine, CheckError> {
-        Machine::parse(&self.package.machine).map_err(|e| told("machine.toml", &e))
+        Machine::parse(&self.package.machine).map_err(|e| broken_package("machine.toml", &e))
     }
 
     /// The program, to be run on that machine with the part misplaced.
@@ -104,19 +104,19 @@ impl TrialProgram<'_> {
     }
 
     /// Why a run is none, as for a terminal: an alarm, a limit, or what the control did without a word.
-    fn stopped(&self, run: &Run) -> Vec<String> {
+    fn stop_messages(&self, run: &Run) -> Vec<String> {
         let sources = run.control.memory().sources();
-        let warned = run.notes().filter(|finding| Severity::Warning <= finding.severity);
+        let warned = run.note_findings().filter(|finding| Severity::Warning <= finding.severity);
         let mut told: Vec<_> = warned.map(|finding| diagnostic::render(&finding, sources)).collect();
         if !matches!(run.outcome, Outcome::End) {
-            told.extend(run.stopped().map(|finding| diagnostic::render(&finding, sources)));
+            told.extend(run.stop_finding().map(|finding| diagnostic::render(&finding, sources)));
         }
         told
     }
 }
 
 /// A variable as a run left it; a vacant one is not a number.
-fn common(run: &Run, number: u32) -> f64 {
+fn common_variable(run: &Run, number: u32) -> f64 {
     match run.control.variable(number) {
         Ok(Value::Number(value)) => value,
         Ok(Value::Vacant) | Err(_) => f64::NAN,

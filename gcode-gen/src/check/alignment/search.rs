@@ -5,7 +5,7 @@ use gcode_inspect::machine::Placement;
 use gcode_part::job::Alignment;
 use gcode_sim::report::figures::short;
 
-use super::{TrialProgram, common};
+use super::{TrialProgram, common_variable};
 use crate::families::alignment::emit;
 
 /// O8211's own margin at both ends of a touch, and what rounding takes.
@@ -24,16 +24,16 @@ pub(super) fn advice(bench: &TrialProgram<'_>, parts: &[Placement]) -> Option<St
         }
         for (first, height) in [600, 800].into_iter().zip(job.runout.heights) {
             let expected = expected(&job, height);
-            let readings =
-                (first..first + job.runout.readings).map(|number| (common(&run, number) - expected).abs());
+            let readings = (first..first + job.runout.readings)
+                .map(|number| (common_variable(&run, number) - expected).abs());
             farthest = readings.fold(farthest, f64::max);
         }
     }
-    too_short(bench, "the surfaces of these parts are", farthest)
+    search_advice(bench, "the surfaces of these parts are", farthest)
 }
 
 /// A sentence with the search that would do for what is met so far from its place; `None` where the job's own does.
-pub(super) fn too_short(bench: &TrialProgram<'_>, what: &str, farthest: f64) -> Option<String> {
+pub(super) fn search_advice(bench: &TrialProgram<'_>, what: &str, farthest: f64) -> Option<String> {
     let enough = ((farthest + MARGIN) * 10.0).ceil() / 10.0;
     (enough > bench.job.probe_search && enough <= 1000.0).then(|| {
         format!(

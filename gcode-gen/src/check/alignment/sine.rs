@@ -5,13 +5,13 @@ use gcode_part::gauge::Thickness;
 use gcode_part::job::SineTable;
 use gcode_sim::report::figures::short;
 
-use super::{CheckError, TrialProgram, TrialResult, common};
+use super::{CheckError, TrialProgram, TrialResult, common_variable};
 use crate::families::alignment::{LARGEST_TILT, STEEPEST, gap};
 
 /// Tilts of the part about z, degrees.
 const TILTS: [f64; 3] = [0.0, 0.08, -0.031];
 
-pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
+pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let table = &bench.job.sine_table;
     let step = table.gauge_blocks.step().mm();
     let mut tried = TrialResult::default();
@@ -29,9 +29,9 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
             Placement::default(),
             [(583, tilt), (585, 0.0)].into_iter().chain(set.map(|set| (596, set))).collect(),
         )?;
-        tried.refusals.extend(bench.stopped(&run));
+        tried.refusals.extend(bench.stop_messages(&run));
         tried.seconds = run.control.seconds().0;
-        let [angle, height, change, left] = [586, 587, 588, 589].map(|number| common(&run, number));
+        let [angle, height, change, left] = [586, 587, 588, 589].map(|number| common_variable(&run, number));
         // Half a step, and what doubles round off.
         let off = (height - table.length * Deg(wanted).sin()).abs();
         worst = worst.max(off);
@@ -40,8 +40,8 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
             && (angle - wanted).abs() < 1e-9
             && ((made.0 - wanted) * 3600.0 - left).abs() < 1e-3
             && (height - change - table.length * Deg(stands).sin()).abs() < 1e-9
-            && (common(&run, 596) - made.0).abs() < 1e-9
-            && common(&run, 583).is_nan();
+            && (common_variable(&run, 596) - made.0).abs() < 1e-9
+            && common_variable(&run, 583).is_nan();
         if !holds {
             let message = format!(
                 "for a tilt of {tilt} degrees on a table at {stands} the program gives PHI {angle}, H \

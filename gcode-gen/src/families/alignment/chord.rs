@@ -51,11 +51,11 @@ fn write(job: &Alignment, text: &mut Text) {
     common_remarks(job, text);
     for line in [
         format!("CANDIDATES {} OF E IN #501 ON, X Y Z EACH, OF F IN #531 ON", chord.candidates),
-        "#570 #571 THE CHOSEN NUMBERS, #572 THEIR CHORD LESS THAT OF THE MODEL".to_owned(),
+        "#570 #571 THE CHOSEN NUMBERS, #572 THEIR CHORD MINUS THAT OF THE MODEL".to_owned(),
         "#574 #576 WHAT IS ADDED TO THE WORK OFFSET IN Y AND THE ROTARY".to_owned(),
-        "#573 #575 HOW FAR THE CHORD IS ASIDE IN X AND Z, NOT CORRECTED".to_owned(),
+        "#573 #575 OFFSET OF THE CHORD IN X AND Z, NOT CORRECTED".to_owned(),
         "#577 TILT OF THE CHORD ABOUT Z, NOT CORRECTED".to_owned(),
-        "TOUCHED POINTS TELL Y ALONE, THEN #573 #575 #576 ARE 0".to_owned(),
+        "TOUCHED POINTS GIVE Y ALONE, THEN #573 #575 #576 ARE 0".to_owned(),
         format!("CALLS O{TOUCH}. WHERE #501-#560 AND #578 ARE VACANT IT TOUCHES THEM WITH"),
         "THE PROBE. CANDIDATES OF MARKS ARE ENTERED BY HAND, ALL OF THEM, WITH".to_owned(),
         "#578 VACANT, THEN NOTHING MOVES. #578 1. IS A TOUCH BROKEN OFF, AN".to_owned(),

@@ -78,8 +78,8 @@ pub fn overwritten() -> impl Iterator<Item = (u32, String)> {
 /// The modes that all measurements begin in. A local shift of the rotary is cancelled, for its axis has another number on every
 /// machine, so that no macro can look for it; the macros refuse those in X, Y and Z.
 fn begin(job: &Alignment, text: &mut Text) {
-    start::modes(text);
-    start::cancel(&job.machine.rotary.letter.to_string(), text);
+    start::emit_modes(text);
+    start::emit_cancel(&job.machine.rotary.letter.to_string(), text);
 }
 
 /// What the heads of all main programs say.

@@ -5,7 +5,7 @@ use gcode_part::job::Alignment;
 use super::ALL;
 use super::writes::Writes;
 use crate::families::resident::fill;
-use crate::families::start::{external, rounding};
+use crate::families::start::{external_offset_term, shift_threshold};
 use crate::nc::number::number;
 use crate::nc::program::name;
 use crate::package::Program;
@@ -45,10 +45,10 @@ impl Resident {
             ("{name}", name(one.number, self.dialect)),
             ("{rotary}", self.rotary.to_string()),
             ("{increment}", number(self.increment.size())),
-            ("{rounding}", number(rounding(self.increment))),
+            ("{rounding}", number(shift_threshold(self.increment))),
             ("{per_unit}", number(self.increment.per_unit())),
             // Of axis 1 + #12.
-            ("{external}", external(self.dialect, "[5201+#12]")),
+            ("{external}", external_offset_term(self.dialect, "[5201+#12]")),
             ("{writes}", one.writes.remark()),
         ];
         fill(one.text, self.dialect, &marks)
@@ -68,7 +68,7 @@ pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::families::resident::hold;
+    use crate::families::resident::assert_displayable;
 
     #[test]
     fn every_control_can_show_every_text() {
@@ -76,7 +76,7 @@ mod tests {
             for (_, increment) in Increment::ALL {
                 for rotary in ['A', 'B', 'C'] {
                     let resident = Resident { dialect, increment, rotary };
-                    resident.programs().iter().for_each(|program| hold(&program.text));
+                    resident.programs().iter().for_each(|program| assert_displayable(&program.text));
                 }
             }
         }

@@ -43,7 +43,7 @@ fn write(job: &Alignment, text: &mut Text) {
         format!("CALLS O{FIT} TWICE, BETWEEN THEM A STOP TO CORRECT THE PART"),
         "#580 #581 SHIFT OF THE PART IN X AND Z, #582 #583 ITS TILT ABOUT".to_owned(),
         "X AND Z, OF THE LAST PASS".to_owned(),
-        "#584 ITS SHIFT IN Y, LESS SURE. #585 WHAT THE FIT LEAVES".to_owned(),
+        "#584 ITS SHIFT IN Y, LESS ACCURATE. #585 RESIDUAL OF THE FIT".to_owned(),
         "#590-#595 THE SAME OF THE FIRST PASS".to_owned(),
         format!("AT THE STOP, AT {rotary}0., THE PART IS MOVED BACK BY #580 #581 AND"),
         "SHIMMED BACK BY #582, THE TILT #583 IS LEFT TO O8230. CYCLE START".to_owned(),

@@ -41,16 +41,16 @@ fn write(job: &Alignment, text: &mut Text) {
     let k = control::alarm_thousands(job.control.dialect);
     let [phi, length] = [table.phi, table.length].map(number);
     let set = table.gauge_blocks;
-    let setting = gauge::setting(Mm(table.length), Deg(table.phi), &set);
+    let setting = gauge::sine_setting(Mm(table.length), Deg(table.phi), &set);
     text.remark(format!("L {length} PHI {phi}, H = L*SIN[PHI] = {:.5}", setting.height.0));
     text.remark(format!("GAUGE BLOCKS {}", set.name));
     for line in stack(&setting) {
         text.remark(line);
     }
     for line in [
-        "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM TELLS".to_owned(),
+        "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM GIVES".to_owned(),
         "#586 PHI TO SET, #587 HEIGHT OF THE BLOCKS, #588 ITS CHANGE".to_owned(),
-        "#589 SECONDS OF ARC BY WHICH #587 MAKES TOO MUCH".to_owned(),
+        "#589 ERROR OF #587 IN SECONDS OF ARC".to_owned(),
     ] {
         text.remark(line);
     }
@@ -60,7 +60,7 @@ fn write(job: &Alignment, text: &mut Text) {
     }
     for line in [
         "#596 IS PHI AS THE TABLE IS SET, VACANT AT FIRST, THEN IT IS".to_owned(),
-        format!("{phi}. WHOEVER SETS THE TABLE OTHERWISE WRITES IT THERE"),
+        format!("{phi}. IF THE TABLE IS SET DIFFERENTLY WRITE IT THERE"),
         "THE FIRST STOP ASKS WHETHER IT IS RIGHT, IF NOT RESET AND WRITE IT".to_owned(),
         "CYCLE START AT THE SECOND SAYS THAT THE TABLE IS SET, #596 IS CHANGED".to_owned(),
         "AND #583 IS USED UP. THEN O8210 AGAIN".to_owned(),
@@ -104,7 +104,7 @@ fn stack(setting: &SineSetting) -> Vec<String> {
     }
     let names: Vec<_> = setting.stack.blocks.iter().map(ToString::to_string).collect();
     let mut lines: Vec<_> = names.chunks(8).map(|names| format!("BLOCKS {}", names.join(" + "))).collect();
-    let over = if setting.left < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
-    lines.push(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.left.abs()));
+    let over = if setting.remainder < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
+    lines.push(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.remainder.abs()));
     lines
 }

@@ -14,29 +14,29 @@ use super::path::{Point, points};
 /// Where a flute leans most off its law.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WorstHelixError {
-    pub(super) off: Deg,
+    pub(super) error: Deg,
     /// From the tip.
     pub(super) polar: Deg,
 }
 
 /// The part of the tolerance that is used: a measurement may begin and end between the places looked at here.
-const USED: f64 = 0.95;
+const USED_SHARE: f64 = 0.95;
 
 /// The chord error to make the moves for: the job's, or a smaller one that keeps the helix angle within its tolerance.
 ///
 /// # Errors
 /// None does; how far a flute leans off at best.
 pub(super) fn chord_error(job: &Burr) -> Result<f64, WorstHelixError> {
-    let allowed = Deg(USED * job.tolerance.helix);
+    let allowed = Deg(USED_SHARE * job.tolerance.helix);
     let least = job.control.increment.size();
     let mut best: Option<WorstHelixError> = None;
     let mut error = job.chord_error;
     loop {
-        let lean = worst(job, error);
-        if lean.off <= allowed {
+        let helix_error = worst_error(job, error);
+        if helix_error.error <= allowed {
             return Ok(error);
         }
-        let better = best.filter(|best| best.off <= lean.off).unwrap_or(lean);
+        let better = best.filter(|best| best.error <= helix_error.error).unwrap_or(helix_error);
         if error <= least {
             return Err(better);
         }
@@ -48,7 +48,7 @@ pub(super) fn chord_error(job: &Burr) -> Result<f64, WorstHelixError> {
 
 /// Why no moves keep the helix angle, and what would do.
 pub(super) fn refusal(job: &Burr) -> Option<String> {
-    let lean = chord_error(job).err()?;
+    let helix_error = chord_error(job).err()?;
     let holds = |change: &dyn Fn(&mut Burr)| {
         let mut other = job.clone();
         change(&mut other);
@@ -77,15 +77,16 @@ pub(super) fn refusal(job: &Burr) -> Option<String> {
             .find(|error| holds(&|job| job.chord_error = *error))
             .map(|error| format!("chord_error = {error:?}, because the angle is measured over 250 of them")),
     );
-    would.push(format!("[tolerance] helix = {:?}", (lean.off.0 / USED * 100.0).ceil() / 100.0));
+    would
+        .push(format!("[tolerance] helix = {:?}", (helix_error.error.0 / USED_SHARE * 100.0).ceil() / 100.0));
     Some(format!(
         "the helix angle cannot be kept within {}°: measured over {} mm of a flute, the shortest moves and \
          rounding to {} mm cause {:.2}° of error at polar angle {:.1}°; alternatives: {}",
         job.tolerance.helix,
         job.gauge(),
         job.control.increment.size(),
-        lean.off.0,
-        lean.polar.0,
+        helix_error.error.0,
+        helix_error.polar.0,
         would.join("; or ")
     ))
 }
@@ -99,12 +100,12 @@ struct ContactPoint {
     /// Along the meridian, around the axis, and around as the law has it.
     along: f64,
     around: f64,
-    wanted: f64,
+    nominal: f64,
 }
 
 /// The worst place of a flute whose moves are made for that chord error.
-fn worst(job: &Burr, error: f64) -> WorstHelixError {
-    let places = places(job, &points(job, error));
+fn worst_error(job: &Burr, error: f64) -> WorstHelixError {
+    let places = contact_points(job, &points(job, error));
     let length = |one: &ContactPoint, other: &ContactPoint| {
         let (along, around) = (other.along - one.along, other.around - one.around);
         (along * along + around * around).sqrt()
@@ -113,7 +114,7 @@ fn worst(job: &Burr, error: f64) -> WorstHelixError {
     let gauge = job.gauge().min(whole * (1.0 - 1e-9));
     // A is rounded otherwise on every flute: at both ends of a stretch by up to half an increment, against each other.
     let turn = Deg(job.control.increment.size()).to_rad();
-    let mut worst = WorstHelixError { off: Deg(0.0), polar: Deg(90.0) };
+    let mut worst = WorstHelixError { error: Deg(0.0), polar: Deg(90.0) };
     let mut end = 0;
     for (start, first) in places.iter().enumerate() {
         while end < places.len() && (end <= start || length(first, &places[end]) < gauge) {
@@ -122,18 +123,18 @@ fn worst(job: &Burr, error: f64) -> WorstHelixError {
         let Some(last) = places.get(end) else { break };
         let along = last.along - first.along;
         let found = Deg::atan2(last.around - first.around, along);
-        let wanted = Deg::atan2(last.wanted - first.wanted, along);
+        let wanted = Deg::atan2(last.nominal - first.nominal, along);
         let rounding = Deg::from_rad(turn * first.radius * wanted.cos() / length(first, last));
         let off = (found - wanted).abs() + rounding;
-        if worst.off < off {
-            worst = WorstHelixError { off, polar: Deg(90.0) - places[(start + end) / 2].c };
+        if worst.error < off {
+            worst = WorstHelixError { error: off, polar: Deg(90.0) - places[(start + end) / 2].c };
         }
     }
     worst
 }
 
 /// Places along all moves, a fortieth of the gauge length apart, ten a move at least.
-fn places(job: &Burr, points: &[Point]) -> Vec<ContactPoint> {
+fn contact_points(job: &Burr, points: &[Point]) -> Vec<ContactPoint> {
     let helix = Deg(job.helix);
     let begin = ContactPoint { radius: job.shape.radius, ..ContactPoint::default() };
     let mut places = vec![begin];
@@ -141,24 +142,24 @@ fn places(job: &Burr, points: &[Point]) -> Vec<ContactPoint> {
     for pair in points.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
         let turn = (to.a - from.a).to_rad();
-        let count = (40.0 * to.way / job.gauge()).ceil().max(10.0);
+        let count = (40.0 * to.path_length / job.gauge()).ceil().max(10.0);
         let arc = arcs(job).into_iter().find(|arc| from.c < to.c && to.c <= arc.to);
         for n in 1..=count as u32 {
             let part = f64::from(n) / count;
             last = match &arc {
                 // On the cylinder X and A go alike.
                 None => {
-                    let along = to.way * helix.cos() / count;
+                    let along = to.path_length * helix.cos() / count;
                     let around = job.shape.radius * turn / count;
-                    last.by(begin, along, around, helix.tan())
+                    last.advanced_to(begin, along, around, helix.tan())
                 }
                 Some(arc) => {
-                    let c = below(job, arc, from, to, part);
+                    let c = normal_direction(job, arc, from, to, part);
                     let middle = Deg((c.0 + last.c.0) / 2.0);
                     let slope = Flute { law: job.law, helix, arc: *arc }.slope(middle);
                     let here = ContactPoint { c, radius: arc.station(c).radius, ..last };
                     let around = arc.station(middle).radius * turn / count;
-                    last.by(here, arc.radius * (c - last.c).to_rad(), around, slope)
+                    last.advanced_to(here, arc.radius * (c - last.c).to_rad(), around, slope)
                 }
             };
             places.push(last);
@@ -168,7 +169,7 @@ fn places(job: &Burr, points: &[Point]) -> Vec<ContactPoint> {
 }
 
 /// The direction of the normal below the contact, so far along a move: C, but for what X and Y are off there.
-fn below(job: &Burr, arc: &Arc, from: &Point, to: &Point, part: f64) -> Deg {
+fn normal_direction(job: &Burr, arc: &Arc, from: &Point, to: &Point, part: f64) -> Deg {
     let grid = |value: f64| job.control.increment.round(value);
     let mix = |one: f64, other: f64| one + (other - one) * part;
     let c = Deg(mix(from.c.0, to.c.0));
@@ -182,11 +183,11 @@ fn below(job: &Burr, arc: &Arc, from: &Point, to: &Point, part: f64) -> Deg {
 
 impl ContactPoint {
     /// The place `here`, with the ways gone on to it.
-    fn by(&self, here: Self, along: f64, around: f64, slope: f64) -> Self {
+    fn advanced_to(&self, here: Self, along: f64, around: f64, slope: f64) -> Self {
         Self {
             along: self.along + along,
             around: self.around + around,
-            wanted: self.wanted + slope * along,
+            nominal: self.nominal + slope * along,
             ..here
         }
     }

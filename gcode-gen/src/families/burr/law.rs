@@ -5,7 +5,7 @@ use gcode_part::job::FluteLaw;
 use super::nose::Arc;
 
 /// How much faster or slower than it should be the contact may go along the flute within a move: a quarter.
-const SWING: f64 = 0.25;
+const MAX_SPEED_SWING: f64 = 0.25;
 
 /// A flute on one arc of the nose.
 #[derive(Clone, Copy, Debug)]
@@ -50,10 +50,10 @@ impl Flute {
 
     /// The tangent of the helix angle at C.
     pub(super) fn slope(&self, c: Deg) -> f64 {
-        self.bend(c).slope
+        self.slope_change(c).slope
     }
 
-    fn bend(&self, c: Deg) -> SlopeChange {
+    fn slope_change(&self, c: Deg) -> SlopeChange {
         let (arc, tan) = (&self.arc, self.helix.tan());
         let r = arc.station(c).radius;
         match self.law {
@@ -78,9 +78,9 @@ impl Flute {
     /// A straight move from C to C + c leaves the true X, Y and A by at most c²/8 of their second derivatives: X'' and
     /// Y'' are Rot(C)·e. Y goes into the surface, X along the meridian, A around; of the last two only what is across
     /// the flute counts.
-    fn bending(&self, c: Deg) -> f64 {
+    fn path_curvature(&self, c: Deg) -> f64 {
         let [meridian, normal] = self.arc.carried(c);
-        let SlopeChange { slope, around } = self.bend(c);
+        let SlopeChange { slope, around } = self.slope_change(c);
         let across = (meridian * slope - around) / (1.0 + slope * slope).sqrt();
         (normal * normal + across * across).sqrt()
     }
@@ -89,11 +89,11 @@ impl Flute {
     ///
     /// What a move strays by along the flute leaves it on it, but from end to end the contact gets slower or faster by
     /// half the move times that bending, and would even go back.
-    fn steady(&self, c: Deg) -> Deg {
+    fn max_steady_step(&self, c: Deg) -> Deg {
         let [meridian, _] = self.arc.carried(c);
-        let SlopeChange { slope, around } = self.bend(c);
+        let SlopeChange { slope, around } = self.slope_change(c);
         let along = (meridian + around * slope).abs();
-        Deg::from_rad(2.0 * SWING * self.arc.radius * (1.0 + slope * slope) / along)
+        Deg::from_rad(2.0 * MAX_SPEED_SWING * self.arc.radius * (1.0 + slope * slope) / along)
     }
 
     /// The longest move from C on that stays within `error` mm of the flute at a steady speed, shortened so that moves of its length
@@ -101,8 +101,8 @@ impl Flute {
     /// be shorter; 10° is the most.
     pub(super) fn step(&self, c: Deg, error: f64) -> Deg {
         let by = |c: Deg| {
-            let straight = Deg::from_rad((8.0 * error / self.bending(c)).sqrt());
-            straight.0.min(self.steady(c).0).min(10.0)
+            let straight = Deg::from_rad((8.0 * error / self.path_curvature(c)).sqrt());
+            straight.0.min(self.max_steady_step(c).0).min(10.0)
         };
         let (rest, step) = (self.arc.to - c, by(c));
         let step = step.min(by(Deg(c.0 + step.min(rest.0))));

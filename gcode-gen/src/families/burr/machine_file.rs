@@ -16,7 +16,7 @@ pub(super) fn machine_file(job: &Burr) -> String {
          axes = \"XYABC\"\n\
          \n\
          # Machine zero is on the C axis, with X and Y at 0.\n\
-         # X and Y slide the table C, which carries the head A, which turns the burr about its own axis.\n\
+         # X and Y slide the table C, which carries the head A, which rotates the burr about its own axis.\n\
          {}{}{}{}\
          # The burr: x along its axis towards the shank, origin where its cylinder ends.\n\
          [part]\n\

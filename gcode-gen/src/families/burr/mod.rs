@@ -13,7 +13,7 @@ use gcode_part::job::{Burr, FluteLaw, Nose, ProgramForm};
 
 use self::macros::{FLUTE, Resident};
 use self::nose::cylinder;
-use self::path::{Point, clear, points, stand_off};
+use self::path::{Point, clearance_y, points, stand_off};
 use super::start::Start;
 use super::{Family, control};
 use crate::nc::block::Block;
@@ -53,8 +53,13 @@ impl<'j> Main<'j> {
     fn new(job: &'j Burr) -> Self {
         let chord_error = helix_error::chord_error(job).unwrap_or(job.chord_error);
         // Not A, which turns all flutes alike. What axis the number 3 is on a grinder isn't known.
-        let start =
-            Start { control: job.control, changed: 97, shifted: 98, axes: "XY", cancelled: "BC".to_owned() };
+        let start = Start {
+            control: job.control,
+            changed_alarm: 97,
+            shifted_alarm: 98,
+            axes: "XY",
+            cancelled_rotaries: "BC".to_owned(),
+        };
         Self { job, chord_error, start, text: Text::new(MAIN, "BALL-END ROTARY BURR", job.control.dialect) }
     }
 
@@ -156,7 +161,7 @@ impl<'j> Main<'j> {
     fn moves(&mut self) {
         let job = self.job;
         let points = points(job, self.chord_error);
-        let (signs, clear, stand_off) = (job.grinder.signs, clear(job), stand_off(job));
+        let (signs, clear, stand_off) = (job.grinder.signs, clearance_y(job), stand_off(job));
         // Rounded here: a control cuts off what a number in the program has beyond the increment.
         let increment = job.control.increment;
         let along = |letter: char, sign: i8, value: f64| {
@@ -186,7 +191,11 @@ impl<'j> Main<'j> {
             self.block(format!("G01 Y0. F{}", number(job.program.plunge)));
             self.block("G93");
             for point in rest {
-                self.block(format!("{} F{}", axes(point), number(rate(job.program.speed, point.way))));
+                self.block(format!(
+                    "{} F{}",
+                    axes(point),
+                    number(rate(job.program.speed, point.path_length))
+                ));
             }
             self.block(format!("G94 G00 {}", along('Y', signs.y, clear)));
         }
@@ -205,8 +214,8 @@ fn signs(job: &Burr) -> String {
     let turned: Vec<String> =
         all.iter().filter(|(_, sign)| *sign < 0).map(|(letter, _)| letter.to_string()).collect();
     match turned.is_empty() {
-        true => "ALL AXES RUN AS THE FORMULAS HAVE THEM".to_owned(),
-        false => format!("TURNED ROUND AGAINST THE FORMULAS {}", turned.join(" ")),
+        true => "ALL AXES RUN AS IN THE FORMULAS".to_owned(),
+        false => format!("REVERSED AGAINST THE FORMULAS {}", turned.join(" ")),
     }
 }
 

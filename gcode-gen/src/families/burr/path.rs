@@ -14,12 +14,12 @@ pub(super) struct Point {
     pub(super) a: Deg,
     pub(super) c: Deg,
     /// How long the contact's way is from the point before, on the burr.
-    pub(super) way: f64,
+    pub(super) path_length: f64,
 }
 
 /// The part of a chord error that rounding doesn't take: Y is rounded by up to half an increment; C is on its grid
 /// before X, Y and A are computed.
-fn left(chord_error: f64, job: &Burr) -> f64 {
+fn usable_chord_error(chord_error: f64, job: &Burr) -> f64 {
     chord_error - job.control.increment.size() / 2.0
 }
 
@@ -29,20 +29,20 @@ pub(super) fn points(job: &Burr, chord_error: f64) -> Vec<Point> {
     let [offset_x, offset_y] = job.grinder.c_offset;
     let helix = Deg(job.helix);
     let long = cylinder(job);
-    let mut points = vec![Point { x: -long, y: 0.0, a: Deg(0.0), c: Deg(0.0), way: 0.0 }];
+    let mut points = vec![Point { x: -long, y: 0.0, a: Deg(0.0), c: Deg(0.0), path_length: 0.0 }];
     let turned = Deg::from_rad(long * helix.tan() / shape.radius);
     if 0.0 < long {
-        points.push(Point { x: 0.0, y: 0.0, a: turned, c: Deg(0.0), way: long / helix.cos() });
+        points.push(Point { x: 0.0, y: 0.0, a: turned, c: Deg(0.0), path_length: long / helix.cos() });
     }
-    let mut begun = turned;
+    let mut start_angle = turned;
     for arc in arcs(job) {
         let flute = Flute { law: job.law, helix, arc };
-        let (mut c, mut a) = (arc.from, begun);
+        let (mut c, mut a) = (arc.from, start_angle);
         while c < arc.to {
-            let step = flute.step(c, left(chord_error, job));
+            let step = flute.step(c, usable_chord_error(chord_error, job));
             // A step below the grid would be none.
             let next = Deg(job.control.increment.round(c.0 + step.0).max(c.0 + job.control.increment.size()));
-            let turn = begun + flute.turn(next);
+            let turn = start_angle + flute.turn(next);
             let middle = arc.station(Deg((c.0 + next.0) / 2.0)).radius;
             let along = arc.radius * (next - c).to_rad();
             let around = middle * (turn - a).to_rad();
@@ -52,11 +52,11 @@ pub(super) fn points(job: &Burr, chord_error: f64) -> Vec<Point> {
                 y: offset_y - shape.radius + arc.radius - y,
                 a: turn,
                 c: next,
-                way: (along * along + around * around).sqrt(),
+                path_length: (along * along + around * around).sqrt(),
             });
             (c, a) = (next, turn);
         }
-        begun = a;
+        start_angle = a;
     }
     points
 }
@@ -67,7 +67,7 @@ pub(super) fn points(job: &Burr, chord_error: f64) -> Vec<Point> {
 /// The burr's lowest point is where its normal points down, which is where it touches while it is ground; so Y has to
 /// be as large as it is anywhere along the flute. A nose of arcs lies within a ball of the cylinder's radius that reaches
 /// as far.
-pub(super) fn clear(job: &Burr) -> f64 {
+pub(super) fn clearance_y(job: &Burr) -> f64 {
     let shape = &job.shape;
     let [offset_x, y] = job.grinder.c_offset;
     let x = offset_x - (super::nose::tip(shape) - shape.radius);

@@ -12,7 +12,7 @@ pub(super) fn machine_file(job: &Honeycomb) -> String {
     let _ = write!(
         text,
         "\n\
-         # The spindle stands along z.\n\
+         # The spindle is along z.\n\
          [head]\n\
          kind = \"fixed\"\n\
          direction = [0.0, 0.0, 1.0]\n\

@@ -30,8 +30,13 @@ pub fn emit(job: &Honeycomb) -> Package {
 fn main(job: &Honeycomb) -> String {
     let mut text = Text::new(MAIN, "HONEYCOMB OF RADIAL HOLES ON A CYLINDER", job.control.dialect);
     // Where the rows begin round the axis is the operator's: a shift of the rotary turns the whole pattern.
-    let start =
-        Start { control: job.control, changed: 51, shifted: 52, axes: "XYZ", cancelled: String::new() };
+    let start = Start {
+        control: job.control,
+        changed_alarm: 51,
+        shifted_alarm: 52,
+        axes: "XYZ",
+        cancelled_rotaries: String::new(),
+    };
     header(job).into_iter().chain(start.remarks()).for_each(|line| text.remark(line));
     let drill = &job.drill;
     let retract = number(job.machine.retract);
@@ -54,7 +59,7 @@ fn header(job: &Honeycomb) -> Vec<String> {
     let rotary = job.machine.rotary;
     let sign = if rotary.sign < 0 { "-" } else { "" };
     let (wanted, letter) = match job.spacing {
-        Spacing::Pitch(pitch) => (format!("PITCH {} WANTED", number(pitch)), 'B'),
+        Spacing::Pitch(pitch) => (format!("PITCH {} SPECIFIED", number(pitch)), 'B'),
         Spacing::Divisions(divisions) => (format!("{divisions} ROWS OF EACH OF TWO GROUPS"), 'E'),
     };
     let measured = match job.metric {
@@ -64,7 +69,7 @@ fn header(job: &Honeycomb) -> Vec<String> {
     let clamp = job
         .machine
         .clamp
-        .map(|clamp| format!("M{} LETS THE ROTARY GO BEFORE IT TURNS, M{} HOLDS IT", clamp.off, clamp.on));
+        .map(|clamp| format!("M{} RELEASES THE ROTARY BEFORE IT TURNS, M{} CLAMPS IT", clamp.off, clamp.on));
     let k = control::alarm_thousands(job.control.dialect);
     let mut lines = vec![
         format!("DIAMETER {outer}, LENGTH {length}, DRILL {}", number(job.drill.diameter)),

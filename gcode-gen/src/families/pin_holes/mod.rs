@@ -42,10 +42,10 @@ impl<'j> Main<'j> {
         let text = Text::new(MAIN, "PIN HOLES ON AN ELLIPSOID OF REVOLUTION", job.control.dialect);
         let start = Start {
             control: job.control,
-            changed: 17,
-            shifted: 18,
+            changed_alarm: 17,
+            shifted_alarm: 18,
             axes: "XYZ",
-            cancelled: job.machine.rotary.letter.to_string(),
+            cancelled_rotaries: job.machine.rotary.letter.to_string(),
         };
         Self { job, resident: Resident::of(job), start, text }
     }
@@ -57,9 +57,8 @@ impl<'j> Main<'j> {
         for (index, pass) in passes.iter().enumerate() {
             self.tool(pass, passes.get(index + 1));
         }
-        self.text.block(
-            Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD SET FOR NOTHING ANY MORE"),
-        );
+        self.text
+            .block(Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD ANGLE NO LONGER VALID"));
         self.text.block(Block::of("M30"));
         self.text.finish()
     }

@@ -1,6 +1,6 @@
 //! What only a part that is set up has: lines to write its readings into, and what to do when a measurement ends in an alarm.
 use gcode_part::job::{Alignment, Job};
-use gcode_sim::report::figures::{near, short};
+use gcode_sim::report::figures::{rounded, short};
 use maud::{Markup, html};
 
 use super::zero::on_surface;
@@ -62,7 +62,7 @@ pub(super) fn readings(sheet: &Sheet<'_>) -> Markup {
         let [x, y, across, up] =
             on_surface(job.surface, path.from + (path.to - path.from) * f64::from(n) / f64::from(PLACES - 1));
         let ball = [x + job.probe_radius * across, y + job.probe_radius * up];
-        let [x, y] = ball.map(|value| cell(near(value, 2)));
+        let [x, y] = ball.map(|value| cell(rounded(value, 2)));
         vec![x, y, cell("0"), blank(), blank()]
     });
     html! {

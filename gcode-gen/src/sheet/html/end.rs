@@ -13,7 +13,7 @@ const NEVER: &[&str] = &[
 ];
 
 pub(super) fn unknown(sheet: &Sheet<'_>) -> Markup {
-    let own = match &sheet.checked.judgement {
+    let own = match &sheet.checked.verdict {
         PackageVerdict::Holes(verdict) => verdict.not_checked.as_slice(),
         PackageVerdict::Flutes(verdict) => verdict.not_checked.as_slice(),
         PackageVerdict::Measured => &[],

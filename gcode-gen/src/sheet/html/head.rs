@@ -1,6 +1,6 @@
 //! The head of the sheet: what part, on what machine, which programs, and what the simulation says of them.
 use gcode_sim::report::encode::sha256;
-use gcode_sim::report::figures::{count, near};
+use gcode_sim::report::figures::{count, rounded};
 use maud::{Markup, html};
 
 use super::{blank, cell, kind, mains, table};
@@ -33,18 +33,18 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
     html! {
         div.verdict {
             b { "PASS. " (BASIS) ". " }
-            @match &sheet.checked.judgement {
+            @match &sheet.checked.verdict {
                 PackageVerdict::Holes(verdict) => {
                     (count(verdict.holes.len(), "hole")) ", all in tolerance"
                     @if let Some(worst) = verdict.worst {
-                        "; the worst position is Φ" (near(worst, 4)) ", tolerance Φ" (verdict.tolerance)
+                        "; the worst position is Φ" (rounded(worst, 4)) ", tolerance Φ" (verdict.tolerance)
                     }
                     "."
                 }
                 PackageVerdict::Flutes(verdict) => {
                     (verdict.sentence())
                     @if let Some(off) = verdict.surface_deviation {
-                        "; contact deviation from the tooth bottom at most " (near(off, 4)) " mm, tolerance " (verdict.tolerance)
+                        "; contact deviation from the tooth bottom at most " (rounded(off, 4)) " mm, tolerance " (verdict.tolerance)
                         " mm"
                     }
                     "."

@@ -10,7 +10,7 @@ use super::{blank, cell, table};
 use crate::check::PackageVerdict;
 use crate::order::passes;
 use crate::sheet::Sheet;
-use crate::sheet::settings::BLOCKS;
+use crate::sheet::settings::MAX_BLOCKS;
 use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
@@ -102,7 +102,7 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
 
 /// The order in which the head is set, and the holes made with each setting; only pin holes have it.
 pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
-    let (Job::PinHoles(job), PackageVerdict::Holes(verdict)) = (sheet.job, &sheet.checked.judgement) else {
+    let (Job::PinHoles(job), PackageVerdict::Holes(verdict)) = (sheet.job, &sheet.checked.verdict) else {
         return html! {};
     };
     let by = match job.machine.head.kind {
@@ -160,7 +160,7 @@ fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
 /// What the control must be set to for the numbers of this sheet.
 pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
     let [slide, turn] = sheet.record.rapids;
-    let codes: Vec<String> = sheet.record.passed_on.iter().map(|code| format!("M{code:02}")).collect();
+    let codes: Vec<String> = sheet.record.auxiliary_codes.iter().map(|code| format!("M{code:02}")).collect();
     html! {
         div.together {
             h2 { "Control requirements" }
@@ -179,18 +179,18 @@ pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
 
 /// The switches that the programs depend on.
 fn needed(sheet: &Sheet<'_>) -> Markup {
-    let (needed, waiting) = (&sheet.needed, &sheet.record.waiting);
+    let (needed, waiting) = (&sheet.required_settings, &sheet.record.alarmed_programs);
     html! {
         @for one in needed {
             li {
-                b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.otherwise) "."
+                b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.consequence) "."
             }
         }
         @if sheet.package.mains.len() > waiting.len() {
           li {
             "All settings in which controls differ (" code { "gcode-sim settings" } " lists them) were changed one by one: "
             @if needed.is_empty() { "none" } @else { "no other" }
-            " changes what the first " (BLOCKS) " blocks of a run do."
+            " changes what the first " (MAX_BLOCKS) " blocks of a run do."
             @if !waiting.is_empty() {
                 " Not tried with " (waiting.join(", ")) ", which ends in an alarm on a part in its nominal position."
             }

@@ -11,7 +11,7 @@ use crate::sheet::Sheet;
 use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn zero(sheet: &Sheet<'_>) -> Markup {
-    let (picture, words) = match (sheet.job, &sheet.checked.judgement) {
+    let (picture, words) = match (sheet.job, &sheet.checked.verdict) {
         (Job::PinHoles(job), PackageVerdict::Holes(verdict)) => (of_pin_holes(job, verdict), pin_holes(job)),
         (Job::Honeycomb(job), _) => (of_honeycomb(job), honeycomb(job)),
         (Job::Burr(job), _) => (of_burr(job), burr(job)),
@@ -263,7 +263,7 @@ fn burr(job: &Burr) -> Vec<String> {
 
 /// The burr at C0, X0 and Y0, the wheel touching it.
 fn of_burr(job: &Burr) -> Markup {
-    let flutes = Flutes::of_job(job);
+    let flutes = Flutes::from_job(job);
     let (radius, pole, start) = (flutes.profile.radius(), flutes.profile.pole(), flutes.start);
     let [ex, ey] = job.grinder.c_offset;
     let shank = start + 0.6 * radius;

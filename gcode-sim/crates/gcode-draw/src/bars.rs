@@ -60,9 +60,9 @@ impl Bars {
             let (top, bottom) = (y, y + pitch - 0.7 * text);
             let corners =
                 [px(left, top), px(left + length, top), px(left + length, bottom), px(left, bottom)];
-            words.inks.push(DrawCommand::Area {
+            words.commands.push(DrawCommand::Area {
                 points: corners.to_vec(),
-                color: palette::standing(HoleStatus::Good),
+                color: palette::status_colour(HoleStatus::Good),
             });
             let base = (top + bottom) / 2.0 + 0.4 * text;
             let dark = palette::TEXT;
@@ -78,9 +78,9 @@ impl Bars {
             words.write(below, Align::Left, text, palette::SOFT_TEXT, &note, page.width());
             notes.push(note);
         }
-        words.inks.push(DrawCommand::line(px(left, begin), px(left, y), 1.0, palette::RULE));
-        let Words { inks, labels, .. } = words;
-        Sheet { size, inks, labels, notes, magnification: None }
+        words.commands.push(DrawCommand::line(px(left, begin), px(left, y), 1.0, palette::RULE));
+        let Words { commands: inks, labels, .. } = words;
+        Sheet { size, commands: inks, labels, notes, magnification: None }
     }
 }
 
@@ -122,7 +122,7 @@ mod tests {
     fn a_bar_half_as_long_is_half_as_long() {
         let sheet = bars(2).lay_out(Size::new(1200, 800).unwrap());
         let lengths: Vec<f64> = sheet
-            .inks
+            .commands
             .iter()
             .filter_map(|ink| match ink {
                 DrawCommand::Area { points, .. } => Some(points[1].x - points[0].x),

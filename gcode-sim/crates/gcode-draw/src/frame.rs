@@ -9,7 +9,7 @@ pub(super) const LABEL_LIMIT: usize = 400;
 pub(super) struct Frame {
     pub(super) font: Font,
     /// Size of ordinary text, pixels.
-    pub(super) text: f64,
+    pub(super) text_size: f64,
     pub(super) scale: Scale,
     /// Radius in pixels beyond which a dial would hide the part.
     pub(super) largest_dial: f64,
@@ -22,15 +22,20 @@ pub(super) struct Frame {
 pub(super) struct LegendUse {
     pub(super) magnification: Option<f64>,
     pub(super) directions: bool,
-    pub(super) astray: bool,
+    pub(super) displacements: bool,
     /// Good holes are drawn as they are, without a sign.
-    pub(super) plain_good: bool,
+    pub(super) has_plain_good: bool,
     /// And those that aren't.
-    pub(super) plain_rest: bool,
+    pub(super) has_plain_rest: bool,
 }
 
 impl LegendUse {
     /// No holes are drawn.
-    pub(super) const NOTHING: Self =
-        Self { magnification: None, directions: false, astray: false, plain_good: false, plain_rest: false };
+    pub(super) const NOTHING: Self = Self {
+        magnification: None,
+        directions: false,
+        displacements: false,
+        has_plain_good: false,
+        has_plain_rest: false,
+    };
 }

@@ -4,7 +4,7 @@ use super::frame::{Frame, LABEL_LIMIT};
 use super::ink::{Align, DrawCommand, Px, Rect, px};
 use super::labels::{LabelArea, LabelPlacement, LeaderRule, Symbol};
 use super::lines::is_path;
-use super::marks::Drawn;
+use super::marks::DrawnMark;
 use super::obstacle::Obstacle;
 use super::palette;
 use super::role::Pen;
@@ -25,16 +25,16 @@ pub(super) struct LabelLayout {
 /// Which hole, where, and how many lines of its label.
 struct Label {
     mark: usize,
-    spot: LabelPlacement,
+    placement: LabelPlacement,
     lines: usize,
 }
 
 impl LabelLayout {
     /// As many lines for every good hole as all good holes have room for; the others get all they can, unless that
     /// costs others their number.
-    pub(super) fn of(scene: &Scene, drawn: &[Drawn], frame: &Frame, field: &LabelArea) -> Self {
+    pub(super) fn of(scene: &Scene, drawn: &[DrawnMark], frame: &Frame, field: &LabelArea) -> Self {
         let mut order: Vec<usize> = (0..scene.marks.len()).collect();
-        order.sort_by_key(|i| (scene.marks[*i].standing, *i));
+        order.sort_by_key(|i| (scene.marks[*i].status, *i));
         order.truncate(LABEL_LIMIT);
         let most = scene.marks.iter().map(|m| m.label.len()).max().unwrap_or(0);
         let mut best = Self { field: field.clone(), labels: Vec::new() };
@@ -57,23 +57,32 @@ impl LabelLayout {
         (good, bad): (usize, usize),
         order: &[usize],
         scene: &Scene,
-        drawn: &[Drawn],
+        drawn: &[DrawnMark],
         frame: &Frame,
         field: LabelArea,
     ) -> Self {
         let mut trial = Self { field, labels: Vec::new() };
         for i in order {
             let (mark, hole) = (&scene.marks[*i], &drawn[*i]);
-            let full = if mark.standing.is_good() { good } else { bad }.min(mark.label.len());
-            let way = if hole.crowded { LeaderRule::OutOfCrowd } else { LeaderRule::Clear };
-            let found = trial.place(mark, full, Symbol { at: hole.centre, clear: hole.clear, way }, frame);
+            let full = if mark.status.is_good() { good } else { bad }.min(mark.label.len());
+            let way = if hole.is_crowded { LeaderRule::OutOfCrowd } else { LeaderRule::Clear };
+            let found = trial.place(
+                mark,
+                full,
+                Symbol { position: hole.centre, clearance: hole.label_clearance, leader_rule: way },
+                frame,
+            );
             // What is wrong must be found again: its number may stand far off, on a line over other holes.
-            let far = Symbol { at: hole.centre, clear: hole.clear, way: LeaderRule::ThroughAll };
+            let far = Symbol {
+                position: hole.centre,
+                clearance: hole.label_clearance,
+                leader_rule: LeaderRule::ThroughAll,
+            };
             let found = match found {
-                None if !mark.standing.is_good() => trial.place(mark, full, far, frame),
+                None if !mark.status.is_good() => trial.place(mark, full, far, frame),
                 found => found,
             };
-            trial.labels.extend(found.map(|(lines, spot)| Label { mark: *i, spot, lines }));
+            trial.labels.extend(found.map(|(lines, spot)| Label { mark: *i, placement: spot, lines }));
         }
         trial
     }
@@ -87,7 +96,7 @@ impl LabelLayout {
     ) -> Option<(usize, LabelPlacement)> {
         (1..=lines).rev().find_map(|n| {
             let size = text_box(&mark.label[..n], frame);
-            Some((n, self.field.place(symbol, size, frame.text * LEADING)?))
+            Some((n, self.field.place(symbol, size, frame.text_size * LEADING)?))
         })
     }
 
@@ -102,14 +111,14 @@ impl LabelLayout {
         frame: &Frame,
         inks: &mut Vec<DrawCommand>,
     ) -> Vec<(Rect, Vec<String>)> {
-        let thin = (0.05 * frame.text).max(1.0);
-        let leaders = self.labels.iter().filter_map(|l| l.spot.leader);
+        let thin = (0.05 * frame.text_size).max(1.0);
+        let leaders = self.labels.iter().filter_map(|l| l.placement.leader);
         inks.extend(leaders.map(|(from, to)| DrawCommand::line(from, to, thin, palette::THIN)));
         let mut labels = Vec::new();
         for label in &self.labels {
             let lines = scene.marks[label.mark].label[..label.lines].to_vec();
-            write(&lines, &label.spot, frame, inks);
-            labels.push((label.spot.rect, lines));
+            write(&lines, &label.placement, frame, inks);
+            labels.push((label.placement.rect, lines));
         }
         labels
     }
@@ -159,7 +168,7 @@ pub(super) fn caption_strokes(
                 let own = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke));
                 let mut places = own.into_iter().flat_map(|path| path.points.iter().copied());
                 let apart = |place: &Px| {
-                    let rect = around(*place, size).grown(0.1 * frame.text);
+                    let rect = around(*place, size).grown(0.1 * frame.text_size);
                     let mut others = paths.iter().filter(|path| !std::ptr::eq(path.stroke, stroke));
                     field.is_free(&rect) && !others.any(|path| path.runs_through(&rect))
                 };
@@ -180,14 +189,18 @@ pub(super) fn caption_strokes(
         let spot = field.place_on(places, size).or_else(|| {
             let path = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke))?;
             let at = path.points[path.points.len() / 2];
-            field.place(Symbol { at, clear: 0.0, way: LeaderRule::ThroughAll }, size, frame.text * LEADING)
+            field.place(
+                Symbol { position: at, clearance: 0.0, leader_rule: LeaderRule::ThroughAll },
+                size,
+                frame.text_size * LEADING,
+            )
         });
         if let Some(spot) = spot {
             if let Some((from, to)) = spot.leader {
-                inks.push(DrawCommand::line(from, to, (0.05 * frame.text).max(1.0), palette::THIN));
+                inks.push(DrawCommand::line(from, to, (0.05 * frame.text_size).max(1.0), palette::THIN));
                 inks.push(DrawCommand::Disc {
                     centre: from,
-                    radius: 0.17 * frame.text,
+                    radius: 0.17 * frame.text_size,
                     color: palette::TEXT,
                 });
             }
@@ -244,14 +257,14 @@ fn around(middle: Px, (width, height): (f64, f64)) -> Rect {
 }
 
 fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
-    let widest = lines.iter().map(|l| frame.font.width(l, frame.text)).fold(0.0, f64::max);
-    let height = frame.text * (LEADING * (lines.len() as f64 - 1.0) + ASCENT + DESCENT);
-    (widest + 0.3 * frame.text, height + 0.1 * frame.text)
+    let widest = lines.iter().map(|l| frame.font.width(l, frame.text_size)).fold(0.0, f64::max);
+    let height = frame.text_size * (LEADING * (lines.len() as f64 - 1.0) + ASCENT + DESCENT);
+    (widest + 0.3 * frame.text_size, height + 0.1 * frame.text_size)
 }
 
 /// The lines in a box that interrupts what is below it, as a dimension interrupts its line.
 fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<DrawCommand>) {
-    let (rect, size, align) = (spot.rect, frame.text, spot.align);
+    let (rect, size, align) = (spot.rect, frame.text_size, spot.align);
     inks.push(DrawCommand::area(rect, palette::PAPER));
     let x = match align {
         Align::Left => rect.left + 0.15 * size,
@@ -298,7 +311,7 @@ mod tests {
         let sheet = sheet(names.iter().enumerate().map(|(n, name)| (path(n), Pen::Feed, *name)).collect());
         assert!(sheet.notes.is_empty(), "{:?}", sheet.notes);
         let places: Vec<Rect> = names.iter().map(|name| place(&sheet, name)).collect();
-        let ends = sheet.inks.iter().filter(|ink| matches!(ink, DrawCommand::Disc { .. })).count();
+        let ends = sheet.commands.iter().filter(|ink| matches!(ink, DrawCommand::Disc { .. })).count();
         assert!(3 <= ends, "{places:?}");
     }
 
@@ -310,7 +323,7 @@ mod tests {
             sheet(vec![tick([-1.0, 30.0], [-4.0, 30.0], "left"), tick([50.0, 61.0], [50.0, 68.0], "over")]);
         let (left, over) = (place(&sheet, "left"), place(&sheet, "over"));
         let ends = |upright: bool| {
-            let lines = sheet.inks.iter().filter_map(|ink| match ink {
+            let lines = sheet.commands.iter().filter_map(|ink| match ink {
                 DrawCommand::Line { points, .. } if points.len() == 2 => Some((points[0], points[1])),
                 _ => None,
             });

@@ -41,7 +41,7 @@ pub use sheet::{Sheet, lay_out};
 pub use size::Size;
 pub use views::development::development;
 pub use views::flutes::{Fault, FlutePoint, FluteView, side_view, tip_view};
-pub use views::helix::{HelixAt, HelixCourses, helix_graph};
+pub use views::helix::{HelixCourses, HelixPoint, helix_graph};
 pub use views::purpose::PicturePurpose;
 pub use views::side::Side;
 pub use views::top::{Cylinder, DrawnHole, PathKind, PathPiece, TopView, top_view};

@@ -11,11 +11,11 @@ use super::symbol;
 
 /// The tool's path: seen, but nothing needs to keep off it.
 pub(super) fn is_path(pen: Pen) -> bool {
-    matches!(pen, Pen::Feed | Pen::Faulty | Pen::Hidden | Pen::Rapid | Pen::Kept | Pen::Now | Pen::Before)
+    matches!(pen, Pen::Feed | Pen::Faulty | Pen::Hidden | Pen::Rapid | Pen::Unchanged | Pen::New | Pen::Old)
 }
 
 pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> DrawCommand {
-    let (color, width, dash) = palette::pen(stroke.pen, frame.text);
+    let (color, width, dash) = palette::pen(stroke.pen, frame.text_size);
     let width = width.max(1.0);
     match &stroke.shape {
         Shape::Line(points) => DrawCommand::Line {
@@ -63,7 +63,7 @@ pub(super) fn axes(
     drawing: Rect,
     field: &mut LabelArea,
 ) -> Vec<DrawCommand> {
-    let text = frame.text;
+    let text = frame.text_size;
     let part = part(frame, extent);
     let origin = frame.scale.px([0.0, 0.0]);
     let mut inks = Vec::new();
@@ -111,17 +111,17 @@ fn part(frame: &Frame, (low, high): (Point, Point)) -> Rect {
 /// Whether a dial, as large as any may be, would cover an axis' arrow.
 pub(super) fn are_arrows_hidden(scene: &Scene, frame: &Frame, extent: (Point, Point)) -> bool {
     let origin = frame.scale.px([0.0, 0.0]);
-    let with_dial = scene.marks.iter().filter(|mark| mark.misfit.is_some() && scene.zone.is_some());
+    let with_dial = scene.marks.iter().filter(|mark| mark.deviation.is_some() && scene.zone.is_some());
     let dials: Vec<Obstacle> = with_dial
         .map(|mark| Obstacle::Disc {
-            centre: frame.scale.px(mark.at),
-            radius: frame.largest_dial + 0.5 * frame.text,
+            centre: frame.scale.px(mark.position),
+            radius: frame.largest_dial + 0.5 * frame.text_size,
         })
         .collect();
     scene.axes.iter().any(|axis| {
         let along = [axis.direction[0], -axis.direction[1]];
         let tip = leave(origin, along, part(frame, extent).grown(frame.axis_reach));
-        let neck = tip.toward(along, -1.1 * frame.text);
+        let neck = tip.toward(along, -1.1 * frame.text_size);
         dials.iter().any(|dial| dial.crosses(neck, tip))
     })
 }
@@ -147,7 +147,7 @@ fn leave(from: Px, along: [f64; 2], rect: Rect) -> Px {
 
 /// A bar of a round length, no longer than a third of the drawing.
 pub(super) fn scale_bar(frame: &Frame, area: Rect) -> Vec<DrawCommand> {
-    let text = frame.text;
+    let text = frame.text_size;
     let length = bar_length(0.3 * area.width() / frame.scale.factor);
     let (left, wide) = (area.left + 0.8 * text, length * frame.scale.factor);
     let y = area.bottom - 0.9 * text;

@@ -18,7 +18,7 @@ pub fn paint(sheet: &Sheet) -> Pixmap {
     let Rgb(r, g, b) = palette::PAPER;
     pixmap.fill(tiny_skia::Color::from_rgba8(r, g, b, 255));
     let font = Font::embedded();
-    for ink in &sheet.inks {
+    for ink in &sheet.commands {
         put(&mut pixmap, &font, ink);
     }
     pixmap

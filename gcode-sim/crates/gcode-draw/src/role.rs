@@ -21,9 +21,9 @@ pub enum Pen {
     /// Path of the tool in rapid motion.
     Rapid,
     /// Of two revisions a cut of both, one that is another one now, and what it was before.
-    Kept,
-    Now,
-    Before,
+    Unchanged,
+    New,
+    Old,
     /// Of a graph.
     Grid,
     /// A curve of a graph: what was found, and where that is one of many, the others.

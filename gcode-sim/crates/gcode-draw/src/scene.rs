@@ -59,16 +59,16 @@ pub enum Shape {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
     /// Where it should be; where it is, if nothing was asked for.
-    pub at: Point,
+    pub position: Point,
     pub radius: f64,
-    pub standing: HoleStatus,
+    pub status: HoleStatus,
     /// Most important first; what finds no room is left out from the end.
     pub label: Vec<String>,
     /// Projection of the unit vector out of the part.
     pub direction: Option<Point>,
-    pub misfit: Option<ZoneDeviation>,
+    pub deviation: Option<ZoneDeviation>,
     /// Where it is in truth, if there is a place for it.
-    pub found: Option<Point>,
+    pub actual: Option<Point>,
 }
 
 /// Actual − nominal at both ends of a hole, mm, seen along the nominal axis: inside the zone's circle is inside tolerance.
@@ -87,14 +87,14 @@ pub struct LegendItem {
 /// What a line of the legend shows at its left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
-    Standing(HoleStatus),
+    Status(HoleStatus),
     /// The sheet puts it in the place of a standing whose holes it draws as they are, without a sign.
     Plain(HoleStatus),
     Pen(Pen),
     /// Left out by the sheet where no axis is drawn.
     Direction,
     /// The sheet adds how many times it is magnified, or leaves the line out where none is drawn.
-    Misfit,
+    Deviation,
     /// A line to where a hole is instead. Left out by the sheet where none is drawn.
-    Astray,
+    Displacement,
 }

@@ -11,19 +11,19 @@ pub struct Size {
 }
 
 /// The longer and the shorter side below which the smallest text is no longer legible.
-const LEAST: (u32, u32) = (480, 360);
+const MIN_SIZE: (u32, u32) = (480, 360);
 /// 8,192 × 8,192 pixels are 256 MB while painting.
-const MOST: u32 = 8192;
+const MAX_SIDE: u32 = 8192;
 
 impl Size {
     /// # Errors
     /// Below 480x360 (or 360x480) or beyond 8192 a side.
     pub fn new(width: u32, height: u32) -> Result<Self, PictureError> {
-        if width.max(height) < LEAST.0 || width.min(height) < LEAST.1 {
+        if width.max(height) < MIN_SIZE.0 || width.min(height) < MIN_SIZE.1 {
             return Err(PictureError::TooSmall { width, height, least: "480x360" });
         }
-        if width.max(height) > MOST {
-            return Err(PictureError::TooLarge { width, height, most: MOST });
+        if width.max(height) > MAX_SIDE {
+            return Err(PictureError::TooLarge { width, height, most: MAX_SIDE });
         }
         Ok(Self { width, height })
     }

@@ -6,8 +6,8 @@ use gcode_lang::units::Deg;
 
 /// The sign of a standing, `radius` pixels large. Every one differs from the others in outline and in its mark:
 /// ✓ in a disc, ✗ in a square, an empty dashed ring, + in a triangle, a dot in a ring.
-pub(super) fn standing(standing: HoleStatus, at: Px, radius: f64) -> Vec<DrawCommand> {
-    let color = palette::standing(standing);
+pub(super) fn status_sign(standing: HoleStatus, at: Px, radius: f64) -> Vec<DrawCommand> {
+    let color = palette::status_colour(standing);
     let stroke = (radius * 0.3).max(1.2);
     match standing {
         _ if radius < DOT => hole(standing, at, radius, [0.0, 1.0], 1.0),
@@ -88,7 +88,7 @@ pub(super) fn hole(
     let low = (flat * radius).max(0.4 * LEAST_HOLE);
     let seen = |[x, y]: [f64; 2]| at.toward(along, low * y).toward([along[1], -along[0]], radius * x);
     let round = || (0..24u8).map(|n| Deg(15.0 * f64::from(n))).map(|turn| [turn.cos(), turn.sin()]).map(seen);
-    let color = palette::standing(standing);
+    let color = palette::status_colour(standing);
     match standing {
         HoleStatus::Good => vec![DrawCommand::Area { points: round().collect(), color }],
         HoleStatus::Bad => {
@@ -141,7 +141,7 @@ mod tests {
 
     /// What is left of a sign in a photocopy: kinds of ink and number of points, but no colours.
     fn shape(of: HoleStatus) -> Vec<String> {
-        let inks = standing(of, px(0.0, 0.0), 10.0);
+        let inks = status_sign(of, px(0.0, 0.0), 10.0);
         let kinds = inks.iter().map(|ink| match ink {
             DrawCommand::Line { points, dash, .. } => format!("line {} {dash:?}", points.len()),
             DrawCommand::Area { points, .. } => format!("area {}", points.len()),
@@ -156,7 +156,7 @@ mod tests {
     fn dots_differ_by_more_than_colour_too() {
         let dots = [HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra];
         let kinds = dots.map(|of| {
-            format!("{:?}", standing(of, px(0.0, 0.0), 2.0)).split("color").next().map(str::to_owned)
+            format!("{:?}", status_sign(of, px(0.0, 0.0), 2.0)).split("color").next().map(str::to_owned)
         });
         for (i, a) in kinds.iter().enumerate() {
             assert!(kinds[i + 1..].iter().all(|b| a != b), "{a:?}");

@@ -6,19 +6,19 @@ use super::palette;
 pub(super) struct Words<'f> {
     pub(super) font: &'f Font,
     /// Height of the plain text, pixels.
-    pub(super) text: f64,
-    pub(super) inks: Vec<DrawCommand>,
+    pub(super) text_size: f64,
+    pub(super) commands: Vec<DrawCommand>,
     pub(super) labels: Vec<(Rect, Vec<String>)>,
 }
 
 impl<'f> Words<'f> {
     pub(super) fn new(font: &'f Font, text: f64) -> Self {
-        Self { font, text, inks: Vec::new(), labels: Vec::new() }
+        Self { font, text_size: text, commands: Vec::new(), labels: Vec::new() }
     }
 
     /// A larger title and a line for each note, from the page's top; where the last line stands.
     pub(super) fn head(&mut self, page: &Rect, title: &str, notes: &[String]) -> f64 {
-        let text = self.text;
+        let text = self.text_size;
         let mut y = page.top + 1.4 * text;
         self.write(px(page.left, y), Align::Left, 1.4 * text, palette::TEXT, title, page.width());
         for note in notes {
@@ -41,7 +41,7 @@ impl<'f> Words<'f> {
         let words = self.font.fitted(words, size, width);
         let place = self.place(at, align, size, &words);
         self.labels.push((place, vec![words.clone()]));
-        self.inks.push(DrawCommand::Text { at, align, size, text: words, color });
+        self.commands.push(DrawCommand::Text { at, align, size, text: words, color });
     }
 
     /// The place that words on the line through `at` take.

@@ -56,15 +56,15 @@ pub const CODES: [&str; 42] = [
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
-    /// What it is called: docs/changes.md has a section for each.
+    /// Its code: docs/changes.md has a section for each.
     pub code: Cow<'static, str>,
-    /// What is different, with numbers and units; makes sense alone.
+    /// The difference with numbers and units, a complete sentence.
     pub message: String,
-    /// The first block of the old revision that does it, where there is one.
+    /// The first block of the old revision that has it, if any.
     pub old: Option<BlockLocation>,
     /// … and of the new one.
     pub new: Option<BlockLocation>,
-    /// Of what is gone, the block of the new revision next to where it was.
+    /// For a removed block, the neighbouring block of the new revision.
     #[serde(rename = "near", default, skip_serializing_if = "Option::is_none")]
     pub anchor: Option<BlockLocation>,
     /// What else the same edit does.

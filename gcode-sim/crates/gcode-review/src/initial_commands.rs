@@ -8,28 +8,28 @@ use super::modal_conditions::ModalAspect;
 use super::record::Record;
 use gcode_control::{Modal, modal_code};
 
-/// What is commanded.
+/// The kind of command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum CommandKind {
     /// A modal code.
     Mode,
-    /// The place of an axis, wherever it stood.
+    /// An absolute position of an axis.
     Axis,
     /// A value of an offset.
     Offset,
 }
 
-/// Something that the program commands, at its first time.
+/// The first command of a mode, an axis or an offset.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FirstCommand {
     pub what: CommandKind,
-    /// What can't be commanded twice: the group of a mode, `03`, an axis, an offset, `G10 L2 P1 X`.
+    /// What is commanded: the group of a mode, `03`, an axis, an offset, `G10 L2 P1 X`.
     pub name: String,
-    /// As programs write it.
+    /// As written in programs.
     pub text: String,
-    /// How many moves were made before.
+    /// Number of moves before it.
     pub moves: usize,
     /// Its block, by its number in the record.
     pub place: usize,

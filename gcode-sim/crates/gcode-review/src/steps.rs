@@ -46,25 +46,26 @@ pub(super) enum StepKind {
     Silent(UnsimulatedKind, String),
 }
 
-/// What moves nothing here and means something on a machine.
+/// A command without simulated effect that has an effect on a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum UnsimulatedKind {
-    /// A block skip in front of a block that is done, or inside.
+    /// A block skip before or inside an executed block.
     Skip,
-    /// How exactly corners are cut in this block, how far is read ahead.
+    /// Exact stop and lookahead of a single block.
     Path,
     /// Another G code without effect here.
     GCode,
     /// An M code without effect here.
     MCode,
-    /// A T whose tool isn't put in before another is called: the magazine turns, or the machine's own codes change tools.
+    /// A T whose tool is not loaded before another is called: the magazine moves, or the machine's own codes
+    /// change tools.
     Tool,
-    /// An S with the spindle off that no M03 or M04 takes up: the machine's own codes may.
+    /// An S with the spindle off that no M03 or M04 uses: the machine's own codes may use it.
     Speed,
     /// #3003 or #3004: single block, waiting for M codes, feed hold, override, exact stop.
     Switch,
-    /// An assignment to an output: a pulse leaves nothing behind.
+    /// An assignment to an output, which a pulse does not leave in the final state.
     Signal,
 }
 

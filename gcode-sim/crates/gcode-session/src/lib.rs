@@ -1,19 +1,19 @@
 //! One program through the whole chain: what the command line, the generator and tests call.
+mod block_locator;
 mod endless_cause;
 mod likely_causes;
-mod places;
 mod trace;
 
 use std::sync::Arc;
 
-use self::places::Places;
-pub use trace::{Executed, Trace, Values, VariableRole};
+use self::block_locator::BlockLocator;
+pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Note, Observer, Outcome, Progress};
 use gcode_inspect::flutes::{FluteTracker, GrinderError, GrindingResult};
 use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
-use gcode_inspect::stylus::{Rapids, Stylus, StylusReadings};
+use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
 use gcode_inspect::verify::{Tolerances, Verdict, verify};
 use gcode_lang::alarm::{Alarm, AlarmCode, remedy};
@@ -76,7 +76,7 @@ pub enum SessionError {
         "{name}, line {line}: {program} is defined twice, and a control refuses the second: give it a \
          number of its own"
     )]
-    Twice { name: String, line: u32, program: String },
+    DuplicateProgram { name: String, line: u32, program: String },
     #[error("#{number} cannot be set: {alarm}")]
     Variable { number: u32, alarm: Alarm },
 }
@@ -102,7 +102,7 @@ pub fn run_observed<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
     sink: &mut S,
-    watcher: &mut impl Observer,
+    observer: &mut impl Observer,
 ) -> Result<Run, SessionError> {
     let mut memory = Memory::default();
     memory.load(request.name.clone(), request.bytes.clone());
@@ -111,7 +111,11 @@ pub fn run_observed<S: EventSink>(
     }
     if let Some(second) = memory.duplicates().next() {
         let line = memory.sources().line_column(second.span).line;
-        return Err(SessionError::Twice { name: request.name.clone(), line, program: second.label() });
+        return Err(SessionError::DuplicateProgram {
+            name: request.name.clone(),
+            line,
+            program: second.label(),
+        });
     }
     let mut control = Control::new(memory, request.settings.clone());
     for (number, value) in
@@ -122,7 +126,7 @@ pub fn run_observed<S: EventSink>(
     if let Some(progress) = &request.progress {
         control.set_progress(Arc::clone(progress));
     }
-    let outcome = control.run_observed(request.limits, library, sink, watcher);
+    let outcome = control.run_observed(request.limits, library, sink, observer);
     Ok(Run { control, outcome })
 }
 
@@ -145,8 +149,8 @@ fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<It
 #[derive(Debug)]
 pub struct GrindingRun {
     pub run: Run,
-    pub ground: GrindingResult,
-    pub wanted: Flutes,
+    pub result: GrindingResult,
+    pub nominal: Flutes,
 }
 
 /// Why flutes can't be followed.
@@ -167,16 +171,16 @@ pub fn grind(
     let mut follower = FluteTracker::new(&request.machine, *wanted)?;
     let run = run(request, library, &mut follower)?;
     let mut ground = follower.finish();
-    ground.findings.extend(run.notes());
-    ground.findings.extend(likely_causes::other_offsets(&run, &request.machine, "flutes"));
-    ground.findings.extend(run.stopped());
-    Ok(GrindingRun { run, ground, wanted: *wanted })
+    ground.findings.extend(run.note_findings());
+    ground.findings.extend(likely_causes::unset_work_offsets(&run, &request.machine, "flutes"));
+    ground.findings.extend(run.stop_finding());
+    Ok(GrindingRun { run, result: ground, nominal: *wanted })
 }
 
 impl GrindingRun {
     /// The flutes against the wanted ones.
     pub fn verify(&self) -> FluteVerdict {
-        verify_flutes(&self.wanted, &self.ground, &|span| self.run.locate(span))
+        verify_flutes(&self.nominal, &self.result, &|span| self.run.locate(span))
     }
 }
 
@@ -184,26 +188,26 @@ impl GrindingRun {
 #[derive(Debug)]
 pub struct StylusRun {
     pub run: Run,
-    pub followed: StylusReadings,
+    pub readings: StylusReadings,
 }
 
 /// Runs a program and reads the ball of an edge finder, of so many mm of radius, along the part's surface; where the
 /// program probes, a probe touches it.
-pub fn follow(
+pub fn read_stylus(
     request: &Request,
     library: &mut impl Library,
     surface: Surface,
     radius: f64,
 ) -> Result<StylusRun, SessionError> {
     let mut stylus = Stylus::new(&request.machine, surface, radius);
-    let mut rapids = Rapids::new(&request.machine, surface, radius);
+    let mut rapids = RapidChecker::new(&request.machine, surface, radius);
     let mut extractor = HoleExtractor::new(&request.machine).with_surface(Some(surface));
     let run = run(request, library, &mut (&mut (&mut stylus, &mut rapids), &mut extractor))?;
     let mut followed = stylus.finish();
     followed.findings.extend(rapids.finish());
-    followed.findings.extend(run.notes());
-    followed.findings.extend(run.stopped());
-    Ok(StylusRun { run, followed })
+    followed.findings.extend(run.note_findings());
+    followed.findings.extend(run.stop_finding());
+    Ok(StylusRun { run, readings: followed })
 }
 
 /// A run with the holes it made.
@@ -229,23 +233,23 @@ pub fn simulate_observed<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
     surface: Option<Surface>,
-    listener: &mut S,
-    watcher: &mut impl Observer,
+    sink: &mut S,
+    observer: &mut impl Observer,
 ) -> Result<Simulation, SessionError> {
     let mut extractor = HoleExtractor::new(&request.machine)
         .with_surface(surface.or(request.part))
         .with_process_limits(&request.conduct);
-    let run = run_observed(request, library, &mut (&mut extractor, listener), watcher)?;
+    let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
-    extracted.findings.extend(run.notes());
-    extracted.findings.extend(run.stopped());
+    extracted.findings.extend(run.note_findings());
+    extracted.findings.extend(run.stop_finding());
     Ok(Simulation { run, extracted })
 }
 
 impl Simulation {
     /// The holes against the wanted ones.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
-        let places = Places::of(&self.run);
+        let places = BlockLocator::of(&self.run);
         let locate = |span| places.locate(span);
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
         let told = verdict.has_findings();
@@ -254,8 +258,8 @@ impl Simulation {
     }
 
     /// The document that `holes` writes.
-    pub fn list(&self) -> HoleList {
-        let places = Places::of(&self.run);
+    pub fn hole_list(&self) -> HoleList {
+        let places = BlockLocator::of(&self.run);
         self.extracted.list(|span| places.locate(span))
     }
 }
@@ -263,11 +267,11 @@ impl Simulation {
 impl Run {
     /// The program and the line of a block, as people name them: `O8101`, 31.
     pub fn locate(&self, span: Span) -> (String, u32) {
-        Places::of(self).locate(span)
+        BlockLocator::of(self).locate(span)
     }
 
     /// What the control did without a word and the programmer hardly meant, as warnings.
-    pub fn notes(&self) -> impl Iterator<Item = Diagnostic> + '_ {
+    pub fn note_findings(&self) -> impl Iterator<Item = Diagnostic> + '_ {
         self.control.notes().map(|(note, block)| {
             let (code, message, help) = note.describe();
             // K0, lower case, block skip, G53 to wait and a centre where the tool stands are meant; the others are slips.
@@ -287,7 +291,7 @@ impl Run {
     }
 
     /// Why the run stopped before its end, as a finding; `None` where it didn't.
-    pub fn stopped(&self) -> Option<Diagnostic> {
+    pub fn stop_finding(&self) -> Option<Diagnostic> {
         match &self.outcome {
             Outcome::End => None,
             Outcome::Alarm(stopped) => {

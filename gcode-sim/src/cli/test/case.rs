@@ -39,7 +39,7 @@ impl Case {
         let unclear = || self.programs.first().cloned().unwrap_or_else(|| self.accepted());
         let file = Some(main.as_ref().map_or_else(|_| unclear(), PathBuf::clone).display().to_string());
         let empty = |answer| CaseReport::new(self.name.clone(), file.clone(), answer);
-        let tried = main.and_then(|program| self.tried(&program, libraries, tolerance, empty));
+        let tried = main.and_then(|program| self.evaluate(&program, libraries, tolerance, empty));
         tried.unwrap_or_else(|refusal| {
             let error = Some(refusal.to_string());
             CaseResult { report: CaseReport { error, ..empty(CaseAnswer::Refused) }, record: None }
@@ -63,7 +63,7 @@ impl Case {
         })
     }
 
-    fn tried(
+    fn evaluate(
         &self,
         program: &Path,
         libraries: &[PathBuf],
@@ -86,10 +86,10 @@ impl Case {
             return Err(UsageError::new(format!("{both}: both are references; delete one")));
         }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
-        let wanted = reference.as_deref().map(options::wanted).transpose()?;
+        let wanted = reference.as_deref().map(options::read_nominal).transpose()?;
         let surface = match &wanted {
             Some(NominalPart::Holes(reference)) => {
-                request.conduct = reference.conduct.clone();
+                request.conduct = reference.process_limits.clone();
                 reference.surface
             }
             Some(NominalPart::Flutes(_)) | None => None,

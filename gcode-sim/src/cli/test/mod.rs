@@ -62,19 +62,19 @@ pub(super) fn run(arguments: &TestArguments) -> Result<ExitStatus, UsageError> {
         return watch::run(arguments, tolerance);
     }
     let report = match arguments.merge.as_slice() {
-        [] => tested(arguments, tolerance)?,
+        [] => run_cases(arguments, tolerance)?,
         files => merge::merged(files)?,
     };
     print(&report, arguments.format)?;
     if arguments.format != TestFormat::Text {
         // A build server keeps the document in a file: its log has to say why it stops.
-        report.refused().for_each(|why| output::tell(&format!("error: {why}\n")));
+        report.refused().for_each(|why| output::print_message(&format!("error: {why}\n")));
     }
     let is_refused = report.cases.iter().any(|case| case.answer == CaseAnswer::Refused);
     Ok(match report.cases.iter().all(|case| case.is_good()) {
-        true => ExitStatus::Holds,
-        false if is_refused => ExitStatus::Refused,
-        false => ExitStatus::Fails,
+        true => ExitStatus::Passed,
+        false if is_refused => ExitStatus::Invalid,
+        false => ExitStatus::Failed,
     })
 }
 
@@ -86,11 +86,11 @@ fn print(report: &TestReport, format: TestFormat) -> Result<(), UsageError> {
             let document = junit::document(report);
             output::print(&document.map_err(|why| UsageError::new(format!("no JUnit XML: {why}")))?)
         }
-        TestFormat::Sarif => output::json(&sarif::log(&report.findings(), &options::started_in())),
+        TestFormat::Sarif => output::json(&sarif::log(&report.findings(), &options::working_folder())),
     }
 }
 
-fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, UsageError> {
+fn run_cases(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, UsageError> {
     let (shard, cases) = cases(arguments)?;
     let mut tried = all(&cases, &arguments.libraries, tolerance);
     let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };

@@ -24,7 +24,7 @@ pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<ExitStatu
         match round(arguments, tolerance, changed.as_deref()) {
             Ok(text) => output::print(&text)?,
             // A folder may be away while it is replaced.
-            Err(refusal) => output::tell(&format!("error: {refusal}\n")),
+            Err(refusal) => output::print_message(&format!("error: {refusal}\n")),
         }
         let now = next(&stamps, || self::stamps(folders()));
         changed = Some(differing(&stamps, &now));

@@ -3,10 +3,10 @@ use maud::{Markup, html};
 
 use super::lines::Lines;
 use super::words::shown;
-use super::{Difference, MOST_CHANGES, Side, listed};
+use super::{Difference, MOST_CHANGES, ReviewSide, listed};
 use gcode_review::{BlockLocation, Effect, UnexecutedChange};
 
-pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup {
+pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let all = &difference.compared.changes;
     html! {
         @if all.is_empty() {
@@ -43,7 +43,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
 }
 
 /// What else the same edit does.
-fn also(effects: &[Effect], sides: &[Side<'_>]) -> Markup {
+fn also(effects: &[Effect], sides: &[ReviewSide<'_>]) -> Markup {
     html! {
         ul.also {
             @for Effect { code, message, old, new } in listed(effects) {
@@ -54,7 +54,7 @@ fn also(effects: &[Effect], sides: &[Side<'_>]) -> Markup {
 }
 
 /// The block before and now.
-fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[Side<'_>]) -> Markup {
+fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[ReviewSide<'_>]) -> Markup {
     let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {
         @for (word, place) in [("old", old), ("new", new)] {

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::rows::{HoleRowState, HoleTableRow, found_rows, judged_rows, paired_rows, tools_of};
 use super::words::count;
-use super::{Page, Side};
+use super::{Page, ReviewSide};
 
 /// So many rows of holes that are as they should be are shown at first, and printed; the others at a button.
 const SHOWN: usize = 200;
@@ -24,9 +24,9 @@ pub(super) struct HoleTable {
 }
 
 impl HoleTable {
-    pub(super) fn new(page: &Page<'_>, sides: &[Side<'_>]) -> Self {
+    pub(super) fn new(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Self {
         let verdicts: Option<Vec<_>> =
-            sides.iter().map(|side| side.seen.verdict.map(|verdict| (*side, verdict))).collect();
+            sides.iter().map(|side| side.observed.verdict.map(|verdict| (*side, verdict))).collect();
         let tools = tools_of(sides);
         let pairs = page.old.map_or(&[][..], |(_, difference)| &difference.compared.holes);
         let (columns, mut rows) = match (page.reference, verdicts, page.old) {
@@ -37,7 +37,7 @@ impl HoleTable {
         let cut = rows.len().saturating_sub(MOST_ROWS);
         if cut > 0 {
             // Those worth a look first, else in their order.
-            rows.sort_by_key(|row| !row.state.is_worth_a_look());
+            rows.sort_by_key(|row| !row.state.needs_attention());
             rows.truncate(MOST_ROWS);
         }
         Self { columns, rows, cut }
@@ -51,7 +51,7 @@ impl HoleTable {
     }
 
     pub(super) fn markup(&self, page: &Page<'_>) -> Markup {
-        let calm = self.rows.iter().enumerate().filter(|(_, row)| !row.state.is_worth_a_look());
+        let calm = self.rows.iter().enumerate().filter(|(_, row)| !row.state.needs_attention());
         let hidden: BTreeSet<usize> = calm.skip(SHOWN).map(|(number, _)| number).collect();
         let seen = self.rows.len() - hidden.len();
         html! {

@@ -69,10 +69,10 @@ pub struct Page<'a> {
 
 /// One side of the page.
 #[derive(Clone, Copy, Debug)]
-struct Side<'a> {
+struct ReviewSide<'a> {
     /// `old` and `new`; a program alone is `new`.
     word: &'static str,
-    seen: ObservedProgram<'a>,
+    observed: ObservedProgram<'a>,
     lines: &'a Lines,
 }
 
@@ -83,14 +83,14 @@ impl Page<'_> {
     /// Data that can't be written as JSON.
     pub fn html(&self) -> Result<String, serde_json::Error> {
         let mut lines: Vec<Lines> = Vec::new();
-        for (word, seen) in self.seen() {
+        for (word, seen) in self.observed_programs() {
             lines.push(Lines::new(word, &seen.revision.simulation.run));
         }
-        let sides: Vec<Side<'_>> = self
-            .seen()
+        let sides: Vec<ReviewSide<'_>> = self
+            .observed_programs()
             .into_iter()
             .zip(&lines)
-            .map(|((word, seen), lines)| Side { word, seen, lines })
+            .map(|((word, seen), lines)| ReviewSide { word, observed: seen, lines })
             .collect();
         let difference = self.old.map(|(_, difference)| difference);
         let table = HoleTable::new(self, &sides);
@@ -122,7 +122,7 @@ impl Page<'_> {
         document(&self.title(), &body, &data)
     }
 
-    fn seen(&self) -> Vec<(&'static str, ObservedProgram<'_>)> {
+    fn observed_programs(&self) -> Vec<(&'static str, ObservedProgram<'_>)> {
         let old = self.old.map(|(seen, _)| ("old", seen));
         old.into_iter().chain([("new", self.new)]).collect()
     }
@@ -158,7 +158,7 @@ fn section(id: &str, name: &str, inside: Markup) -> Markup {
 }
 
 /// What the columns of two sides are called.
-fn heading(side: &Side<'_>, sides: &[Side<'_>]) -> &'static str {
+fn heading(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> &'static str {
     match (sides.len(), side.word) {
         (1, _) => "Program",
         (_, "old") => "Old",

@@ -8,7 +8,7 @@ use super::holes::HoleTable;
 use super::lines::Lines;
 use super::rows::HoleRowState;
 use super::words::{count, shown};
-use super::{Page, Side, heading};
+use super::{Page, ReviewSide, heading};
 use gcode_inspect::machine::HeadKind;
 use gcode_part::Hole;
 use gcode_review::BlockLocation;
@@ -66,7 +66,7 @@ struct DrawnHole {
     lines: Vec<usize>,
 }
 
-pub(super) fn data(page: &Page<'_>, sides: &[Side<'_>], table: &HoleTable) -> Data {
+pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable) -> Data {
     let up = match page.machine.head.kind {
         HeadKind::Fixed(out) if out.z > 0.99 => 'z',
         _ => 'y',
@@ -98,8 +98,8 @@ impl LineIndex {
     }
 }
 
-fn drawn(page: &Page<'_>, place: usize, side: &Side<'_>, table: &HoleTable, sides: usize) -> SidePath {
-    let record = &side.seen.revision.record;
+fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable, sides: usize) -> SidePath {
+    let record = &side.observed.revision.record;
     let legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
     let mut known = LineIndex::default();
     let holes = holes(page, place, side, table, &mut known);
@@ -130,18 +130,18 @@ fn drawn(page: &Page<'_>, place: usize, side: &Side<'_>, table: &HoleTable, side
         places,
         holes,
         moves: record.moves(),
-        all_holes: side.seen.revision.simulation.extracted.holes.len(),
+        all_holes: side.observed.revision.simulation.extracted.holes.len(),
     }
 }
 
 fn holes(
     page: &Page<'_>,
     place: usize,
-    side: &Side<'_>,
+    side: &ReviewSide<'_>,
     table: &HoleTable,
     known: &mut LineIndex,
 ) -> Vec<DrawnHole> {
-    let simulation = &side.seen.revision.simulation;
+    let simulation = &side.observed.revision.simulation;
     let rows = table.of_side(place);
     let mut all = Vec::new();
     for (number, found) in simulation.extracted.holes.iter().enumerate().take(MOST_HOLES) {
@@ -152,7 +152,7 @@ fn holes(
         let state = row.map_or(HoleRowState::Unjudged, |(_, _, state)| *state);
         all.push(DrawnHole { lines, row: row.map(|(row, ..)| *row), ..hole_of(&hole, id, state) });
     }
-    let missing = side.seen.verdict.iter().flat_map(|verdict| &verdict.missing);
+    let missing = side.observed.verdict.iter().flat_map(|verdict| &verdict.missing);
     let wanted = page.reference.iter().flat_map(|reference| &reference.holes);
     let wanted: BTreeMap<_, _> = wanted.map(|hole| (hole.id.as_deref().unwrap_or_default(), hole)).collect();
     all.extend(
@@ -175,7 +175,7 @@ fn hole_of(hole: &Hole, id: String, state: HoleRowState) -> DrawnHole {
     }
 }
 
-pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
+pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
     let tools = [
         ("top", "Top"),
         ("front", "Front"),
@@ -236,7 +236,7 @@ fn label(action: &str) -> Option<&'static str> {
 }
 
 /// What isn't in the drawing.
-fn left_out(side: &Side<'_>, sides: &[Side<'_>], drawn: &SidePath) -> Markup {
+fn left_out(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>], drawn: &SidePath) -> Markup {
     let shown = drawn.counts.len();
     html! {
         @if shown < drawn.moves {

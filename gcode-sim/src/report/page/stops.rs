@@ -1,5 +1,5 @@
 //! The operator stops of a side, those marked that the other side doesn't make in the same way.
-use super::{Page, Side};
+use super::{Page, ReviewSide};
 use gcode_review::BlockLocation;
 
 /// Where a program waited for the operator.
@@ -10,7 +10,7 @@ pub(super) struct Stop<'a> {
 }
 
 /// In the order in which they were made.
-pub(super) fn stops<'a>(page: &Page<'_>, side: &Side<'a>) -> Vec<Stop<'a>> {
+pub(super) fn stops<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> Vec<Stop<'a>> {
     let compared = page.old.map(|(_, difference)| difference.compared);
     let (place, [alone, changed]) = match side.word {
         "old" => (0, ["not executed here by the new program", "executed differently by the new program"]),
@@ -21,6 +21,6 @@ pub(super) fn stops<'a>(page: &Page<'_>, side: &Side<'a>) -> Vec<Stop<'a>> {
         let is_of = |steps: &[Vec<usize>; 2]| steps[place].binary_search(&step).is_ok();
         if is_of(&compared.unpaired_steps) { Some(alone) } else { is_of(&compared.steps).then_some(changed) }
     };
-    let all = side.seen.revision.record.stops();
+    let all = side.observed.revision.record.stops();
     all.map(|(step, place)| Stop { place, mark: mark(step) }).collect()
 }

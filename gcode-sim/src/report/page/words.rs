@@ -1,5 +1,5 @@
 //! Numbers and texts as the page writes them.
-use crate::report::figures::near;
+use crate::report::figures::rounded;
 
 /// A text from a program or a file name: what isn't to be seen, or turns the reading direction, becomes a mark.
 pub(super) fn shown(text: &str) -> String {
@@ -18,7 +18,7 @@ pub(super) fn value(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-6 || 1e12 <= value.abs() {
         return format!("{value:.3e}");
     }
-    let text = near(value, 6);
+    let text = rounded(value, 6);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 

@@ -6,14 +6,16 @@
 use super::super::measure::{bar_length, plain};
 use super::super::role::{Pen, Point};
 use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title, ZoneDeviation};
-use super::side::off;
-use super::top::{Cylinder, DrawnHole, NUMBERED, TopView, headline, number_few, standings, turn_name, worst};
+use super::side::displacement;
+use super::top::{
+    Cylinder, DrawnHole, MAX_NUMBERED, TopView, headline, number_few, standings, turn_name, worst,
+};
 use gcode_lang::units::Deg;
 use gcode_part::Hole;
 
 /// The scene of a development; `None` of a part that is no cylinder.
 pub fn development(view: &TopView) -> Option<Scene> {
-    let sheet = Unrolled::of(view.cylinder?, view);
+    let sheet = UnrolledCylinder::of(view.cylinder?, view);
     let mut marks: Vec<Mark> = view.holes.iter().filter_map(|hole| sheet.mark(hole, view)).collect();
     number_few(&mut marks);
     let title = Title {
@@ -38,7 +40,7 @@ const SHEET: f64 = 1.05;
 const WORTH: f64 = 1.15;
 
 /// Places of the cylinder on the sheet, mm.
-struct Unrolled {
+struct UnrolledCylinder {
     cylinder: Cylinder,
     strips: u32,
     /// From where to where along x there are holes, wanted or found.
@@ -50,16 +52,16 @@ struct Unrolled {
     few: bool,
 }
 
-impl Unrolled {
+impl UnrolledCylinder {
     /// Cut into as many strips as draw its holes largest.
     fn of(cylinder: Cylinder, view: &TopView) -> Self {
-        let places = view.holes.iter().filter_map(|hole| hole.nominal.as_ref().or(hole.found.as_ref()));
+        let places = view.holes.iter().filter_map(|hole| hole.nominal.as_ref().or(hole.actual.as_ref()));
         let reach = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
         let (low, high) = places.map(|hole| hole.entry[0]).fold((0.0, cylinder.length), reach);
         let diameter = view.holes.iter().find_map(|hole| hole.nominal.as_ref()?.diameter);
         let usual = diameter.unwrap_or(0.0) / 2.0;
         let cut =
-            |strips: u32| Self { cylinder, strips, low, high, usual, few: view.holes.len() <= NUMBERED };
+            |strips: u32| Self { cylinder, strips, low, high, usual, few: view.holes.len() <= MAX_NUMBERED };
         let scale = |sheet: &Self| {
             let (wide, tall) =
                 (1.1 * sheet.width() + sheet.margin(), f64::from(sheet.strips) * sheet.height());
@@ -117,16 +119,16 @@ impl Unrolled {
     }
 
     fn mark(&self, hole: &DrawnHole, view: &TopView) -> Option<Mark> {
-        let shown = hole.nominal.as_ref().or(hole.found.as_ref())?;
-        let both = hole.nominal.as_ref().zip(hole.found.as_ref());
+        let shown = hole.nominal.as_ref().or(hole.actual.as_ref())?;
+        let both = hole.nominal.as_ref().zip(hole.actual.as_ref());
         Some(Mark {
-            at: self.place(shown),
+            position: self.place(shown),
             radius: shown.diameter.map_or(self.usual, |diameter| diameter / 2.0),
-            standing: hole.standing,
+            status: hole.status,
             label: super::top::label(hole, view),
             direction: None,
-            misfit: both.and_then(|(nominal, found)| misfit(nominal, found)),
-            found: None,
+            deviation: both.and_then(|(nominal, found)| zone_deviation(nominal, found)),
+            actual: None,
         })
     }
 
@@ -185,9 +187,9 @@ impl Unrolled {
     fn legend(&self, view: &TopView, marks: &[Mark]) -> Vec<LegendItem> {
         let item = |sample: Sample, text: String| LegendItem { sample, text };
         let mut items = standings(view);
-        if let Some(zone) = view.tolerance.filter(|_| marks.iter().any(|m| m.misfit.is_some())) {
-            let text = format!("{} Φ{}, seen along the hole,", view.question.misfit(), plain(zone));
-            items.push(item(Sample::Misfit, text));
+        if let Some(zone) = view.tolerance.filter(|_| marks.iter().any(|m| m.deviation.is_some())) {
+            let text = format!("{} Φ{}, axial view,", view.purpose.deviation_label(), plain(zone));
+            items.push(item(Sample::Deviation, text));
         }
         items.push(item(Sample::Pen(Pen::Outline), "seam: both edges are one line".to_owned()));
         let thin = match self.strips {
@@ -208,10 +210,10 @@ fn marks_along(end: f64, least: f64) -> Vec<f64> {
 }
 
 /// Actual − nominal along the circumference and along x.
-fn misfit(nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
+fn zone_deviation(nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
     let azimuth = Deg::atan2(nominal.axis[1], nominal.axis[2]);
     let end = |depth: f64| {
-        let off = off(nominal, found, depth)?;
+        let off = displacement(nominal, found, depth)?;
         Some([off.y * azimuth.cos() - off.z * azimuth.sin(), 0.0 - off.x])
     };
     Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
@@ -232,10 +234,10 @@ mod tests {
         DrawnHole {
             id: "1".to_owned(),
             nominal: Some(nominal),
-            found: Some(found),
-            standing: HoleStatus::Good,
-            phi: None,
-            turn: None,
+            actual: Some(found),
+            status: HoleStatus::Good,
+            position_deviation: None,
+            rotary_angle: None,
             remarks: Vec::new(),
         }
     }
@@ -253,17 +255,17 @@ mod tests {
     #[test]
     fn azimuth_goes_right_as_an_arc_and_x_down() {
         let mark = scene(drawn(hole(20.0, 90.0, 110.0), hole(20.0, 90.0, 112.0))).marks.remove(0);
-        assert!((mark.at[0] - 157.079_632_679).abs() < 1e-6 && mark.at[1] == -20.0, "{mark:?}");
+        assert!((mark.position[0] - 157.079_632_679).abs() < 1e-6 && mark.position[1] == -20.0, "{mark:?}");
     }
 
     #[test]
     fn what_stands_on_the_seam_stands_at_its_left() {
         for azimuth in [0.0, 360.0, -0.000_1, 359.999_9] {
             let mark = scene(drawn(hole(0.0, azimuth, 100.0), hole(0.0, azimuth, 100.0))).marks.remove(0);
-            assert!(mark.at[0].abs() < 0.001, "{azimuth}: {mark:?}");
+            assert!(mark.position[0].abs() < 0.001, "{azimuth}: {mark:?}");
         }
         let mark = scene(drawn(hole(0.0, -1.0, 100.0), hole(0.0, -1.0, 100.0))).marks.remove(0);
-        assert!((mark.at[0] - 359.0 * 100.0 * std::f64::consts::PI / 180.0).abs() < 1e-6);
+        assert!((mark.position[0] - 359.0 * 100.0 * std::f64::consts::PI / 180.0).abs() < 1e-6);
     }
 
     /// 0.02 mm towards larger azimuth at 90°, where that is −z, and 0.03 mm in x.
@@ -271,7 +273,7 @@ mod tests {
     fn a_misfit_points_where_the_hole_is() {
         let mut found = hole(20.03, 90.0, 100.0);
         found.entry[2] -= 0.02;
-        let misfit = scene(drawn(hole(20.0, 90.0, 100.0), found)).marks[0].misfit.unwrap();
+        let misfit = scene(drawn(hole(20.0, 90.0, 100.0), found)).marks[0].deviation.unwrap();
         assert!((misfit.entry[0] - 0.02).abs() < 1e-9 && (misfit.entry[1] + 0.03).abs() < 1e-9, "{misfit:?}");
     }
 
@@ -279,7 +281,7 @@ mod tests {
     #[test]
     fn a_long_way_round_is_cut_into_strips_and_nothing_lies_across_a_cut() {
         let at = |azimuth: f64| {
-            unrolled(drawn(hole(20.0, azimuth, 100.0), hole(20.0, azimuth, 100.0)), 30.0).marks[0].at
+            unrolled(drawn(hole(20.0, azimuth, 100.0), hole(20.0, azimuth, 100.0)), 30.0).marks[0].position
         };
         let third = 209.439_510_239;
         let block = at(0.0)[1] - at(120.0)[1];
@@ -303,7 +305,12 @@ mod tests {
     fn the_axis_is_named_as_the_rotary_counts() {
         let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length: 60.0, rows: 8 });
         let name = |backwards: bool| {
-            let view = TopView { cylinder, backwards, rotary: "A".to_owned(), ..TopView::default() };
+            let view = TopView {
+                cylinder,
+                is_rotary_reversed: backwards,
+                rotary: "A".to_owned(),
+                ..TopView::default()
+            };
             development(&view).unwrap().axes.remove(0).name
         };
         assert_eq!((name(false), name(true)), ("A".to_owned(), "−A".to_owned()));

@@ -27,19 +27,19 @@ pub struct FluteView {
 /// Where something is wrong.
 #[derive(Clone, Debug)]
 pub struct Fault {
-    pub spot: FlutePoint,
+    pub point: FlutePoint,
     /// Counted from 0; none where no pass is.
     pub pass: Option<usize>,
-    pub standing: HoleStatus,
+    pub status: HoleStatus,
     /// What is wrong there, each in few words; empty where another mark of the same finding says it.
-    pub what: Vec<&'static str>,
+    pub labels: Vec<&'static str>,
 }
 
 /// A point of a flute in the part's frame, and the direction out of the surface there.
 #[derive(Clone, Copy, Debug)]
 pub struct FlutePoint {
-    pub at: [f64; 3],
-    pub out: [f64; 3],
+    pub position: [f64; 3],
+    pub normal: [f64; 3],
 }
 
 /// Edge-on is not seen.
@@ -92,7 +92,7 @@ impl Viewpoint {
     fn flutes(&self, view: &FluteView) -> Vec<Stroke> {
         let mut strokes = Vec::new();
         for (pass, flute) in view.flutes.iter().enumerate() {
-            let faces = |spot: &FlutePoint| FACING < (self.towards)(spot.out);
+            let faces = |spot: &FlutePoint| FACING < (self.towards)(spot.normal);
             let stretches = || {
                 let all = flute.chunk_by(|one, other| faces(one) == faces(other));
                 all.filter(|stretch| 1 < stretch.len()).map(|stretch| (stretch, faces(&stretch[0])))
@@ -106,7 +106,7 @@ impl Viewpoint {
                     (false, true) => Pen::Hidden,
                     (false, false) => continue,
                 };
-                let points = stretch.iter().map(|spot| (self.place)(spot.at)).collect();
+                let points = stretch.iter().map(|spot| (self.place)(spot.position)).collect();
                 let is_longest = is_near && Some(stretch.len()) == longest;
                 let caption = is_longest.then(|| format!("{}", pass + 1));
                 strokes.push(Stroke { shape: Shape::Line(points), pen, caption });
@@ -117,21 +117,21 @@ impl Viewpoint {
 
     fn faults(&self, view: &FluteView) -> Vec<Mark> {
         let mark = |fault: &Fault| {
-            let behind = (self.towards)(fault.spot.out) <= FACING;
+            let behind = (self.towards)(fault.point.normal) <= FACING;
             let side = if behind { " (far side)" } else { "" };
             let pass = fault.pass.map(|pass| format!("pass {}{side}", pass + 1));
-            let what = fault.what.iter().enumerate().map(|(index, what)| match (index, fault.pass) {
+            let what = fault.labels.iter().enumerate().map(|(index, what)| match (index, fault.pass) {
                 (0, None) => format!("{what}{side}"),
                 _ => (*what).to_owned(),
             });
             Mark {
-                at: (self.place)(fault.spot.at),
+                position: (self.place)(fault.point.position),
                 radius: 0.0,
-                standing: fault.standing,
+                status: fault.status,
                 label: pass.into_iter().chain(what).collect(),
                 direction: None,
-                misfit: None,
-                found: None,
+                deviation: None,
+                actual: None,
             }
         };
         view.faults.iter().map(mark).collect()
@@ -144,7 +144,7 @@ fn item(sample: Sample, text: &str) -> LegendItem {
 
 /// All but the axes and the marks.
 fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
-    let is_there = |standing: HoleStatus| view.faults.iter().any(|fault| fault.standing == standing);
+    let is_there = |standing: HoleStatus| view.faults.iter().any(|fault| fault.status == standing);
     let signs = [
         (HoleStatus::Bad, "Fault, at its worst point"),
         (HoleStatus::Missing, "Position of a missing flute"),
@@ -152,7 +152,7 @@ fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
     ];
     let signs = signs.into_iter().filter(|(standing, _)| is_there(*standing));
     let mut legend: Vec<LegendItem> =
-        signs.map(|(standing, words)| item(Sample::Standing(standing), words)).collect();
+        signs.map(|(standing, words)| item(Sample::Status(standing), words)).collect();
     let lines = [
         (Pen::Feed, "Wheel contact path on the near side, with the number of its pass"),
         (Pen::Faulty, "Pass with a fault"),
@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     fn view(out: [[f64; 3]; 4]) -> FluteView {
-        let spot = |(n, out): (usize, [f64; 3])| FlutePoint { at: [n as f64, 1.0, 2.0], out };
+        let spot = |(n, out): (usize, [f64; 3])| FlutePoint { position: [n as f64, 1.0, 2.0], normal: out };
         FluteView {
             name: "b".to_owned(),
             verdict: (HoleStatus::Good, "PASS".to_owned()),

@@ -13,10 +13,10 @@ pub enum PicturePurpose {
 
 impl PicturePurpose {
     /// Beside a hole, where it isn't there or shouldn't be.
-    pub(super) fn word(self, standing: HoleStatus) -> &'static str {
+    pub(super) fn status_word(self, standing: HoleStatus) -> &'static str {
         match (self, standing) {
             (Self::Verdict, HoleStatus::Good) => "in tolerance",
-            (Self::Verdict, HoleStatus::Bad) => "out of tolerance",
+            (Self::Verdict, HoleStatus::Bad) => "out",
             (Self::Verdict, HoleStatus::Missing) => "missing",
             (Self::Verdict, HoleStatus::Extra) => "extra",
             (Self::Change, HoleStatus::Good) => "unchanged",
@@ -43,7 +43,7 @@ impl PicturePurpose {
     }
 
     /// Before the largest deviation.
-    pub(super) fn worst(self) -> &'static str {
+    pub(super) fn worst_label(self) -> &'static str {
         match self {
             Self::Verdict => "worst position",
             Self::Change => "largest change of position",
@@ -51,12 +51,12 @@ impl PicturePurpose {
     }
 
     /// Whether a position is told, written with so many places: of two revisions a change that there is.
-    pub(super) fn tells(self, phi: f64, places: i32) -> bool {
+    pub(super) fn shows_deviation(self, phi: f64, places: i32) -> bool {
         self == Self::Verdict || 0.5 <= phi * libm::pow(10.0, f64::from(places))
     }
 
     /// At a line to where a hole stands in truth.
-    pub(super) fn astray(self) -> &'static str {
+    pub(super) fn displacement_label(self) -> &'static str {
         match self {
             Self::Verdict => "to the actual position",
             Self::Change => "to the new position",
@@ -64,10 +64,10 @@ impl PicturePurpose {
     }
 
     /// Before the diameter of the circle that a misfit is drawn in.
-    pub(super) fn misfit(self) -> &'static str {
+    pub(super) fn deviation_label(self) -> &'static str {
         match self {
             Self::Verdict => "deviation in the tolerance zone",
-            Self::Change => "displacement from the old position in a circle",
+            Self::Change => "displacement in a circle",
         }
     }
 
@@ -85,11 +85,11 @@ impl PicturePurpose {
         }
         let mut words = match all {
             0 => Vec::new(),
-            _ => vec![format!("{good} of {all} {}", self.word(HoleStatus::Good))],
+            _ => vec![format!("{good} of {all} {}", self.status_word(HoleStatus::Good))],
         };
         let wrong = [(bad, HoleStatus::Bad), (missing, HoleStatus::Missing), (extra, HoleStatus::Extra)];
         for (number, standing) in wrong.into_iter().filter(|(number, _)| 0 < *number) {
-            words.push(format!("{number} {}", self.word(standing)));
+            words.push(format!("{number} {}", self.status_word(standing)));
         }
         match others {
             0 => {}

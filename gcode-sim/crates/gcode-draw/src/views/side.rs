@@ -28,7 +28,7 @@ impl Side {
     }
 
     /// The part's (x, y, z) on the sheet: right and up.
-    pub(super) fn seen(self, [x, y, z]: [f64; 3]) -> Point {
+    pub(super) fn project(self, [x, y, z]: [f64; 3]) -> Point {
         match self {
             // 0 − z and not −z: no negative zeros in what is compared and printed.
             Self::Y => [x, 0.0 - z],
@@ -54,24 +54,24 @@ impl Side {
             Self::Z => [x, y],
             Self::X => [y, z],
         };
-        shown.map(|(name, axis)| Axis { name: name.to_owned(), direction: self.seen(axis) }).into()
+        shown.map(|(name, axis)| Axis { name: name.to_owned(), direction: self.project(axis) }).into()
     }
 
     /// Actual − nominal across the nominal axis, which is turned the shortest way into the line of sight: so a
     /// deviation keeps its length, and the zone is a circle for steep holes too.
-    pub(super) fn misfit(self, nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
+    pub(super) fn zone_deviation(self, nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
         let (axis, towards) = (Vector3::from(nominal.axis), self.towards());
         // A hole drilled from behind is looked at through the part: turned round, it would be off to the wrong side.
         let towards = if axis.dot(&towards) < 0.0 { -towards } else { towards };
         let turn = UnitQuaternion::rotation_between(&axis, &towards).unwrap_or_default();
-        let end = |depth: f64| Some(self.seen((turn * off(nominal, found, depth)?).into()));
+        let end = |depth: f64| Some(self.project((turn * displacement(nominal, found, depth)?).into()));
         Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
     }
 }
 
 /// Actual − nominal where the actual axis crosses the plane `depth` below the nominal entry, perpendicular to the
 /// nominal axis.
-pub(super) fn off(nominal: &Hole, found: &Hole, depth: f64) -> Option<Vector3<f64>> {
+pub(super) fn displacement(nominal: &Hole, found: &Hole, depth: f64) -> Option<Vector3<f64>> {
     let (axis, along) = (Vector3::from(nominal.axis), Vector3::from(found.axis));
     let exact = Vector3::from(nominal.entry) - axis * depth;
     let from = Vector3::from(found.entry);
@@ -94,7 +94,7 @@ mod tests {
             let part = [Vector3::x(), Vector3::y(), Vector3::z()];
             let lies = |at: Point| {
                 part.into_iter().find_map(|axis| {
-                    let seen = side.seen(axis.into());
+                    let seen = side.project(axis.into());
                     if seen == at { Some(axis) } else { (seen.map(|v| 0.0 - v) == at).then_some(-axis) }
                 })
             };
@@ -108,7 +108,7 @@ mod tests {
         let (z, from) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
         for axis in [z, from] {
             let (nominal, found) = (drilled([30.0, 5.0, 0.0], axis), drilled([30.02, 5.01, 0.0], axis));
-            let misfit = Side::Z.misfit(&nominal, &found).unwrap();
+            let misfit = Side::Z.zone_deviation(&nominal, &found).unwrap();
             for end in [misfit.entry, misfit.bottom] {
                 assert!((end[0] - 0.02).abs() < 1e-9 && (end[1] - 0.01).abs() < 1e-9, "{axis:?}: {misfit:?}");
             }

@@ -70,12 +70,12 @@ pub fn verify(
     let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);
     checks::stopped::check(&comparison, stopped, &mut objections);
     checks::common_shift::check(&comparison, machine, &mut objections);
-    let (reaches, conduct) = (&extracted.length_mismatches, &reference.conduct);
+    let (reaches, conduct) = (&extracted.length_mismatches, &reference.process_limits);
     checks::reach::check(&comparison, reaches, conduct, machine, &mut objections);
     let mut motion = extracted.findings.clone();
     motion.extend(checks::signs::finding(reference, machine));
-    motion.extend(checks::clearance::findings(&extracted.close_motions, &reference.conduct));
-    motion.extend(checks::cutting::findings(&extracted.cut_conditions, &reference.conduct, machine));
+    motion.extend(checks::clearance::findings(&extracted.close_motions, &reference.process_limits));
+    motion.extend(checks::cutting::findings(&extracted.cut_conditions, &reference.process_limits, machine));
     let mut verdict = verdict::verdict(&comparison, &rounding, objections, &motion, locate);
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(&comparison, pattern));

@@ -15,7 +15,7 @@ pub enum SettingError {
 /// One setting that has a name.
 pub struct SettingRow {
     pub key: &'static str,
-    /// What it decides, with the parameter's number where a control has one.
+    /// Its meaning, with the parameter's number where a control has one.
     pub meaning: &'static str,
     pub values: SettingValues,
     set: fn(&mut Settings, &str) -> Option<()>,
@@ -138,8 +138,7 @@ pub const ROWS: &[SettingRow] = &[
     switch!("TCS", "6001#5: T calls O9000 with its number in #149", code_calls.t_calls_program),
     switch!("SCS", "S calls O9029 with its number in #147", code_calls.s_calls_program),
     switch!("BCS", "B, unless it is an axis, calls O9028 with its number in #146", code_calls.b_calls_program),
-    switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has \
-                    no effect", converts_arguments),
+    switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has no effect", converts_arguments),
     switch!("FXY", "5101#0: cycles drill along the normal of the plane, not always Z", drills_by_plane),
     switch!("V15", "6000#3: geometry and wear are exchanged in tool offset variables", series_15_offsets),
     switch!("AD2", "3403#6: a repeated address in a block raises an alarm", alarms_on_repeated_address),

@@ -8,7 +8,6 @@ mod blocks;
 mod bytecode;
 pub mod cycles;
 mod dialect_syntax;
-mod expr;
 pub mod g_codes;
 mod loops;
 mod lowering;

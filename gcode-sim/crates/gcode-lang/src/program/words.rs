@@ -1,9 +1,8 @@
 //! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
 use super::DialectSyntax;
 use super::bytecode::{Bytecode, Instruction, Operand, Slot};
-use super::expr::ExprContext;
 use super::g_codes::{self, RowLookup};
-use super::lowering::Lowering;
+use super::lowering::{ExprContext, Lowering};
 use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::Span;
 use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};

@@ -4,15 +4,12 @@ use nom::Err;
 use super::ast::{Address, Block, Item, Unreadable, Word, WordValue};
 use super::digits::window;
 use super::number::integer;
-use super::numbers::{continues_number, number_word};
+use super::numbers::{MAX_SEQUENCE_NUMBER, continues_number, number_word};
 use super::statement::{assignment, keyword, statement};
 use super::token::{Input, LineInput, ReadFailure, ReadResult, fail, next, no_match, spaces};
 use super::word::{name_word, word};
 use crate::alarm::Alarm;
 use crate::source::Spanned;
-
-/// The largest sequence number.
-pub(super) const MAX_SEQUENCE_NUMBER: u32 = 99_999_999;
 
 /// Reads one line, its end not included, into an empty block. What can't be read is the block's last item.
 ///

@@ -11,7 +11,6 @@ mod dividers;
 mod expr;
 mod file;
 mod file_items;
-mod function;
 mod number;
 mod numbers;
 mod outline;

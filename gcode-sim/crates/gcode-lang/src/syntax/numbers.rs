@@ -2,11 +2,13 @@
 //!
 //! They are handed out word by word, so that nobody who only wants the words has to build a tree of them.
 use super::ast::Decimal;
-use super::block::MAX_SEQUENCE_NUMBER;
 use super::digits::{Window, number};
 use super::number::WORD_LIMIT;
 use super::token::{Input, is_space, unspaced};
 use crate::source::{SourceId, Span};
+
+/// The largest sequence number.
+pub(super) const MAX_SEQUENCE_NUMBER: u32 = 99_999_999;
 
 /// An address and the number right behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]

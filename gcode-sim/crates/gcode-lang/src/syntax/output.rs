@@ -1,7 +1,6 @@
 //! Statements that name variables and print them: SETVN, DPRNT, BPRNT.
 use super::ast::{PrintKind, PrintPart, Statement};
-use super::expr::{close, single_value};
-use super::function::is_name;
+use super::expr::{close, is_name, single_value};
 use super::number::{EXPRESSION_LIMIT, decimal};
 use super::token::{COMMENT, Input, LineInput, ReadResult, fail, is_space, next, require, sign, spaces};
 use crate::alarm::Alarm;

@@ -15,13 +15,13 @@ const TOLERANCE: &str = "0.0001 to 1000 mm";
 pub(super) const ROTARY_LETTERS: [(&str, char); 3] = [("A", 'A'), ("B", 'B'), ("C", 'C')];
 
 /// Whether a number is within bounds, the bounds included.
-pub(super) fn within(low: f64, high: f64) -> impl Fn(f64) -> bool {
+pub(super) fn in_range(low: f64, high: f64) -> impl Fn(f64) -> bool {
     move |value| (low..=high).contains(&value)
 }
 
 /// A length of [`LENGTH`].
 pub(super) fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
-    reader.number(key, value, LENGTH, within(0.01, 99_999.0))
+    reader.number(key, value, LENGTH, in_range(0.01, 99_999.0))
 }
 
 /// `machine.clearance` and `machine.retract`: how far above the surface the tool feeds from, and how far it goes away. mm.
@@ -31,9 +31,9 @@ pub(super) fn heights(
     retract: Option<&Spanned<f64>>,
 ) -> Result<(f64, f64), FileError> {
     let clearance =
-        reader.number_or("machine.clearance", clearance, "0.01 to 9999 mm", within(0.01, 9_999.0), 2.0)?;
+        reader.number_or("machine.clearance", clearance, "0.01 to 9999 mm", in_range(0.01, 9_999.0), 2.0)?;
     let allowed = format!("{clearance} (the clearance) to 9999 mm");
-    let within = within(clearance, 9_999.0);
+    let within = in_range(clearance, 9_999.0);
     let retract = reader.number_or("machine.retract", retract, &allowed, within, clearance.max(50.0))?;
     Ok((clearance, retract))
 }
@@ -47,7 +47,7 @@ pub(super) fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Resu
     }
 }
 
-/// The control the programs are for.
+/// The control of the programs.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileControl {
@@ -75,7 +75,7 @@ pub(super) struct FileRotary {
     /// Its letter.
     #[schemars(extend("enum" = names(&ROTARY_LETTERS)))]
     letter: Spanned<String>,
-    /// 1, or -1 where a positive command turns the part the other way.
+    /// 1, or -1 if a positive command rotates the part in the opposite direction.
     #[schemars(extend("enum" = [1, -1]))]
     sign: Spanned<i64>,
 }
@@ -93,10 +93,10 @@ impl FileRotary {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTolerance {
-    /// Diameter of the zone in which the axis of a hole has to lie (ISO 1101), mm.
+    /// Diameter of the tolerance zone of a hole's axis (ISO 1101), mm.
     #[schemars(range(min = 0.000_1, max = 1000.0))]
     position: Spanned<f64>,
-    /// How far the depth of a hole may be off, either way, mm [default: 0.1].
+    /// Tolerance of a hole's depth, either way, mm [default: 0.1].
     #[schemars(range(min = 0.000_1, max = 1000.0))]
     depth: Option<Spanned<f64>>,
 }
@@ -104,13 +104,13 @@ pub(super) struct FileTolerance {
 impl FileTolerance {
     /// Diameter of the zone, mm.
     pub(super) fn position(&self, reader: &Reader<'_>) -> Result<f64, FileError> {
-        reader.number("tolerance.position", &self.position, TOLERANCE, within(1e-4, 1e3))
+        reader.number("tolerance.position", &self.position, TOLERANCE, in_range(1e-4, 1e3))
     }
 
     /// Either way, mm.
     pub(super) fn depth(&self, reader: &Reader<'_>) -> Result<f64, FileError> {
         match &self.depth {
-            Some(depth) => reader.number("tolerance.depth", depth, TOLERANCE, within(1e-4, 1e3)),
+            Some(depth) => reader.number("tolerance.depth", depth, TOLERANCE, in_range(1e-4, 1e3)),
             None => Ok(0.1),
         }
     }

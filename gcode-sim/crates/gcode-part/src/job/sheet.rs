@@ -2,7 +2,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::sections::within;
+use super::sections::in_range;
 use crate::reader::{FileError, Reader, Spanned};
 
 /// What only people know of a job. Whatever is left out stands empty on the sheet, to be filled in by hand.
@@ -28,21 +28,21 @@ pub struct Minutes {
     pub tool_change: Option<f64>,
 }
 
-/// What an hour of the machine costs, and of others that could do the same.
+/// Machine-hour rates of the job's machine and of alternative machines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rates {
-    /// Printed as it stands.
+    /// Printed unchanged.
     pub currency: String,
     /// A machine hour.
     pub rate: f64,
-    pub beside: Vec<AlternativeMachine>,
+    pub alternatives: Vec<AlternativeMachine>,
 }
 
-/// The same part on another machine. Times that are left out are taken to be the same.
+/// The same part on another machine. Omitted times are equal to those of the job's machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativeMachine {
     pub machine: String,
-    /// A machine hour, in the same currency.
+    /// Price of a machine hour, in the same currency.
     pub rate: f64,
     /// Of the program, in minutes.
     pub run: Option<f64>,
@@ -84,30 +84,30 @@ pub(super) struct FileSheet {
     /// A tool change, minutes.
     #[schemars(range(min = 0.0, max = 1_000_000.0))]
     tool_change_minutes: Option<Spanned<f64>>,
-    /// What machine hours cost.
+    /// Machine-hour rates.
     rates: Option<FileRates>,
 }
 
-/// What an hour of the machine costs, and of others that could do the same.
+/// Machine-hour rates of the job's machine and of alternative machines.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FileRates {
-    /// Printed as it stands.
+    /// Printed unchanged.
     currency: String,
-    /// A machine hour, in that currency.
+    /// Price of a machine hour, in that currency.
     #[schemars(range(min = 0.01, max = 1e9))]
     rate: Spanned<f64>,
-    /// Other machines that the part could be made on.
+    /// Alternative machines for the part.
     beside: Option<Vec<FileBeside>>,
 }
 
-/// The same part on another machine. Times that are left out are taken to be the same.
+/// The same part on another machine. Omitted times are equal to those of the job's machine.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileBeside {
     /// Its name in the shop.
     machine: String,
-    /// A machine hour, in the same currency.
+    /// Price of a machine hour, in the same currency.
     #[schemars(range(min = 0.01, max = 1e9))]
     rate: Spanned<f64>,
     /// The program, minutes.
@@ -154,7 +154,7 @@ impl FileRates {
         let beside = self.beside.unwrap_or_default().into_iter();
         Ok(Rates {
             rate: rate(reader, prefix, &self.rate)?,
-            beside: beside
+            alternatives: beside
                 .map(|beside| beside.check(reader, &format!("{prefix}beside.")))
                 .collect::<Result<_, _>>()?,
             currency: self.currency,
@@ -179,7 +179,7 @@ impl FileBeside {
 }
 
 fn rate(reader: &Reader<'_>, prefix: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
-    reader.number(&format!("{prefix}rate"), value, "0.01 to 1000000000", within(0.01, 1e9))
+    reader.number(&format!("{prefix}rate"), value, "0.01 to 1000000000", in_range(0.01, 1e9))
 }
 
 fn minutes(
@@ -189,7 +189,7 @@ fn minutes(
     value: Option<&Spanned<f64>>,
 ) -> Result<Option<f64>, FileError> {
     let read =
-        |value| reader.number(&format!("{prefix}{key}"), value, "0 to 1000000 minutes", within(0.0, 1e6));
+        |value| reader.number(&format!("{prefix}{key}"), value, "0 to 1000000 minutes", in_range(0.0, 1e6));
     value.map(read).transpose()
 }
 
@@ -228,7 +228,7 @@ mod tests {
             run: Some(4.5),
             minutes: Minutes::default(),
         };
-        assert_eq!(rates.beside, [other]);
+        assert_eq!(rates.alternatives, [other]);
     }
 
     #[test]
@@ -259,6 +259,6 @@ mod tests {
         let text = "currency = \"EUR\"\nrate = 80\n[[beside]]\nmachine = \"5-axis\"\nrate = inf\n";
         let told = Rates::parse(text).unwrap_err().to_string();
         assert_eq!(told, "line 5: key 'beside.rate' is inf: 0.01 to 1000000000");
-        assert_eq!(Rates::parse(&text.replace("inf", "200")).unwrap().beside[0].rate, 200.0);
+        assert_eq!(Rates::parse(&text.replace("inf", "200")).unwrap().alternatives[0].rate, 200.0);
     }
 }

@@ -6,7 +6,7 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     // What the root lacks is reported at no byte at all.
     let place = span.filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
     if let Some(field) = quoted(message, "missing field ") {
-        let name = place.inside(field);
+        let name = place.child_name(field);
         // The one list of tables that a job can't do without.
         return if name == "hole" {
             "no table [[hole]]: one for each hole".to_owned()
@@ -17,7 +17,7 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     if let Some(field) = quoted(message, "unknown field ") {
         let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);
         let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
-        return format!("key '{}' is unknown; allowed: {allowed}", place.beside(field));
+        return format!("key '{}' is unknown; allowed: {allowed}", place.sibling_name(field));
     }
     if let Some((found, wanted)) =
         message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
@@ -76,7 +76,7 @@ impl KeyPath {
     }
 
     /// A key of the table that the line opens: by a header, or by an inline table as the key's value.
-    fn inside(&self, field: &str) -> String {
+    fn child_name(&self, field: &str) -> String {
         match &self.key {
             Some(key) if !self.table.is_empty() => join(&[&self.table, key, field]),
             _ => join(&[&self.table, field]),
@@ -84,7 +84,7 @@ impl KeyPath {
     }
 
     /// A key that the line or its table's header sets, dotted or not, or that an inline table on it holds.
-    fn beside(&self, field: &str) -> String {
+    fn sibling_name(&self, field: &str) -> String {
         let path = self.name();
         let names: Vec<_> = path.split('.').map(str::trim).collect();
         match names.iter().rposition(|name| *name == field) {

@@ -18,13 +18,14 @@ pub(super) struct FileLink {
     /// The axis.
     #[schemars(extend("enum" = AXES))]
     letter: Spanned<String>,
-    /// Turns about x, y or z: A, B and C do.
+    /// The direction x, y or z of a rotary axis: A, B and C.
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
     turns: Option<Spanned<String>>,
-    /// Slides along x, y or z: all others do.
+    /// The direction x, y or z of a linear axis: all other letters.
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
     slides: Option<Spanned<String>>,
-    /// 1 where a positive command turns the part right-handed, or moves it in the positive direction; else -1.
+    /// 1 if a positive command rotates the part right-handed, or moves it in the positive direction; otherwise
+    /// -1.
     #[schemars(extend("enum" = [1, -1]))]
     sign: Spanned<i64>,
     /// A point on the axis, machine coordinates, mm [default: the part's origin].
@@ -56,7 +57,7 @@ impl FileLink {
         origin: Point3<f64>,
     ) -> Result<AxisLink, FileError> {
         let axis = letter(reader, "table.letter", &self.letter, axes)?;
-        if inner.has(axis) {
+        if inner.has_axis(axis) {
             let message = format!("key 'table.letter': {} is used twice", axes.letter(axis));
             return Err(reader.error(&self.letter, message));
         }
@@ -80,11 +81,11 @@ impl FileLink {
             (Some(FixedArray([x, ..])), "slides") => {
                 Err(reader.error(x, "key 'table.centre' is for 'turns' only"))
             }
-            (_, "slides") => Ok(AxisLink::slide(axis, unit, sign)),
+            (_, "slides") => Ok(AxisLink::linear(axis, unit, sign)),
             (Some(centre), _) => {
-                Ok(AxisLink::turn(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
+                Ok(AxisLink::rotary(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
             }
-            (None, _) => Ok(AxisLink::turn(axis, unit, origin, sign)),
+            (None, _) => Ok(AxisLink::rotary(axis, unit, origin, sign)),
         }
     }
 }

@@ -32,27 +32,27 @@ use gcode_lang::motion::{Axes, AxisIndex};
 use gcode_part::reader::FileError;
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
-/// The machine that a program runs on. Every section may be left out: without any it is that of the paper.
+/// The machine of a program. Every section is optional; without any it is the machine of the paper.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// The control.
     control: Option<FileControl>,
-    /// What carries the part, from the bed outwards.
+    /// The axes that carry the part, from the bed outwards.
     table: Option<Vec<FileLink>>,
     /// How the tool is inclined.
     head: Option<FileHead>,
-    /// A grinder's wheel, which stays where it is while the table moves the part.
+    /// A grinder's wheel, stationary while the table moves the part.
     wheel: Option<FileWheel>,
     /// The tools.
     tool: Option<Vec<FileTool>>,
-    /// What the work offsets G54 to G59 hold when the run begins, by axis.
+    /// The work offsets G54 to G59 at the start of the run, by axis.
     offsets: Option<Spanned<FileOffsets>>,
-    /// Where the part lies on the machine, and how far off.
+    /// Nominal position of the part on the machine, and its misalignment.
     part: Option<FilePart>,
     /// A touch probe.
     probe: Option<FileProbe>,
-    /// What the machine is off by.
+    /// The errors of the machine.
     errors: Option<FileErrors>,
 }
 
@@ -93,7 +93,7 @@ impl Machine {
                 }
                 table
             }
-            None => Chain::of_the_paper(&axes, part.origin),
+            None => Chain::default_table(&axes, part.origin),
         };
         let head = match &file.head {
             Some(head) => head.check(&reader, &axes, &table)?,
@@ -117,7 +117,7 @@ impl Machine {
                 Some(increment) => reader.choice("control.increment", increment, &Increment::ALL)?,
                 None => Increment::default(),
             },
-            slides: Chain::slides(&axes, &table),
+            slides: Chain::default_slides(&axes, &table),
             wheel: file.wheel.map(|wheel| wheel.check(&reader, &axes, &table, &head)).transpose()?,
             offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, &offsets))?,
             axes,
@@ -229,7 +229,7 @@ tilt = [0.0, 0.0, 1.0]
         let machine = Machine::parse(text).unwrap();
         assert_eq!(machine.axes.len(), 5);
         let centre = Point3::new(1.0, 2.5, 3.0);
-        assert_eq!(machine.table.0, [AxisLink::turn(3, Vector3::x_axis(), centre, -1.0)]);
+        assert_eq!(machine.table.0, [AxisLink::rotary(3, Vector3::x_axis(), centre, -1.0)]);
         assert_eq!(machine.head.kind, HeadKind::Axis { axis: 4, sign: -1.0, zero: Deg(90.0) });
         assert_eq!(machine.head.pivot, 120.0);
         assert_eq!(machine.tools, [Tool { number: 12, length: Some(80.5), diameter: Some(6.0) }]);
@@ -241,7 +241,7 @@ tilt = [0.0, 0.0, 1.0]
     #[test]
     fn a_table_turns_about_the_parts_origin_unless_told_otherwise() {
         let machine = Machine::parse(&format!("{PAPER}[part]\norigin = [5.0, 6.0, 7.0]\n")).unwrap();
-        let LinkMotion::Turn { centre, .. } = &machine.table.0[0].motion else { panic!("it turns") };
+        let LinkMotion::Rotary { centre, .. } = &machine.table.0[0].motion else { panic!("it turns") };
         assert_eq!(*centre, Point3::new(5.0, 6.0, 7.0));
     }
 

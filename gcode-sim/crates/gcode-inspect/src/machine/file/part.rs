@@ -9,17 +9,17 @@ use gcode_lang::units::Deg;
 use gcode_part::reader::FileError;
 use gcode_part::reader::{FixedArray, Reader, Spanned};
 
-/// Where the part lies on the machine, and how far off.
+/// Nominal position of the part on the machine, and its misalignment.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FilePart {
     /// The part's origin in machine coordinates with the table at 0, mm.
     #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
     origin: Option<FixedArray<Spanned<f64>, 3>>,
-    /// Where the real part stands against that, mm.
+    /// Shift of the actual part from its nominal position, mm.
     #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
     shift: Option<FixedArray<Spanned<f64>, 3>>,
-    /// How it is turned, about x, then y, then z, degrees.
+    /// Tilt of the actual part about x, then y, then z, degrees.
     #[schemars(inner(range(min = -360.0, max = 360.0)))]
     tilt: Option<FixedArray<Spanned<f64>, 3>>,
 }

@@ -14,13 +14,13 @@ pub(super) struct FileProbe {
     /// Of the stylus ball, mm; its centre is the tool's tip.
     #[schemars(range(min = 0.0, max = 1000.0))]
     radius: Spanned<f64>,
-    /// From the contact until the control notes the position, seconds [default: 0].
+    /// Time from the contact until the control latches the position, seconds [default: 0].
     #[schemars(range(min = 0.0, max = 10.0))]
     delay: Option<Spanned<f64>>,
-    /// From then until the axes stand still, seconds [default: 0].
+    /// Time from then until the axes stop, seconds [default: 0].
     #[schemars(range(min = 0.0, max = 10.0))]
     overrun: Option<Spanned<f64>>,
-    /// How far the stylus can be pushed before it breaks, mm [default: any].
+    /// Largest deflection of the stylus before it breaks, mm [default: unlimited].
     #[schemars(range(min = 0.0, max = 1000.0))]
     give: Option<Spanned<f64>>,
 }
@@ -40,7 +40,7 @@ impl FileProbe {
         probe.delay = seconds("probe.delay", &self.delay)?;
         probe.overrun = seconds("probe.overrun", &self.overrun)?;
         if let Some(give) = &self.give {
-            probe.give = length("probe.give", give)?;
+            probe.overtravel_limit = length("probe.give", give)?;
         }
         Ok(probe)
     }

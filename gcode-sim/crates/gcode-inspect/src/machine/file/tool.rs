@@ -10,13 +10,13 @@ use gcode_part::reader::{Reader, Spanned};
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTool {
-    /// Its number, and that of its length offset; each has its own.
+    /// Its number, and that of its length offset; unique.
     #[schemars(range(min = 1, max = 99_999_999))]
     pub(super) number: Spanned<i64>,
     /// From the gauge line to the tip, mm [default: as long as the length offset in effect].
     #[schemars(range(min = 0.0, max = 10_000.0))]
     length: Option<Spanned<f64>>,
-    /// mm [default: not known].
+    /// mm [default: unknown].
     #[schemars(range(min = 0.001, max = 10_000.0))]
     diameter: Option<Spanned<f64>>,
 }

@@ -9,18 +9,18 @@ use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
 use gcode_part::reader::{FixedArray, Reader, Spanned};
 
-/// A grinder's wheel, which stays where it is while the table moves the part.
+/// A grinder's wheel, stationary while the table moves the part.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("anyOf" = [{ "required": ["letter"] }, { "not": { "required": ["sign"] } }]))]
 pub(super) struct FileWheel {
-    /// Where it touches, machine coordinates, mm.
+    /// Its contact point, machine coordinates, mm.
     #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
     contact: FixedArray<Spanned<f64>, 3>,
     /// The axis that swivels it about that point, A, B or C [default: none].
     #[schemars(extend("enum" = ROTARY_LETTERS))]
     letter: Option<Spanned<String>>,
-    /// 1, or -1 where the axis turns the other way [default: 1].
+    /// 1, or -1 if the axis is reversed [default: 1].
     #[schemars(extend("enum" = [1, -1]))]
     sign: Option<Spanned<i64>>,
 }
@@ -45,7 +45,7 @@ impl FileWheel {
                     return Err(reader.error(name, "key 'wheel.letter': the wheel swivels by A, B or C"));
                 }
                 let of_head = matches!(head.kind, HeadKind::Axis { axis: other, .. } if other == axis);
-                if table.has(axis) || of_head {
+                if table.has_axis(axis) || of_head {
                     let message = format!(
                         "key 'wheel.letter' is {}, the letter of the table or the head",
                         axes.letter(axis)
@@ -56,6 +56,6 @@ impl FileWheel {
                 Some((axis, sign))
             }
         };
-        Ok(Wheel { contact, swivels })
+        Ok(Wheel { contact, swivel_axis: swivels })
     }
 }

@@ -83,7 +83,7 @@ pub(in crate::verify) fn check(
 fn is_wrong_rotation_sign(comparison: &Comparison<'_>, machine: &Machine, axis: usize) -> bool {
     let part = machine.part.frame();
     machine.table.0.iter().any(|link| {
-        let LinkMotion::Turn { about, .. } = &link.motion else { return false };
+        let LinkMotion::Rotary { about, .. } = &link.motion else { return false };
         let own = part.rotation.inverse_transform_unit_vector(about);
         let turned = comparison.actual.iter().any(|found| found.axis_position[link.axis] != 0.0);
         turned && own[axis].abs() < std::f64::consts::FRAC_1_SQRT_2

@@ -17,14 +17,14 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     let (usual, wanted) = (rows.typical_gap, rows.nominal_gap(pattern));
     // After a whole turn the error has added up.
     let turn = (usual - wanted).abs() * (360.0 / wanted.0);
-    if turn < ROUNDING_ALLOWANCE || pattern.arc(turn) <= comparison.tolerances.position / 2.0 {
+    if turn < ROUNDING_ALLOWANCE || pattern.arc_length(turn) <= comparison.tolerances.position / 2.0 {
         return;
     }
     let tolerance = Deg::atan2(comparison.tolerances.position, pattern.diameter / 2.0);
     if !rows.is_evenly_spaced(tolerance + ROUNDING_ALLOWANCE) {
         return;
     }
-    let (found, right) = (pattern.arc(usual), pattern.arc(wanted));
+    let (found, right) = (pattern.arc_length(usual), pattern.arc_length(wanted));
     let fits = pattern.diameter * wanted.0 / usual.0;
     let message = format!(
         "the rows are {}° apart, nominal {:.4}°: neighbours round the circumference are {found:.2} mm \
@@ -63,7 +63,7 @@ fn explain_closure(pattern: &Pattern, rows: &PatternRows, usual: Deg) -> Option<
             "this is the angle of {} rows in each group, for a pitch of about {:.3}: check divisions, \
              pitch and diameter in the call",
             count / 2,
-            pattern.pitch_of(count)
+            pattern.closing_pitch(count)
         )
     })
 }

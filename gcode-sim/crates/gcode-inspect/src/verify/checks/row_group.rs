@@ -40,7 +40,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             ),
             format!(
                 "drill the second group: rotated by {:.4}° from the first and half a pitch ({half:.3} mm) later in x",
-                pattern.step().0
+                pattern.row_angle().0
             ),
         ),
         false => (
@@ -63,7 +63,7 @@ fn shifted_group(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternR
     let mut begins = [f64::NAN; 2];
     let mut first = [rows.rows[0]; 2];
     for row in &rows.rows {
-        let group = (row.azimuth.0 / pattern.step().0).round() as usize % 2;
+        let group = (row.azimuth.0 / pattern.row_angle().0).round() as usize % 2;
         if begins[group].is_nan() {
             (begins[group], first[group]) = (row.start, *row);
         } else if SAME_SHIFT < (row.start - begins[group]).abs() {

@@ -13,7 +13,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let Some((spacing, row)) = rows.spacing else { return };
     // The pitch that follows from another number of rows is told with their angle.
-    let follows = (spacing - pattern.pitch_of(rows.rows.len() as u32)).abs() < PITCH_TOLERANCE;
+    let follows = (spacing - pattern.closing_pitch(rows.rows.len() as u32)).abs() < PITCH_TOLERANCE;
     if follows && objections.iter().any(|objection| objection.finding.code == "row-angle") {
         return;
     }
@@ -29,7 +29,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     );
     let mut finding =
         locate_at_call(Diagnostic::error("row-pitch", message), &comparison.actual[row.first].backtrace);
-    if let Some(asked) = pattern.asked
+    if let Some(asked) = pattern.specified_pitch
         && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
     {
         finding = finding.note(format!(

@@ -10,7 +10,7 @@ use gcode_part::Surface;
 const MIN_ALIGNMENT: f64 = 0.5;
 
 pub(in crate::verify) fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
-    let rotary = reference.conduct.rotary?;
+    let rotary = reference.process_limits.rotary?;
     let about = match reference.surface? {
         Surface::Ellipsoid { .. } => Vector3::y_axis(),
         Surface::Cylinder { .. } => Vector3::x_axis(),
@@ -31,7 +31,7 @@ pub(in crate::verify) fn finding(reference: &Reference, machine: &Machine) -> Op
 fn sign_about(machine: &Machine, letter: char, own: &Unit<Vector3<f64>>) -> Option<f64> {
     let axis = machine.axes.find(letter as u8)?;
     let link = machine.table.0.iter().find(|link| link.axis == axis)?;
-    let LinkMotion::Turn { about, .. } = &link.motion else { return None };
+    let LinkMotion::Rotary { about, .. } = &link.motion else { return None };
     let along = machine.part.frame().rotation.inverse_transform_unit_vector(about).dot(own);
     (MIN_ALIGNMENT < along.abs()).then(|| link.sign * along.signum())
 }

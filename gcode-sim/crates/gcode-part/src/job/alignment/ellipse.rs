@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Chord, EllipsePath};
-use crate::job::sections::within;
+use crate::job::sections::in_range;
 use crate::job::{FileError, JobControl, Reader, Surface};
 use crate::reader::Spanned;
 
@@ -11,13 +11,14 @@ use crate::reader::Spanned;
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileEllipse {
-    /// x where it begins, mm [default: that of F].
+    /// x of its start, mm [default: that of F].
     #[schemars(range(min = 0.0, max = 99_999.0))]
     from: Option<Spanned<f64>>,
-    /// x where it ends, mm [default: that of E].
+    /// x of its end, mm [default: that of E].
     #[schemars(range(min = 0.0, max = 99_999.0))]
     to: Option<Spanned<f64>>,
-    /// How far the ball may be off, mm: no less than the least increment [default: 0.002, or two increments].
+    /// Tolerance of the ball position, mm: no less than the least increment [default: 0.002, or two
+    /// increments].
     #[schemars(range(min = 0.000_1, max = 1.0))]
     chord_error: Option<Spanned<f64>>,
     /// mm/min [default: 200].
@@ -35,7 +36,7 @@ impl FileEllipse {
     ) -> Result<EllipsePath, FileError> {
         let allowed = format!("0 to the equatorial radius a = {} mm", surface.a);
         let radius = |key: &str, value: &Option<Spanned<f64>>, default: f64| {
-            reader.number_or(key, value.as_ref(), &allowed, within(0.0, surface.a), default)
+            reader.number_or(key, value.as_ref(), &allowed, in_range(0.0, surface.a), default)
         };
         let increment = control.increment.size();
         let path = EllipsePath {
@@ -45,14 +46,14 @@ impl FileEllipse {
                 "ellipse.chord_error",
                 self.chord_error.as_ref(),
                 &format!("{increment} (the least increment) to 1 mm"),
-                within(increment, 1.0),
+                in_range(increment, 1.0),
                 f64::max(0.002, 2.0 * increment),
             )?,
             feed: reader.number_or(
                 "ellipse.feed",
                 self.feed.as_ref(),
                 "1 to 10000 mm/min",
-                within(1.0, 1e4),
+                in_range(1.0, 1e4),
                 200.0,
             )?,
         };

@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm};
-use crate::job::sections::{FileControl, sign, within};
+use crate::job::sections::{FileControl, in_range, sign};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, JobControl, Reader};
 use crate::reader::{Spanned, names};
@@ -14,7 +14,7 @@ use gcode_lang::units::Deg;
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct File {
-    /// What kind of part it is: decides which keys there are.
+    /// The kind of part, which decides the other keys.
     #[serde(rename = "family")]
     #[schemars(extend("enum" = ["burr"]))]
     _family: String,
@@ -24,11 +24,11 @@ pub(in crate::job) struct File {
     burr: FileBurr,
     /// The grinder.
     machine: FileMachine,
-    /// How the program is written.
+    /// Form and conditions of the program.
     program: Option<FileProgram>,
-    /// How far flutes may be off.
+    /// Tolerances of the flutes.
     tolerance: Option<FileTolerance>,
-    /// What the set-up sheet says of people, time and money.
+    /// Additional data for the set-up sheet.
     sheet: Option<FileSheet>,
 }
 
@@ -42,7 +42,7 @@ struct FileBurr {
     /// Of the flutes, mm, nose included: no less than the nose.
     #[schemars(range(min = 0.0, max = 500.0))]
     length: Spanned<f64>,
-    /// How many: as many as have room at the tip.
+    /// Their number, limited by the room at the tip.
     #[schemars(range(min = 1, max = 360))]
     flutes: Spanned<i64>,
     /// Degrees, 1 to 60, or -60 to -1 for a left-hand burr.
@@ -71,12 +71,12 @@ struct FileMachine {
     /// From the C axis to the end of the cylinder at C = 0, X and Y, mm.
     #[schemars(length(equal = 2), inner(range(min = -2000.0, max = 2000.0)))]
     c_offset: Spanned<Vec<Spanned<f64>>>,
-    /// Axes that turn or slide the other way.
+    /// Directions of the axes: 1, or -1 if reversed.
     signs: Option<FileSigns>,
-    /// How far the wheel stays away between passes, mm [default: 2].
+    /// Clearance of the wheel between passes, mm [default: 2].
     #[schemars(range(min = 0.1, max = 500.0))]
     clearance: Option<Spanned<f64>>,
-    /// As in [burr]; once is enough.
+    /// As in [burr]; allowed once.
     profile: Option<Spanned<FileProfile>>,
 }
 
@@ -118,7 +118,7 @@ struct FileSigns {
     c: Option<Spanned<i64>>,
 }
 
-/// How the program is written.
+/// Form and conditions of the program.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProgram {
@@ -167,13 +167,14 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, FileError> {
         &burr.helix,
         "1 to 60 degrees, or -60 to -1 for a left-hand burr (a straight flute has no move that rotates A, \
          which distinguishes grinding from approach)",
-        |v| within(1.0, 60.0)(v.abs()),
+        |v| in_range(1.0, 60.0)(v.abs()),
     )?;
     let shape = burr.shape(reader, profile)?;
     let increment = control.increment.size();
     let chord =
         format!("{increment} to 1 mm: rounding to the least increment of {increment} uses half of it");
-    let chord_error = reader.number("burr.chord_error", &burr.chord_error, &chord, within(increment, 1.0))?;
+    let chord_error =
+        reader.number("burr.chord_error", &burr.chord_error, &chord, in_range(increment, 1.0))?;
     Ok(Burr {
         control,
         shape,
@@ -197,7 +198,7 @@ fn optional(
     default: f64,
 ) -> Result<f64, FileError> {
     let allowed = format!("{low} to {high} {unit}");
-    value.map_or(Ok(default), |value| reader.number(key, value, &allowed, within(low, high)))
+    value.map_or(Ok(default), |value| reader.number(key, value, &allowed, in_range(low, high)))
 }
 
 impl FileBurr {
@@ -206,14 +207,15 @@ impl FileBurr {
         reader: &Reader<'_>,
         profile: Option<&Spanned<FileProfile>>,
     ) -> Result<BurrShape, FileError> {
-        let diameter = reader.number("burr.diameter", &self.diameter, "0.5 to 200 mm", within(0.5, 200.0))?;
+        let diameter =
+            reader.number("burr.diameter", &self.diameter, "0.5 to 200 mm", in_range(0.5, 200.0))?;
         let radius = diameter / 2.0;
         let nose = profile.map_or(Ok(Nose::Ball), |profile| profile.as_ref().check(reader, radius))?;
         let long = nose_length(radius, nose);
         let allowed = format!("{long:.3} (the nose alone) to 500 mm");
         // As long as the nose is to the digit that a job would say it with.
         let length =
-            reader.number("burr.length", &self.length, &allowed, within(long - 0.000_5, 500.0))?.max(long);
+            reader.number("burr.length", &self.length, &allowed, in_range(long - 0.000_5, 500.0))?.max(long);
         Ok(BurrShape {
             radius,
             length,
@@ -222,7 +224,7 @@ impl FileBurr {
                 "burr.tip_angle",
                 &self.tip_angle,
                 "1 to 85 degrees: at the pole a flute has no width",
-                within(1.0, 85.0),
+                in_range(1.0, 85.0),
             )?,
             tooth_depth: optional(
                 reader,
@@ -297,7 +299,7 @@ impl FileMachine {
             return Err(reader.error(&self.c_offset, message));
         };
         let offset = |value: &Spanned<f64>| {
-            reader.number("machine.c_offset", value, "-2000 to 2000 mm", within(-2000.0, 2000.0))
+            reader.number("machine.c_offset", value, "-2000 to 2000 mm", in_range(-2000.0, 2000.0))
         };
         let of = |key: &str, value: Option<&Spanned<i64>>| {
             value.map_or(Ok(1), |value| sign(reader, &format!("machine.signs.{key}"), value))
@@ -312,8 +314,8 @@ impl FileMachine {
                 b: of("B", given.and_then(|s| s.b.as_ref()))?,
                 c: of("C", given.and_then(|s| s.c.as_ref()))?,
             },
-            signs_said: given.is_some(),
-            clearance_said: self.clearance.is_some(),
+            are_signs_specified: given.is_some(),
+            is_clearance_specified: self.clearance.is_some(),
             clearance: optional(
                 reader,
                 "machine.clearance",
@@ -349,11 +351,11 @@ impl FileProgram {
         Ok(BurrProgram {
             form,
             speed: number("speed", file.and_then(|f| f.speed.as_ref()), (1.0, 20_000.0, "mm/min"), 200.0)?,
-            speed_said: file.is_some_and(|f| f.speed.is_some()),
+            is_speed_specified: file.is_some_and(|f| f.speed.is_some()),
             plunge: number("plunge", file.and_then(|f| f.plunge.as_ref()), (0.1, 5_000.0, "mm/min"), 30.0)?,
-            plunge_said: file.is_some_and(|f| f.plunge.is_some()),
+            is_plunge_specified: file.is_some_and(|f| f.plunge.is_some()),
             wheel: number("wheel", file.and_then(|f| f.wheel.as_ref()), (1.0, 99_999.0, "r/min"), 3000.0)?,
-            wheel_said: file.is_some_and(|f| f.wheel.is_some()),
+            is_wheel_specified: file.is_some_and(|f| f.wheel.is_some()),
         })
     }
 }

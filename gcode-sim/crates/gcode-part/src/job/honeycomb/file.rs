@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing, SpecifiedFields};
-use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, length, within};
+use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, in_range, length};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader};
 use crate::reader::{Spanned, names};
@@ -12,23 +12,23 @@ use crate::reader::{Spanned, names};
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct File {
-    /// What kind of part it is: decides which keys there are.
+    /// The kind of part, which decides the other keys.
     #[serde(rename = "family")]
     #[schemars(extend("enum" = ["honeycomb"]))]
     _family: String,
-    /// The control the programs are for.
+    /// The control of the programs.
     control: FileControl,
     /// The machine.
     machine: FileMachine,
-    /// How far holes may be off.
+    /// Tolerances of the holes.
     tolerance: FileTolerance,
     /// The part.
     cylinder: FileCylinder,
-    /// How the holes stand to one another.
+    /// The pattern of the holes.
     pattern: Spanned<FilePattern>,
     /// The tool and the holes it makes.
     drill: FileDrill,
-    /// What the set-up sheet says of people, time and money.
+    /// Additional data for the set-up sheet.
     sheet: Option<FileSheet>,
 }
 
@@ -36,15 +36,15 @@ pub(in crate::job) struct File {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileMachine {
-    /// The axis that turns the part.
+    /// The axis that rotates the part.
     rotary: FileRotary,
-    /// How far above the surface rapid becomes feed, mm [default: 2].
+    /// Distance from the surface where the feed begins, mm [default: 2].
     #[schemars(range(min = 0.01, max = 9_999.0))]
     clearance: Option<Spanned<f64>>,
-    /// How far above the surface the tool goes between holes, mm, no less than the clearance [default: 50].
+    /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
     #[schemars(range(min = 0.01, max = 9_999.0))]
     retract: Option<Spanned<f64>>,
-    /// The M codes that hold the rotary and let it go [default: none].
+    /// The M codes that clamp and release the rotary [default: none].
     clamp: Option<FileClamp>,
 }
 
@@ -52,11 +52,11 @@ struct FileMachine {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileClamp {
-    /// Holds the rotary.
-    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": TAKEN }))]
+    /// Clamps the rotary.
+    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": RESERVED_M_CODES }))]
     on: Spanned<i64>,
-    /// Lets it go.
-    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": TAKEN }))]
+    /// Releases the rotary.
+    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": RESERVED_M_CODES }))]
     off: Spanned<i64>,
 }
 
@@ -64,7 +64,7 @@ struct FileClamp {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileCylinder {
-    /// On which the pitch is to hold, mm.
+    /// Diameter of the pitch, mm.
     #[schemars(range(min = 0.01, max = 99_999.0))]
     diameter: Spanned<f64>,
     /// mm.
@@ -83,13 +83,13 @@ struct FileCylinder {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["pitch"] }, { "required": ["divisions"] }]))]
 struct FilePattern {
-    /// Between neighbours, mm, above the drill's diameter; made to fit, so that the pattern closes.
+    /// Between neighbours, mm, above the drill diameter; adjusted so that the pattern closes.
     #[schemars(range(min = 0.01, max = 99_999.0))]
     pitch: Option<Spanned<f64>>,
     /// Rows of one group round the circumference.
     #[schemars(range(min = 2, max = 100_000))]
     divisions: Option<Spanned<i64>>,
-    /// How the distance of neighbours counts: arc on the surface, or chord.
+    /// Metric of the distance between neighbours: arc on the surface, or chord.
     #[schemars(extend("enum" = names(&Metric::ALL)))]
     metric: Spanned<String>,
 }
@@ -119,11 +119,11 @@ struct FileDrill {
 }
 
 /// M codes that end, call or rigid-tap.
-const TAKEN: [i64; 5] = [19, 29, 30, 98, 99];
+const RESERVED_M_CODES: [i64; 5] = [19, 29, 30, 98, 99];
 /// mm/min, in the paper.
-const FEED: f64 = 60.0;
+const DEFAULT_FEED: f64 = 60.0;
 /// r/min; the paper names none.
-const SPEED: f64 = 1000.0;
+const DEFAULT_SPEED: f64 = 1000.0;
 
 /// Reads the text of a job of this family.
 pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Honeycomb, FileError> {
@@ -149,7 +149,14 @@ impl FileMachine {
         let clamp = self.clamp.as_ref().map(|clamp| clamp.check(reader)).transpose()?;
         let retract_said = self.retract.is_some();
         let (clearance_said, rotary) = (self.clearance.is_some(), self.rotary.check(reader)?);
-        Ok(CombMachine { rotary, clearance, clearance_said, retract, retract_said, clamp })
+        Ok(CombMachine {
+            rotary,
+            clearance,
+            is_clearance_specified: clearance_said,
+            retract,
+            is_retract_specified: retract_said,
+            clamp,
+        })
     }
 }
 
@@ -157,7 +164,7 @@ impl FileClamp {
     fn check(&self, reader: &Reader<'_>) -> Result<Clamp, FileError> {
         let own = |key: &str, value: &Spanned<i64>| {
             let code = *value.as_ref();
-            if (10..=999).contains(&code) && !TAKEN.contains(&code) {
+            if (10..=999).contains(&code) && !RESERVED_M_CODES.contains(&code) {
                 return Ok(code as u32);
             }
             let allowed = "an M code of the machine's own, 10 to 999 without 19, 29, 30, 98, 99";
@@ -178,14 +185,14 @@ impl FileCylinder {
         let outer = match &self.outer {
             Some(outer) => {
                 let allowed = format!("from the diameter of {diameter} mm to 99999 mm");
-                reader.number("cylinder.outer", outer, &allowed, within(diameter, 99_999.0))?
+                reader.number("cylinder.outer", outer, &allowed, in_range(diameter, 99_999.0))?
             }
             None => diameter,
         };
         let bore = match &self.bore {
             Some(bore) => {
                 let allowed = format!("0 to the diameter of {diameter} mm");
-                let wide = reader.number("cylinder.bore", bore, &allowed, within(0.0, diameter))?;
+                let wide = reader.number("cylinder.bore", bore, &allowed, in_range(0.0, diameter))?;
                 if wide >= outer {
                     let message = format!(
                         "key 'cylinder.bore' is {wide}: below the outer diameter of {outer} mm, because \
@@ -221,28 +228,29 @@ impl FileDrill {
             None => 1,
         };
         let or = |key: &str, value: &Option<Spanned<f64>>, allowed: &str, least: f64, most: f64, or: f64| {
-            value.as_ref().map_or(Ok(or), |value| reader.number(key, value, allowed, within(least, most)))
+            value.as_ref().map_or(Ok(or), |value| reader.number(key, value, allowed, in_range(least, most)))
         };
         let speed = match &self.speed {
             Some(speed) => {
                 let allowed = "a whole number from 1 to 99999 r/min";
-                reader
-                    .number("drill.speed", speed, allowed, |v| within(1.0, 99_999.0)(v) && v.fract() == 0.0)?
+                reader.number("drill.speed", speed, allowed, |v| {
+                    in_range(1.0, 99_999.0)(v) && v.fract() == 0.0
+                })?
             }
-            None => SPEED,
+            None => DEFAULT_SPEED,
         };
         Ok(Drill {
             number,
             diameter,
             depth,
             speed,
-            feed: or("drill.feed", &self.feed, "0.01 to 240000 mm/min", 0.01, 240_000.0, FEED)?,
+            feed: or("drill.feed", &self.feed, "0.01 to 240000 mm/min", 0.01, 240_000.0, DEFAULT_FEED)?,
             peck: or("drill.peck", &self.peck, "0.01 to 9999 mm", 0.01, 9_999.0, diameter)?,
-            said: SpecifiedFields {
-                number: self.number.is_some(),
-                speed: self.speed.is_some(),
-                feed: self.feed.is_some(),
-                peck: self.peck.is_some(),
+            specified: SpecifiedFields {
+                has_number: self.number.is_some(),
+                has_speed: self.speed.is_some(),
+                has_feed: self.feed.is_some(),
+                has_peck: self.peck.is_some(),
             },
         })
     }

@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Tool;
-use crate::job::sections::{length, within};
+use crate::job::sections::{in_range, length};
 use crate::job::{FileError, Reader};
 use crate::reader::Spanned;
 
@@ -11,7 +11,7 @@ use crate::reader::Spanned;
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTool {
-    /// Its number, and that of its length offset; each has its own.
+    /// Its number, and that of its length offset; unique.
     #[schemars(range(min = 1, max = 9999))]
     number: Spanned<i64>,
     /// mm.
@@ -29,7 +29,7 @@ pub(super) struct FileTool {
     /// Out of the hole, mm/min [default: 200, or feed if that is more].
     #[schemars(range(min = 0.01, max = 240_000.0))]
     retract_feed: Option<Spanned<f64>>,
-    /// What messages and the sheet call it [default: TOOL and its number].
+    /// Its name in messages and on the sheet [default: TOOL and its number].
     name: Option<String>,
 }
 
@@ -41,11 +41,11 @@ pub(super) struct HoleToolSpec<'f> {
 }
 
 /// mm/min into the hole, in the paper.
-const FEED: f64 = 10.0;
+const DEFAULT_FEED: f64 = 10.0;
 /// mm/min out of the hole: nothing is cut there.
-const RETRACT_FEED: f64 = 200.0;
+const DEFAULT_RETRACT_FEED: f64 = 200.0;
 /// r/min, in the paper.
-const SPEED: f64 = 1500.0;
+const DEFAULT_SPEED: f64 = 1500.0;
 
 impl FileTool {
     pub(super) fn check(&self, reader: &Reader<'_>) -> Result<Tool, FileError> {
@@ -54,23 +54,25 @@ impl FileTool {
             return Err(reader.error(&self.number, format!("key 'tool.number' is {number}: 1 to 9999")));
         }
         let feed_range = "0.01 to 240000 mm/min";
-        let feed = reader.number("tool.feed", &self.feed, feed_range, within(0.01, 240_000.0))?;
+        let feed = reader.number("tool.feed", &self.feed, feed_range, in_range(0.01, 240_000.0))?;
         Ok(Tool {
             number: number as u32,
             diameter: length(reader, "tool.diameter", &self.diameter)?,
             length: match &self.length {
-                Some(length) => reader.number("tool.length", length, "0 to 9999 mm", within(0.0, 9_999.0))?,
+                Some(length) => {
+                    reader.number("tool.length", length, "0 to 9999 mm", in_range(0.0, 9_999.0))?
+                }
                 None => 0.0,
             },
             speed: reader.number("tool.speed", &self.speed, "a whole number from 1 to 99999 r/min", |v| {
-                within(1.0, 99_999.0)(v) && v.fract() == 0.0
+                in_range(1.0, 99_999.0)(v) && v.fract() == 0.0
             })?,
             feed,
             retract_feed: match &self.retract_feed {
                 Some(value) => {
-                    reader.number("tool.retract_feed", value, feed_range, within(0.01, 240_000.0))?
+                    reader.number("tool.retract_feed", value, feed_range, in_range(0.01, 240_000.0))?
                 }
-                None => feed.max(RETRACT_FEED),
+                None => feed.max(DEFAULT_RETRACT_FEED),
             },
             name: self.name.clone().unwrap_or_else(|| format!("TOOL {number}")),
         })
@@ -115,9 +117,9 @@ fn tool(number: u32, diameter: f64, name: &str) -> Tool {
         number,
         diameter,
         length: 0.0,
-        speed: SPEED,
-        feed: FEED,
-        retract_feed: RETRACT_FEED,
+        speed: DEFAULT_SPEED,
+        feed: DEFAULT_FEED,
+        retract_feed: DEFAULT_RETRACT_FEED,
         name: name.to_owned(),
     }
 }

@@ -1,17 +1,17 @@
 //! Expressions lowered to postfix code.
-use super::DialectSyntax;
-use super::bytecode::{
+use super::Lowering;
+use crate::alarm::{Alarm, LocatedAlarm};
+use crate::program::DialectSyntax;
+use crate::program::bytecode::{
     AssignmentTarget, Bytecode, ComputedSource, Instruction, Operand, OperandSource, Operation, STACK, Slot,
     UncommonOp,
 };
-use super::lowering::Lowering;
-use super::names::{self, OTHER_MEMORIES};
-use crate::alarm::{Alarm, LocatedAlarm};
+use crate::program::names::{self, OTHER_MEMORIES};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, OperatorSpelling};
 
 /// How deep brackets may stand in one another (operator's manual, custom macro: five levels).
-pub(super) const MAX_BRACKETS: usize = 5;
+pub(in crate::program) const MAX_BRACKETS: usize = 5;
 
 const LAST: OperandSource = OperandSource::Computed(ComputedSource::Last);
 const WAITING: OperandSource = OperandSource::Computed(ComputedSource::Waiting);
@@ -21,7 +21,7 @@ const MAX_VARIABLE_NUMBER: f64 = 999_999_999.0;
 
 /// What an expression stands in.
 #[derive(Clone, Copy)]
-pub(super) enum ExprContext {
+pub(in crate::program) enum ExprContext {
     Macro,
     /// The value of an address.
     Address(u8),
@@ -30,7 +30,11 @@ pub(super) enum ExprContext {
 type LoweringResult<T> = Result<T, LocatedAlarm>;
 
 impl Lowering {
-    pub(super) fn operand(&mut self, expr: &Expr, context: ExprContext) -> LoweringResult<Operand> {
+    pub(in crate::program) fn operand(
+        &mut self,
+        expr: &Expr,
+        context: ExprContext,
+    ) -> LoweringResult<Operand> {
         match &expr.kind {
             ExprKind::Literal(number) => return Ok(Operand::Number(number.value())),
             ExprKind::Variable(index) => {
@@ -44,7 +48,7 @@ impl Lowering {
     }
 
     /// The value of a word, whose own sign is no part of an expression.
-    pub(super) fn word_value(&mut self, expr: &Expr, letter: u8) -> LoweringResult<Operand> {
+    pub(in crate::program) fn word_value(&mut self, expr: &Expr, letter: u8) -> LoweringResult<Operand> {
         let context = ExprContext::Address(letter);
         let ExprKind::Negate(inner) = &expr.kind else { return self.operand(expr, context) };
         let write =
@@ -52,7 +56,11 @@ impl Lowering {
         self.compile(expr.span, write).map(Operand::Code)
     }
 
-    pub(super) fn condition(&mut self, condition: &Condition, span: Span) -> LoweringResult<Bytecode> {
+    pub(in crate::program) fn condition(
+        &mut self,
+        condition: &Condition,
+        span: Span,
+    ) -> LoweringResult<Bytecode> {
         self.compile(span, |this| this.compile_condition(condition))
     }
 
@@ -252,7 +260,7 @@ impl Lowering {
     }
 
     /// The variable that an assignment writes.
-    pub(super) fn compile_target(&mut self, target: &Expr) -> LoweringResult<AssignmentTarget> {
+    pub(in crate::program) fn compile_target(&mut self, target: &Expr) -> LoweringResult<AssignmentTarget> {
         match &target.kind {
             ExprKind::Variable(index) => match self.operand(index, ExprContext::Macro)? {
                 // The nearest whole number, as of any index.

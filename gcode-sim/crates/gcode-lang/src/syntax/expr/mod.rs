@@ -2,18 +2,21 @@
 //!
 //! `[…]` may hold a number or a condition, which only its end tells, so both are read as [`ExprOrCondition`] and told apart
 //! where one of them is wanted. Nothing is read twice.
+mod function;
+
 use nom::Parser;
 use nom::branch::alt;
 use nom::combinator::value;
 
 use super::ast::{BinaryOp, Condition, Expr, ExprKind, OperatorSpelling, Relation};
-use super::function::{call, is_name, named};
 use super::number::{EXPRESSION_LIMIT, decimal};
 use super::token::{
     Input, LineInput, ReadResult, comment_before, fail, next, no_expression, no_match, require,
     round_brackets, sign, spaces, word,
 };
 use crate::alarm::Alarm;
+pub(super) use function::is_name;
+use function::{call, named};
 
 /// Brackets inside one another, those of functions and of `#[…]` included (manual: at most five).
 const MAX_BRACKET_DEPTH: u8 = 5;

@@ -3,17 +3,17 @@ use nom::Parser;
 use nom::combinator::opt;
 use nom::sequence::{pair, preceded};
 
-use super::ast::{CallForm, Expr, ExprKind, Function, Name};
-use super::expr::{close, expr, increase_depth, require_value};
-use super::token::{
+use super::{close, expr, increase_depth, require_value};
+use crate::alarm::Alarm;
+use crate::syntax::ast::{CallForm, Expr, ExprKind, Function, Name};
+use crate::syntax::token::{
     Input, LineInput, ReadResult, comment_before, fail, is_space, letters, next, no_expression,
     round_brackets, sign, spaces,
 };
-use crate::alarm::Alarm;
 
 impl Function {
     /// Names as written in full; all but POW may be cut to their first two letters or more.
-    pub(super) const ALL: [(&'static str, Self); 17] = [
+    pub(in crate::syntax) const ALL: [(&'static str, Self); 17] = [
         ("SIN", Self::Sin),
         ("COS", Self::Cos),
         ("TAN", Self::Tan),
@@ -33,13 +33,13 @@ impl Function {
         ("ADP", Self::Adp),
     ];
 
-    pub(super) fn name(self) -> &'static str {
+    pub(in crate::syntax) fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, function)| *function == self).map_or("", |(name, _)| name)
     }
 }
 
 /// A function with its brackets. The input begins with a letter.
-pub(super) fn call(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
+pub(in crate::syntax) fn call(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     if let (rest, 3) = letters(input, "PRM") {
         return parameter(line, input, rest, depth);
     }
@@ -124,13 +124,13 @@ fn axis_number<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u
 }
 
 /// `[#_` or `[#A`.
-pub(super) fn is_name(input: Input<'_>) -> bool {
+pub(in crate::syntax) fn is_name(input: Input<'_>) -> bool {
     let begins = |rest| next(rest).is_some_and(|(b, _)| b.is_ascii_alphabetic() || b == b'_');
     matches!(next(input), Some((b'[', rest)) if matches!(next(rest), Some((b'#', rest)) if begins(rest)))
 }
 
 /// `[#NAME]`, `[#NAME[n]]`; [`is_name`] holds.
-pub(super) fn named(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
+pub(in crate::syntax) fn named(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     let depth = increase_depth(input, depth)?;
     let (start, ()) = preceded(sign(b'['), sign(b'#')).parse(input)?;
     let mut text = String::new();

@@ -1,10 +1,12 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
+mod expr;
+
 use super::bytecode::{AssignmentTarget, Bytecode, Instruction, Slot};
-use super::expr::ExprContext;
 use super::{Assign, DialectSyntax, GuardedOp, Op, OpBody, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
+pub(super) use expr::ExprContext;
 
 /// Skips inside one block: as many as there are switches.
 const MAX_INNER_SKIPS: usize = 9;

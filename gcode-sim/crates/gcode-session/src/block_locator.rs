@@ -7,13 +7,13 @@ use gcode_lang::source::{SourceId, Span};
 
 /// The program and the line of a block.
 #[derive(Debug)]
-pub(super) struct Places<'r> {
+pub(super) struct BlockLocator<'r> {
     run: &'r Run,
     /// By where the program begins.
     names: RefCell<BTreeMap<(SourceId, u32), String>>,
 }
 
-impl<'r> Places<'r> {
+impl<'r> BlockLocator<'r> {
     pub(super) fn of(run: &'r Run) -> Self {
         Self { run, names: RefCell::default() }
     }
