@@ -66,7 +66,11 @@ fn sarif_is_what_its_schema_wants_and_says_where() {
     ];
     assert_eq!(told, wanted);
     let moved = results[2]["message"]["text"].as_str().unwrap();
-    assert_eq!(moved, "moved: hole 1: moved by +0.0000 +0.0100 +0.0000 mm");
+    assert_eq!(
+        moved,
+        "moved: hole 1: moved by +0.0000 +0.0100 +0.0000 mm\nalso move-shifted: moves end at a different point: \
+         Y +0.0100 (3 rapids, a feed)"
+    );
     for rule in log["runs"][0]["tool"]["driver"]["rules"].as_array().unwrap() {
         assert!(rule["help"]["text"].as_str().is_some_and(|text| text.len() > 40), "{rule}");
     }

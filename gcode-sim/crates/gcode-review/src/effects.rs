@@ -1,4 +1,6 @@
 //! Differences that say the same, counted as one effect of an edit.
+use std::collections::BTreeMap;
+
 use super::change::Effect;
 use super::descriptions::{code, coordinates, describe, point, short};
 use super::differences::{Difference, DifferenceKind};
@@ -41,9 +43,14 @@ enum Numbers {
     Speeds(f64, f64),
 }
 
+/// So many shifts of one edit are told one by one; more than that are one, by up to the largest.
+const MOST_SHIFTS: usize = 4;
+
 /// All groups, in the order in which they first came up.
 pub(super) struct Effects<'a> {
     all: Vec<Group>,
+    by_text: BTreeMap<(&'static str, String), usize>,
+    by_places: BTreeMap<(&'static str, [Option<usize>; 2]), usize>,
     records: [&'a Record; 2],
     edits: &'a Edits,
     tolerance: f64,
@@ -51,35 +58,27 @@ pub(super) struct Effects<'a> {
 
 impl<'a> Effects<'a> {
     pub(super) fn new(records: [&'a Record; 2], edits: &'a Edits, tolerance: f64) -> Self {
-        Self { all: Vec::new(), records, edits, tolerance }
+        let (by_text, by_places) = Default::default();
+        Self { all: Vec::new(), by_text, by_places, records, edits, tolerance }
     }
 
-    /// Counts a difference with those that say the same.
+    /// Counts a difference with those that say the same; feeds, speeds, and moves of one run alone, with those of their blocks.
     pub(super) fn add(&mut self, difference: &Difference) {
         let group = self.group(difference);
-        let is_alike = |known: &Group| {
-            let is_place = known.places == group.places;
-            known.code == group.code
-                && match (&known.numbers, &group.numbers) {
-                    (Numbers::Shift { .. }, Numbers::Shift { .. }) => {
-                        known.text == group.text || known.is_with(&group)
-                    }
-                    (Numbers::Speeds(..), _) => {
-                        known.numbers == group.numbers && (known.text == group.text || is_place)
-                    }
-                    (Numbers::Factor(..), _) => known.text == group.text || is_place,
-                    _ => {
-                        known.text == group.text
-                            || is_place && matches!(group.code, "move-added" | "move-lost")
-                    }
-                }
+        let (text, places) = ((group.code, group.text.clone()), (group.code, group.places));
+        let is_of_block = matches!(group.code, "feed" | "move-added" | "move-lost")
+            || matches!(group.numbers, Numbers::Speeds(..));
+        let of_block = || {
+            let known = *self.by_places.get(&places).filter(|_| is_of_block)?;
+            let is_alike =
+                !matches!(group.numbers, Numbers::Speeds(..)) || self.all[known].numbers == group.numbers;
+            is_alike.then_some(known)
         };
-        // A shift by the same comes before one with the same cause.
-        let same = self
-            .all
-            .iter()
-            .position(|known| known.code == group.code && known.text == group.text && is_alike(known));
-        match same.or_else(|| self.all.iter().position(is_alike)) {
+        let known = self.by_text.get(&text).copied().or_else(of_block);
+        let number = known.unwrap_or(self.all.len());
+        self.by_text.entry(text).or_insert(number);
+        self.by_places.entry(places).or_insert(number);
+        match known {
             Some(known) => self.all[known].join(group),
             None => self.all.push(group),
         }
@@ -157,12 +156,36 @@ impl<'a> Effects<'a> {
         })
     }
 
-    pub(super) fn finish(self) -> Vec<CausedEffect> {
+    pub(super) fn finish(mut self) -> Vec<CausedEffect> {
+        self.join_shifts();
         let effect = |group: &Group| {
             let [old, new] = [0, 1].map(|side| self.records[side].places.get(group.places[side]?));
             Effect::new(group.code, self.message(group)).with_old(old).with_new(new)
         };
         self.all.iter().map(|group| (group.causes.clone(), effect(group))).collect()
+    }
+
+    /// Makes one of many shifts that come from one edit, or of the same blocks where none is theirs.
+    fn join_shifts(&mut self) {
+        let mut alike: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+        for (number, group) in self.all.iter().enumerate().filter(|(_, group)| group.code == "move-shifted") {
+            let places = if group.is_direct { [None, None] } else { group.places };
+            let edit = group.causes.first().filter(|_| group.is_direct).copied();
+            alike.entry((edit, places)).or_default().push(number);
+        }
+        alike.retain(|_, numbers| MOST_SHIFTS < numbers.len());
+        let into: BTreeMap<usize, usize> = alike
+            .into_values()
+            .flat_map(|numbers| numbers[1..].iter().map(|number| (*number, numbers[0])).collect::<Vec<_>>())
+            .collect();
+        let mut kept: BTreeMap<usize, Group> = BTreeMap::new();
+        for (number, group) in std::mem::take(&mut self.all).into_iter().enumerate() {
+            match into.get(&number).and_then(|first| kept.get_mut(first)) {
+                Some(first) => first.join(group),
+                None => _ = kept.insert(number, group),
+            }
+        }
+        self.all = kept.into_values().collect();
     }
 
     fn message(&self, group: &Group) -> String {
@@ -200,16 +223,6 @@ impl<'a> Effects<'a> {
 }
 
 impl Group {
-    /// Moves of one edit, or of the same blocks where no edit is theirs.
-    fn is_with(&self, other: &Self) -> bool {
-        let is_edit = self.is_direct && other.is_direct;
-        if is_edit {
-            other.causes.iter().all(|edit| self.causes.contains(edit))
-        } else {
-            self.places == other.places
-        }
-    }
-
     fn join(&mut self, other: Self) {
         self.varies |= self.text != other.text;
         match (self.is_direct, other.is_direct) {
