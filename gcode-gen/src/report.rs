@@ -1,7 +1,7 @@
-//! What `emit` and `sheet` answer, as text and as data, and the schemas of that.
+//! The results of `emit` and `sheet`, as text and as data, and their schemas.
 use std::fmt::Write;
 
-use gcode_sim::report::figures::{count, near, signed_to};
+use gcode_sim::report::figures::{count, rounded, signed_to};
 use gcode_sim::schema::{Format, result};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -20,29 +20,29 @@ pub const FORMATS: &[Format] = &[
 /// The document of `emit --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct EmitReport<'c> {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
-    /// Why nothing is written, in words; null where the programs hold.
+    /// Why nothing is written, in words; null if the programs pass verification.
     pub refused: Option<String>,
-    /// The files.
+    /// The files that were written.
     pub written: Vec<String>,
-    /// Macros of an earlier job in the folder, which these programs don't call.
+    /// Macros of an earlier job in the folder that these programs do not call.
     pub left_over: Vec<String>,
-    /// Running time, operator stops left out; null where nothing could be run.
+    /// Running time without operator stops; null if nothing could be run.
     pub seconds: Option<f64>,
-    /// What `verify` says of the programs; null of measurements, and where nothing could be run.
+    /// The result of `verify` for the programs; null for measurements, and if nothing could be run.
     pub verdict: Option<&'c PackageVerdict>,
     #[serde(skip)]
     table: &'c str,
 }
 
 impl<'c> EmitReport<'c> {
-    /// Of programs that hold.
+    /// Builds the report of programs that pass.
     pub fn new(checked: &'c CheckedPackage, written: Vec<String>, left_over: Vec<String>) -> Self {
         Self { written, left_over, ..Self::of(Some(checked), None) }
     }
 
-    /// Of programs that aren't written; `checked` where they could be run.
+    /// Builds the report of programs that are not written; `checked` is given if they could be run.
     pub fn refused(checked: Option<&'c CheckedPackage>, why: String) -> Self {
         Self::of(checked, Some(why))
     }
@@ -55,13 +55,13 @@ impl<'c> EmitReport<'c> {
             left_over: Vec::new(),
             seconds: checked.map(|checked| checked.seconds),
             verdict: checked
-                .map(|checked| &checked.judgement)
+                .map(|checked| &checked.verdict)
                 .filter(|of| !matches!(of, PackageVerdict::Measured)),
             table: checked.map_or("", |checked| &checked.report),
         }
     }
 
-    /// The same for people.
+    /// Formats the result for a terminal.
     pub fn text(&self) -> String {
         let mut text = self.table.to_owned();
         let minutes = self.seconds.unwrap_or_default() / 60.0;
@@ -76,44 +76,44 @@ impl<'c> EmitReport<'c> {
 /// The document of `sheet --format json`. Times in minutes.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct SheetReport {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
-    /// Why nothing is written, in words; null where the programs hold.
+    /// Why nothing is written, in words; null if the programs pass verification.
     pub refused: Option<String>,
-    /// The file.
+    /// The file that was written.
     pub written: Option<String>,
-    /// What a part takes; null where the programs don't hold.
+    /// Time of a part; null if the programs fail verification.
     pub time: Option<TimeReport>,
-    /// On the job's machine first, then on those beside it; none where no rate was given.
+    /// On the job's machine first, then on the alternative machines; empty without a rate.
     pub costs: Vec<CostReport>,
 }
 
-/// What a part takes on the job's machine.
+/// Time of a part on the job's machine.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct TimeReport {
-    /// The program, minutes.
+    /// Running time of the program, minutes.
     pub run: f64,
     pub stops: usize,
     pub tool_changes: usize,
-    /// The machine is taken for so many minutes: what was given for set-up, stops and tool changes included.
+    /// Machine time in minutes, including the given times for set-up, stops and tool changes.
     pub all: f64,
-    /// The keys of the job's `[sheet]` that aren't given and so aren't counted.
+    /// The keys of the job's `[sheet]` that are not given and therefore not counted.
     pub not_counted: Vec<&'static str>,
 }
 
-/// What a part costs on one machine.
+/// Cost of a part on one machine.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CostReport {
-    /// Null for the job's own.
+    /// Name of the machine; null for the job's own.
     pub machine: Option<String>,
     pub currency: String,
     pub cost: f64,
-    /// By how many percent of it the job's own machine is dearer, below 0 cheaper; null where that can't be compared.
+    /// Extra cost of the job's own machine in percent, below 0 cheaper; null if not comparable.
     pub change: Option<f64>,
 }
 
 impl SheetReport {
-    /// Of a sheet that is written to a file; costs in one currency, the job's own machine first.
+    /// Builds the report of a sheet written to a file; costs in one currency, the job's own machine first.
     pub fn new(written: String, taken: &MachineTime, currency: &str, costs: &[Cost]) -> Self {
         let cost = |cost: &Cost| CostReport {
             machine: cost.machine.clone(),
@@ -125,24 +125,24 @@ impl SheetReport {
             run: taken.run,
             stops: taken.stops,
             tool_changes: taken.tool_changes,
-            all: taken.all(),
+            all: taken.total(),
             not_counted: taken.not_counted(),
         };
         let costs = costs.iter().map(cost).collect();
         Self { basis: BASIS, refused: None, written: Some(written), time: Some(time), costs }
     }
 
-    /// Of programs that don't hold.
+    /// Builds the report of programs that fail.
     pub fn refused(why: String) -> Self {
         Self { basis: BASIS, refused: Some(why), written: None, time: None, costs: Vec::new() }
     }
 
-    /// The same for people: time and money in two or three lines.
+    /// Formats time and money in two or three lines for a terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
         if let Some(TimeReport { run, stops, tool_changes, all, .. }) = &self.time {
             let (stops, changes) = (count(*stops, "operator stop"), count(*tool_changes, "tool change"));
-            let (run, hours) = (near(*run, 1), near(all / 60.0, 2));
+            let (run, hours) = (rounded(*run, 1), rounded(all / 60.0, 2));
             let basis = self.basis;
             let _ = writeln!(text, "run {run} min, {stops}, {changes}: {hours} machine hours; {basis}");
         }
@@ -150,7 +150,7 @@ impl SheetReport {
             text.push_str("no rate given: the sheet shows time only\n");
         }
         for CostReport { machine, currency, cost, change } in &self.costs {
-            let price = format!("{} {currency} a part", near(*cost, 2));
+            let price = format!("{} {currency} a part", rounded(*cost, 2));
             let _ = match (machine, change) {
                 (None, _) => writeln!(text, "{price}"),
                 (Some(machine), Some(change)) => {

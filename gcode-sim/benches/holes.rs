@@ -27,13 +27,13 @@ struct Case {
 impl Case {
     fn new((rows, along): (u32, u32)) -> Self {
         let job = Job::parse(&job(rows, along)).expect("the job is one");
-        let machine = Machine::of_job(&job).expect("the job has a machine");
-        let wanted = NominalPart::of_job(&job).expect("the job has a part");
+        let machine = Machine::from_job(&job).expect("the job has a machine");
+        let wanted = NominalPart::from_job(&job).expect("the job has a part");
         let reference = wanted.into_holes().expect("the part has holes");
         assert_eq!(reference.holes.len() as u32, rows * along);
         let program = program(&reference, along as usize);
         let mut request = Request::new("O1.nc", program.into_bytes(), machine);
-        request.conduct = reference.conduct.clone();
+        request.conduct = reference.process_limits.clone();
         Self { request, reference }
     }
 

@@ -96,7 +96,7 @@ fn accepted(main: &Path) -> PathBuf {
 }
 
 /// What is different from what was accepted, in the words of `diff`; nothing where nothing is.
-fn told(name: &str, old: &Record, new: &Record) -> Option<String> {
+fn describe_difference(name: &str, old: &Record, new: &Record) -> Option<String> {
     let found = changes(old, new, TOLERANCE);
     let report = ChangesReport::new(("as accepted", old), (name, new), &found, Vec::new(), TOLERANCE);
     (!found.is_empty()).then(|| report.text())
@@ -116,7 +116,7 @@ fn every_example_does_what_was_accepted_and_every_macro_is_in_one() {
             .map(|text| Record::from_json(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display())));
         let change = match &known {
             Some(known) if known.is_legacy() => Some("accepted by an earlier version\n".to_owned()),
-            Some(known) => told(&name, known, &record),
+            Some(known) => describe_difference(&name, known, &record),
             None => Some("nothing is accepted yet\n".to_owned()),
         };
         let Some(change) = change else { continue };
@@ -172,7 +172,7 @@ fn a_macro_that_moves_a_hole_is_refused_and_the_move_is_shown() {
     let mut library =
         Changed { folders: folders(&main), number: 8101, from: "#18+[#17", to: "#18+0.01+[#17" };
     let old = Record::from_json(&std::fs::read_to_string(accepted(&main)).unwrap()).unwrap();
-    let told = told("O8100", &old, &revision(&main, &mut library).record).expect("a change");
+    let told = describe_difference("O8100", &old, &revision(&main, &mut library).record).expect("a change");
     // The rotary turns the way of the others.
     let entry = "hole-moved     holes 1, 2, 3, 4, 5: moved by X +0.0100 of the machine, up to 0.0100 mm (hole 1: \
                  +0.0100 +0.0000 +0.0000 mm)";

@@ -50,7 +50,7 @@ fn placed(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
 
 /// What the run-out program found: shift in x and z, tilt about x and z.
 fn found(run: &Run) -> [f64; 4] {
-    assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stopped());
+    assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stop_finding());
     [580, 581, 582, 583].map(|number| common(run, number))
 }
 
@@ -102,7 +102,7 @@ proptest! {
             .collect();
         let variables = (501..).zip(points.iter().flatten().copied()).collect();
         let run = measured(&job, 8200, Placement::default(), "", variables);
-        prop_assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stopped());
+        prop_assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stop_finding());
         // The model's chord by the ellipse's equation.
         let y = |x: f64| 724.3 * (1.0 - x * x / (1158.8 * 1158.8)).sqrt();
         let chord = Point3::new(812.4, y(812.4), 0.0) - Point3::new(318.0, y(318.0), 0.0);
@@ -126,7 +126,7 @@ fn five_holes(part: Placement, zero: f64) -> Verdict {
     let job = Job::parse(&example("melon-mould")).unwrap();
     let package = families::emit(&job);
     let machine = Machine { part, ..Machine::parse(&package.machine).unwrap() };
-    let reference = NominalPart::of_job(&job).unwrap().into_holes().unwrap();
+    let reference = NominalPart::from_job(&job).unwrap().into_holes().unwrap();
     let text = package.main().unwrap().text.clone().into_bytes();
     let mut request = Request::new("O8100.nc", text, machine.clone());
     request.variables.push((5222, zero));
@@ -171,7 +171,7 @@ fn after_the_correction_the_five_holes_hold_and_before_they_do_not() {
         let enough = if shift[1] == 0.0 { Answer::Pass } else { Answer::Fail };
         assert_eq!(run_out.verdict, enough, "{shift:?} {tilt:?}: {:?}", run_out.worst);
         let chord = measured(&example("alignment"), 8200, part, "", Vec::new());
-        assert!(matches!(chord.outcome, Outcome::End), "{:?}", chord.stopped());
+        assert!(matches!(chord.outcome, Outcome::End), "{:?}", chord.stop_finding());
         assert!((common(&chord, 574) - shift[1]).abs() < 0.001, "{}", common(&chord, 574));
         let after = five_holes(part, common(&chord, 5222));
         assert_eq!(after.verdict, Answer::Pass, "{found:?}: {:?}", after.worst);

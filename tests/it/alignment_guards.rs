@@ -2,10 +2,10 @@
 //! which the way leads through the part.
 use gcode_inspect::machine::Placement;
 use gcode_session::Run;
-use gcode_tests::alignment::{Bench, alarm, marks, standing, value};
+use gcode_tests::alignment::{Bench, alarm, marks, placement, value};
 
 /// A main program of the example, behind these blocks.
-fn behind(main: u32, blocks: &str) -> Run {
+fn run_behind(main: u32, blocks: &str) -> Run {
     let first = "N20 G00 G17 G40 G49 G54 G80 G90 G94\n";
     Bench::of(&[]).edited(main, first, &format!("{first}{blocks}")).run(main, &Placement::default(), &[])
 }
@@ -14,7 +14,7 @@ fn behind(main: u32, blocks: &str) -> Run {
 #[test]
 fn coordinates_that_are_changed_are_an_alarm_before_the_ball_moves() {
     for (main, number) in [(8200, 3120), (8210, 3139), (8220, 3113)] {
-        let polar = behind(main, "G16\n");
+        let polar = run_behind(main, "G16\n");
         assert_eq!(alarm(&polar), Some(number), "O{main}");
         let turned = Bench::of(&[]).edited(main, "N30 G52 B0.\n", "G68 X0 Y0 R10.\n").run(
             main,
@@ -39,7 +39,7 @@ fn a_start_whose_way_leads_through_the_part_is_an_alarm() {
         ("G00 Y900.\nX800.\nY560.\n", false),
     ] {
         for (main, number) in [(8210, 3140), (8220, 3114)] {
-            assert_eq!(alarm(&behind(main, at)), refused.then_some(number), "O{main} {at}");
+            assert_eq!(alarm(&run_behind(main, at)), refused.then_some(number), "O{main} {at}");
         }
     }
 }
@@ -77,7 +77,7 @@ fn marks_correct_y_and_the_rotary_alone() {
                 true => Bench::of(&[]),
                 false => Bench::of(&[("sign = 1 }", "sign = -1 }")]),
             };
-            let run = bench.run(8200, &standing([0.0; 3], [0.0; 3]), &set);
+            let run = bench.run(8200, &placement([0.0; 3], [0.0; 3]), &set);
             assert_eq!(alarm(&run), None);
             assert!((value(&run, 574) - y).abs() < 1e-6, "{}", value(&run, 574));
             assert!((value(&run, 576) - sign * rotary).abs() < 2e-5, "{}", value(&run, 576));

@@ -2,7 +2,7 @@
 //! at the angle that a program believes.
 use gcode_inspect::machine::Placement;
 use gcode_session::Run;
-use gcode_tests::alignment::{Bench, alarm, kept, marks, standing, vacant, value};
+use gcode_tests::alignment::{Bench, alarm, kept_variables, marks, placement, vacant, value};
 
 /// A main program, with a text of the package changed, on a part that stands so.
 fn ran(main: u32, change: Option<(u32, &str, &str)>, part: &Placement, set: &[(u32, f64)]) -> Run {
@@ -18,7 +18,7 @@ fn ran(main: u32, change: Option<(u32, &str, &str)>, part: &Placement, set: &[(u
 #[test]
 fn readings_that_the_model_does_not_explain_are_an_alarm() {
     let good = Placement::default();
-    let off = standing([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]);
+    let off = placement([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]);
     for (change, part, number) in [
         // R3 is 0.003 mm; in the first pass only, too.
         (
@@ -37,7 +37,7 @@ fn readings_that_the_model_does_not_explain_are_an_alarm() {
         ((8210, "I150.", "I151."), &off, 0),
         ((8211, "#936=-#10", "#936=#10"), &off, 3157),
         ((8211, "#938=[#3*#25-#6*#24]", "#938=[#3*#25+#6*#24]"), &off, 3157),
-        ((8211, "#24=#14-#946", "#24=#14+#946"), &standing([0.2, 0.3, -0.1], [0.1, 0.0, 0.2]), 3157),
+        ((8211, "#24=#14-#946", "#24=#14+#946"), &placement([0.2, 0.3, -0.1], [0.1, 0.0, 0.2]), 3157),
     ] {
         let run = ran(8210, Some(change), part, &[]);
         assert_eq!(alarm(&run).unwrap_or(0), number, "{change:?}");
@@ -65,7 +65,7 @@ const RESET: (u32, &str, &str) = (8201, "#3006=1(CYCLE START ADDS #574 #576)", "
 
 #[test]
 fn points_are_used_once_whatever_happens_at_the_stop() {
-    let off = standing([0.05, -0.02, 0.0], [0.0, 0.0, 0.004]);
+    let off = placement([0.05, -0.02, 0.0], [0.0, 0.0, 0.004]);
     let first = ran(8200, Some(RESET), &off, &[]);
     assert_eq!((alarm(&first), value(&first, 5221)), (Some(3099), 0.0));
     assert!((501..=560).chain([578]).all(|number| vacant(&first, number)));
@@ -73,7 +73,7 @@ fn points_are_used_once_whatever_happens_at_the_stop() {
     assert!((value(&first, 574) + 0.0251).abs() < 0.001, "{}", value(&first, 574));
     assert_eq!([573, 575, 576].map(|number| value(&first, number)), [0.0; 3]);
     // The part is moved to where it should stand; the next run touches it anew.
-    let second = ran(8200, None, &Placement::default(), &kept(&first));
+    let second = ran(8200, None, &Placement::default(), &kept_variables(&first));
     assert_eq!(alarm(&second), None);
     assert!(second.control.moves() > 40, "{} moves", second.control.moves());
     for number in 573..577 {
@@ -115,7 +115,7 @@ fn a_flag_that_is_neither_vacant_nor_0_nor_1_is_an_alarm() {
 
 #[test]
 fn a_touch_that_fails_leaves_no_points() {
-    let run = ran(8200, None, &standing([0.0, -12.0, 0.0], [0.0; 3]), &[]);
+    let run = ran(8200, None, &placement([0.0, -12.0, 0.0], [0.0; 3]), &[]);
     assert_eq!(alarm(&run), Some(3134));
     assert!((501..=560).chain([578]).all(|number| vacant(&run, number)));
     // Broken off behind the fourth point of E: the next run doesn't take them for entered ones.
@@ -126,7 +126,7 @@ fn a_touch_that_fails_leaves_no_points() {
         &[],
     );
     assert_eq!((alarm(&broken), value(&broken, 578)), (Some(3099), 1.0));
-    let next = ran(8200, None, &Placement::default(), &kept(&broken));
+    let next = ran(8200, None, &Placement::default(), &kept_variables(&broken));
     assert_eq!((alarm(&next), next.control.moves()), (Some(3135), 0));
 }
 
@@ -155,11 +155,12 @@ fn the_sine_table_is_corrected_from_where_it_stands() {
     let first = ran(8230, None, &Placement::default(), &[(583, 0.1), (585, 0.001)]);
     assert_eq!((alarm(&first), value(&first, 587)), (None, 124.23));
     assert!((value(&first, 596) - 38.400_162).abs() < 2e-6, "{}", value(&first, 596));
-    let used = ran(8230, None, &Placement::default(), &kept(&first));
+    let used = ran(8230, None, &Placement::default(), &kept_variables(&first));
     assert_eq!(alarm(&used), Some(3165), "a tilt is used once");
-    let second = ran(8230, None, &Placement::default(), &[kept(&first), vec![(583, 0.02)]].concat());
+    let second =
+        ran(8230, None, &Placement::default(), &[kept_variables(&first), vec![(583, 0.02)]].concat());
     assert!((value(&second, 586) - 38.380_162).abs() < 2e-6, "{}", value(&second, 586));
     // The run-out in between keeps what the table stands at.
-    let between = ran(8210, None, &Placement::default(), &kept(&first));
+    let between = ran(8210, None, &Placement::default(), &kept_variables(&first));
     assert_eq!(value(&between, 596), value(&first, 596));
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use gcode_control::{Control, Limits, Observer};
 use gcode_gen::package::file_name;
 use gcode_inspect::machine::Placement;
-use gcode_tests::alignment::{Bench, alarm, kept, marks, standing, vacant, value};
+use gcode_tests::alignment::{Bench, alarm, kept_variables, marks, placement, vacant, value};
 use gcode_tests::workspace;
 
 /// The common variables that each file's blocks assign.
@@ -53,11 +53,11 @@ fn every_head_names_the_common_variables_that_are_overwritten() {
     for (main, set) in
         [(8210, &[][..]), (8230, &tilt), (8200, &[]), (8200, &marks()), (8200, &anew), (8220, &[])]
     {
-        assert_eq!(alarm(&bench.watched(main, &good, set, &mut all)), None, "O{main}");
+        assert_eq!(alarm(&bench.run_observed(main, &good, set, &mut all)), None, "O{main}");
     }
     // As many readings as there may be; they are taken before the fit begins.
     let most = Bench { limits: Limits { blocks: 4_000 }, ..Bench::of(&[("25.0, 11]", "25.0, 100]")]) };
-    most.watched(8210, &good, &[], &mut all);
+    most.run_observed(8210, &good, &[], &mut all);
 
     let readme = std::fs::read_to_string(workspace().join("macros/README.md")).unwrap();
     let page = std::fs::read_to_string(workspace().join("docs/methods/alignment.md")).unwrap();
@@ -110,7 +110,7 @@ fn reset_in_o8230_uses_no_tilt_twice() {
         let mut set = vec![(583, 0.1), (585, 0.001)];
         set.extend(stands.map(|angle| (596, angle)));
         let mut states = States::default();
-        bench.watched(8230, &Placement::default(), &set, &mut states);
+        bench.run_observed(8230, &Placement::default(), &set, &mut states);
         let mut met = BTreeSet::new();
         for state in &states.0 {
             let next = bench.run(8230, &Placement::default(), state);
@@ -133,13 +133,17 @@ fn reset_in_o8230_uses_no_tilt_twice() {
 fn reset_in_o8210_leaves_no_mixture_of_two_parts() {
     let yesterday: Vec<_> = (580..586).chain(590..596).map(|number| (number, 0.25)).collect();
     let mut states = States::default();
-    let whole =
-        Bench::of(&[]).watched(8210, &standing([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]), &yesterday, &mut states);
+    let whole = Bench::of(&[]).run_observed(
+        8210,
+        &placement([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]),
+        &yesterday,
+        &mut states,
+    );
     assert_eq!(alarm(&whole), None);
     assert!(states.0.len() > 30, "every write is another state");
     for first in [580, 590] {
         let results = |state: &[(u32, f64)]| [0, 1, 2, 3, 4, 5].map(|n| of(state, first + n));
-        let [before, after] = [results(&yesterday), results(&kept(&whole))];
+        let [before, after] = [results(&yesterday), results(&kept_variables(&whole))];
         assert!(before != after && after.iter().all(Option::is_some));
         for state in &states.0 {
             let now = results(state);
@@ -158,10 +162,10 @@ fn results_are_vacant(state: &[(u32, f64)]) -> bool {
 #[test]
 fn reset_in_o8200_leaves_no_points_that_are_used_in_part_or_twice() {
     let bench = Bench::of(&[]);
-    let high = standing([0.0, 0.2, 0.0], [0.0; 3]);
+    let high = placement([0.0, 0.2, 0.0], [0.0; 3]);
     for set in [Vec::new(), marks()] {
         let mut states = States::default();
-        let whole = bench.watched(8200, &high, &set, &mut states);
+        let whole = bench.run_observed(8200, &high, &set, &mut states);
         assert_eq!(alarm(&whole), None);
         let wanted = value(&whole, 574);
         let mut met = BTreeSet::new();

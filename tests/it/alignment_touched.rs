@@ -1,7 +1,7 @@
 //! Points of the chord that the probe touched correct y and nothing else; and a run-out that is broken off leaves no result.
 use gcode_control::{Limits, Outcome};
 use gcode_inspect::machine::Placement;
-use gcode_tests::alignment::{Bench, alarm, standing, vacant, value};
+use gcode_tests::alignment::{Bench, alarm, placement, vacant, value};
 
 /// By hand, to first order: at x the part stands higher by y, by δ·x·(1 − b²/a²) for a tilt δ about z, and by dx·(b²/a²)·x/Y for a
 /// shift along x, with Y the height there. The straight line through E and F leaves nothing of the tilt at x = 0. Of dx = 0.05 it
@@ -21,7 +21,7 @@ fn touched_points_correct_y_and_nothing_else() {
         ([0.0, -0.3, 0.0], [0.0; 3], -0.3),
         ([0.01, 0.12, -0.01], [0.004, 0.3, -0.004], 0.119),
     ] {
-        let run = bench.run(8200, &standing(shift, tilt), &[]);
+        let run = bench.run(8200, &placement(shift, tilt), &[]);
         assert!(matches!(run.outcome, Outcome::End), "{:?}", run.outcome);
         assert_eq!([570, 571].map(|number| value(&run, number)), [1.0; 2], "{shift:?} {tilt:?}");
         assert_eq!([573, 575, 576].map(|number| value(&run, number)), [0.0; 3], "{shift:?} {tilt:?}");
@@ -50,7 +50,7 @@ fn a_chord_too_short_to_tell_y_is_an_alarm_before_the_stop() {
 fn a_run_out_that_is_broken_off_leaves_nothing() {
     let bench = Bench::of(&[]);
     let yesterday: Vec<_> = (580..586).chain(590..596).map(|number| (number, 0.25)).collect();
-    let off = standing([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]);
+    let off = placement([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]);
     let whole = bench.run(8210, &off, &yesterday);
     assert!((580..586).chain(590..596).all(|number| !vacant(&whole, number)));
     // The first pass ends behind half of the blocks; 22 readings of 12 blocks are done after 400 at most, then four rounds of the fit.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use gcode_inspect::machine::Placement;
-use gcode_tests::alignment::{Bench, alarm, marks, standing, value};
+use gcode_tests::alignment::{Bench, alarm, marks, placement, value};
 use gcode_tests::workspace;
 
 /// A block before the first one of a main program.
@@ -44,7 +44,7 @@ fn a_shift_that_is_left_in_force_is_an_alarm_before_anything_moves() {
 #[test]
 fn an_external_offset_is_no_shift() {
     let bench = Bench::of(&[]);
-    let run = bench.run(8210, &standing([0.0, 0.5, 0.0], [0.0; 3]), &[(5202, 0.5)]);
+    let run = bench.run(8210, &placement([0.0, 0.5, 0.0], [0.0; 3]), &[(5202, 0.5)]);
     assert_eq!(alarm(&run), None);
     for result in 580..585 {
         assert!(value(&run, result).abs() < 1e-4, "#{result} is {}", value(&run, result));
@@ -130,10 +130,10 @@ fn touched_points_of_a_part_that_no_run_out_has_set_right_are_refused() {
         ([0.3, 0.0, -0.2], [0.15, 0.0, -0.3], Some(3075)),
         ([0.0, 0.3, 0.3], [0.3, 0.3, 0.0], None),
     ] {
-        let run = Bench::of(&[]).run(8200, &standing(shift, tilt), &[]);
+        let run = Bench::of(&[]).run(8200, &placement(shift, tilt), &[]);
         assert_eq!(alarm(&run), expected, "{shift:?} {tilt:?}");
         assert_eq!(run.control.stops().is_empty(), expected.is_some());
     }
     let allowed = Bench::of(&[("candidates = 10 ", "uneven = 0.2\ncandidates = 10 ")]);
-    assert_eq!(alarm(&allowed.run(8200, &standing([0.120, 0.0, 0.0], [0.0; 3]), &[])), None);
+    assert_eq!(alarm(&allowed.run(8200, &placement([0.120, 0.0, 0.0], [0.0; 3]), &[])), None);
 }

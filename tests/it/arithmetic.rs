@@ -17,18 +17,18 @@ fn value(expression: &str) -> Result<f64, String> {
 
 /// A piece of an expression with its value, worked out while it is written down. `None` where it alarms.
 #[derive(Clone, Debug)]
-struct Piece {
+struct ExpressionSample {
     text: String,
     value: Option<f64>,
 }
 
-impl Piece {
+impl ExpressionSample {
     fn map(&self, text: String, value: impl Fn(f64) -> Option<f64>) -> Self {
         Self { text, value: self.value.and_then(value) }
     }
 }
 
-fn single() -> impl Strategy<Value = Piece> {
+fn single() -> impl Strategy<Value = ExpressionSample> {
     let variables = [
         ("#1", 2.5),
         ("#2", -7.0),
@@ -38,14 +38,14 @@ fn single() -> impl Strategy<Value = Piece> {
         ("#5", 1000.125),
         ("#[3-1]", -7.0),
     ];
-    let piece = |(text, value): (&str, f64)| Piece { text: text.to_owned(), value: Some(value) };
+    let piece = |(text, value): (&str, f64)| ExpressionSample { text: text.to_owned(), value: Some(value) };
     prop_oneof![
         select(variables.to_vec()).prop_map(piece),
-        (0..2000u32).prop_map(|n| Piece { text: n.to_string(), value: Some(f64::from(n)) }),
+        (0..2000u32).prop_map(|n| ExpressionSample { text: n.to_string(), value: Some(f64::from(n)) }),
         (0..99_999u32, 1..4u32).prop_map(|(n, places)| {
             let scale = 10_u32.pow(places);
             let text = format!("{}.{:0width$}", n / scale, n % scale, width = places as usize);
-            Piece { value: Some(text.parse().unwrap()), text }
+            ExpressionSample { value: Some(text.parse().unwrap()), text }
         }),
     ]
 }
@@ -74,7 +74,7 @@ fn apply(op: &str, left: f64, right: f64) -> Option<f64> {
 }
 
 /// Two passes over a row of values and operators: first the operators that bind, then the others, both from the left.
-fn folded(values: Vec<Piece>, ops: &[&str]) -> Piece {
+fn folded(values: Vec<ExpressionSample>, ops: &[&str]) -> ExpressionSample {
     let mut text = values[0].text.clone();
     for (op, piece) in ops.iter().zip(&values[1..]) {
         text.push_str(&format!(" {op} {}", piece.text));
@@ -93,10 +93,10 @@ fn folded(values: Vec<Piece>, ops: &[&str]) -> Piece {
             }
         }
     }
-    Piece { text, value: values[0] }
+    ExpressionSample { text, value: values[0] }
 }
 
-fn expression() -> impl Strategy<Value = Piece> {
+fn expression() -> impl Strategy<Value = ExpressionSample> {
     single().prop_recursive(3, 24, 4, |inner| {
         let part = prop_oneof![
             3 => single(),

@@ -42,7 +42,7 @@ fn the_macros_cost_so_many_blocks_for_each_hole() {
     for example in ["melon-mould", "honeycomb", "burr"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("examples").join(example);
         let job = Job::parse(&std::fs::read_to_string(path.join("job.toml")).unwrap()).unwrap();
-        let (wanted, what) = match NominalPart::of_job(&job).unwrap() {
+        let (wanted, what) = match NominalPart::from_job(&job).unwrap() {
             NominalPart::Holes(holes) => (holes.holes.len(), "hole"),
             NominalPart::Flutes(flutes) => (flutes.count as usize, "flute"),
         };

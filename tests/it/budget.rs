@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicUsize;
 
 use gcode_gen::check::check;
 use gcode_gen::families;
-use gcode_inspect::budget::{Budget, Question, budget};
+use gcode_inspect::budget::{Budget, BudgetRequest, budget};
 use gcode_inspect::machine::{Machine, error_file};
 use gcode_part::NominalPart;
 use gcode_part::job::Job;
@@ -16,9 +16,9 @@ fn example(name: &str) -> String {
 }
 
 fn found(job: &Job, errors: &str, samples: usize) -> Budget {
-    let machine = Machine::of_job(job).unwrap();
-    let reference = NominalPart::of_job(job).unwrap().into_holes().unwrap();
-    let question = Question {
+    let machine = Machine::from_job(job).unwrap();
+    let reference = NominalPart::from_job(job).unwrap().into_holes().unwrap();
+    let question = BudgetRequest {
         machine: &machine,
         holes: &reference.holes,
         clearance: job.clearance(),
@@ -37,8 +37,8 @@ fn without_errors_the_budget_is_what_verify_says() {
     for name in ["melon-mould/job.toml", "prolate/job.toml", "head-by-axis/job.toml"] {
         let job = Job::parse(&example(name)).unwrap();
         let package = families::emit(&job);
-        assert_eq!(Machine::of_job(&job).unwrap(), Machine::parse(&package.machine).unwrap(), "{name}");
-        let verdict = check(&job, &package).unwrap().judgement.into_holes().unwrap();
+        assert_eq!(Machine::from_job(&job).unwrap(), Machine::parse(&package.machine).unwrap(), "{name}");
+        let verdict = check(&job, &package).unwrap().verdict.into_holes().unwrap();
         for (hole, judged) in found(&job, "", 1).holes.iter().zip(&verdict.holes) {
             assert_eq!(hole.id, judged.id);
             assert!(
@@ -68,7 +68,7 @@ fn a_fixed_error_is_off_as_far_as_on_a_machine_with_that_error() {
         let mut package = families::emit(&job);
         let sections = errors.replace('[', "[errors.");
         package.machine = format!("{}\n{sections}", package.machine);
-        let verdict = check(&job, &package).unwrap().judgement.into_holes().unwrap();
+        let verdict = check(&job, &package).unwrap().verdict.into_holes().unwrap();
         let found = found(&job, errors, 1);
         assert!(found.parts.max > least, "{errors}: {found:?}");
         for (hole, judged) in found.holes.iter().zip(&verdict.holes) {
@@ -90,5 +90,5 @@ fn after_alignment_every_hole_is_better_than_before() {
     for (before, after) in before.holes.iter().zip(&after.holes) {
         assert!(4.0 * after.statistics.mean < before.statistics.mean);
     }
-    assert!(0.9 < after.parts.within && before.parts.within < 0.2);
+    assert!(0.9 < after.parts.share_in_tolerance && before.parts.share_in_tolerance < 0.2);
 }

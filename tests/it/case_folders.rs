@@ -52,7 +52,7 @@ fn a_link_to_nothing_is_told() {
     symlink("gone.nc", &program).unwrap();
     let (code, text) = run("", place.path());
     assert_eq!(
-        (code, text.contains("refused  plate: parts/plate/O0300.nc can't be read")),
+        (code, text.contains("refused  plate: parts/plate/O0300.nc cannot be read")),
         (2, true),
         "{text}"
     );

@@ -1,6 +1,6 @@
 //! Laws of `diff`: a program and itself are the same, whatever its numbers, comments and spaces.
 use gcode_review::{Record, changes};
-use gcode_tests::changes::{found, messages, revision};
+use gcode_tests::changes::{effects, find_changes, messages, revision};
 use proptest::prelude::*;
 
 /// A block and what it may look like after a rewrite: `{}` stands for the number of a local.
@@ -38,7 +38,7 @@ proptest! {
 
     #[test]
     fn what_a_rewrite_keeps_is_no_change(blocks in prop::collection::vec(0..BLOCKS.len(), 0..24)) {
-        let found = found(&program(&blocks, 1), &rewritten(&program(&blocks, 14)));
+        let found = find_changes(&program(&blocks, 1), &rewritten(&program(&blocks, 14)));
         prop_assert!(found.is_empty(), "{found:?}");
     }
 
@@ -65,7 +65,7 @@ proptest! {
         let mut lines: Vec<&str> = old.lines().collect();
         let at = 2 + at.min(blocks.len());
         lines.insert(at, "G4 P123");
-        let found = found(&old, &(lines.join("\n") + "\n"));
+        let found = find_changes(&old, &(lines.join("\n") + "\n"));
         let codes: Vec<_> = found.iter().map(|change| &*change.code).collect();
         prop_assert_eq!(codes, ["dwell"]);
     }
@@ -94,11 +94,12 @@ fn what_is_called_by_number_counts_where_the_tables_hold_the_same() {
         ("G0 X0 Y30.", "G55 G0 X0 Y30.", "work-system: G55 instead of G54 ("),
         ("G41 D1 G1", "G61 G41 D1 G1", "path-mode: G61 instead of G64 ("),
     ] {
-        let found = changed(from, to);
+        assert_eq!(PART.matches(from).count(), 1, "{from}");
+        let found = effects(PART, &PART.replace(from, to));
         assert_eq!(found.len(), 1, "{from} -> {to}: {found:?}");
         assert!(found[0].starts_with(what), "{from} -> {to}: {found:?}");
         let stays = matches!(to, "G55 G0 X0 Y30." | "G61 G41 D1 G1");
-        assert_eq!(found[0].ends_with(", also for the next program"), stays, "{found:?}");
+        assert_eq!(found[0].contains(" | mode: the program ends in "), stays, "{found:?}");
     }
 }
 
@@ -159,7 +160,7 @@ fn a_block_skip_before_a_statement_is_told_at_its_block() {
     let old = "O1\n#100=5.\nG0 X#100\nIF[#100 GT 9.]GOTO 9\nM98 P2\nN9 M30\nO2\nG0 Y1.\nM99\n";
     for block in ["#100=5.", "IF[#100", "M98 P2"] {
         let new = old.replace(block, &format!("/{block}"));
-        let found = found(old, &new);
+        let found = find_changes(old, &new);
         let codes: Vec<_> = found.iter().map(|change| &*change.code).collect();
         assert_eq!(codes, ["block-skip"], "{block}");
         let place = found[0].new.as_ref().unwrap();
@@ -172,20 +173,25 @@ fn a_block_skip_before_a_statement_is_told_at_its_block() {
 fn what_is_left_names_the_block_that_wrote_it() {
     let old = "O1\n#500=1.\nG65 P2 A2.\nM30\nO2\n#501=#1\n#502=7.\nG10 L2 P1 X#1\n#2005=#1\nM99\n";
     let new = old.replace("A2.", "A3.");
-    let found = found(old, &new);
+    let found = find_changes(old, &new);
     let shown: Vec<String> = found
         .iter()
-        .map(|change| {
-            let place = change.new.as_ref().unwrap();
-            format!("{}: {} by {}, from {}", change.code, change.message, place.block, place.calls[0].block)
+        .flat_map(|change| {
+            std::iter::once((&change.message, &change.new))
+                .chain(change.also.iter().map(|one| (&one.message, &one.new)))
+        })
+        .map(|(message, place)| {
+            let place = place.as_ref().unwrap();
+            format!("{message} by {}, from {}", place.block, place.calls[0].block)
         })
         .collect();
+    assert_eq!(found.len(), 1, "{found:#?}");
     assert_eq!(
         shown,
         [
-            "variable: #501 ends as 3 instead of 2 by #501=#1, from G65 P2 A3.",
-            "work-offset: G54 X ends as 3 instead of 2 by G10 L2 P1 X#1, from G65 P2 A3.",
-            "tool-offset: H5 wear ends as 3 instead of 2 by #2005=#1, from G65 P2 A3.",
+            "G54 X ends as 3 instead of 2 by G10 L2 P1 X#1, from G65 P2 A3.",
+            "H5 wear ends as 3 instead of 2 by #2005=#1, from G65 P2 A3.",
+            "#501 ends as 3 instead of 2 by #501=#1, from G65 P2 A3.",
         ]
     );
 }
@@ -221,11 +227,15 @@ fn the_return_level_alone_is_one_entry() {
     assert_eq!(found.len(), 1, "{found:#?}");
     assert!(found[0].starts_with("return-level: G99 instead of G98: "), "{found:#?}");
 
-    let found = changed("G98 G81 X10. Y0 Z-9.", "G99 G81 X10. Y0 Z-9.");
-    assert_eq!(found.len(), 1, "{found:#?}");
-    assert!(found[0].starts_with("return-level: G99 instead of G98: "), "{found:#?}");
-    let both = ", also for the next program; moves end at a different point: Z -48.0000 (a rapid, 3 feeds)";
-    assert!(found[0].ends_with(both), "{found:#?}");
+    let found = effects(PART, &PART.replace("G98 G81 X10. Y0 Z-9.", "G99 G81 X10. Y0 Z-9."));
+    assert_eq!(
+        found,
+        [
+            "return-level: G99 instead of G98: the rapids between holes run at the R level (7 moves) | move-shifted: \
+          moves end at a different point: Z -48.0000 (3 rapids, 3 feeds) | move-lost: a rapid to X20.0000 is removed | \
+          mode: the program ends in G99 instead of G98"
+        ]
+    );
 }
 
 /// A move elsewhere by the same in rapids, feeds and arcs is one entry at the first of them.
@@ -234,14 +244,17 @@ fn one_shifted_word_is_one_entry() {
     let old = "O1\nG90 G54 G0 X0 Y0\nZ5.\nG1 Z-1. F100\nG1 X20.\nG2 X30. I5. J0\nG1 Y9.\nG0 Z5.\nM30\n";
     // The rapid to X0 wasn't needed before.
     assert_eq!(
-        messages(old, &old.replace("G0 X0 Y0", "G0 X0.01 Y0")),
-        ["move-shifted: moves end at a different point: X +0.0100 (2 rapids, a feed, the first added)"]
+        effects(old, &old.replace("G0 X0 Y0", "G0 X0.01 Y0")),
+        [
+            "move-shifted: moves end at a different point: X +0.0100 (a rapid, a feed) | move-added: a rapid to X0.0100 is \
+          added"
+        ]
     );
-    let of_arc = messages(old, &old.replace("X30. I5.", "X30.02 I5.01"));
+    let of_arc = effects(old, &old.replace("X30. I5.", "X30.02 I5.01"));
     // Its radius is another too, which where it ends doesn't say.
     let shape = "an arc of radius 5.0100 sweeps -180.000° about 25.0100 0.0000 instead of one of 5.0000 -180.000° about 25.0000 0.0000";
     let shifted = "move-shifted: moves end at a different point: X +0.0200 (an arc, a feed, a rapid)";
-    assert_eq!(of_arc, [format!("move-arc: {shape}"), shifted.to_owned()]);
+    assert_eq!(of_arc, [format!("move-arc: {shape} | {shifted}")]);
 }
 
 /// In G93 a way that is longer takes the same time.
@@ -296,7 +309,7 @@ fn a_switch_of_the_control_is_one_entry() {
 fn another_end_is_one_entry_that_names_its_block() {
     let old = "O1\nG0 X1.\nM30\n";
     let shown = |new: &str| -> Vec<String> {
-        let found = found(old, new);
+        let found = find_changes(old, new);
         let line = |place: &Option<gcode_review::BlockLocation>| place.as_ref().map(|place| place.line);
         let each = found.iter();
         each.map(|c| format!("{} {:?} {:?}: {}", c.code, line(&c.old), line(&c.new), c.message)).collect()

@@ -12,7 +12,7 @@ use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
 use gcode_part::Surface;
 use gcode_part::job::{Alignment, Job};
-use gcode_session::{Request, follow, run};
+use gcode_session::{Request, read_stylus, run};
 use gcode_tests::workspace;
 use nalgebra::{Point3, distance};
 
@@ -36,8 +36,8 @@ fn candidates(job: &Alignment, x: f64, draw: RandomStream) -> Vec<Point3<f64>> {
     let along = 1.0 / (1.0 + slope * slope).sqrt();
     (0..u64::from(job.chord.candidates))
         .map(|n| {
-            let draw = draw.at(n);
-            let (far, turn) = (job.chord.circle * draw.at(0).unit().sqrt(), draw.at(1).turn());
+            let draw = draw.branch(n);
+            let (far, turn) = (job.chord.circle * draw.branch(0).uniform().sqrt(), draw.branch(1).angle());
             let point = on_surface(job, x + far * turn.cos() * along, far * turn.sin());
             assert!(distance(&point, &end) < 1.01 * job.chord.circle);
             point
@@ -60,7 +60,7 @@ struct Matched {
 fn matched(job: &Alignment, package: &Package, draw: RandomStream) -> Matched {
     let machine = Machine::parse(&package.machine).unwrap();
     let ends = [job.chord.e_radius, job.chord.f_radius];
-    let measured = [0, 1].map(|end| candidates(job, ends[end], draw.at(end as u64)));
+    let measured = [0, 1].map(|end| candidates(job, ends[end], draw.branch(end as u64)));
     let mut request =
         Request::new("O8200.nc", package.program(8200).unwrap().text.as_bytes(), machine.clone());
     for (first, points) in [501, 531].into_iter().zip(&measured) {
@@ -100,7 +100,8 @@ fn row(name: &str, mut values: Vec<f64>) -> String {
 fn the_right_length_says_little_about_the_points() {
     let job = example();
     let package = families::emit(&Job::Alignment(job.clone()));
-    let all: Vec<_> = (0..100).map(|part| matched(&job, &package, RandomStream::new(1).at(part))).collect();
+    let all: Vec<_> =
+        (0..100).map(|part| matched(&job, &package, RandomStream::new(1).branch(part))).collect();
     let of = |value: fn(&Matched) -> f64| all.iter().map(value).collect::<Vec<_>>();
     let mut table = String::new();
     for (name, values) in [
@@ -139,11 +140,11 @@ fn the_ellipse_sees_three_of_six() {
             "0.01°"
         };
         let request = Request::new("O8220.nc", package.program(8220).unwrap().text.as_bytes(), machine);
-        let following = follow(&request, &mut Programs(&package), surface, job.probe_radius).unwrap();
-        let readings = &following.followed.passes[0].readings;
+        let following = read_stylus(&request, &mut Programs(&package), surface, job.probe_radius).unwrap();
+        let readings = &following.readings.passes[0].readings;
         let ends = [&readings[0], &readings[readings.len() - 1]].map(|reading| {
-            let normal = surface.nearest(&reading.at).normal;
-            let turned = reading.at.x * normal.y - reading.at.y * normal.x;
+            let normal = surface.nearest(&reading.ball_centre).normal;
+            let turned = reading.ball_centre.x * normal.y - reading.ball_centre.y * normal.x;
             let expected = match index {
                 0 | 1 => -0.05 * normal[index],
                 5 => -Deg(0.01).to_rad() * turned,

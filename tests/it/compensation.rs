@@ -11,21 +11,21 @@ type Point = (f64, f64);
 
 /// What the machine was told: the block's line in the program, the way in the plane of X and Y, and all of it as text.
 #[derive(Default)]
-struct Told {
+struct RecordedPath {
     starts: Vec<usize>,
     at: Position,
-    moves: Vec<(usize, Way)>,
+    moves: Vec<(usize, PathPart)>,
     text: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Way {
+enum PathPart {
     Line(Point, Point),
     /// From, centre, sweep in radians.
     Arc(Point, Point, f64),
 }
 
-impl Way {
+impl PathPart {
     fn at(&self, part: f64) -> Point {
         match *self {
             Self::Line(from, to) => (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part),
@@ -60,7 +60,7 @@ impl Way {
     }
 }
 
-impl EventSink for Told {
+impl EventSink for RecordedPath {
     fn event(&mut self, event: &Event<'_>) {
         self.text.push(format!("{:?} {:?}", event.kind, event.seconds));
         let line = self.starts.partition_point(|start| *start <= event.block.start as usize);
@@ -68,11 +68,11 @@ impl EventSink for Told {
         let way = match &event.kind {
             EventKind::Rapid { to } | EventKind::Feed { to, .. } => {
                 self.at = *to;
-                Way::Line(from, (to[0], to[1]))
+                PathPart::Line(from, (to[0], to[1]))
             }
             EventKind::Arc { to, arc, .. } => {
                 self.at = *to;
-                Way::Arc(from, arc.centre, arc.sweep.to_rad())
+                PathPart::Arc(from, arc.centre, arc.sweep.to_rad())
             }
             _ => return,
         };
@@ -80,12 +80,12 @@ impl EventSink for Told {
     }
 }
 
-fn run(text: &str, settings: &Settings) -> (Outcome, Position, Told) {
+fn run(text: &str, settings: &Settings) -> (Outcome, Position, RecordedPath) {
     let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
     let mut memory = Memory::default();
     memory.load("case.nc", text.as_bytes());
     let mut control = Control::new(memory, settings.clone());
-    let mut told = Told { starts, ..Told::default() };
+    let mut told = RecordedPath { starts, ..RecordedPath::default() };
     let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
     (outcome, control.machine_position(), told)
 }
@@ -113,7 +113,7 @@ fn contours() -> impl Strategy<Value = (Vec<Point>, Vec<f64>)> {
 
 /// A program once round a contour from the middle of its first side, compensated on one side; its first line is the
 /// line number 6. The ways are those of its lines.
-fn round(corners: &[Point], bulges: &[f64], outside: bool, radius: f64) -> (String, Vec<(usize, Way)>) {
+fn round(corners: &[Point], bulges: &[f64], outside: bool, radius: f64) -> (String, Vec<(usize, PathPart)>) {
     let count = corners.len();
     let middle = |a: Point, b: Point| {
         let at = |v: f64| (v * 500.0).round() / 1000.0;
@@ -140,7 +140,7 @@ fn round(corners: &[Point], bulges: &[f64], outside: bool, radius: f64) -> (Stri
         let chord = f64::hypot(to.0 - from.0, to.1 - from.1);
         let way = if half == 0.0 {
             writeln!(text, "G1 X{:.3} Y{:.3}", to.0, to.1).unwrap();
-            Way::Line(from, to)
+            PathPart::Line(from, to)
         } else {
             let bend = (chord / 2.0 / f64::sin(half.abs()) * 1000.0).round() / 1000.0;
             let code = if half > 0.0 { 3 } else { 2 };
@@ -148,7 +148,7 @@ fn round(corners: &[Point], bulges: &[f64], outside: bool, radius: f64) -> (Stri
             let height = (bend * bend - chord * chord / 4.0).sqrt() * half.signum();
             let (x, y) = ((to.0 - from.0) / chord, (to.1 - from.1) / chord);
             let centre = ((from.0 + to.0) / 2.0 - height * y, (from.1 + to.1) / 2.0 + height * x);
-            Way::Arc(from, centre, 2.0 * f64::asin(chord / 2.0 / bend) * half.signum())
+            PathPart::Arc(from, centre, 2.0 * f64::asin(chord / 2.0 / bend) * half.signum())
         };
         ways.push((6 + place, way));
     }
@@ -161,7 +161,7 @@ const NOTHING: f64 = 1e-9;
 /// Holds the told path against the contour: never nearer than the radius, and beside its own segments exactly there.
 fn keeps_the_radius(
     text: &str,
-    ways: &[(usize, Way)],
+    ways: &[(usize, PathPart)],
     radius: f64,
     tolerance: f64,
 ) -> Result<(), TestCaseError> {

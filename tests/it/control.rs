@@ -7,9 +7,9 @@ use proptest::prelude::*;
 
 /// Everything told, as text.
 #[derive(Default)]
-struct Told(Vec<String>);
+struct EventLog(Vec<String>);
 
-impl EventSink for Told {
+impl EventSink for EventLog {
     fn event(&mut self, event: &Event<'_>) {
         if self.0.len() < 1000 {
             self.0.push(format!("{:?} {:?}", event.kind, event.seconds));
@@ -21,7 +21,7 @@ fn run(program: &[u8], settings: &Settings) -> (String, Vec<String>) {
     let mut memory = Memory::default();
     memory.load("case.nc", program);
     let mut control = Control::new(memory, settings.clone());
-    let mut told = Told::default();
+    let mut told = EventLog::default();
     let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
     let end = match outcome {
         Outcome::End => "end".to_owned(),

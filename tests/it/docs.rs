@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 use gcode_tests::{programs, workspace};
 
 /// A command of a ```` ```console ```` block and the lines under it; a line `...` stands for any lines.
-struct Shown {
+struct ConsoleExample {
     command: String,
     output: Vec<String>,
 }
 
-fn sessions(text: &str) -> Vec<Shown> {
-    let mut found: Vec<Shown> = Vec::new();
+fn sessions(text: &str) -> Vec<ConsoleExample> {
+    let mut found: Vec<ConsoleExample> = Vec::new();
     let mut inside = false;
     for line in text.lines() {
         if line.starts_with("```") {
             inside = line == "```console";
         } else if let (true, Some(command)) = (inside, line.strip_prefix("$ ")) {
-            found.push(Shown { command: command.to_owned(), output: Vec::new() });
+            found.push(ConsoleExample { command: command.to_owned(), output: Vec::new() });
         } else if inside {
             found.last_mut().expect("a console block begins with a command").output.push(line.to_owned());
         }

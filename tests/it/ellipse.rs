@@ -10,8 +10,8 @@ use gcode_lang::motion::{Event, EventKind, EventSink};
 use gcode_lang::units::{Deg, Mm};
 use gcode_part::Surface;
 use gcode_part::job::Job;
-use gcode_part::tilted;
-use gcode_session::{Request, StylusRun, follow, run};
+use gcode_part::tilted_ellipsoid;
+use gcode_session::{Request, StylusRun, read_stylus, run};
 use nalgebra::Vector3;
 
 /// An ellipsoid, the ends of the path, the ball, the chord error, the control.
@@ -70,7 +70,7 @@ impl Path {
         let mut request = self.request(&package);
         request.machine.part.shift = Vector3::from(shift);
         request.machine.part.tilt[2] = Deg(tilt);
-        follow(&request, &mut Programs(&package), self.surface(), self.radius).unwrap()
+        read_stylus(&request, &mut Programs(&package), self.surface(), self.radius).unwrap()
     }
 }
 
@@ -250,11 +250,11 @@ fn a_misplaced_part_is_read_as_far_as_it_is_off() {
         ([0.03, -0.02, 0.1], 0.005),
     ] {
         let following = MELON.read(shift, tilt);
-        let readings = &following.followed.passes[0].readings;
+        let readings = &following.readings.passes[0].readings;
         assert!(readings.len() > 500);
         for reading in readings {
-            let [x, y, _]: [f64; 3] = reading.at.coords.into();
-            let normal = MELON.surface().nearest(&reading.at).normal;
+            let [x, y, _]: [f64; 3] = reading.ball_centre.coords.into();
+            let normal = MELON.surface().nearest(&reading.ball_centre).normal;
             let moved = normal.x * shift[0] + normal.y * shift[1];
             let turned = Deg(tilt).to_rad() * (x * normal.y - y * normal.x);
             let off = reading.value + moved + turned;
@@ -277,7 +277,7 @@ fn the_machine_finds_what_the_formula_of_figure_5_says() {
             gcode_inspect::holes::HoleExtractor::new(&request.machine).with_surface(Some(surface));
         let ran = run(&request, &mut Programs(&MELON.package()), &mut probe).unwrap();
         let x = ran.control.variable(500).unwrap().number();
-        let said = tilted(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();
+        let said = tilted_ellipsoid(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();
         // The ball's radius, and half an increment.
         let wanted = said.radius + said.change;
         assert!((x - wanted.0).abs() < 3e-4, "{x} is not {wanted}");

@@ -125,9 +125,9 @@ fn what_the_families_emit_rewritten_is_no_change() {
 }
 
 /// Every called program written otherwise as well.
-struct Otherwise<L>(L);
+struct RewrittenLibrary<L>(L);
 
-impl<L: Library> Library for Otherwise<L> {
+impl<L: Library> Library for RewrittenLibrary<L> {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
         let (name, bytes) = self.0.program(number)?;
         Some((name, rewrite(&String::from_utf8(bytes).ok()?).into_bytes()))
@@ -158,7 +158,7 @@ fn every_program_rewritten_is_no_change() {
             continue;
         }
         let was = record(&main, text.clone(), &mut folders(&main));
-        let is = record(&main, rewrite(&text), &mut Otherwise(folders(&main)));
+        let is = record(&main, rewrite(&text), &mut RewrittenLibrary(folders(&main)));
         let (Some(was), Some(is)) = (was, is) else { continue };
         tried += 1;
         for change in changes(&was, &is, 0.0001) {

@@ -10,7 +10,7 @@ use gcode_lang::program::NoLibrary;
 use gcode_part::NominalPart;
 use gcode_part::ProbedPart;
 use gcode_review::CODES;
-use gcode_session::{Request, follow, grind, simulate};
+use gcode_session::{Request, grind, read_stylus, simulate};
 use gcode_sim::report::explain::{self, PAGES, Page};
 use gcode_tests::{expect, workspace};
 
@@ -153,7 +153,7 @@ fn on_a_machine(page: &Page, program: &str) -> Outcome {
 }
 
 /// What is found on a page's first or second program, against its reference on its machine, or the second on the second.
-fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
+fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
     let program = page.fenced("nc")[number];
     let (jobs, machines): (Vec<&str>, Vec<&str>) =
         page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
@@ -173,9 +173,10 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
     // Of a job on these pages only the surface counts, or the pattern.
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     if let (Some(surface), Some(probe)) = (surface, &machine.probe) {
-        return follow(&request, &mut NoLibrary, surface, probe.radius).unwrap().followed.findings;
+        return read_stylus(&request, &mut NoLibrary, surface, probe.radius).unwrap().readings.findings;
     }
-    request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
+    request.conduct =
+        reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     match reference {
         Some(reference)
@@ -191,11 +192,11 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
 fn the_first_program_gives_the_finding_and_the_second_none() {
     let mut wrong = String::new();
     for page in PAGES.iter().filter(|page| is_finding(page)) {
-        let codes: Vec<_> = found(page, 0).into_iter().map(|finding| finding.code).collect();
+        let codes: Vec<_> = findings_on(page, 0).into_iter().map(|finding| finding.code).collect();
         if !codes.iter().any(|code| code == page.code) {
             wrong.push_str(&format!("{}: the first gives {codes:?}\n", page.code));
         }
-        let good: Vec<_> = found(page, 1)
+        let good: Vec<_> = findings_on(page, 1)
             .into_iter()
             .filter(|f| Severity::Note < f.severity)
             .map(|f| (f.code, f.message))

@@ -38,7 +38,7 @@ fn a_missing_flute_is_where_it_would_be() {
     let [x, y, z] = site.at;
     // Halfway from 4 to −6·cos 30° it is the ball: r² = 36 − x² but for the foot's own place.
     assert!((x + 0.598).abs() < 0.01 && (Vector3::new(x, y, z).norm() - 6.0).abs() < 1e-9, "{site:?}");
-    let across = grinding.ground.passes[1].trace.angle_at(x).unwrap();
+    let across = grinding.result.passes[1].trace.angle_at(x).unwrap();
     let radius = Vector3::new(0.0, y, z).norm();
     let (there, here) = ([radius * across.cos(), -radius * across.sin()], [y, z]);
     assert!((there[0] + here[0]).abs() < 0.01 && (there[1] + here[1]).abs() < 0.01, "{there:?} {here:?}");
@@ -61,7 +61,7 @@ fn what_is_wrong_with_all_passes_is_on_all_of_them() {
     let grinding = run(program, machine, reference);
     let mut passes: Vec<_> = sites(&grinding, "flute-helix").iter().map(|site| site.pass).collect();
     passes.sort_unstable();
-    let all: Vec<_> = (1..=grinding.ground.passes.len()).map(Some).collect();
+    let all: Vec<_> = (1..=grinding.result.passes.len()).map(Some).collect();
     assert_eq!(passes, all);
 }
 

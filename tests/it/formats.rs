@@ -60,7 +60,7 @@ fn every_answer_has_its_formats_in_the_same_words() {
         let part: String =
             after.lines().take_while(|line| !line.starts_with("      --")).collect::<Vec<_>>().join("\n");
         let said: Vec<&str> = part.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-        assert_eq!(said[0], "How the result is written", "{command}");
+        assert_eq!(said[0], "Output format", "{command}");
         let values = said.iter().filter_map(|line| line.strip_prefix("- "));
         let values: Vec<(&str, &str)> = values
             .map(|line| line.split_once(':').map_or((line, ""), |(name, words)| (name, words.trim())))

@@ -1,7 +1,7 @@
 //! Passes of a hole that aren't its last, and what leads to them and back: a changed pilot is told at its hole, and nothing is
 //! told with it that it doesn't explain.
 use gcode_inspect::machine::Machine;
-use gcode_tests::changes::{found_on, messages};
+use gcode_tests::changes::{effects, find_changes_on, messages};
 
 /// T1 makes both holes 4 mm deep, T2 the first of them to its end at 12 mm.
 const PART: &str = "O1\nG90 G54 G0 X0 Y0\nT1 M6\nG43 H1 Z50.\nG98 G81 X10. Y0 Z-4. R2. F100\nX20. Z-4.\nG80\n\
@@ -61,20 +61,25 @@ fn a_rapid_back_to_where_the_other_program_stands_is_told_with_what_leads_away()
 fn a_rapid_back_to_where_a_feed_has_led_is_told() {
     let old = "O1\nG90 G54 G0 X0 Y0 Z50.\nG0 X10.\nZ2.\nG1 Z-5. F100\nX15.\nG0 Z50.\nM30\n";
     let new = old.replace("Z-5. F100\n", "Z-5. F100\nG0 Z20.\nZ-5.\nG1 ");
-    let found = messages(old, &new);
     assert_eq!(
-        found,
-        ["move-added: a rapid to Z20.0000 is added", "move-added: a rapid to Z-5.0000 is added"]
+        effects(old, &new),
+        ["move-added: a rapid to Z20.0000 is added | move-added: a rapid to Z-5.0000 is added"]
     );
 }
 
-/// Two words of one block: the low R level isn't told with the moved hole.
+/// Two words of one block: the low R level stands beside the moved hole.
 #[test]
-fn of_two_words_each_effect_is_an_entry() {
-    let found = changed("G81 X10. Y0 Z-4. R2.", "G81 X10.01 Y0 Z-4. R-2.");
-    assert!(found.len() > 1, "{found:?}");
-    let one = changed("G81 X10. Y0 Z-4. R2.", "G81 X10. Y0 Z-4. R-2.");
-    assert_eq!(one.len(), 1, "{one:?}");
+fn of_two_words_each_effect_is_told() {
+    let both = PART.replace("G81 X10. Y0 Z-4. R2.", "G81 X10.01 Y0 Z-4. R-2.");
+    assert_eq!(
+        effects(PART, &both),
+        [
+            "hole-pass: hole 1: pass 1 of 2, by T1, ends at a different point: X +0.0100 | move-shifted: moves end at a \
+          different point: up to X 0.0100 Z 4.0000 (4 rapids, a feed)"
+        ]
+    );
+    let one = PART.replace("G81 X10. Y0 Z-4. R2.", "G81 X10. Y0 Z-4. R-2.");
+    assert_eq!(effects(PART, &one), ["move-shifted: a rapid ends at a different point: Z -4.0000 (2 moves)"]);
 }
 
 /// T1 drills 25 mm deep, T2 taps 18 mm of it: what the tap does is told whatever else happens to the hole.
@@ -131,15 +136,15 @@ fn an_arc_that_is_reshaped_is_told_whatever_its_ends_do() {
     let old = "O1\nG90 G54 G0 X0 Y0\nZ5.\nG1 Z-1. F100\nG1 X20.\nG2 X30. Y10. R10.\nG1 Y19.\nG0 Z5.\nM30\n";
     let codes = |edits: &[(&str, &str)]| {
         let new = edits.iter().fold(old.to_owned(), |text, (from, to)| text.replace(from, to));
-        let of = |text: String| text.split(':').next().unwrap().to_owned();
-        messages(old, &new).into_iter().map(of).collect::<Vec<_>>()
+        let of = |text: &str| text.split(':').next().unwrap().to_owned();
+        effects(old, &new).iter().flat_map(|entry| entry.split(" | ")).map(of).collect::<Vec<_>>()
     };
     let deeper = ("Z-1.", "Z-1.01");
     assert_eq!(codes(&[deeper]), ["move-shifted"]);
     for shape in [("R10.", "R12."), ("R10.", "R-10."), ("G2", "G3")] {
         assert_eq!(codes(&[shape]), ["move-arc"], "{shape:?}");
-        assert_eq!(codes(&[shape, deeper]), ["move-shifted", "move-arc"], "{shape:?}");
-        assert_eq!(codes(&[shape, ("G54", "G54 G52 X1. Y2.")]).last().unwrap(), "move-arc", "{shape:?}");
+        assert_eq!(codes(&[shape, deeper]), ["move-arc", "move-shifted"], "{shape:?}");
+        assert!(codes(&[shape, ("G54", "G54 G52 X1. Y2.")]).contains(&"move-arc".to_owned()), "{shape:?}");
     }
 }
 
@@ -155,10 +160,14 @@ fn a_cycle_that_is_another_one_at_some_holes_names_them() {
     );
 }
 
-/// What is told of spindle and coolant.
-fn state_told(old: &str, new: &str) -> Vec<String> {
-    let mut all = messages(old, new);
-    all.retain(|entry| entry.starts_with("spindle: ") || entry.starts_with("coolant: "));
+/// What is told of spindle and coolant that a cut relied on, in the only entry.
+fn state_messages(old: &str, new: &str) -> Vec<String> {
+    let entries = effects(old, new);
+    assert_eq!(entries.len(), 1, "{entries:#?}");
+    let mut all: Vec<String> = entries[0].split(" | ").map(str::to_owned).collect();
+    all.retain(|entry| {
+        ["spindle: ", "coolant: "].iter().any(|code| entry.starts_with(code)) && entry.contains(" is cut ")
+    });
     all
 }
 
@@ -175,13 +184,13 @@ fn spot_and_drill(spindle: &str, coolant: &str) -> String {
 fn without_spot(spindle: &str, coolant: &str) -> (Vec<String>, Vec<String>) {
     let old = spot_and_drill(spindle, coolant);
     let new = old.replace(SPOT, "");
-    (state_told(&old, &new), state_told(&new, &old))
+    (state_messages(&old, &new), state_messages(&new, &old))
 }
 
 /// A tool that relied on the section that is deleted is told, and one that relies on a section that is new.
 #[test]
 fn spindle_and_coolant_that_a_later_tool_relied_on_are_told() {
-    // T2 has its own: what goes with the spot drilling isn't told again, whatever is in force behind it.
+    // T2 has its own: no cut relied on what goes with the spot drilling, whatever is in force behind it.
     assert_eq!(without_spot("S900 M3\n", "M8\n"), (vec![], vec![]));
     assert_eq!(without_spot("S1500 M3\n", "M8\n"), (vec![], vec![]));
     // M06 stops the spindle in this run: T2's drill stands in both. A machine whose M06 doesn't would have drilled.
@@ -219,7 +228,7 @@ fn spindle_and_coolant_that_the_next_hole_of_the_same_tool_relied_on_are_told() 
     };
     let old = program("S1500\nM7\nX20.\n");
     assert_eq!(
-        state_told(&old, &program("")),
+        state_messages(&old, &program("")),
         [
             "spindle: M03 S1500 is removed: O0001:5 N9 is cut with M03 S800 instead of M03 S1500",
             "coolant: M07 is removed: O0001:5 N9 is cut with coolant off instead of M07",
@@ -227,10 +236,10 @@ fn spindle_and_coolant_that_the_next_hole_of_the_same_tool_relied_on_are_told() 
     );
     // Switched back before it: nothing relied on them.
     let old = program("S1500\nM7\nX20.\nS800\nM9\n");
-    assert_eq!(state_told(&old, &program("")), [""; 0]);
+    assert_eq!(state_messages(&old, &program("")), [""; 0]);
     // A hole is new, and the spindle stands behind it.
     assert_eq!(
-        state_told(&program(""), &program("X20.\nM5\n")),
+        state_messages(&program(""), &program("X20.\nM5\n")),
         ["spindle: spindle stop is added: O0001:7 N9 is cut with the spindle stopped instead of M03 S800"]
     );
 }
@@ -245,8 +254,9 @@ fn a_tool_length_that_a_later_hole_relied_on_is_told() {
         )
     };
     let lost = "G80\nG10 L10 P1 R21.\nG43 H1\nG81 X20. Z-4. R2. F100\n";
-    let found = messages(&program(lost, "20."), &program("", "20."));
-    let found: Vec<_> = found.iter().filter(|entry| entry.starts_with("tool-length: ")).collect();
+    let found = effects(&program(lost, "20."), &program("", "20."));
+    assert_eq!(found.len(), 1, "{found:#?}");
+    let found: Vec<_> = found[0].split(" | ").filter(|entry| entry.starts_with("tool-length: ")).collect();
     assert_eq!(
         found,
         ["tool-length: tool length offset Z 21.0000 is removed: O0001:6 is cut with tool length offset Z \
@@ -264,11 +274,11 @@ fn a_spindle_that_a_new_tool_change_stops_is_told() {
     };
     let section = "G80\nT2 M6\nS800 M3\nG81 X20. Z-4. R2. F100\nG80\nT1 M6\n";
     assert_eq!(
-        state_told(&program(""), &program(section)),
+        state_messages(&program(""), &program(section)),
         ["spindle: tool T1 is added: if M06 stops the spindle, O0001:12 is cut with the spindle stopped \
           instead of M03 S800"]
     );
-    assert_eq!(state_told(&program(""), &program(&format!("{section}M3\n"))), [""; 0]);
+    assert_eq!(state_messages(&program(""), &program(&format!("{section}M3\n"))), [""; 0]);
 }
 
 /// The pilot's tool is 80 mm long. Set 0.01 mm shorter and programmed 0.01 mm less deep, its tip ends where it did.
@@ -278,9 +288,10 @@ fn a_pass_that_another_length_makes_up_for_says_so() {
     let old = format!("O1\nG10 L10 P1 R80.\nG10 L10 P2 R90.\n{}", PART.strip_prefix("O1\n").unwrap());
     let told = |edits: &[(&str, &str)]| {
         let new = edits.iter().fold(old.clone(), |text, (from, to)| text.replacen(from, to, 1));
-        let found = found_on(&Machine::parse(machine).unwrap(), &old, &new);
-        let passes = found.into_iter().filter(|change| change.code == "hole-pass");
-        passes.map(|change| change.message).collect::<Vec<_>>()
+        let found = find_changes_on(&Machine::parse(machine).unwrap(), &old, &new);
+        let passes =
+            found.iter().flat_map(|change| change.effects()).filter(|(code, _)| *code == "hole-pass");
+        passes.map(|(_, message)| message.to_owned()).collect::<Vec<_>>()
     };
     let less = "hole 1: pass 1 of 2, by T1, 0.0100 mm less deep";
     assert_eq!(told(&[("Z-4. R2.", "Z-3.99 R2.")]), [less]);

@@ -52,7 +52,7 @@ fn verdict(text: &str, changes: &[(&str, &str)]) -> Verdict {
         let program = package.programs.iter_mut().find(|program| program.text.contains(from)).expect(from);
         program.text = program.text.replace(from, to);
     }
-    check(&job, &package).unwrap().judgement.into_holes().unwrap()
+    check(&job, &package).unwrap().verdict.into_holes().unwrap()
 }
 
 fn ran(package: &Package, sink: &mut impl EventSink) -> Run {
@@ -134,7 +134,7 @@ proptest! {
         let job = job(&text);
         let checked = check(&job, &families::emit(&job)).unwrap();
         prop_assert!(checked.refusals.is_empty(), "{}\n{text}", checked.refusals.concat());
-        let verdict = checked.judgement.into_holes().unwrap();
+        let verdict = checked.verdict.into_holes().unwrap();
         let (worst, rounding) = (verdict.worst.unwrap(), verdict.rounding.unwrap());
         prop_assert!(worst <= rounding + 1e-6, "Φ{worst} where rounding explains Φ{rounding}\n{text}");
         let neighbours = verdict.neighbours.unwrap();
@@ -186,12 +186,12 @@ fn codes(verdict: &Verdict) -> Vec<String> {
 fn a_fault_in_the_macro_is_named() {
     let faults = [
         ("#18 LT 2*#14", "#18 LT #14", "row-missing", "rows 9 to 17 are missing"),
-        ("ROUND[3.14159265", "FUP[3.14159265", "row-angle", "18° apart, 20.0000° wanted"),
+        ("ROUND[3.14159265", "FUP[3.14159265", "row-angle", "18° apart, nominal 20.0000°"),
         ("#15=180/#14", "#15=FIX[178/#14]", "row-angle", "right for a diameter of 105.26 mm"),
         ("*#16/2 (WHERE", "*0 (WHERE", "row-group", "no row is staggered: all 18 rows begin at x 0.000"),
         ("#18=#18+1", "#18=#18+2", "row-group", "all 9 rows begin at x 0.000"),
-        ("/[2*#14]/COS[30.]", "/[2*#14]/COS[31.]", "row-pitch", "the holes of a row stand 20.36"),
-        ("#18*#15]", "#18*[#15+.5]]", "row-angle", "20.5° apart, 20.0000° wanted"),
+        ("/[2*#14]/COS[30.]", "/[2*#14]/COS[31.]", "row-pitch", "the holes of a row are 20.36"),
+        ("#18*#15]", "#18*[#15+.5]]", "row-angle", "20.5° apart, nominal 20.0000°"),
     ];
     for (from, to, code, told) in faults {
         let verdict = verdict(SMALL, &[(from, to)]);
@@ -359,7 +359,7 @@ fn a_diameter_changed_at_the_machine_closes_again() {
     let mut package = families::emit(&job(SMALL));
     package.programs[0].text = package.programs[0].text.replace("D100.", "D130.").replace("I100.", "I130.");
     package.machine = package.machine.replace("-50.0", "-65.0");
-    let verdict = check(&job(&other), &package).unwrap().judgement.into_holes().unwrap();
+    let verdict = check(&job(&other), &package).unwrap().verdict.into_holes().unwrap();
     assert_eq!(verdict.verdict, Answer::Pass, "{:?}", verdict.findings);
 }
 

@@ -186,7 +186,7 @@ fn a_run_ended_from_outside_tells_what_is_known_so_far() {
     assert_eq!(done.control.blocks(), 4096);
     assert_eq!(done.control.work_position(0), 10.0);
     assert_eq!(done.control.variable(1).unwrap().number(), 1024.0);
-    let finding = done.stopped().unwrap();
+    let finding = done.stop_finding().unwrap();
     assert_eq!((finding.code.as_str(), progress.blocks.load(Ordering::Relaxed)), ("limit", 4096));
-    assert!(finding.message.contains("ended from outside after 4096 blocks"), "{}", finding.message);
+    assert!(finding.message.contains("interrupted after 4096 blocks"), "{}", finding.message);
 }

@@ -35,9 +35,11 @@ mod honeycomb;
 mod house_rules;
 mod limits;
 mod misplaced;
+mod module_circles;
 mod mutations;
 mod order;
 mod packaging;
+#[cfg(feature = "browser")]
 mod page;
 mod pin_holes;
 mod real_files;

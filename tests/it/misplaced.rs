@@ -160,7 +160,7 @@ fn a_machine_with_errors_moves_the_holes_and_nothing_else_is_found() {
         );
         let mut package = package.clone();
         package.machine = format!("{plain}\n{errors}");
-        let verdict = || check(&job, &package).unwrap().judgement.into_holes().unwrap();
+        let verdict = || check(&job, &package).unwrap().verdict.into_holes().unwrap();
         let found = verdict();
         let other: Vec<_> = found
             .diagnostics

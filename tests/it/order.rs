@@ -1,7 +1,7 @@
 //! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what
 //! the cut is made with otherwise because of that.
 use gcode_review::Change;
-use gcode_tests::changes::{found, messages};
+use gcode_tests::changes::{effects, find_changes, messages};
 
 /// The lines of an entry, before and now.
 fn lines(change: &Change) -> [Option<u32>; 2] {
@@ -32,7 +32,7 @@ fn passes_in_another_order_are_one_entry_at_their_own_block() {
     for tool in 0..3 {
         let mut lists = [LIST; 3];
         lists[tool] = SWAPPED;
-        let found = found(&old, &reamed(lists));
+        let found = find_changes(&old, &reamed(lists));
         let number = tool + 1;
         let message =
             format!("hole 2: pass {number} of 3, by T{number}, made in a different order, after hole 3");
@@ -42,7 +42,7 @@ fn passes_in_another_order_are_one_entry_at_their_own_block() {
         assert_eq!(lines(&found[0]), [Some(line), Some(line + 1)]);
     }
     // The hole with all its passes.
-    let found = found(&old, &reamed([SWAPPED; 3]));
+    let found = find_changes(&old, &reamed([SWAPPED; 3]));
     assert_eq!(found.len(), 1, "{found:#?}");
     assert_eq!(found[0].message, "hole 2: made in a different order, after hole 3");
     assert_eq!(lines(&found[0]), [Some(8), Some(9)]);
@@ -98,7 +98,7 @@ fn milled(first: &str, between: &str, then: &str) -> String {
 
 #[test]
 fn swapped_sections_are_one_entry() {
-    let found = found(&milled(LEFT, "", RIGHT), &milled(RIGHT, "", LEFT));
+    let found = find_changes(&milled(LEFT, "", RIGHT), &milled(RIGHT, "", LEFT));
     assert_eq!(found.len(), 1, "{found:#?}");
     let message = "8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000";
     assert_eq!((&*found[0].code, &*found[0].message), ("move-order", message));
@@ -113,7 +113,7 @@ fn swapped_sections_are_one_entry() {
     // What is milled twice and once less is no other order.
     let twice = milled(LEFT, LEFT, RIGHT);
     let codes: Vec<_> =
-        self::found(&twice, &milled(LEFT, "", RIGHT)).into_iter().map(|one| one.code).collect();
+        self::find_changes(&twice, &milled(LEFT, "", RIGHT)).into_iter().map(|one| one.code).collect();
     assert!(!codes.is_empty() && codes.iter().all(|code| code == "move-lost"), "{codes:?}");
 }
 
@@ -128,8 +128,12 @@ fn a_section_is_told_with_what_it_is_made_with_then() {
         ["move-order: 8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000"]
     );
     // The sections change places, their tools don't.
-    let others = messages(&milled(&left, "", &right), &milled(&tool(3, RIGHT), "", &tool(4, LEFT)));
-    let order: Vec<_> = others.iter().filter(|entry| entry.starts_with("move-order: ")).collect();
+    let others = effects(&milled(&left, "", &right), &milled(&tool(3, RIGHT), "", &tool(4, LEFT)));
+    let order: Vec<_> = others
+        .iter()
+        .flat_map(|entry| entry.split(" | "))
+        .filter(|one| one.starts_with("move-order: "))
+        .collect();
     assert!(
         order.iter().any(|entry| {
             entry.ends_with(", with T4 instead of T3, G43 H4 instead of G43 H3, M03 S400 instead of M03 S300")
@@ -137,14 +141,12 @@ fn a_section_is_told_with_what_it_is_made_with_then() {
         "{others:#?}"
     );
     let between = "S500\nM8\n";
-    let found = messages(&milled(LEFT, between, RIGHT), &milled(RIGHT, between, LEFT));
-    assert!(
-        found.contains(
-            &"move-order: 8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000, \
-              with M03 S500 instead of M03 S900, M08 instead of coolant off"
-                .to_owned()
-        ),
-        "{found:#?}"
+    assert_eq!(
+        effects(&milled(LEFT, between, RIGHT), &milled(RIGHT, between, LEFT)),
+        [
+            "move-order: 8 moves are executed later than before, the first a rapid to X10.0000 Y10.0000, with M03 S500 \
+          instead of M03 S900, M08 instead of coolant off | spindle: S500 is executed later than before | coolant: \
+          M08 is executed later than before"
+        ]
     );
-    assert!(found.contains(&"spindle: S500 is executed later than before".to_owned()), "{found:#?}");
 }

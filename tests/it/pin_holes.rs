@@ -44,7 +44,7 @@ fn edited(text: &str, changes: &[(u32, &str, &str, &str)]) -> Package {
 }
 
 fn verdict(package: &Package, reference: &str) -> Verdict {
-    check(&job(reference), package).unwrap().judgement.into_holes().unwrap()
+    check(&job(reference), package).unwrap().verdict.into_holes().unwrap()
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn the_printed_equation_8_fails() {
     let package = edited(&melon(), &[(8101, "#24=", right, printed), (8102, "#24=", right, printed)]);
     let checked = check(&job(&melon()), &package).unwrap();
     assert!(checked.refusals.concat().contains("rapid through the part"), "{}", checked.refusals.concat());
-    let verdict = checked.judgement.into_holes().unwrap();
+    let verdict = checked.verdict.into_holes().unwrap();
     assert_eq!(verdict.verdict, Answer::Fail);
     assert_eq!(verdict.missing, ["1", "2", "3", "4", "5"], "no hole is anywhere near its place");
 }
@@ -106,7 +106,7 @@ fn a_table_that_turns_the_other_way_fails() {
 #[test]
 fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
     let text = melon();
-    let reference = NominalPart::of_job(&job(&text)).unwrap().into_holes().unwrap();
+    let reference = NominalPart::from_job(&job(&text)).unwrap().into_holes().unwrap();
     let package = families::emit(&job(&text));
     let main = package.main().unwrap();
     for machine in [Machine::default(), Machine::parse(&package.machine).unwrap()] {

@@ -148,7 +148,7 @@ fn junit_counts_failures_and_tells_them_as_the_terminal_does() {
     assert!(description.contains("new O0001:4  G81 X10. Y0.01 Z-5. R2. F100"), "{description}");
     assert_eq!(case("new & <odd>").unwrap().1, "case-new");
     assert_eq!(case("two").unwrap().0, quick_junit::NonSuccessKind::Error);
-    assert!(case("aside").unwrap().2.starts_with("hole-position: hole 1 stands aside"));
+    assert!(case("aside").unwrap().2.starts_with("hole-position: hole 1 is out of position"));
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn the_results_of_shards_merge_to_those_of_one_run() {
         ("1.json 2.json 4.json", "the results of --shard 3/4 are missing"),
         ("1.json 2.json 3.json 4.json 4.json", "7 cases of 6"),
         ("main.json main.json", "case aside is in two of the results"),
-        ("1.json main.json", "these aren't shards of one collection of cases"),
+        ("1.json main.json", "these are not shards of one collection of cases"),
         ("odd.json", "missing field"),
         (
             "1.json 2.json 3.json wide.json",
@@ -189,7 +189,7 @@ fn a_refused_case_is_told_beside_every_document() {
     for format in ["json", "junit", "sarif"] {
         let done = run_line(&format!("gcode-sim test parts --format {format} > out"), place.path());
         let said = String::from_utf8(done.stderr).unwrap();
-        assert!(said.starts_with("error: case two: parts/two holds several programs"), "{format}: {said}");
+        assert!(said.starts_with("error: case two: parts/two contains several programs"), "{format}: {said}");
         assert_eq!(done.status.code(), Some(2), "{format}");
     }
     assert!(run_line("gcode-sim test parts", place.path()).stderr.is_empty(), "the text says it itself");

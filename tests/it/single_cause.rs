@@ -1,10 +1,10 @@
 //! One cause is one entry, at the block that somebody has edited, and nothing it says is false.
 use gcode_inspect::machine::Machine;
 use gcode_review::Change;
-use gcode_tests::changes::{found_on, texts};
+use gcode_tests::changes::{effect_texts, find_changes_on, texts};
 
 fn found_by(machine: &str, old: &str, new: &str) -> Vec<Change> {
-    found_on(&Machine::parse(machine).unwrap(), old, new)
+    find_changes_on(&Machine::parse(machine).unwrap(), old, new)
 }
 
 fn found(old: &str, new: &str) -> Vec<Change> {
@@ -14,6 +14,11 @@ fn found(old: &str, new: &str) -> Vec<Change> {
 /// What is different, as `code: message`.
 fn told(old: &str, new: &str) -> Vec<String> {
     texts(&found(old, new))
+}
+
+/// As `told`, each entry with all that stands beside its headline.
+fn effects(old: &str, new: &str) -> Vec<String> {
+    effect_texts(&found(old, new))
 }
 
 /// The blocks of an entry, before and now.
@@ -36,11 +41,9 @@ fn a_lost_m29_is_that_and_no_lost_m03() {
     // Another speed than M03's, for both holes: each of them is tapped in with it, out and on.
     let faster = TAPPED.replace("M29 S500", "M29 S600");
     assert_eq!(
-        told(&faster, &without),
+        effects(&faster, &without),
         [
-            "spindle: S600 is removed",
-            "m-code: M29 is removed",
-            "spindle: S500 instead of S600 (6 spindle commands)"
+            "m-code: M29 is removed | spindle: S600 is removed | spindle: S500 instead of S600 (6 spindle commands)"
         ]
     );
 }
@@ -59,15 +62,26 @@ fn spindle_and_coolant_that_are_commanded_again_are_told_behind_a_stop() {
     assert_eq!(stopped("S900 M3\n"), ["spindle: M03 S900 is removed"]);
     assert_eq!(stopped("M8\n"), ["coolant: M08 is removed"]);
     let off = |again: &str| told(&with("M5\nM9\n", again), &with("M5\nM9\n", ""));
-    assert_eq!(off("S900 M3\n"), ["spindle: M03 S900 is removed"]);
-    assert_eq!(off("M8\n"), ["coolant: M08 is removed"]);
+    let cut = "O0001:8 is cut with";
+    assert_eq!(
+        off("S900 M3\n"),
+        [format!("spindle: M03 S900 is removed: {cut} the spindle stopped instead of M03 S900")]
+    );
+    assert_eq!(off("M8\n"), [format!("coolant: M08 is removed: {cut} coolant off instead of M08")]);
 }
 
 /// G74 turns the spindle the other way at the bottom and on the way out.
 #[test]
 fn another_tapping_cycle_is_one_entry() {
     let left = TAPPED.replace("G84", "G74");
-    assert_eq!(told(TAPPED, &left), ["cycle: cycle G74 instead of G84 (2 holes)"]);
+    assert_eq!(
+        effects(TAPPED, &left),
+        [
+            "cycle: cycle G74 instead of G84 (2 holes) | spindle: M04 S500 instead of M03 S500 (2 spindle commands) | \
+          spindle: M04 S500 is executed later than before (2 spindle commands) | spindle: M03 S500 is executed earlier \
+          than before (2 spindle commands)"
+        ]
+    );
     assert_eq!(told(&left, TAPPED), ["cycle: cycle G84 instead of G74 (2 holes)"]);
 }
 
@@ -87,8 +101,11 @@ fn a_lost_spot_drilling_leaves_the_drills_diameter() {
     let both = program("X10. Y0 Z-1.5 R2. F100\nX20.", "");
     let one = program("X10. Y0", "");
     assert_eq!(
-        texts(&found_by(&machine, &both, &one)),
-        ["hole-tool: hole 2: no longer made by T1, in total by T2"]
+        effect_texts(&found_by(&machine, &both, &one)),
+        [
+            "hole-tool: hole 2: no longer made by T1, in total by T2 | move-lost: a rapid to X20.0000 is removed (4 moves \
+          of its block) | move-lost: a rapid to X10.0000 is removed"
+        ]
     );
     assert_eq!(
         texts(&found_by(&machine, &one, &both)),
@@ -97,8 +114,11 @@ fn a_lost_spot_drilling_leaves_the_drills_diameter() {
     // A reamer stops above the drill's bottom and makes the diameter all the same.
     let reamed = program("X10. Y0", "T3 M6\nG43 H3 Z50.\nG98 G85 X10. Y0 Z-4.5 R2. F50\nG80\n");
     assert_eq!(
-        texts(&found_by(&machine, &reamed, &one)),
-        ["hole-diameter: hole 1: Φ6 instead of Φ6.2, no longer made by T3, in total by T1 and T2"]
+        effect_texts(&found_by(&machine, &reamed, &one)),
+        [
+            "hole-diameter: hole 1: Φ6 instead of Φ6.2, no longer made by T3, in total by T1 and T2 | tool: tool T3 is \
+          removed | move-lost: a rapid to X10.0000 is removed (5 moves of its block)"
+        ]
     );
 }
 
@@ -140,9 +160,14 @@ fn a_shift_by_the_pitch_moves_all_holes() {
     assert_eq!(told(&old, &new), ["hole-moved: holes 1, 2, 3, 4: moved by +20.0000 +0.0000 +0.0000 mm"]);
     assert_eq!(told(&new, &old), ["hole-moved: holes 1, 2, 3, 4: moved by -20.0000 +0.0000 +0.0000 mm"]);
     // Left in force, the next program finds it.
-    let left = told(&old, &program("G52 X20.\n", ""));
-    assert_eq!(left.len(), 2, "{left:#?}");
-    assert_eq!(left[1], "work-offset: G52 X ends as 20 instead of 0");
+    let left = effects(&old, &program("G52 X20.\n", ""));
+    assert_eq!(
+        left,
+        [
+            "hole-moved: holes 1, 2, 3, 4: moved by +20.0000 +0.0000 +0.0000 mm | move-shifted: moves end at a different \
+          point: X +20.0000 (24 rapids, 8 feeds) | work-offset: G52 X ends as 20 instead of 0"
+        ]
+    );
     // Positions that are written otherwise are holes lost and added: three stay where they were.
     let row =
         |positions: &str| format!("O1\nG90 G54 G0 X0 Y0 Z50.\nG81 Z-5. R2. F100 K0\n{positions}G80\nM30\n");
@@ -170,16 +195,20 @@ fn another_length_that_all_moves_make_up_for_is_told_once_with_them() {
     };
     let machine = format!("{FIXED}[[tool]]\nnumber = 2\nlength = 90.0\n");
     let (old, new) = (program(2, 0), program(3, 5));
-    let found = texts(&found_by(&machine, &old, &new));
-    assert_eq!(found.len(), 2, "{found:#?}");
-    assert!(found[0].starts_with("tool-length: G43 H3 instead of G43 H2 ("), "{found:#?}");
-    let made_up = "move-shifted: moves end elsewhere, by Z +5.0000 as programmed; the machine position is \
-                   unchanged because of another length offset (";
-    assert!(found[1].starts_with(made_up), "{found:#?}");
-    assert!(found[1].ends_with(" rapids, 12 feeds)"), "two holes of six pecks: {found:#?}");
-    let back = texts(&found_by(&machine, &new, &old));
-    assert_eq!(back.len(), 2, "{back:#?}");
-    assert!(back[1].contains("by Z -5.0000 as programmed"), "{back:#?}");
+    let entry = |now: u32, was: u32, lengths: [f64; 2], by: &str| {
+        let unchanged = "the machine position is unchanged because of another length offset";
+        // Two holes of six pecks.
+        format!(
+            "tool-length: G43 H{now} instead of G43 H{was} (39 moves) | tool-length: tool length offset Z {:.4} instead \
+             of tool length offset Z {:.4} | move-shifted: moves end at a different point: Z {by} as programmed; \
+             {unchanged} (27 rapids, 12 feeds)",
+            lengths[0], lengths[1]
+        )
+    };
+    let found = effect_texts(&found_by(&machine, &old, &new));
+    assert_eq!(found, [entry(3, 2, [85.0, 90.0], "+5.0000")]);
+    let back = effect_texts(&found_by(&machine, &new, &old));
+    assert_eq!(back, [entry(2, 3, [90.0, 85.0], "-5.0000")]);
 }
 
 /// T2 has taken over the length that T3 puts in force again: T3's G43 does what it did.
@@ -205,23 +234,24 @@ fn what_one_lost_or_new_word_or_block_does_is_one_entry() {
         [("G90\nX10.", "X10.", ["G90", ""]), ("G90 X10.", "X10.", ["G90 X10.", "X10."])]
     {
         let (old, new) = (program(with), program(without));
-        let stays = "the program ends in G91 instead of G90";
         let found = found(&old, &new);
-        let shifted = "a feed ends at a different point: X +10.0000 (2 moves)";
-        let wanted = [
-            format!("move-shifted: {shifted}; a rapid to X0.0000 Y0.0000 is removed"),
-            format!("mode: {stays}"),
-        ];
-        assert_eq!(texts(&found), wanted);
+        let wanted = "move-shifted: a feed ends at a different point: X +10.0000 (2 moves) | move-lost: a rapid to \
+                      X0.0000 Y0.0000 is removed | mode: the program ends in G91 instead of G90";
+        assert_eq!(effect_texts(&found), [wanted]);
         assert_eq!(blocks(&found[0]), named.map(|block| Some(block).filter(|block| !block.is_empty())));
         let back = self::found(&new, &old);
-        assert_eq!(back.len(), 2, "{back:#?}");
+        assert_eq!(back.len(), 1, "{back:#?}");
         assert_eq!(
             blocks(&back[0]),
             [named[1], named[0]].map(|block| Some(block).filter(|block| !block.is_empty()))
         );
     }
-    // Two words: nobody knows which has done what.
-    let two = told(&program("G90 X10."), &program("X11."));
-    assert!(2 < two.len(), "{two:#?}");
+    // Two words of one block are one entry with all effects of both.
+    assert_eq!(
+        effects(&program("G90 X10."), &program("X11.")),
+        [
+            "move-shifted: moves end at a different point: up to X 11.0000 (a rapid, 2 feeds) | move-lost: a rapid to \
+          X0.0000 Y0.0000 is removed | mode: the program ends in G91 instead of G90"
+        ]
+    );
 }

@@ -51,11 +51,11 @@ impl Bench {
 
     /// A main program on a part that stands so, with these variables in the control.
     pub fn run(&self, main: u32, part: &Placement, set: &[(u32, f64)]) -> Run {
-        self.watched(main, part, set, &mut ())
+        self.run_observed(main, part, set, &mut ())
     }
 
     /// The same with somebody who looks on from block to block.
-    pub fn watched(
+    pub fn run_observed(
         &self,
         main: u32,
         part: &Placement,
@@ -74,7 +74,7 @@ impl Bench {
 }
 
 /// A part that is shifted (mm) and then tilted about x, y and z (degrees).
-pub fn standing(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
+pub fn placement(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
     Placement { shift: shift.into(), tilt: tilt.map(Deg), ..Placement::default() }
 }
 
@@ -100,7 +100,7 @@ pub fn value(run: &Run, number: u32) -> f64 {
 }
 
 /// What stands in #500 to #599 at the end of a run, for the next one.
-pub fn kept(run: &Run) -> Vec<(u32, f64)> {
+pub fn kept_variables(run: &Run) -> Vec<(u32, f64)> {
     (500..600).filter(|n| !vacant(run, *n)).map(|n| (n, value(run, n))).collect()
 }
 

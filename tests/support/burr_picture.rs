@@ -17,7 +17,7 @@ pub(super) fn scene(job: &str, program: Option<String>, view: &str) -> Scene {
     let machine = Machine::parse(&package.machine).unwrap();
     let text = program.unwrap_or_else(|| main.text.clone());
     let request = Request::new("O8400.nc", text.as_bytes(), machine);
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else {
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
         panic!("the job is no burr")
     };
     let grinding = grind(&request, &mut NoLibrary, &wanted).unwrap();

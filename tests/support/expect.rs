@@ -141,7 +141,7 @@ impl Ran {
             }
         };
         let wanted_numbers: Option<Vec<f64>> = wanted.split(',').map(|w| w.parse().ok()).collect();
-        let holds = wanted_numbers.is_some_and(|wanted| close(&found, &wanted, tolerance));
+        let holds = wanted_numbers.is_some_and(|wanted| is_close(&found, &wanted, tolerance));
         (!holds).then(|| format!("{key} is {found:?}, {wanted} is wanted"))
     }
 
@@ -169,16 +169,16 @@ fn items(expected: &str) -> impl Iterator<Item = (&str, &str)> {
     expected.split("; ").map(|item| item.trim().split_once('=').unwrap_or_else(|| panic!("item {item}")))
 }
 
-fn close(found: &[f64], wanted: &[f64], tolerance: f64) -> bool {
+fn is_close(found: &[f64], wanted: &[f64], tolerance: f64) -> bool {
     found.len() == wanted.len() && found.iter().zip(wanted).all(|(f, w)| (f - w).abs() <= tolerance)
 }
 
 /// One thing the machine was told, by its letter and its numbers.
-type Told = (char, Vec<f64>);
+type PathEntry = (char, Vec<f64>);
 
 #[derive(Default)]
 struct Path {
-    told: Vec<Told>,
+    entries: Vec<PathEntry>,
     stations: Vec<Position>,
     events: Vec<(Span, EventKind)>,
 }
@@ -190,10 +190,10 @@ impl EventSink for Path {
             EventKind::Rapid { to } => ('R', to),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => ('F', to),
             EventKind::Arc { to, .. } => ('A', to),
-            EventKind::Dwell { time } => return self.told.push(('D', vec![time.0])),
+            EventKind::Dwell { time } => return self.entries.push(('D', vec![time.0])),
             _ => return,
         };
-        self.told.push((letter, to.0[..3].to_vec()));
+        self.entries.push((letter, to.0[..3].to_vec()));
         self.stations.push(*to);
     }
 }
@@ -205,7 +205,7 @@ impl Path {
     }
 
     fn difference(&self, wanted: &str, tolerance: f64) -> Option<String> {
-        let wanted_path: Vec<Told> = wanted
+        let wanted_path: Vec<PathEntry> = wanted
             .split_whitespace()
             .map(|step| {
                 let (letter, rest) = step.split_once('(').unwrap();
@@ -213,11 +213,12 @@ impl Path {
                 (letter.chars().next().unwrap(), numbers.collect())
             })
             .collect();
-        let same = |(a, b): (&Told, &Told)| a.0 == b.0 && close(&a.1, &b.1, tolerance);
-        let holds = wanted_path.len() == self.told.len() && self.told.iter().zip(&wanted_path).all(same);
+        let same = |(a, b): (&PathEntry, &PathEntry)| a.0 == b.0 && is_close(&a.1, &b.1, tolerance);
+        let holds =
+            wanted_path.len() == self.entries.len() && self.entries.iter().zip(&wanted_path).all(same);
         (!holds).then(|| {
             let mut found = String::new();
-            for (letter, numbers) in &self.told {
+            for (letter, numbers) in &self.entries {
                 let numbers: Vec<_> = numbers.iter().map(f64::to_string).collect();
                 write!(found, "{letter}({}) ", numbers.join(",")).unwrap();
             }

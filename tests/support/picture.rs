@@ -99,25 +99,25 @@ pub(crate) fn run(case: &Case) {
         let scene = burr_picture::scene(&job, case.optional("case.nc"), &picture.view);
         let sheet = lay_out(&scene, picture.size.parse().unwrap()).unwrap();
         case.snapshot("says", &words(&sheet));
-        return hold(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
+        return assert_picture(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
     }
     if let Some(old) = case.optional("old.nc") {
         let picture: ChangedPicture = toml::from_str(&case.text("case.toml")).unwrap();
         let view = changed(&old, &case.text("new.nc"), picture.tolerance);
         let sheet = lay_out(&top_view(&view), picture.size.parse().unwrap()).unwrap();
         case.snapshot("says", &words(&sheet));
-        return hold(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
+        return assert_picture(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
     }
     let (picture, sheet) = draw(&case.text("case.toml"));
     let bytes = png(&paint(&sheet)).unwrap();
     let Some(other) = case.optional("other.toml") else {
         case.snapshot("says", &words(&sheet));
-        return hold(case, &cropped(&bytes, picture.crop));
+        return assert_picture(case, &cropped(&bytes, picture.crop));
     };
     let (_, other) = draw(&other);
     let difference = compare(&bytes, &png(&paint(&other)).unwrap(), 1).unwrap();
-    case.snapshot("says", &told(&difference));
-    hold(case, &cropped(&difference.png().unwrap(), picture.crop));
+    case.snapshot("says", &describe(&difference));
+    assert_picture(case, &cropped(&difference.png().unwrap(), picture.crop));
 }
 
 /// The holes of a new revision over those of the old one, on the machine that is taken where none is told.
@@ -144,8 +144,8 @@ fn draw(text: &str) -> (Picture, Sheet) {
         }),
         tolerance: picture.tolerance,
         rotary: "B".to_owned(),
-        question: PicturePurpose::Verdict,
-        holes: picture.hole.iter().map(drawn).collect(),
+        purpose: PicturePurpose::Verdict,
+        holes: picture.hole.iter().map(drawn_hole).collect(),
         path: picture
             .path
             .iter()
@@ -161,7 +161,7 @@ fn draw(text: &str) -> (Picture, Sheet) {
     (picture, sheet)
 }
 
-fn drawn(case: &HoleCase) -> DrawnHole {
+fn drawn_hole(case: &HoleCase) -> DrawnHole {
     let standing = match case.standing.as_str() {
         "good" => HoleStatus::Good,
         "bad" => HoleStatus::Bad,
@@ -183,10 +183,10 @@ fn drawn(case: &HoleCase) -> DrawnHole {
     DrawnHole {
         id: case.id.clone(),
         nominal: wanted.then(|| at([0.0; 3])),
-        found: (standing != HoleStatus::Missing).then(|| at(case.off.unwrap_or_default())),
-        standing,
-        phi: case.phi,
-        turn: case.turn,
+        actual: (standing != HoleStatus::Missing).then(|| at(case.off.unwrap_or_default())),
+        status: standing,
+        position_deviation: case.phi,
+        rotary_angle: case.turn,
         remarks: case.remark.iter().cloned().collect(),
     }
 }
@@ -200,7 +200,7 @@ fn words(sheet: &Sheet) -> String {
     lines.join("\n")
 }
 
-fn told(difference: &Difference) -> String {
+fn describe(difference: &Difference) -> String {
     match difference.bounds {
         Some([left, top, right, bottom]) => format!(
             "{} pixels differ, by {} at most, from {left},{top} to {right},{bottom}",
@@ -225,7 +225,7 @@ fn cropped(bytes: &[u8], [left, top, width, height]: [u32; 4]) -> Vec<u8> {
 }
 
 /// `INSTA_UPDATE=always` accepts what is new, as for snapshots.
-fn hold(case: &Case, actual: &[u8]) {
+fn assert_picture(case: &Case, actual: &[u8]) {
     assert!(actual.len() <= MOST_BYTES, "{} bytes are more than {MOST_BYTES}: crop it", actual.len());
     let expected = case.dir.join("expected.png");
     let accepts = std::env::var("INSTA_UPDATE").is_ok_and(|v| v == "always");
@@ -243,5 +243,5 @@ fn hold(case: &Case, actual: &[u8]) {
         panic!("there is no expected.png; what was drawn is in {}", left.display())
     };
     std::fs::write(left.join("difference.png"), difference.png().unwrap()).unwrap();
-    panic!("{}; see {}", told(&difference), left.display());
+    panic!("{}; see {}", describe(&difference), left.display());
 }

@@ -1,7 +1,7 @@
 //! Cases of kind `verify`: a program compared with a reference, and what has to be found, as it was worked out by hand.
 //!
 //! `case.nc` is the program (programs it calls stand in the same file). `expect.txt` says in the words of
-//! [`crate::expected_verdict`] which machine and which reference, of those in `suite/verify/`, and what comes out.
+//! `expected_verdict` which machine and which reference, of those in `suite/verify/`, and what comes out.
 //! A machine or a reference that only one case has stands beside its program: `machine.toml`, `reference.toml` or `.csv`.
 //! Without a reference the holes are listed that the program makes.
 use std::fmt::Write as _;
@@ -32,7 +32,7 @@ pub(crate) fn run(case: &Case) {
         }
         Some(wanted) => {
             let reference = wanted.into_holes().unwrap();
-            request.conduct = reference.conduct.clone();
+            request.conduct = reference.process_limits.clone();
             let simulation = simulate(&request, &mut NoLibrary, reference.surface).unwrap();
             let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
             inspect_holes(&verdict, &simulation.run)
@@ -153,7 +153,7 @@ fn inspect_flutes(grinding: &GrindingRun) -> (Outcome, String) {
 fn list_holes(simulation: &Simulation) -> (Outcome, String) {
     let mut text = String::new();
     let mut made = Vec::new();
-    for hole in simulation.list().holes {
+    for hole in simulation.hole_list().holes {
         let ([x, y, z], [i, j, k]) = (hole.entry.map(|v| v + 0.0), hole.axis.map(|v| v + 0.0));
         let (depth, from) = (hole.depth, hole.from.unwrap());
         let tool = from.tool.map_or(String::new(), |tool| format!(", T{tool}"));

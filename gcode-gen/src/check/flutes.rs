@@ -1,4 +1,4 @@
-//! Runs the programs of a burr and holds the flutes against the job's geometry.
+//! Runs the programs of a burr and verifies the flutes against the job's geometry.
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Severity;
@@ -6,15 +6,15 @@ use gcode_part::Flutes;
 use gcode_session::{Request, grind};
 use gcode_sim::report::{diagnostic, flute_table, flute_view};
 
-use super::{CheckError, CheckedPackage, PackageVerdict, Programs, main_program, told, warnings};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, broken_package, main_program, warnings};
 use crate::package::{Package, file_name, stem};
 
 pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<CheckedPackage, CheckError> {
-    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+    let machine = Machine::parse(&package.machine).map_err(|e| broken_package("machine.toml", &e))?;
     let main = main_program(package)?;
     let request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
-    let grinding =
-        grind(&request, &mut Programs(package), wanted).map_err(|e| told("the main program", &e))?;
+    let grinding = grind(&request, &mut Programs(package), wanted)
+        .map_err(|e| broken_package("the main program", &e))?;
     let verdict = grinding.verify();
     let sources = grinding.run.control.memory().sources();
     let failed = verdict.diagnostics.iter().filter(|finding| Severity::Error <= finding.severity);
@@ -33,6 +33,6 @@ pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<CheckedPackage
             (format!("{}-tip", stem(main.number)), gcode_draw::tip_view(&view)),
             (format!("{}-helix", stem(main.number)), gcode_draw::helix_graph(&view)),
         ],
-        judgement: PackageVerdict::Flutes(verdict),
+        verdict: PackageVerdict::Flutes(verdict),
     })
 }

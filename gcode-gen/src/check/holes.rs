@@ -1,4 +1,4 @@
-//! Runs the programs of a part with holes and holds the holes against the job's geometry.
+//! Runs the programs of a part with holes and verifies the holes against the job's geometry.
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::Severity;
@@ -9,7 +9,7 @@ use gcode_session::{Request, Simulation, simulate};
 use gcode_sim::report::verdict_table::{Layout, table};
 use gcode_sim::report::{diagnostic, top};
 
-use super::{CheckError, CheckedPackage, PackageVerdict, Programs, main_program, told, warnings};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, broken_package, main_program, warnings};
 use crate::package::{Package, file_name, stem};
 
 pub(super) fn check(
@@ -17,12 +17,12 @@ pub(super) fn check(
     package: &Package,
     reference: &Reference,
 ) -> Result<CheckedPackage, CheckError> {
-    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+    let machine = Machine::parse(&package.machine).map_err(|e| broken_package("machine.toml", &e))?;
     let main = main_program(package)?;
     let mut request = Request::new(file_name(main.number), main.text.as_bytes(), machine.clone());
-    request.conduct = reference.conduct.clone();
+    request.conduct = reference.process_limits.clone();
     let simulation = simulate(&request, &mut Programs(package), reference.surface)
-        .map_err(|e| told("the main program", &e))?;
+        .map_err(|e| broken_package("the main program", &e))?;
     let tolerances = Tolerances::of(reference, None);
     let verdict = simulation.verify(reference, tolerances, &machine);
     let top = top::of_verdict(&file_name(main.number), &simulation, reference, &verdict, &machine);
@@ -32,16 +32,16 @@ pub(super) fn check(
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
         pictures: vec![(stem(main.number), gcode_draw::main_view(&top))],
-        judgement: PackageVerdict::Holes(verdict),
+        verdict: PackageVerdict::Holes(verdict),
     })
 }
 
-/// Every reason with its block; then what rounding has to do with it.
+/// Returns every error with its block, then the share of rounding in position errors.
 fn refusals(job: &Job, reference: &Reference, simulation: &Simulation, verdict: &Verdict) -> Vec<String> {
     let sources = simulation.run.control.memory().sources();
     let failed = verdict.diagnostics.iter().filter(|finding| Severity::Error <= finding.severity);
     let mut refusals: Vec<_> = failed.map(|finding| diagnostic::render(finding, sources)).collect();
-    // A pattern sees to its own before it has any holes.
+    // A pattern checks for overlaps before it computes any holes.
     if reference.pattern.is_none() {
         let cut = overlaps(&reference.holes);
         refusals.extend(cut.iter().map(|overlap| format!("error: {}\n", overlap.sentence(&reference.holes))));

@@ -1,4 +1,5 @@
-//! The only place of the generator that prints and opens files: arguments in, exit status out.
+//! The generator's command line: arguments in, exit status out. All printing and file access is in this
+//! module.
 mod emit;
 mod new;
 mod sheet;
@@ -124,13 +125,13 @@ fn families() -> clap::builder::PossibleValuesParser {
     crate::families::ALL.iter().map(|family| family.name).collect::<Vec<_>>().into()
 }
 
-/// Does what the command line asks for.
+/// Parses the arguments and executes the command; messages go to standard error.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     let arguments: Arguments = match common::parse(arguments) {
         Ok(arguments) => arguments,
         Err(status) => return status,
     };
-    arguments.colours.obey();
+    arguments.colours.apply();
     let done = match &arguments.command {
         Command::New { family, output } => new::run(family, output.as_deref()),
         Command::Emit { job, out, format } => emit::run(job, out, *format),
@@ -140,7 +141,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Man(folder) => packaging::man::<Arguments>(folder),
     };
     done.unwrap_or_else(|refusal: UsageError| {
-        output::tell(&format!("error: {refusal}\n"));
-        ExitStatus::Refused
+        output::print_message(&format!("error: {refusal}\n"));
+        ExitStatus::Invalid
     })
 }

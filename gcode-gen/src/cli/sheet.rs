@@ -1,11 +1,11 @@
-//! `gcode-gen sheet`: the set-up sheet of a job's programs, after they have been run and held against the job.
+//! `gcode-gen sheet`: verifies the programs of a job and writes their set-up sheet.
 use std::path::Path;
 
 use gcode_part::job::Rates;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
 
-use super::emit::{VerifiedPackage, held, pictures};
+use super::emit::{VerifiedPackage, emit_verified, pictures};
 use crate::report::SheetReport;
 use crate::sheet::Sheet;
 
@@ -15,15 +15,15 @@ pub(super) fn run(
     rates: Option<&Path>,
     format: TextFormat,
 ) -> Result<ExitStatus, UsageError> {
-    overwrite_guard::keep(out, &std::iter::once(path).chain(rates).collect::<Vec<_>>())?;
+    overwrite_guard::check_not_input(out, &std::iter::once(path).chain(rates).collect::<Vec<_>>())?;
     let rates = rates.map(read_rates).transpose()?;
-    let VerifiedPackage { job, package, checked } = match held(path)? {
+    let VerifiedPackage { job, package, checked } = match emit_verified(path)? {
         Ok(held) => held,
         Err(refused) => {
             if format == TextFormat::Json {
                 output::json(&SheetReport::refused(refused.plain()))?;
             }
-            return Ok(ExitStatus::Fails);
+            return Ok(ExitStatus::Failed);
         }
     };
     let pictures = pictures(&checked)?;
@@ -31,12 +31,12 @@ pub(super) fn run(
         .map_err(|error| UsageError::new(error.to_string()))?;
     output::write(out, sheet.html().as_bytes())?;
     let (currency, costs) = sheet.costs();
-    let report = SheetReport::new(out.display().to_string(), &sheet.taken(), currency, &costs);
+    let report = SheetReport::new(out.display().to_string(), &sheet.machine_time(), currency, &costs);
     match format {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }
 
 fn read_rates(path: &Path) -> Result<Rates, UsageError> {

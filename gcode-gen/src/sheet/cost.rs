@@ -1,35 +1,35 @@
-//! What a part takes and costs: the simulated run, and the minutes and rates that the user gives.
+//! Time and cost of a part, from the simulated run and the user's minutes and rates.
 use gcode_part::job::{AlternativeMachine, Minutes, Rates, SheetInfo};
 
 use super::record::Record;
 
-/// The time a part takes on one machine, in minutes. Nobody has measured it.
+/// Predicted time of a part on one machine, in minutes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineTime {
-    /// Of the program.
+    /// Running time of the program.
     pub run: f64,
     pub stops: usize,
     pub tool_changes: usize,
-    /// What the user gave; what is missing isn't counted.
+    /// Minutes given by the user; missing ones are not counted.
     pub minutes: Minutes,
 }
 
 impl MachineTime {
     pub fn all_stops(&self) -> Option<f64> {
-        each(self.stops, self.minutes.stop)
+        total_minutes(self.stops, self.minutes.stop)
     }
 
     pub fn all_tool_changes(&self) -> Option<f64> {
-        each(self.tool_changes, self.minutes.tool_change)
+        total_minutes(self.tool_changes, self.minutes.tool_change)
     }
 
-    /// The machine is taken for so many minutes.
-    pub fn all(&self) -> f64 {
+    /// Returns the machine time in minutes.
+    pub fn total(&self) -> f64 {
         let rest = [self.minutes.setup, self.all_stops(), self.all_tool_changes()];
         self.run + rest.into_iter().flatten().sum::<f64>()
     }
 
-    /// What isn't in the sum, because nobody said how long it takes; in the words of the job's keys.
+    /// Returns the job's keys of times that are missing in the sum.
     pub fn not_counted(&self) -> Vec<&'static str> {
         let all = [
             ("setup_minutes", self.minutes.setup.is_none()),
@@ -40,51 +40,52 @@ impl MachineTime {
     }
 }
 
-fn each(count: usize, minutes: Option<f64>) -> Option<f64> {
+fn total_minutes(count: usize, minutes: Option<f64>) -> Option<f64> {
     if count == 0 { Some(0.0) } else { minutes.map(|minutes| minutes * count as f64) }
 }
 
-/// What the part costs on one machine.
+/// Cost of the part on one machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    /// The machine's name; `None` for the job's own.
+    /// Name of the machine; `None` for the job's own.
     pub machine: Option<String>,
-    pub taken: MachineTime,
-    /// A machine hour.
+    pub time: MachineTime,
+    /// Rate of a machine hour.
     pub rate: f64,
-    /// Whether the run's minutes are the user's, not the simulation's.
-    pub run_given: bool,
+    /// Whether the running time is the user's instead of the simulation's.
+    pub is_run_specified: bool,
 }
 
 impl Cost {
-    /// In the currency of the rates.
+    /// Returns the cost in the currency of the rates.
     pub fn cost(&self) -> f64 {
-        self.taken.all() / 60.0 * self.rate
+        self.time.total() / 60.0 * self.rate
     }
 
-    /// How much more than on `other`, in percent of that, negative where it costs less; `None` where a time is given for one
-    /// of them only, which makes any difference.
+    /// Returns the cost difference to `other` in percent of the other's cost, negative if cheaper; `None` if
+    /// a time is given for only one of them.
     pub fn change(&self, other: &Self) -> Option<f64> {
-        let alike = self.taken.not_counted() == other.taken.not_counted();
+        let alike = self.time.not_counted() == other.time.not_counted();
         alike.then(|| (self.cost() / other.cost() - 1.0) * 100.0)
     }
 }
 
-/// On the job's own machine.
-pub fn taken(words: &SheetInfo, record: &Record) -> MachineTime {
+/// Returns the time on the job's own machine.
+pub fn machine_time(words: &SheetInfo, record: &Record) -> MachineTime {
     MachineTime {
-        run: record.times.all() / 60.0,
+        run: record.times.total() / 60.0,
         stops: record.stops.len(),
         tool_changes: record.tools.len(),
         minutes: words.minutes,
     }
 }
 
-/// The job's own machine first, then those beside it. What isn't said of another machine is taken to be the same there.
+/// Returns the costs of the job's own machine and of the others. Times not given for another machine are
+/// taken to be the same.
 pub fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
     let beside = |other: &AlternativeMachine| Cost {
         machine: Some(other.machine.clone()),
-        taken: MachineTime {
+        time: MachineTime {
             run: other.run.unwrap_or(own.run),
             minutes: Minutes {
                 setup: other.minutes.setup.or(own.minutes.setup),
@@ -94,17 +95,17 @@ pub fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
             ..own.clone()
         },
         rate: other.rate,
-        run_given: other.run.is_some(),
+        is_run_specified: other.run.is_some(),
     };
-    let first = Cost { machine: None, taken: own.clone(), rate: rates.rate, run_given: false };
-    std::iter::once(first).chain(rates.beside.iter().map(beside)).collect()
+    let first = Cost { machine: None, time: own.clone(), rate: rates.rate, is_run_specified: false };
+    std::iter::once(first).chain(rates.alternatives.iter().map(beside)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// 30 min of run, 6 stops of 10, 2 tool changes of 5, 20 of set-up: two hours.
+    /// Run 30 min, 6 stops of 10, 2 tool changes of 5, set-up 20: two hours.
     fn two_hours() -> MachineTime {
         let minutes = Minutes { setup: Some(20.0), stop: Some(10.0), tool_change: Some(5.0) };
         MachineTime { run: 30.0, stops: 6, tool_changes: 2, minutes }
@@ -112,10 +113,10 @@ mod tests {
 
     #[test]
     fn minutes_add_up_and_what_is_not_said_is_not_counted() {
-        assert_eq!(two_hours().all(), 120.0);
+        assert_eq!(two_hours().total(), 120.0);
         assert!(two_hours().not_counted().is_empty());
         let silent = MachineTime { minutes: Minutes::default(), ..two_hours() };
-        assert_eq!(silent.all(), 30.0);
+        assert_eq!(silent.total(), 30.0);
         assert_eq!(silent.not_counted(), ["setup_minutes", "stop_minutes", "tool_change_minutes"]);
         let unstopped = MachineTime { stops: 0, tool_changes: 0, ..silent };
         assert_eq!(unstopped.not_counted(), ["setup_minutes"]);
@@ -129,18 +130,18 @@ mod tests {
             run: None,
             minutes: Minutes::default(),
         };
-        let rates = Rates { currency: "CNY".into(), rate: 100.0, beside: vec![other.clone()] };
+        let rates = Rates { currency: "CNY".into(), rate: 100.0, alternatives: vec![other.clone()] };
         let costs = costs(&rates, &two_hours());
         assert_eq!((costs[0].cost(), costs[1].cost()), (200.0, 800.0));
         assert_eq!(costs[0].change(&costs[1]), Some(-75.0));
-        // Without stops there, 60 min: 400, and half of it is saved.
+        // Without stops there, 60 min: 400, a saving of one half.
         let minutes = Minutes { stop: Some(0.0), ..Minutes::default() };
-        let rates = Rates { beside: vec![AlternativeMachine { minutes, ..other }], ..rates };
+        let rates = Rates { alternatives: vec![AlternativeMachine { minutes, ..other }], ..rates };
         let costs = super::costs(&rates, &two_hours());
         assert_eq!((costs[1].cost(), costs[0].change(&costs[1])), (400.0, Some(-50.0)));
-        // A set-up that only the other one has would look like a saving.
+        // A set-up time of only the other machine would look like a saving.
         let silent = MachineTime { minutes: Minutes { setup: None, ..two_hours().minutes }, ..two_hours() };
-        let other = Cost { taken: silent, ..costs[1].clone() };
+        let other = Cost { time: silent, ..costs[1].clone() };
         assert_eq!(costs[0].change(&other), None);
     }
 }

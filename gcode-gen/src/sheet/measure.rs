@@ -1,23 +1,23 @@
-//! What an inspector is asked to measure, one line a characteristic, as form 3 of AS9102 has them.
+//! Characteristics for the inspector, one line each, after form 3 of AS9102.
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_inspect::verify::{Distance, HoleVerdict, Neighbours, Verdict};
 use gcode_lang::units::{Deg, Mm};
 use gcode_part::gauge;
 use gcode_part::job::{Alignment, Job};
-use gcode_sim::report::figures::{near, short, signed, signed_to};
+use gcode_sim::report::figures::{rounded, short, signed, signed_to};
 
 use crate::check::PackageVerdict;
 
-/// So many holes have lines each; of more only the pattern has.
+/// Largest number of holes with lines of their own; larger patterns have common lines.
 pub const LISTED: usize = 100;
 
-/// One thing to measure. The result isn't here: a simulation is no measurement.
+/// One characteristic. It has no result: a simulation is not a measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Characteristic {
     pub reference: String,
     pub name: &'static str,
     pub requirement: String,
-    /// What the simulation says.
+    /// Prediction of the simulation.
     pub predicted: String,
 }
 
@@ -52,39 +52,39 @@ fn of_hole(hole: &HoleVerdict, verdict: &Verdict) -> Vec<Characteristic> {
             &reference,
             "position",
             format!("Φ{} (ISO 1101)", verdict.tolerance),
-            format!("Φ{}", near(hole.position_deviation, 4)),
+            format!("Φ{}", rounded(hole.position_deviation, 4)),
         ),
         characteristic(
             &reference,
             "depth",
             depth(hole.nominal.depth, verdict),
-            format!("{} ({})", near(hole.actual.depth, 4), signed(hole.depth_error)),
+            format!("{} ({})", rounded(hole.actual.depth, 4), signed(hole.depth_error)),
         ),
     ];
     all.extend(hole.nominal.diameter.map(|nominal| {
         let tool =
-            hole.actual.diameter.map_or("unknown".to_owned(), |d| format!("Φ{} (the tool's)", near(d, 3)));
+            hole.actual.diameter.map_or("unknown".to_owned(), |d| format!("Φ{} (the tool's)", rounded(d, 3)));
         characteristic(&reference, "diameter", diameter(nominal), tool)
     }));
     all
 }
 
 fn depth(nominal: f64, verdict: &Verdict) -> String {
-    format!("{} ±{}", near(nominal, 3), verdict.depth_tolerance)
+    format!("{} ±{}", rounded(nominal, 3), verdict.depth_tolerance)
 }
 
 fn diameter(nominal: f64) -> String {
-    format!("Φ{}, limits: see the drawing", near(nominal, 3))
+    format!("Φ{}, limits: see the drawing", rounded(nominal, 3))
 }
 
-/// Of a pattern: the extremes over all holes.
+/// Returns the characteristics of a pattern: the extremes over all holes.
 fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
     let reference = format!("all {} holes", verdict.holes.len());
     let mut all = vec![characteristic(
         &reference,
         "position",
         format!("Φ{} (ISO 1101)", verdict.tolerance),
-        format!("at most Φ{}", near(verdict.worst.unwrap_or(0.0), 4)),
+        format!("at most Φ{}", rounded(verdict.worst.unwrap_or(0.0), 4)),
     )];
     let errors = || verdict.holes.iter().map(|hole| hole.depth_error);
     let (least, most) = (errors().fold(f64::INFINITY, f64::min), errors().fold(f64::NEG_INFINITY, f64::max));
@@ -95,7 +95,7 @@ fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
             let tool = first
                 .actual
                 .diameter
-                .map_or("unknown".to_owned(), |d| format!("Φ{} (the tool's)", near(d, 3)));
+                .map_or("unknown".to_owned(), |d| format!("Φ{} (the tool's)", rounded(d, 3)));
             characteristic(&reference, "diameter", diameter(nominal), tool)
         }));
     }
@@ -108,11 +108,11 @@ fn of_neighbours(neighbours: &Neighbours) -> Vec<Characteristic> {
         neighbours;
     let place = |distance: &Option<Distance>| match distance {
         Some(Distance { distance, between: [one, other] }) => {
-            format!("{} between {one} and {other}", near(*distance, 4))
+            format!("{} between {one} and {other}", rounded(*distance, 4))
         }
         None => "none".to_owned(),
     };
-    let pitch = || format!("{} ({metric})", near(*wanted, 4));
+    let pitch = || format!("{} ({metric})", rounded(*wanted, 4));
     vec![
         characteristic("neighbours", "minimum distance", pitch(), place(min)),
         characteristic("neighbours", "maximum distance", pitch(), place(max)),
@@ -126,7 +126,7 @@ fn of_neighbours(neighbours: &Neighbours) -> Vec<Characteristic> {
 }
 
 fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
-    let number = |value: Option<f64>, places: usize| value.map_or("-".to_owned(), |v| near(v, places));
+    let number = |value: Option<f64>, places: usize| value.map_or("-".to_owned(), |v| rounded(v, places));
     let mut all = vec![
         characteristic("flutes", "number", verdict.nominal_flutes.to_string(), verdict.flutes.to_string()),
         characteristic(
@@ -148,21 +148,21 @@ fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
             format!("{}° off", number(verdict.index_error, 4)),
         ),
     ];
-    // Where a helix angle can be measured: at these polar angles, on the law that was asked for.
+    // Helix angles can be measured at these polar angles, on the specified law.
     all.extend(verdict.laws.iter().map(|law| {
         let wanted = if verdict.law == "published" { law.published } else { law.constant_helix };
-        let requirement = format!("{}° ±{}°", near(wanted, 2), verdict.helix_tolerance);
+        let requirement = format!("{}° ±{}°", rounded(wanted, 2), verdict.helix_tolerance);
         let place = format!("{}° from the tip", law.polar);
-        let found = law.measured.map_or("not measured".to_owned(), |angle| format!("{}°", near(angle, 2)));
+        let found = law.measured.map_or("not measured".to_owned(), |angle| format!("{}°", rounded(angle, 2)));
         characteristic(&place, "helix angle", requirement, found)
     }));
     all
 }
 
-/// What shows how a part stands: the sine table, the chord, the run-out at both heights.
+/// Returns the characteristics of a part's position: sine table, chord, run-out at both heights.
 fn of_alignment(job: &Alignment) -> Vec<Characteristic> {
     let table = &job.sine_table;
-    let setting = gauge::setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);
+    let setting = gauge::sine_setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);
     let height = |x: f64| {
         let part = x / job.surface.a;
         job.surface.b * (1.0 - part * part).sqrt()
@@ -175,12 +175,12 @@ fn of_alignment(job: &Alignment) -> Vec<Characteristic> {
             "sine table",
             "angle",
             format!("{}°", short(table.phi)),
-            format!("{}″ error of the blocks", signed_to(setting.left, 2)),
+            format!("{}″ error of the blocks", signed_to(setting.remainder, 2)),
         ),
         characteristic(
             "chord E F",
             "length",
-            near(chord, 4),
+            rounded(chord, 4),
             "the model's; #572 is the difference of the best pair".to_owned(),
         ),
     ];

@@ -1,4 +1,4 @@
-//! A run as the operator lives through it: the tools, the stops in their order, and what the time goes into.
+//! Record of a run for the operator: tools, stops in order, and times.
 use gcode_control::Outcome;
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::Machine;
@@ -7,107 +7,110 @@ use gcode_part::Surface;
 use gcode_part::job::Job;
 use gcode_session::{Request, Run, SessionError, run};
 
-use crate::check::{CheckError, Programs, told};
+use crate::check::{CheckError, Programs, broken_package};
 use crate::families::alignment::{RUNOUT, SINE_TABLE};
 use crate::package::{Package, file_name, stem};
 
-/// The common variables that a control keeps from one program to the next, and while it is switched off.
-const KEPT: std::ops::RangeInclusive<u32> = 500..=999;
+/// Common variables that a control keeps between programs and while it is switched off.
+const KEPT_VARIABLES: std::ops::RangeInclusive<u32> = 500..=999;
 
-/// What happens at the machine, in the order in which it does.
+/// Record of the run of all main programs.
 #[derive(Debug, Default)]
 pub struct Record {
-    /// What each main program finds, the first time it is run, in the common variables that are kept.
-    pub begins: Vec<ProgramStart>,
+    /// Each main program with the kept common variables at its first start.
+    pub program_starts: Vec<ProgramStart>,
     pub stops: Vec<OperatorStop>,
-    /// The numbers that M06 puts into the spindle.
+    /// Tool numbers of all M06, in order.
     pub tools: Vec<u32>,
-    pub times: Times,
+    pub times: MotionTimes,
     /// M codes that are left to the machine builder.
-    pub passed_on: Vec<u32>,
-    /// Main programs that end in an alarm on a part that stands right.
-    pub waiting: Vec<String>,
-    /// Rapid rates that the times count with: of sliding axes, mm/min, and of turning ones, degrees/min.
+    pub auxiliary_codes: Vec<u32>,
+    /// Main programs that end in an alarm on a part in its nominal position.
+    pub alarmed_programs: Vec<String>,
+    /// Rapid rates of the times: of linear axes, mm/min, and of rotary axes, degrees/min.
     pub rapids: [f64; 2],
 }
 
-/// A main program, and the variables that those before it have left it.
+/// A main program, and the variables that earlier ones left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProgramStart {
     pub main: u32,
     pub variables: Vec<(u32, f64)>,
 }
 
-/// The program waits for the operator.
+/// An operator stop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatorStop {
     pub kind: StopKind,
     pub text: String,
-    /// The variables that the text names, with their values.
-    pub named: Vec<(u32, f64)>,
-    /// The tool in the spindle.
+    /// Variables that the text names, with their values.
+    pub variables: Vec<(u32, f64)>,
+    /// Tool in the spindle.
     pub tool: Option<u32>,
-    /// The machine has run so long before it, in seconds.
-    pub after: f64,
-    /// The block that stops, and those it was called from: program and line, innermost first.
-    pub at: Vec<(String, u32)>,
+    /// Running time before the stop, seconds.
+    pub elapsed: f64,
+    /// The block that stops and its callers: program and line, innermost first.
+    pub locations: Vec<(String, u32)>,
 }
 
-/// In seconds; paths over feeds and rapid rates, without acceleration, stops and tool changes.
+/// Times in seconds: paths over feeds and rapid rates, without acceleration, stops and tool changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Times {
+pub struct MotionTimes {
     pub rapid: f64,
     pub feed: f64,
     pub dwell: f64,
 }
 
-impl Times {
-    pub fn all(&self) -> f64 {
+impl MotionTimes {
+    pub fn total(&self) -> f64 {
         self.rapid + self.feed + self.dwell
     }
 }
 
-/// Runs the package's main programs on its own machine file, one after the other in the order of the work, each with the common variables that the one
-/// before it has left: O8230 reads what O8210 has found.
+/// Runs the package's main programs on its own machine file in the order of the work. Each starts with the
+/// common variables that the previous one left: O8230 reads results of O8210.
 ///
 /// # Errors
-/// A package that contradicts itself, which [`crate::check::check`] has refused before.
+/// [`CheckError::Broken`] if the package contradicts itself, which [`crate::check::check`] refuses before.
 pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
-    let mut listener = Listener::default();
+    let mut listener = RunRecorder::default();
     let mut record = Record::default();
     let mut kept = Vec::new();
-    for main in order(job, package) {
+    for main in run_order(job, package) {
         let begin = ProgramStart { main, variables: std::mem::take(&mut kept) };
         let request = request(package, &begin)?;
         record.rapids = [request.settings.rapid.0, request.settings.rapid_rotary];
-        let run = attended(job, package, &request, &mut listener)
-            .map_err(|error| told(&file_name(main), &error))?;
+        let run = run_with_part(job, package, &request, &mut listener)
+            .map_err(|error| broken_package(&file_name(main), &error))?;
         if !matches!(run.outcome, Outcome::End) {
-            record.waiting.push(stem(main));
+            record.alarmed_programs.push(stem(main));
         }
-        kept.extend(run.control.variables().filter(|(number, _)| KEPT.contains(number)));
+        kept.extend(run.control.variables().filter(|(number, _)| KEPT_VARIABLES.contains(number)));
         let stops = listener.stops.drain(..);
-        record.stops.extend(stops.map(|(stop, place)| OperatorStop { at: places(&run, &place), ..stop }));
-        record.passed_on.extend(run.control.auxiliary_codes().keys());
-        if record.begins.iter().all(|earlier| earlier.main != main) {
-            record.begins.push(begin);
+        record.stops.extend(
+            stops.map(|(stop, place)| OperatorStop { locations: block_locations(&run, &place), ..stop }),
+        );
+        record.auxiliary_codes.extend(run.control.auxiliary_codes().keys());
+        if record.program_starts.iter().all(|earlier| earlier.main != main) {
+            record.program_starts.push(begin);
         }
     }
-    record.waiting.dedup();
-    record.passed_on.sort_unstable();
-    record.passed_on.dedup();
+    record.alarmed_programs.dedup();
+    record.auxiliary_codes.sort_unstable();
+    record.auxiliary_codes.dedup();
     Ok(Record { tools: listener.tools, times: listener.times, ..record })
 }
 
-/// The main programs as they are run. A part that is turned on the sine table moves, so that the run-out is measured twice at least.
-fn order(job: &Job, package: &Package) -> Vec<u32> {
+/// Returns the main programs in the order of execution. Setting the sine table moves the part, so the run-out
+/// is measured at least twice.
+fn run_order(job: &Job, package: &Package) -> Vec<u32> {
     let again = |main: u32| matches!(job, Job::Alignment(_)) && main == SINE_TABLE;
     let twice = |main: &u32| std::iter::once(*main).chain(again(*main).then_some(RUNOUT));
     package.mains.iter().flat_map(twice).collect()
 }
 
-/// A run with the part on the machine, where the programs are to touch it.
-pub(super) fn attended<S: EventSink>(
+/// Runs a program with the part on the machine, if the program touches it.
+pub(super) fn run_with_part<S: EventSink>(
     job: &Job,
     package: &Package,
     request: &Request,
@@ -123,16 +126,17 @@ pub(super) fn attended<S: EventSink>(
     }
 }
 
-/// To run a main program on the package's own machine file.
+/// Builds the request to run a main program on the package's own machine file.
 pub(super) fn request(package: &Package, begin: &ProgramStart) -> Result<Request, CheckError> {
     let main = begin.main;
-    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
-    let program = package.program(main).ok_or_else(|| told(&file_name(main), &"it was not emitted"))?;
+    let machine = Machine::parse(&package.machine).map_err(|e| broken_package("machine.toml", &e))?;
+    let program =
+        package.program(main).ok_or_else(|| broken_package(&file_name(main), &"it was not emitted"))?;
     let request = Request::new(file_name(main), program.text.as_bytes(), machine);
     Ok(Request { variables: begin.variables.clone(), ..request })
 }
 
-fn places(run: &Run, place: &Backtrace) -> Vec<(String, u32)> {
+fn block_locations(run: &Run, place: &Backtrace) -> Vec<(String, u32)> {
     let calls = std::iter::successors(place.calls.as_deref(), |call| call.outer_calls.as_deref());
     std::iter::once(place.block)
         .chain(calls.map(|call| call.calling_block))
@@ -141,13 +145,13 @@ fn places(run: &Run, place: &Backtrace) -> Vec<(String, u32)> {
 }
 
 #[derive(Default)]
-struct Listener {
+struct RunRecorder {
     stops: Vec<(OperatorStop, Backtrace)>,
     tools: Vec<u32>,
-    times: Times,
+    times: MotionTimes,
 }
 
-impl EventSink for Listener {
+impl EventSink for RunRecorder {
     fn event(&mut self, event: &Event<'_>) {
         let seconds = event.seconds.0;
         match &event.kind {
@@ -161,10 +165,10 @@ impl EventSink for Listener {
                 let stop = OperatorStop {
                     kind: *kind,
                     text: text.clone(),
-                    named: named.clone(),
+                    variables: named.clone(),
                     tool: self.tools.last().copied(),
-                    after: self.times.all(),
-                    at: Vec::new(),
+                    elapsed: self.times.total(),
+                    locations: Vec::new(),
                 };
                 self.stops.push((stop, event.backtrace()));
             }

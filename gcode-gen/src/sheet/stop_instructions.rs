@@ -1,14 +1,14 @@
-//! What the operator does at a stop, step by step, in the order in which it has to be done.
+//! The operator's actions at a stop, step by step.
 use gcode_lang::motion::StopKind;
 use gcode_lang::units::Deg;
 use gcode_part::job::{Alignment, HeadKind, Job, PinHoles};
-use gcode_sim::report::figures::{near, short};
+use gcode_sim::report::figures::{rounded, short};
 
 use super::record::OperatorStop;
 
-pub fn duty(job: &Job, stop: &OperatorStop) -> Vec<String> {
+pub fn instructions(job: &Job, stop: &OperatorStop) -> Vec<String> {
     if let (Job::PinHoles(job), StopKind::Message, [(variable, angle)]) =
-        (job, stop.kind, stop.named.as_slice())
+        (job, stop.kind, stop.variables.as_slice())
         && job.machine.head.kind == HeadKind::Manual
         && *variable == job.macros.common
     {
@@ -20,7 +20,7 @@ pub fn duty(job: &Job, stop: &OperatorStop) -> Vec<String> {
         return steps;
     }
     let mut steps = Vec::new();
-    for (variable, value) in &stop.named {
+    for (variable, value) in &stop.variables {
         steps.push(format!("#{variable} is {} now.", short(*value)));
     }
     steps.push(match stop.kind {
@@ -32,7 +32,8 @@ pub fn duty(job: &Job, stop: &OperatorStop) -> Vec<String> {
     steps
 }
 
-/// The head's angle is the control's rounded one, which the hole's feed then follows.
+/// Returns the steps to set the head. The angle is the control's rounded one, which the hole's feed then
+/// follows.
 fn set_head(job: &PinHoles, angle: f64) -> Vec<String> {
     let mut steps = vec![
         "Wait until the spindle has stopped; the tool is clear of the part.".to_owned(),
@@ -53,10 +54,10 @@ fn set_head(job: &PinHoles, angle: f64) -> Vec<String> {
     steps
 }
 
-/// The stops of the measurements, told by the first variable that they name. Its value isn't shown: the simulated part stands
-/// right, and what it leaves there is rounding.
+/// Returns the steps at a stop of the measurements, recognised by the first variable that it names. Its value
+/// is not shown: the simulated part is in its nominal position, and the value is a rounding error.
 fn set_up(job: &Alignment, stop: &OperatorStop) -> Option<Vec<String>> {
-    let (first, _) = stop.named.first()?;
+    let (first, _) = stop.variables.first()?;
     let steps = match first {
         580 => vec![
             "Read #580 to #583 at the control: the part is off by #580 in X and #581 in Z (mm), and tilted by #582 about X and \
@@ -110,17 +111,18 @@ fn set_up(job: &Alignment, stop: &OperatorStop) -> Option<Vec<String>> {
     Some(steps)
 }
 
-/// The sense of #582 is a right-hand turn about X, which takes Y+ towards Z+. It sinks what lies towards Z+ by its sine.
+/// Returns the step with the shims. #582 is a right-hand rotation about X, which takes Y+ towards Z+ and
+/// lowers the side towards Z+ by its sine.
 fn shim() -> String {
     format!(
         "#582 above 0: the top leans towards Z+, so shim the side towards Z+. Below 0: the top leans \
          towards Z−, shim the side towards Z−. A shim is {} mm thick for each 0.01° and metre between the \
          supports in Z. A shimmed part also moves in Z: correct #581 after the next measurement.",
-        near(1000.0 * Deg(0.01).sin(), 4)
+        rounded(1000.0 * Deg(0.01).sin(), 4)
     )
 }
 
-/// X and Y are told the tool's tip, not the head's pivot.
+/// Returns true if X and Y are programmed for the tool's tip instead of the head's pivot.
 pub fn tip_is_programmed(job: &PinHoles) -> bool {
     job.machine.head.pivot == 0.0 && job.tools.iter().all(|tool| tool.length == 0.0)
 }

@@ -9,7 +9,7 @@ use super::format::TextFormat;
 use super::{ExitStatus, UsageError, input, options, output, overwrite_guard, progress};
 use crate::report::budget::BudgetReport;
 use gcode_draw::Size;
-use gcode_inspect::budget::{MOST_SAMPLES, Question, budget};
+use gcode_inspect::budget::{BudgetRequest, MAX_SAMPLES, budget};
 use gcode_inspect::machine::{Machine, error_file};
 use gcode_inspect::verify::Tolerances;
 use gcode_part::NominalPart;
@@ -59,22 +59,22 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
         UsageError::new(format!("{}, {error}", path.display()))
     };
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
-    if !(1..=MOST_SAMPLES).contains(&arguments.samples) {
-        return Err(UsageError::new(format!("--samples {}: 1 to {MOST_SAMPLES}", arguments.samples)));
+    if !(1..=MAX_SAMPLES).contains(&arguments.samples) {
+        return Err(UsageError::new(format!("--samples {}: 1 to {MAX_SAMPLES}", arguments.samples)));
     }
     if let Some(path) = &arguments.picture {
         let machine = arguments.machine.as_deref();
         let files = [arguments.job.as_path(), arguments.errors.as_path()].into_iter().chain(machine);
-        overwrite_guard::keep(path, &files.collect::<Vec<_>>())?;
+        overwrite_guard::check_not_input(path, &files.collect::<Vec<_>>())?;
     }
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&arguments.job, &e))?;
-    let reference = NominalPart::of_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
+    let reference = NominalPart::from_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
     let Some(reference) = reference else {
         return Err(named(&arguments.job, &"a budget needs holes, and this family's part has none"));
     };
     let machine = match &arguments.machine {
-        Some(path) => options::machine(path)?,
-        None => Machine::of_job(&job)
+        Some(path) => options::read_machine(path)?,
+        None => Machine::from_job(&job)
             .ok_or_else(|| named(&arguments.job, &"this job has no machine: give one with --machine"))?,
     };
     if !machine.is_exact() {
@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
     let sources = error_file(&input::text(&arguments.errors)?, &machine)
         .map_err(|error| named(&arguments.errors, &error))?;
     let one = NonZeroUsize::MIN;
-    let question = Question {
+    let question = BudgetRequest {
         machine: &machine,
         holes: &reference.holes,
         clearance: job.clearance(),
@@ -97,7 +97,7 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
     };
     let counted = AtomicUsize::new(0);
     let all = arguments.samples.saturating_mul(reference.holes.len());
-    let found = progress::watched(all, &counted, || budget(&question, &counted))
+    let found = progress::with_progress(all, &counted, || budget(&question, &counted))
         .map_err(|error| named(&arguments.job, &error))?;
     let report = BudgetReport::new(&question, &found);
     match arguments.format {
@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
         TextFormat::Text => output::print(&report.text())?,
     }
     if let Some(path) = &arguments.picture {
-        // As high as its bars are many.
+        // The height grows with the number of bars.
         let height = 120 + 25 * sources.len() as u32;
         let size = Size::new(1200, height.max(360)).map_err(|error| UsageError::new(error.to_string()))?;
         let png = report.bars().draw(size).map_err(|error| UsageError::new(error.to_string()))?;
@@ -114,5 +114,5 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }

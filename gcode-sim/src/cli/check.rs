@@ -1,4 +1,4 @@
-//! `gcode-sim check`: what can be known of a program without running it.
+//! `gcode-sim check`: finds faults of a program without running it.
 use std::path::PathBuf;
 
 use clap::Args;
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitStatus, UsageError> 
     };
     let program = conditions.of(&arguments.program);
     let (request, mut folders) = options::request(&program)?;
-    unused_machine::tell_of_control(&program, &request);
+    unused_machine::warn_unused_control(&program, &request);
     let checked = gcode_lint::check(request.name.clone(), request.bytes, &request.settings, &mut folders);
     if checked.programs == 0 {
         return Err(UsageError::new(format!("{} contains no program", request.name)));
@@ -67,8 +67,8 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitStatus, UsageError> 
         FindingFormat::Sarif => {
             let sources = checked.memory.sources();
             let findings: Vec<_> = checked.findings.iter().map(|found| Finding::of(found, sources)).collect();
-            output::json(&sarif::log(&findings, &options::started_in()))?;
+            output::json(&sarif::log(&findings, &options::working_folder()))?;
         }
     }
-    Ok(if checked.has_findings() { ExitStatus::Fails } else { ExitStatus::Holds })
+    Ok(if checked.has_findings() { ExitStatus::Failed } else { ExitStatus::Passed })
 }

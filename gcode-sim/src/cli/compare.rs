@@ -1,4 +1,4 @@
-//! `gcode-sim compare`: where two pictures differ.
+//! `gcode-sim compare`: compares two pictures.
 use std::path::PathBuf;
 
 use clap::Args;
@@ -32,7 +32,7 @@ pub(super) struct CompareArguments {
 
 pub(super) fn run(arguments: &CompareArguments) -> Result<ExitStatus, UsageError> {
     if let Some(path) = &arguments.output {
-        overwrite_guard::keep(path, &[&arguments.left, &arguments.right])?;
+        overwrite_guard::check_not_input(path, &[&arguments.left, &arguments.right])?;
     }
     let (left, right) = (input::bytes(&arguments.left)?, input::bytes(&arguments.right)?);
     let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
@@ -46,5 +46,5 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<ExitStatus, UsageError
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(if report.same { ExitStatus::Holds } else { ExitStatus::Fails })
+    Ok(if report.same { ExitStatus::Passed } else { ExitStatus::Failed })
 }

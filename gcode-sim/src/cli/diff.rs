@@ -1,4 +1,4 @@
-//! `gcode-sim diff`: what two revisions of a program do differently.
+//! `gcode-sim diff`: compares two revisions of a program by their effect.
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
         programs.into_iter().chain(arguments.run.files()).chain(arguments.reference.as_deref()).collect();
     overwrite_guard::one_pipe(&files)?;
     for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        overwrite_guard::keep(result, &files)?;
+        overwrite_guard::check_not_input(result, &files)?;
     }
     arguments.page.as_deref().map(page::is_html).transpose()?;
     let mut before = arguments.run.clone();
@@ -71,11 +71,12 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     }
     let (mut old_request, mut old_folders) = options::request(&before.of(&arguments.old))?;
     let (mut new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
-    unused_machine::tell(&arguments.run.of(&arguments.new), &new_request);
-    let reference = arguments.reference.as_deref().map(wanted_holes).transpose()?;
+    unused_machine::warn_unused_machine(&arguments.run.of(&arguments.new), &new_request);
+    let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     for request in [&mut old_request, &mut new_request] {
-        request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
+        request.conduct =
+            reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     }
     let refused = |error: gcode_session::SessionError| UsageError::new(error.to_string());
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
@@ -96,12 +97,12 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
         FindingFormat::Text => output::print(&report.text())?,
         FindingFormat::Sarif => {
             let findings = findings(&compared, &new, &new_request.name);
-            output::json(&sarif::log(&findings, &options::started_in()))?
+            output::json(&sarif::log(&findings, &options::working_folder()))?
         }
     }
     if let Some(path) = &arguments.picture {
         let names = [&new_request, &old_request].map(render::name);
-        // Two of the same name are told apart by their folders.
+        // Equal names are distinguished by their folders.
         let [is, was] = if names[0] == names[1] {
             [&new_request, &old_request].map(|request| request.name.clone())
         } else {
@@ -138,23 +139,24 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
             documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
         };
         page::write(&review, path)?;
-        page::tell(path, arguments.format == FindingFormat::Text)?;
+        page::report_written(path, arguments.format == FindingFormat::Text)?;
     }
-    let mut status = if compared.changes.is_empty() { ExitStatus::Holds } else { ExitStatus::Fails };
+    let mut status = if compared.changes.is_empty() { ExitStatus::Passed } else { ExitStatus::Failed };
     for revision in [&old, &new] {
         let sources = revision.simulation.run.control.memory().sources();
         for finding in revision.stopped() {
-            output::tell(&diagnostic::render(finding, sources));
+            output::print_message(&diagnostic::render(finding, sources));
             status = ExitStatus::Stopped;
         }
     }
     Ok(status)
 }
 
-/// For a code review: what changes, at its place in the new revision, and why that stops if it does.
+/// Returns the findings for a code review: the changes at their places in the new revision, and its alarm or
+/// limit.
 fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding> {
     let (files, sources) = (new.files(), new.simulation.run.control.memory().sources());
-    // A result without a place is taken by none.
+    // Code-review tools reject a result without a location.
     let first = FileLocation { file: file.to_owned(), line: Some(1), column: None };
     let found = |change| {
         let found = change_found(change, "", &files);
@@ -164,9 +166,9 @@ fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding>
     changes.chain(new.stopped().map(|stopped| Finding::of(stopped, sources))).collect()
 }
 
-/// The page's reference.
-fn wanted_holes(path: &Path) -> Result<Reference, UsageError> {
-    match options::wanted(path)? {
+/// Reads the page's reference.
+fn read_reference_holes(path: &Path) -> Result<Reference, UsageError> {
+    match options::read_nominal(path)? {
         NominalPart::Holes(reference) => Ok(reference),
         NominalPart::Flutes(_) => Err(UsageError::new(format!(
             "--reference {}: a page verifies holes, and this is a burr: omit the reference",

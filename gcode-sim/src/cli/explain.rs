@@ -1,4 +1,4 @@
-//! `gcode-sim explain`: the page of a code.
+//! `gcode-sim explain`: explains an alarm or finding code.
 use clap::Args;
 
 use super::format::TextFormat;
@@ -33,5 +33,5 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitStatus, UsageError
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }

@@ -28,30 +28,30 @@ pub(super) struct HolesArguments {
 pub(super) fn run(arguments: &HolesArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(page) = &arguments.page {
-        overwrite_guard::keep(page, &files)?;
+        overwrite_guard::check_not_input(page, &files)?;
         page::is_html(page)?;
     }
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     if let Some(path) = &arguments.page {
-        let watched = page::watched(&request, &mut folders, None)?;
+        let watched = page::simulate_traced(&request, &mut folders, None)?;
         page::write_alone(&request, &watched, None, &arguments.program.conditions, path)?;
-        let status = tell(arguments, &watched.0.simulation)?;
-        page::tell(path, arguments.format == ListFormat::Text)?;
+        let status = print_result(arguments, &watched.0.simulation)?;
+        page::report_written(path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }
     let simulation =
         progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))
             .map_err(|e| UsageError::new(e.to_string()))?;
-    tell(arguments, &simulation)
+    print_result(arguments, &simulation)
 }
 
-fn tell(arguments: &HolesArguments, simulation: &Simulation) -> Result<ExitStatus, UsageError> {
-    print(&simulation.list(), arguments.format)?;
+fn print_result(arguments: &HolesArguments, simulation: &Simulation) -> Result<ExitStatus, UsageError> {
+    print(&simulation.hole_list(), arguments.format)?;
     Ok(super::findings(&simulation.extracted.findings, &simulation.run))
 }
 
-/// A list of holes in the format asked for.
+/// Prints a list of holes in the given format.
 pub(super) fn print(list: &HoleList, format: ListFormat) -> Result<(), UsageError> {
     match format {
         ListFormat::Text => output::print(&report::text(list)),

@@ -1,4 +1,4 @@
-//! The only place that prints and opens files: arguments in, exit status out.
+//! The command line: arguments in, exit status out. All printing and file access is in this module.
 mod args;
 mod budget;
 mod check;
@@ -36,48 +36,49 @@ use crate::report::diagnostic;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_session::Run;
 
-/// How a request ended, the same for both programs.
+/// Outcome of a request, the same for both programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitStatus {
-    /// Done, and what was asked about holds.
-    Holds,
-    /// Done, and the answer is no.
-    Fails,
-    /// The request can't be used.
-    Refused,
-    /// The control stopped with an alarm, or a limit ended the run.
+    /// Done, all checks passed: exit code 0.
+    Passed,
+    /// Done, a check failed: exit code 1.
+    Failed,
+    /// The request is invalid: exit code 2.
+    Invalid,
+    /// The control stopped with an alarm, or a limit ended the run: exit code 3.
     Stopped,
 }
 
 impl From<ExitStatus> for ExitCode {
     fn from(status: ExitStatus) -> Self {
         Self::from(match status {
-            ExitStatus::Holds => 0,
-            ExitStatus::Fails => 1,
-            ExitStatus::Refused => 2,
+            ExitStatus::Passed => 0,
+            ExitStatus::Failed => 1,
+            ExitStatus::Invalid => 2,
             ExitStatus::Stopped => 3,
         })
     }
 }
 
-/// Why a request can't be used, in one sentence with its remedy.
+/// An invalid request: one sentence with its remedy.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct UsageError(String);
 
 impl UsageError {
+    /// Builds the error from its sentence.
     pub fn new(message: impl Into<String>) -> Self {
         Self(message.into())
     }
 }
 
-/// Does what the command line asks for.
+/// Parses the arguments and executes the command; messages go to standard error.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     let arguments: Arguments = match common::parse(arguments) {
         Ok(arguments) => arguments,
         Err(status) => return status,
     };
-    arguments.colours.obey();
+    arguments.colours.apply();
     let done = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Holes(arguments) => holes::run(&arguments),
@@ -97,29 +98,29 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Compare(arguments) => compare::run(&arguments),
     };
     done.unwrap_or_else(|refusal| {
-        output::tell(&format!("error: {refusal}\n"));
-        ExitStatus::Refused
+        output::print_message(&format!("error: {refusal}\n"));
+        ExitStatus::Invalid
     })
 }
 
-/// Tells what a run did in silence, and why it stopped before its end, if it did.
+/// Prints a run's notes and, if it did not end normally, the finding that stopped it.
 fn stopped(run: &Run) -> Option<ExitStatus> {
     let sources = run.control.memory().sources();
-    run.notes().for_each(|note| output::tell(&diagnostic::render(&note, sources)));
-    let finding = run.stopped()?;
-    output::tell(&diagnostic::render(&finding, sources));
+    run.note_findings().for_each(|note| output::print_message(&diagnostic::render(&note, sources)));
+    let finding = run.stop_finding()?;
+    output::print_message(&diagnostic::render(&finding, sources));
     Some(ExitStatus::Stopped)
 }
 
-/// Tells what was found, and what that means for the exit status.
+/// Prints the findings and returns the exit status of the most severe one.
 fn findings(all: &[Diagnostic], run: &Run) -> ExitStatus {
     let sources = run.control.memory().sources();
     for finding in all {
-        output::tell(&diagnostic::render(finding, sources));
+        output::print_message(&diagnostic::render(finding, sources));
     }
     match all.iter().map(|finding| finding.severity).max() {
         Some(Severity::Alarm) => ExitStatus::Stopped,
-        Some(Severity::Error) => ExitStatus::Fails,
-        _ => ExitStatus::Holds,
+        Some(Severity::Error) => ExitStatus::Failed,
+        _ => ExitStatus::Passed,
     }
 }

@@ -1,4 +1,4 @@
-//! What a package of either program brings along: completions for shells, and manual pages.
+//! Shell completions and manual pages of either program.
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command, CommandFactory};
@@ -21,14 +21,14 @@ pub struct ManArguments {
     folder: PathBuf,
 }
 
-/// Prints what a shell reads to complete a program's commands and flags.
+/// Prints the completion script of a shell for a program's commands and flags.
 pub fn completions<A: CommandFactory>(arguments: &ShellArguments) -> Result<ExitStatus, UsageError> {
     let mut command = A::command();
     let name = command.get_name().to_owned();
     let mut text = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, name, &mut text);
     output::print(&String::from_utf8_lossy(&text))?;
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }
 
 /// Writes `gcode-sim.1`, `gcode-sim-run.1` and so on, all or none.
@@ -38,10 +38,10 @@ pub fn man<A: CommandFactory>(arguments: &ManArguments) -> Result<ExitStatus, Us
         pages.into_iter().map(|(name, text)| (arguments.folder.join(name), text)).collect();
     let files: Vec<(&Path, &[u8])> = files.iter().map(|(path, text)| (path.as_path(), &text[..])).collect();
     output::write_all(&files)?;
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }
 
-/// The page of the program and one for each of its commands, with their names.
+/// Returns the pages of the program and of each command, with their file names.
 fn pages(command: Command) -> std::io::Result<Vec<(String, Vec<u8>)>> {
     let mut command = command.disable_help_subcommand(true);
     command.build();

@@ -1,4 +1,4 @@
-//! `gcode-sim readings`: what an edge finder shows whose ball a program feeds along the part's surface.
+//! `gcode-sim readings`: shows the readings of an edge finder fed along the part's surface.
 use std::path::PathBuf;
 
 use clap::Args;
@@ -35,15 +35,15 @@ pub(super) struct ReadingsArguments {
 pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(picture) = &arguments.picture {
-        overwrite_guard::keep(picture, &files)?;
+        overwrite_guard::check_not_input(picture, &files)?;
     }
     let (request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
         return Err(UsageError::new("readings need a part: give it with --part JOB.toml"));
     };
-    let following = gcode_session::follow(&request, &mut folders, surface, probe.radius)
+    let following = gcode_session::read_stylus(&request, &mut folders, surface, probe.radius)
         .map_err(|e| UsageError::new(e.to_string()))?;
     let report = ReadingsReport::new(&render::name(&request), &following, probe.radius, tolerance);
     match arguments.format {
@@ -59,16 +59,16 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageErro
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    let found = super::findings(&following.followed.findings, &following.run);
-    if found != ExitStatus::Holds {
+    let found = super::findings(&following.readings.findings, &following.run);
+    if found != ExitStatus::Passed {
         return Ok(found);
     }
     if report.is_empty() {
-        output::tell("error: no feed of the program follows the part's surface within 5 mm\n");
-        return Ok(ExitStatus::Fails);
+        output::print_message("error: no feed of the program follows the part's surface within 5 mm\n");
+        return Ok(ExitStatus::Failed);
     }
     Ok(match report.verdict() {
-        Some(Answer::Fail) => ExitStatus::Fails,
-        Some(Answer::Pass) | None => ExitStatus::Holds,
+        Some(Answer::Fail) => ExitStatus::Failed,
+        Some(Answer::Pass) | None => ExitStatus::Passed,
     })
 }

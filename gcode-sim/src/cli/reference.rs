@@ -1,4 +1,4 @@
-//! `gcode-sim reference`: what the part should get, from the job's geometry alone.
+//! `gcode-sim reference`: computes the nominal holes or flutes from the job's geometry alone.
 use std::path::PathBuf;
 
 use clap::Args;
@@ -25,13 +25,13 @@ pub(super) fn run(arguments: &ReferenceArguments) -> Result<ExitStatus, UsageErr
     let named =
         |error: &dyn std::fmt::Display| UsageError::new(format!("{}, {error}", arguments.job.display()));
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&e))?;
-    match NominalPart::of_job(&job).map_err(|e| named(&e))? {
+    match NominalPart::from_job(&job).map_err(|e| named(&e))? {
         NominalPart::Holes(reference) => holes::print(&reference.list(), arguments.format)?,
         NominalPart::Flutes(wanted) => {
             let burr = NominalFlutes::of(&wanted);
             match arguments.format {
                 ListFormat::Json => output::json(&burr)?,
-                ListFormat::Text => output::print(&flute_table::wanted(&burr))?,
+                ListFormat::Text => output::print(&flute_table::nominal_table(&burr))?,
                 ListFormat::Csv => {
                     return Err(UsageError::new(
                         "--format csv lists holes, and a burr has none: use text or json",
@@ -40,5 +40,5 @@ pub(super) fn run(arguments: &ReferenceArguments) -> Result<ExitStatus, UsageErr
             }
         }
     }
-    Ok(ExitStatus::Holds)
+    Ok(ExitStatus::Passed)
 }

@@ -1,4 +1,4 @@
-//! `gcode-sim render`: a picture of the holes on the part, or of a burr's flutes.
+//! `gcode-sim render`: draws the holes on the part, or a burr's flutes.
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -60,7 +60,7 @@ enum View {
 }
 
 impl View {
-    /// As `--view` has it.
+    /// Returns the value of `--view`.
     fn name(self) -> &'static str {
         match self {
             Self::Top => "top",
@@ -73,8 +73,11 @@ impl View {
 }
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<ExitStatus, UsageError> {
-    overwrite_guard::keep(&arguments.output, &arguments.program.files(arguments.reference.as_deref())?)?;
-    match arguments.reference.as_deref().map(options::wanted).transpose()? {
+    overwrite_guard::check_not_input(
+        &arguments.output,
+        &arguments.program.files(arguments.reference.as_deref())?,
+    )?;
+    match arguments.reference.as_deref().map(options::read_nominal).transpose()? {
         Some(NominalPart::Holes(reference)) => holes(arguments, Some(reference)),
         Some(NominalPart::Flutes(wanted)) => flutes(arguments, wanted),
         None => holes(arguments, None),
@@ -83,10 +86,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitStatus, UsageError>
 
 fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let surface = reference.as_ref().and_then(|r| r.surface);
-    request.conduct = reference.as_ref().map(|r| r.conduct.clone()).unwrap_or_default();
+    request.conduct = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
     let simulation =
         progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, surface))
             .map_err(|e| UsageError::new(e.to_string()))?;
@@ -112,12 +115,12 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Ex
     };
     write(&scene, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
-    Ok(super::stopped(&simulation.run).unwrap_or(ExitStatus::Holds))
+    Ok(super::stopped(&simulation.run).unwrap_or(ExitStatus::Passed))
 }
 
 fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
     let grinding =
@@ -136,10 +139,10 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus,
     };
     write(&scene, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
-    Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Holds))
+    Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Passed))
 }
 
-/// Says what was drawn, and where it is.
+/// Prints the view and the path of the picture.
 fn tell(arguments: &RenderArguments, view: View) -> Result<(), UsageError> {
     let report = RenderReport { picture: arguments.output.display().to_string(), view: view.name() };
     match arguments.format {
@@ -148,7 +151,7 @@ fn tell(arguments: &RenderArguments, view: View) -> Result<(), UsageError> {
     }
 }
 
-/// What the views of a verdict are made of.
+/// Builds the contents of the views from a verdict.
 pub(super) fn view(
     request: &Request,
     simulation: &Simulation,
@@ -158,7 +161,7 @@ pub(super) fn view(
     top::of_verdict(&name(request), simulation, reference, verdict, &request.machine)
 }
 
-/// Draws a scene to a file of exactly the size asked for.
+/// Draws a scene to a PNG file of exactly this size.
 pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
     if path.extension().is_some_and(is_other) {
@@ -175,7 +178,7 @@ pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageE
     output::write(path, &png)
 }
 
-/// The file's name without its folder.
+/// Returns the file name of the program without its folder.
 pub(super) fn name(request: &Request) -> String {
     let file = Path::new(&request.name).file_name();
     file.map_or_else(|| request.name.clone(), |name| name.to_string_lossy().into_owned())

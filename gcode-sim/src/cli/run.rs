@@ -6,9 +6,9 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
-use crate::report::run::{MOST_MOVES, Moves, RunReport};
+use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport};
 use gcode_inspect::holes::HoleExtractor;
-use gcode_inspect::stylus::Rapids;
+use gcode_inspect::stylus::RapidChecker;
 use gcode_session::SessionError;
 
 #[derive(Debug, Args)]
@@ -36,21 +36,21 @@ pub(super) struct RunArguments {
 pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(path) = &arguments.output {
-        overwrite_guard::keep(path, &files)?;
+        overwrite_guard::check_not_input(path, &files)?;
     }
     let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
+    unused_machine::warn_unused_machine(&arguments.program, &request);
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
-    let mut moves = arguments.moves.then(Moves::default);
+    let mut moves = arguments.moves.then(MoveRecorder::default);
     let done = progress::of_run(&mut request, |request| {
-        // Follows the tool only where there is a part that it could touch.
+        // The tool is followed only if a part for probing is given.
         let follow = |part| HoleExtractor::new(&request.machine).with_surface(Some(part));
         let mut probe = request.part.map(follow);
         let ball = request.part.zip(request.machine.probe.as_ref());
-        let mut rapids = ball.map(|(part, probe)| Rapids::new(&request.machine, part, probe.radius));
+        let mut rapids = ball.map(|(part, probe)| RapidChecker::new(&request.machine, part, probe.radius));
         let run =
             gcode_session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
-        Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, Rapids::finish)))
+        Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, RapidChecker::finish)))
     });
     let (run, rapids) = done.map_err(|error| UsageError::new(error.to_string()))?;
     let mut system = Vec::new();
@@ -60,9 +60,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
             .push((number, value.map_err(|alarm| UsageError::new(format!("--show '#{number}': {alarm}")))?));
     }
     if let Some(path) = &arguments.output {
-        // Called programs are known only now.
+        // The called programs are known only after the run.
         let called = run.control.memory().sources().iter().map(|(_, source)| Path::new(&source.name));
-        overwrite_guard::keep(path, &called.collect::<Vec<_>>())?;
+        overwrite_guard::check_not_input(path, &called.collect::<Vec<_>>())?;
         let lines = run.control.output().iter();
         let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
         output::write(path, &bytes)?;
@@ -74,9 +74,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
     }
     let in_part = super::findings(&rapids, &run);
     let stopped = super::stopped(&run);
-    if moves.is_some_and(|moves| moves.too_many) {
-        output::tell(&format!(
-            "error: --moves: more than {MOST_MOVES} moves; later ones are not in the list\n"
+    if moves.is_some_and(|moves| moves.is_truncated) {
+        output::print_message(&format!(
+            "error: --moves: more than {MAX_MOVES} moves; later ones are not in the list\n"
         ));
         return Ok(ExitStatus::Stopped);
     }

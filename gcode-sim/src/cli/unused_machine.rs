@@ -1,5 +1,4 @@
-//! Tells that a machine file is there and isn't used: forgetting `--machine` is easily done, and the holes of another
-//! machine are other holes.
+//! Warns of an unused machine file: `--machine` is easily forgotten, and another machine makes other holes.
 use std::path::Path;
 
 use super::conditions::ProgramArguments;
@@ -7,11 +6,12 @@ use super::output;
 use gcode_lang::control::{Dialect, Increment};
 use gcode_session::Request;
 
-/// The name that the generator gives a machine file.
+/// Name that the generator gives a machine file.
 const NAME: &str = "machine.toml";
 
-/// Says so where no `--machine` is given and one is at hand, or where the program's own remarks name one.
-pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
+/// Prints a note if `--machine` is missing and a machine file is next to the program or named in its
+/// comments.
+pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_some() {
         return;
     }
@@ -25,11 +25,11 @@ pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
     } else {
         return;
     };
-    output::tell(&format!("note: {what}\n"));
+    output::print_message(&format!("note: {what}\n"));
 }
 
-/// Of a machine `check` needs nothing but its control: says so where the program's head names another one than is assumed.
-pub(super) fn tell_of_control(arguments: &ProgramArguments, request: &Request) {
+/// Prints a warning if the program's head names another control than `check` assumes.
+pub(super) fn warn_unused_control(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_some() {
         return;
     }
@@ -51,19 +51,21 @@ pub(super) fn tell_of_control(arguments: &ProgramArguments, request: &Request) {
     }
     if !differ.is_empty() {
         let differ = differ.join("; ");
-        output::tell(&format!("warning: the program's head gives {differ}: give --machine {NAME}\n"));
+        output::print_message(&format!(
+            "warning: the program's head gives {differ}: give --machine {NAME}\n"
+        ));
     }
 }
 
-/// The line that names a machine file, in capitals: `(CONTROL FANUC-31I, INCREMENT IS-B, MACHINE FILE MACHINE.TOML)`
-/// stands at the top of an emitted program.
+/// Returns the line that names a machine file, in capitals; an emitted program begins with `(CONTROL
+/// FANUC-31I, INCREMENT IS-B, MACHINE FILE MACHINE.TOML)`.
 fn head(program: &[u8]) -> Option<String> {
     const TOP: usize = 65_536;
     let top = String::from_utf8_lossy(&program[..program.len().min(TOP)]).to_ascii_uppercase();
     top.lines().find(|line| line.contains("MACHINE FILE")).map(str::to_owned)
 }
 
-/// The one whose name is a word of the line.
+/// Returns the value whose name is a word of the line.
 fn named<T: Copy>(line: &str, all: &[(&str, T)]) -> Option<T> {
     let is_word = |name: &str| {
         let mut words = line.split(|c: char| !c.is_ascii_alphanumeric() && c != '-');

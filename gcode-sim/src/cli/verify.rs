@@ -1,4 +1,4 @@
-//! `gcode-sim verify`: a program against a reference, by what the part should get.
+//! `gcode-sim verify`: verifies a program's holes or flutes against a reference.
 use std::path::PathBuf;
 
 use clap::Args;
@@ -64,12 +64,12 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitStatus, UsageError>
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let files = arguments.program.files(Some(&arguments.reference))?;
     for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        overwrite_guard::keep(result, &files)?;
+        overwrite_guard::check_not_input(result, &files)?;
     }
     arguments.page.as_deref().map(page::is_html).transpose()?;
     let (mut request, folders) = options::request(&arguments.program)?;
-    unused_machine::tell(&arguments.program, &request);
-    match options::wanted(&arguments.reference)? {
+    unused_machine::warn_unused_machine(&arguments.program, &request);
+    match options::read_nominal(&arguments.reference)? {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, asked);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
@@ -112,19 +112,19 @@ fn flutes(
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    Ok(judged(super::findings(&verdict.diagnostics, &grinding.run), verdict.verdict))
+    Ok(combine_status(super::findings(&verdict.diagnostics, &grinding.run), verdict.verdict))
 }
 
-/// The findings for a code review.
+/// Prints the findings as SARIF for a code review.
 fn sarif(findings: &[Diagnostic], run: &Run) -> Result<(), UsageError> {
     let sources = run.control.memory().sources();
     let findings: Vec<_> = findings.iter().map(|finding| Finding::of(finding, sources)).collect();
-    output::json(&sarif::log(&findings, &options::started_in()))
+    output::json(&sarif::log(&findings, &options::working_folder()))
 }
 
-fn judged(status: ExitStatus, answer: Answer) -> ExitStatus {
+fn combine_status(status: ExitStatus, answer: Answer) -> ExitStatus {
     match answer {
-        Answer::Fail if status == ExitStatus::Holds => ExitStatus::Fails,
+        Answer::Fail if status == ExitStatus::Passed => ExitStatus::Failed,
         _ => status,
     }
 }
@@ -136,15 +136,15 @@ fn holes(
     reference: &Reference,
     tolerances: Tolerances,
 ) -> Result<ExitStatus, UsageError> {
-    request.conduct = reference.conduct.clone();
+    request.conduct = reference.process_limits.clone();
     if let Some(path) = &arguments.page {
-        let watched = page::watched(request, &mut folders, reference.surface)?;
+        let watched = page::simulate_traced(request, &mut folders, reference.surface)?;
         let simulation = &watched.0.simulation;
         let verdict = simulation.verify(reference, tolerances, &request.machine);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
         page::write_alone(request, &watched, judged, &arguments.program.conditions, path)?;
-        let status = tell(arguments, request, reference, simulation, &verdict)?;
-        page::tell(path, arguments.format == FindingFormat::Text)?;
+        let status = print_verdict(arguments, request, reference, simulation, &verdict)?;
+        page::report_written(path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
     let simulation = progress::of_run(request, |request| {
@@ -152,10 +152,10 @@ fn holes(
     })
     .map_err(|error| UsageError::new(error.to_string()))?;
     let verdict = simulation.verify(reference, tolerances, &request.machine);
-    tell(arguments, request, reference, &simulation, &verdict)
+    print_verdict(arguments, request, reference, &simulation, &verdict)
 }
 
-fn tell(
+fn print_verdict(
     arguments: &VerifyArguments,
     request: &Request,
     reference: &Reference,
@@ -177,5 +177,5 @@ fn tell(
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    Ok(judged(super::findings(&verdict.diagnostics, &simulation.run), verdict.verdict))
+    Ok(combine_status(super::findings(&verdict.diagnostics, &simulation.run), verdict.verdict))
 }

@@ -5,10 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use gcode_draw::{Bar, Bars};
-use gcode_inspect::budget::{Budget, Question, Share, Statistics};
+use gcode_inspect::budget::{Budget, BudgetRequest, ErrorShare, Statistics};
 use gcode_inspect::machine::Distribution;
 
-/// Diameters and lengths in mm.
+/// The position deviations of all holes under errors; diameters and lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct BudgetReport {
     basis: &'static str,
@@ -16,7 +16,7 @@ pub struct BudgetReport {
     seed: u64,
     tolerance: f64,
     holes: Vec<HoleRow>,
-    /// The worst hole of each part.
+    /// Statistics of the worst hole of each part.
     parts: BudgetRow,
     sources: Vec<SourceRow>,
 }
@@ -36,7 +36,7 @@ struct HoleRow {
     id: String,
     #[serde(flatten)]
     row: BudgetRow,
-    /// Without errors.
+    /// Position deviation without errors.
     nominal: f64,
     sources: Vec<SourceRow>,
 }
@@ -52,18 +52,25 @@ struct SourceRow {
 
 impl From<Statistics> for BudgetRow {
     fn from(of: Statistics) -> Self {
-        Self { mean: of.mean, p50: of.p50, p95: of.p95, p997: of.p997, max: of.max, within: of.within }
+        Self {
+            mean: of.mean,
+            p50: of.p50,
+            p95: of.p95,
+            p997: of.p997,
+            max: of.max,
+            within: of.share_in_tolerance,
+        }
     }
 }
 
-impl From<&Share> for SourceRow {
-    fn from(of: &Share) -> Self {
-        Self { source: of.source.clone(), spread: None, moves: of.moves, share: of.share }
+impl From<&ErrorShare> for SourceRow {
+    fn from(of: &ErrorShare) -> Self {
+        Self { source: of.source.clone(), spread: None, moves: of.displacement, share: of.share }
     }
 }
 
 impl BudgetReport {
-    pub fn new(question: &Question<'_>, found: &Budget) -> Self {
+    pub fn new(question: &BudgetRequest<'_>, found: &Budget) -> Self {
         let holes = found.holes.iter().map(|hole| HoleRow {
             id: hole.id.clone(),
             row: hole.statistics.into(),
@@ -73,7 +80,7 @@ impl BudgetReport {
         let spread = |name: &str| {
             let source =
                 question.sources.iter().find(|source| source.quantity.name(question.machine) == name)?;
-            Some(match source.spread {
+            Some(match source.distribution {
                 Distribution::Fixed(value) => format!("fixed {value}"),
                 Distribution::Normal(value) => format!("normal {value}"),
                 Distribution::Uniform(value) => format!("uniform {value}"),
@@ -92,7 +99,7 @@ impl BudgetReport {
         }
     }
 
-    /// For a terminal.
+    /// Formats the budget for a terminal.
     pub fn text(&self) -> String {
         let mut text = format!(
             "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without errors\n\n",
@@ -137,7 +144,7 @@ impl BudgetReport {
         text
     }
 
-    /// The sources' shares, for a picture.
+    /// Returns the shares of the sources as bars.
     pub fn bars(&self) -> Bars {
         let bar = |row: &SourceRow| Bar {
             name: row.source.clone(),

@@ -1,26 +1,26 @@
-//! The top view of two revisions: the new holes over the old ones, and the cuts that are others beside those that aren't.
+//! The top view of two revisions: new holes over old ones, and changed cuts beside unchanged ones.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::figures::{count, near};
+use super::figures::{count, rounded};
 use super::hole_changes::remarks;
-use super::top::{Rotary, along, outline, round_up, side, still};
+use super::top::{Rotary, hide_constant_rotary, outline, round_up, side, side_along_holes};
 use gcode_draw::{DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, TopView};
 use gcode_inspect::machine::Machine;
 use gcode_part::Reference;
 use gcode_review::{Change, Leg, Paired, Record, Revision, RevisionDiff};
 
-/// No more cuts of each revision than this are drawn, nor more points.
-const MOST_MOVES: usize = 20_000;
-const MOST_POINTS: usize = 100_000;
+/// Largest numbers of moves and points drawn of each revision.
+const MAX_MOVES: usize = 20_000;
+const MAX_POINTS: usize = 100_000;
 
-/// So many kinds of changes that no hole shows are told in words.
-const TOLD: usize = 7;
+/// Largest number of kinds of changes stated in the title block.
+const MAX_KINDS: usize = 7;
 
-/// Farther than this a hole's way is drawn on the part, not in a circle, mm.
-const FAR: f64 = 5.0;
+/// Movement beyond which a hole is drawn at both positions instead of in an enlarged circle, mm.
+const MAX_CIRCLE_MOVE: f64 = 5.0;
 
-/// The holes of a new revision over those of the old one, paired as `compared` has them, and the cuts besides. With a
-/// reference the part's outline is known.
+/// Builds the view of two revisions from the pairs in `compared`. With a reference, the part's outline is
+/// drawn.
 pub fn of_changes(
     name: &str,
     (old, new): (&Revision, &Revision),
@@ -29,7 +29,7 @@ pub fn of_changes(
     reference: Option<&Reference>,
 ) -> TopView {
     let rotary = Rotary::of(machine);
-    let lists = [old, new].map(|side| side.simulation.list().holes);
+    let lists = [old, new].map(|side| side.simulation.hole_list().holes);
     let sides = [old, new];
     let tools = sides.map(|side| side.record.made_by());
     let drawn = |pair: &Paired| {
@@ -46,37 +46,47 @@ pub fn of_changes(
             hole.map(|hole| (&sides[side].simulation.extracted.holes[hole], tools[side][hole].as_slice()))
         };
         let remarks = remarks(pair, made(0, pair.old), made(1, pair.new));
-        let turn = found.and_then(|found| rotary.turn(found));
-        DrawnHole { id, nominal: was, found: is, standing, phi: None, turn, remarks }
+        let turn = found.and_then(|found| rotary.angle(found));
+        DrawnHole {
+            id,
+            nominal: was,
+            actual: is,
+            status: standing,
+            position_deviation: None,
+            rotary_angle: turn,
+            remarks,
+        }
     };
     let mut holes: Vec<DrawnHole> = compared.holes.iter().map(drawn).collect();
-    still(&mut holes);
+    hide_constant_rotary(&mut holes);
     let moved = || compared.holes.iter().map(|pair| pair.moved);
-    let shown = moved().filter(|moved| *moved <= FAR).fold(0.0, f64::max);
+    let shown = moved().filter(|moved| *moved <= MAX_CIRCLE_MOVE).fold(0.0, f64::max);
     let farthest = compared.holes.iter().filter(|pair| tolerance < pair.moved);
     let farthest = farthest.max_by(|a, b| a.moved.total_cmp(&b.moved));
     let farthest = farthest.and_then(|pair| {
         let hole = pair.old? + 1;
-        Some(format!("largest movement: hole\u{a0}{hole}, {} mm", near(pair.moved, 4)))
+        Some(format!("largest movement: hole\u{a0}{hole}, {} mm", rounded(pair.moved, 4)))
     });
-    let others: Vec<&Change> =
-        compared.changes.iter().filter(|change| !is_of_one_hole(&change.code)).collect();
+    let effects = compared.changes.iter().flat_map(Change::effects);
+    let others: Vec<(&str, &str)> = effects.filter(|(code, _)| !is_of_one_hole(code)).collect();
     let path = path([old, new], machine, compared);
     let more = path.has_other_rapids.then(|| "rapids are not drawn: see --page".to_owned());
-    let lines = farthest.into_iter().chain(told(&others)).chain(more).collect();
+    let lines = farthest.into_iter().chain(other_change_lines(&others)).chain(more).collect();
     TopView {
         name: name.to_owned(),
-        side: along(&lists[0]).or_else(|| along(&lists[1])).unwrap_or_else(|| side(machine)),
+        side: side_along_holes(&lists[0])
+            .or_else(|| side_along_holes(&lists[1]))
+            .unwrap_or_else(|| side(machine)),
         outline: reference.and_then(|reference| reference.surface).and_then(outline),
         cylinder: reference.and_then(super::top::cylinder),
-        // A circle that nothing is seen in has no scale to be told.
+        // Without a visible movement the circle has no scale.
         tolerance: (tolerance < shown).then(|| round_up(2.0 * shown)),
         rotary: rotary.letter(),
-        backwards: rotary.backwards(),
+        is_rotary_reversed: rotary.is_reversed(),
         holes,
-        question: PicturePurpose::Change,
-        others: others.len(),
-        ends: others.iter().find(|change| change.code == "outcome").map(|_| {
+        purpose: PicturePurpose::Change,
+        other_differences: others.len(),
+        ending: others.iter().find(|(code, _)| *code == "outcome").map(|_| {
             let stops = |record: &Record| record.outcome() != "end";
             match (stops(&old.record), stops(&new.record)) {
                 (_, true) => "the new program stops before its end",
@@ -90,34 +100,34 @@ pub fn of_changes(
     }
 }
 
-/// The changes that no hole's sign shows, those of a kind together.
-fn told(others: &[&Change]) -> Vec<String> {
+/// Returns the changes that no hole's symbol shows, one line for each kind.
+fn other_change_lines(others: &[(&str, &str)]) -> Vec<String> {
     let mut kinds: Vec<(&str, &str, usize)> = Vec::new();
-    for change in others {
-        match kinds.iter_mut().find(|(code, ..)| *code == change.code) {
+    for (code, message) in others {
+        match kinds.iter_mut().find(|(known, ..)| known == code) {
             Some((.., more)) => *more += 1,
-            None => kinds.push((&change.code, &change.message, 0)),
+            None => kinds.push((code, message, 0)),
         }
     }
     let line = |(code, message, more): &(&str, &str, usize)| match more {
         0 => format!("{code}: {message}"),
         more => format!("{code}: {message}; and {more} more"),
     };
-    let mut lines: Vec<String> = kinds.iter().take(TOLD).map(line).collect();
-    if TOLD < kinds.len() {
-        let more = count(kinds.len() - TOLD, "more kind");
+    let mut lines: Vec<String> = kinds.iter().take(MAX_KINDS).map(line).collect();
+    if MAX_KINDS < kinds.len() {
+        let more = count(kinds.len() - MAX_KINDS, "more kind");
         lines.push(format!("{more} of changes: see the text of diff"));
     }
     lines
 }
 
-/// A change that a hole's own sign shows; of the order there is none.
+/// Returns true for changes shown by a hole's own symbol; a changed order has none.
 fn is_of_one_hole(code: &str) -> bool {
     code.starts_with("hole-") && code != "hole-order"
 }
 
 struct Path {
-    /// The cuts that make no hole: those of both, those of the new revision, those of the old one.
+    /// Cuts that make no hole: unchanged, new and old ones.
     cuts: Vec<PathPiece>,
     has_other_rapids: bool,
 }
@@ -127,7 +137,7 @@ fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Pa
     let mut pieces: BTreeMap<PathKind, Vec<PathPiece>> = BTreeMap::new();
     for (place, side) in sides.into_iter().enumerate() {
         let different: BTreeSet<usize> = compared.steps[place].iter().copied().collect();
-        let legs = side.record.path(machine, MOST_MOVES, MOST_POINTS);
+        let legs = side.record.path(machine, MAX_MOVES, MAX_POINTS);
         has_other_rapids |= legs.iter().any(|leg| leg.kind == "rapid" && different.contains(&leg.step));
         for leg in legs.iter().filter(|leg| leg.kind != "rapid" && !leg.is_of_hole) {
             let kind = match (different.contains(&leg.step), place) {
@@ -136,14 +146,14 @@ fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Pa
                 (true, 0) => PathKind::Gone,
                 (true, _) => PathKind::New,
             };
-            lengthen(pieces.entry(kind).or_default(), leg, kind);
+            append_leg(pieces.entry(kind).or_default(), leg, kind);
         }
     }
     Path { cuts: pieces.into_values().flatten().collect(), has_other_rapids }
 }
 
-/// Cuts that follow one another are one line: dashes run on.
-fn lengthen(pieces: &mut Vec<PathPiece>, leg: &Leg, kind: PathKind) {
+/// Joins consecutive cuts to one line, so that their dashes continue.
+fn append_leg(pieces: &mut Vec<PathPiece>, leg: &Leg, kind: PathKind) {
     let mut points = leg.points.iter().map(|point| point.coords.into());
     let ends_at = |piece: &&mut PathPiece| piece.points.last().copied() == points.clone().next();
     match pieces.last_mut().filter(ends_at) {

@@ -7,19 +7,19 @@ use serde::Serialize;
 
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::diag::Severity;
-use gcode_review::{BlockLocation, Change, Record, Totals, UnexecutedChange};
+use gcode_review::{BlockLocation, Change, Effect, Record, Totals, UnexecutedChange};
 
 /// The document of `diff --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ChangesReport {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
-    /// Nothing changes on the part, nor in what the control is left with, and both ran to their ends.
+    /// No difference on the part or in the control's final state, and both ran to their ends.
     pub same: bool,
     /// mm, and degrees for axes that turn.
     pub tolerance: f64,
     pub changes: Vec<Change>,
-    /// Blocks that are written otherwise and that neither run executed: what they do isn't compared.
+    /// Changed blocks that neither run executed: their effect is not compared.
     pub unexecuted: Vec<UnexecutedChange>,
     pub old: Side,
     pub new: Side,
@@ -28,7 +28,7 @@ pub struct ChangesReport {
     stopped: Option<String>,
 }
 
-/// One revision in numbers.
+/// Totals of one revision.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Side {
     pub name: String,
@@ -66,7 +66,7 @@ impl ChangesReport {
     /// The same for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        entries(&mut text, &self.changes, "");
+        append_entries(&mut text, &self.changes, "");
         let _ = match self.changes.len() {
             0 => match &self.stopped {
                 None => writeln!(text, "no difference on the part or in the control's final state"),
@@ -80,7 +80,7 @@ impl ChangesReport {
             1 => writeln!(text, "1 change"),
             n => writeln!(text, "{n} changes"),
         };
-        self.tell_unexecuted(&mut text);
+        self.append_unexecuted(&mut text);
         for (word, Side { name, totals, .. }) in [("old", &self.old), ("new", &self.new)] {
             let _ = writeln!(
                 text,
@@ -96,7 +96,7 @@ impl ChangesReport {
 }
 
 impl ChangesReport {
-    fn tell_unexecuted(&self, text: &mut String) {
+    fn append_unexecuted(&self, text: &mut String) {
         const SHOWN: usize = 6;
         let all = &self.unexecuted;
         if all.is_empty() {
@@ -121,7 +121,7 @@ pub(super) fn counted(count: u64, what: &str) -> String {
 }
 
 /// The changes with their blocks: of each kind as many as people read, and how many more there are.
-pub(super) fn entries(text: &mut String, changes: &[Change], indent: &str) {
+pub(super) fn append_entries(text: &mut String, changes: &[Change], indent: &str) {
     const SHOWN: usize = 6;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for change in changes {
@@ -133,7 +133,7 @@ pub(super) fn entries(text: &mut String, changes: &[Change], indent: &str) {
         *number += 1;
         let all = counts[&*change.code];
         if *number <= SHOWN {
-            entry(text, change, indent);
+            append_entry(text, change, indent);
         }
         if *number == SHOWN && SHOWN < all {
             let more = all - SHOWN;
@@ -144,8 +144,16 @@ pub(super) fn entries(text: &mut String, changes: &[Change], indent: &str) {
 }
 
 /// One change with its blocks and the calls that led to them.
-fn entry(text: &mut String, change: &Change, indent: &str) {
+fn append_entry(text: &mut String, change: &Change, indent: &str) {
+    const SHOWN: usize = 6;
     let _ = writeln!(text, "{indent}{:<14} {}", change.code, change.message);
+    for Effect { code, message, .. } in change.also.iter().take(SHOWN) {
+        let _ = writeln!(text, "{indent}    also {code}: {message}");
+    }
+    if SHOWN < change.also.len() {
+        let more = change.also.len() - SHOWN;
+        let _ = writeln!(text, "{indent}    … and {more} more: --format json has them all");
+    }
     for (word, place) in [("old", &change.old), ("new", &change.new)] {
         let Some(place) = place else { continue };
         let _ = writeln!(text, "{indent}    {word} {}", line(place));
@@ -162,15 +170,17 @@ fn line(place: &BlockLocation) -> String {
 
 /// A change for a code review, at its place in the new revision; `files` are those of the programs by their names.
 pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
-    let Change { code, message, old, new, anchor: near } = change;
+    let Change { code, message, old, new, anchor: near, also } = change;
     // What is gone has no line in the file as it is now: its old one is told in words.
     let was = old.as_ref().filter(|_| new.is_none());
     let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
+    let also: String =
+        also.iter().map(|effect| format!("\nalso {}: {}", effect.code, effect.message)).collect();
     let calls = new.as_ref().map_or(&[][..], |place| &place.calls);
     Finding {
         code: code.to_string(),
         severity: Severity::Error,
-        message: format!("{before}{message}{}", was.unwrap_or_default()),
+        message: format!("{before}{message}{}{also}", was.unwrap_or_default()),
         at: new.as_ref().or(near.as_ref()).and_then(|place| place_in(place, files)),
         related: calls
             .iter()

@@ -267,7 +267,7 @@ pub fn find(code: &str) -> Option<Page> {
 }
 
 impl Page {
-    /// What the code means in a few words.
+    /// The meaning of the code in a few words.
     pub fn title(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
         first.split_once(": ").map_or(first, |(_, title)| title)
@@ -280,7 +280,7 @@ impl Page {
     }
 
     /// The page as a terminal shows it: programs indented, no fences.
-    pub fn shown(&self) -> String {
+    pub fn plain_text(&self) -> String {
         let mut text = String::new();
         let mut program = false;
         for line in self.text.lines() {
@@ -319,7 +319,7 @@ mod tests {
 
     #[test]
     fn a_terminal_sees_no_marks_of_a_page() {
-        let text = find("PS0112").unwrap().shown();
+        let text = find("PS0112").unwrap().plain_text();
         assert!(text.starts_with("PS0112: division by zero\n\nThe divisor is 0"));
         assert!(text.contains("\nRaises it\n\n    #1=360.\n    #2=#1/#3\n"));
         assert!(!text.contains('`'));

@@ -1,7 +1,7 @@
-//! Figures as tables show them: rounded, with their signs, counted.
+//! Numbers as tables show them: rounded, signed, counted.
 
-/// Rounded; never "-0.000".
-pub fn near(value: f64, places: usize) -> String {
+/// Rounds to `places` decimals; never returns "-0.000".
+pub fn rounded(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
     match text.strip_prefix('-') {
         Some(zero) if zero.bytes().all(|b| b == b'0' || b == b'.') => zero.to_owned(),
@@ -14,14 +14,14 @@ pub fn signed(value: f64) -> String {
 }
 
 pub fn signed_to(value: f64, places: usize) -> String {
-    let text = near(value, places);
+    let text = rounded(value, places);
     match value > 0.0 && text.bytes().any(|b| b.is_ascii_digit() && b != b'0') {
         true => format!("+{text}"),
         false => text,
     }
 }
 
-/// As a drawing has it: `+0.120`, `−1.500`.
+/// Formats with a sign and three decimals, as on a drawing: `+0.120`, `−1.500`.
 pub fn with_sign(value: f64) -> String {
     signed_to(value, 3).replace('-', "−")
 }
@@ -30,7 +30,7 @@ pub fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
-/// As short as six places allow: `6`, `5.9`, `66.132`.
+/// Formats with up to six decimals: `6`, `5.9`, `66.132`.
 pub fn short(value: f64) -> String {
-    near(value, 6).trim_end_matches('0').trim_end_matches('.').to_owned()
+    rounded(value, 6).trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -1,4 +1,4 @@
-//! What the pictures of a burr show: its outline, the flutes that were ground, and the helix angle along one.
+//! Contents of a burr's pictures: its outline, the ground flutes, and the helix angle along them.
 use nalgebra::Point3;
 
 use super::helix_courses;
@@ -10,21 +10,23 @@ use gcode_lang::units::Deg;
 use gcode_part::Profile;
 use gcode_session::GrindingRun;
 
-/// Of the program `name`.
+/// Builds the view of the program `name`.
 pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteView {
-    let wanted = &grinding.wanted;
+    let wanted = &grinding.nominal;
     let profile = &wanted.profile;
-    let spot =
-        |at: Point3<f64>| FlutePoint { at: at.coords.into(), out: profile.normal(&at).into_inner().into() };
+    let spot = |at: Point3<f64>| FlutePoint {
+        position: at.coords.into(),
+        normal: profile.normal(&at).into_inner().into(),
+    };
     let spots = |pass: &GrindingPass| pass.trace.samples.iter().map(|sample| spot(sample.point)).collect();
-    // Every degree of the nose from its widest to the pole.
-    let nose = (0..=90).map(|degree| profile.at_polar(Deg(90.0 - f64::from(degree))));
+    // Every degree of the nose, from its widest circle to the pole.
+    let nose = (0..=90).map(|degree| profile.point_at_polar(Deg(90.0 - f64::from(degree))));
     let nose: Vec<[f64; 2]> = nose.map(|at| [at.x, -at.y]).collect();
     let mut outline = nose;
     if 0.0 < wanted.start {
         outline.insert(0, [wanted.start, profile.radius()]);
     }
-    let end = profile.at_polar(wanted.tip_angle);
+    let end = profile.point_at_polar(wanted.tip_angle);
     let number = |value: Option<f64>, places: usize| {
         value.map_or("−".to_owned(), |value| format!("{value:.places$}").replace('-', "−"))
     };
@@ -49,26 +51,26 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
         ],
         outline,
         tip_radius: -end.y,
-        flutes: grinding.ground.passes.iter().map(spots).collect(),
+        flutes: grinding.result.passes.iter().map(spots).collect(),
         faults: faults(profile, verdict),
         helix: helix_courses::of(grinding, verdict),
     }
 }
 
-fn spot(profile: &Profile, at: Point3<f64>) -> FlutePoint {
-    FlutePoint { at: at.coords.into(), out: profile.normal(&at).into_inner().into() }
+fn flute_point(profile: &Profile, at: Point3<f64>) -> FlutePoint {
+    FlutePoint { position: at.coords.into(), normal: profile.normal(&at).into_inner().into() }
 }
 
-/// Where the findings are; several in one place of a pass are one.
+/// Returns the places of the findings; several at one place of a pass are merged.
 fn faults(profile: &Profile, verdict: &FluteVerdict) -> Vec<Fault> {
     let mut faults: Vec<Fault> = Vec::new();
     for finding in &verdict.findings {
         for (index, site) in finding.sites.iter().enumerate() {
             let what = if index == 0 { describe_code(&finding.code) } else { None };
-            let (spot, pass) = (spot(profile, site.at.into()), site.pass.map(|pass| pass - 1));
-            let is_here = |fault: &&mut Fault| fault.pass == pass && fault.spot.at == spot.at;
+            let (spot, pass) = (flute_point(profile, site.at.into()), site.pass.map(|pass| pass - 1));
+            let is_here = |fault: &&mut Fault| fault.pass == pass && fault.point.position == spot.position;
             if let Some(fault) = faults.iter_mut().find(is_here) {
-                fault.what.extend(what);
+                fault.labels.extend(what);
                 continue;
             }
             let standing = match finding.code.as_str() {
@@ -76,7 +78,7 @@ fn faults(profile: &Profile, verdict: &FluteVerdict) -> Vec<Fault> {
                 "flute-extra" => HoleStatus::Extra,
                 _ => HoleStatus::Bad,
             };
-            faults.push(Fault { spot, pass, standing, what: what.into_iter().collect() });
+            faults.push(Fault { point: spot, pass, status: standing, labels: what.into_iter().collect() });
         }
     }
     faults

@@ -1,4 +1,4 @@
-//! What an edge finder shows along the surface: as JSON, as a table, as CSV, and as a curve.
+//! Readings of an edge finder along the surface: as JSON, as a table, as CSV, and as a curve.
 use std::fmt::Write;
 
 use schemars::JsonSchema;
@@ -12,17 +12,17 @@ use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Severity;
 use gcode_session::StylusRun;
 
-/// Lengths in mm.
+/// The readings of an edge finder; lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ReadingsReport {
     basis: &'static str,
-    /// Of the ball.
+    /// Radius of the ball.
     radius: f64,
-    /// How far a reading may be from 0, where that was asked.
+    /// Tolerance of a reading, either way, if given.
     tolerance: Option<f64>,
-    /// Only of a run to its end, on which the whole path was read, can it be a pass.
+    /// A pass requires a complete run with readings on the whole path.
     verdict: Option<Answer>,
-    /// As `run` has it.
+    /// Outcome of the run: end, alarm or limit.
     outcome: &'static str,
     least: Option<f64>,
     greatest: Option<f64>,
@@ -30,9 +30,9 @@ pub struct ReadingsReport {
     findings: Vec<FindingRow>,
     #[serde(skip)]
     gaps: Vec<Gap>,
-    /// Feeds to the surface and from it.
+    /// Numbers of feeds towards the surface and away from it.
     #[serde(skip)]
-    ways: [usize; 2],
+    approach_retract_counts: [usize; 2],
     #[serde(skip)]
     name: String,
 }
@@ -67,21 +67,21 @@ struct ReadingRow {
 }
 
 impl ReadingsReport {
-    /// Of the program `name`, for a ball of this radius.
+    /// Builds the report of the program `name`, for a ball of this radius.
     pub fn new(name: &str, following: &StylusRun, radius: f64, tolerance: Option<f64>) -> Self {
         let row = |pass: &ReadingPass, reading: &Reading| {
-            let (program, line) = following.run.locate(pass.places[reading.place].block);
-            let [x, y, z] = reading.at.coords.into();
-            ReadingRow { along: reading.along, x, y, z, reading: reading.value, program, line }
+            let (program, line) = following.run.locate(pass.backtraces[reading.move_index].block);
+            let [x, y, z] = reading.ball_centre.coords.into();
+            ReadingRow { along: reading.path_length, x, y, z, reading: reading.value, program, line }
         };
         let passes: Vec<_> = following
-            .followed
+            .readings
             .passes
             .iter()
             .filter_map(|pass| {
                 let (least, greatest) = pass.extremes()?;
                 Some(PassRow {
-                    moves: pass.places.len(),
+                    moves: pass.backtraces.len(),
                     length: pass.length(),
                     least: least.value,
                     greatest: greatest.value,
@@ -93,7 +93,7 @@ impl ReadingsReport {
         let greatest = passes.iter().map(|pass| pass.greatest).reduce(f64::max);
         let worst = least.zip(greatest).map(|(least, greatest)| greatest.max(-least));
         let within = |tolerance: f64| worst.is_some_and(|worst| worst <= tolerance);
-        let findings = &following.followed.findings;
+        let findings = &following.readings.findings;
         let ended = matches!(following.run.outcome, Outcome::End);
         let whole = ended && findings.iter().all(|finding| finding.severity < Severity::Error);
         let verdict = tolerance.map(|t| if whole && within(t) { Answer::Pass } else { Answer::Fail });
@@ -117,23 +117,23 @@ impl ReadingsReport {
             greatest,
             passes,
             findings: told.collect(),
-            gaps: following.followed.gaps.clone(),
-            ways: following.followed.approach_retract_counts,
+            gaps: following.readings.gaps.clone(),
+            approach_retract_counts: following.readings.approach_retract_counts,
             name: name.to_owned(),
         }
     }
 
-    /// Whether every reading is as near to 0 as was asked; `None` where nothing was asked.
+    /// Returns the verdict; `None` without a tolerance.
     pub fn verdict(&self) -> Option<Answer> {
         self.verdict
     }
 
-    /// Whether no feed of the program goes along the surface.
+    /// Returns true if no feed of the program follows the surface.
     pub fn is_empty(&self) -> bool {
         self.passes.is_empty()
     }
 
-    /// For a terminal: every tenth of each pass.
+    /// Formats every tenth of each pass for a terminal.
     pub fn text(&self) -> String {
         let mut text = format!(
             "Readings of an edge finder, ball of radius {}: {}\nmm; above 0: gap between ball and surface; \
@@ -158,15 +158,15 @@ impl ReadingsReport {
                 let _ = writeln!(text, "{:>10.3}{x:>11.4}{y:>11.4}{z:>11.4}{reading:>10.4}", row.along);
             }
         }
-        if self.ways != [0, 0] {
-            let [to, from] = self.ways.map(|n| count(n, "feed"));
+        if self.approach_retract_counts != [0, 0] {
+            let [to, from] = self.approach_retract_counts.map(|n| count(n, "feed"));
             let _ = writeln!(text, "\nno reading: {to} towards the surface, {from} away from it");
         }
         let _ = writeln!(text, "\n{}", self.sentence());
         text
     }
 
-    /// `reading -0.0012 to 0.0500, spread 0.0512`, and what was asked about it.
+    /// Returns `reading -0.0012 to 0.0500, spread 0.0512`, with the verdict on it.
     fn sentence(&self) -> String {
         let Some((least, greatest)) = self.least.zip(self.greatest) else {
             return "no feed follows the surface".to_owned();
@@ -196,7 +196,7 @@ impl ReadingsReport {
         }
     }
 
-    /// One line a reading.
+    /// Formats one line per reading.
     pub fn csv(&self) -> String {
         let mut text = String::from("pass,along,x,y,z,reading,program,line\n");
         for (index, pass) in self.passes.iter().enumerate() {
@@ -209,18 +209,18 @@ impl ReadingsReport {
         text
     }
 
-    /// The readings over the way, one pass behind the other, with the stretches between that have none.
+    /// Returns the readings over the path, pass after pass, with the gaps between them.
     pub fn plot(&self) -> Plot {
         let mut begun = 0.0;
         let (mut curves, mut gaps) = (Vec::new(), Vec::new());
         for behind in 0..=self.passes.len() {
-            for gap in self.gaps.iter().filter(|gap| gap.behind == behind) {
+            for gap in self.gaps.iter().filter(|gap| gap.passes_before == behind) {
                 gaps.push([begun, begun + gap.length]);
                 begun += gap.length;
             }
             if let Some(pass) = self.passes.get(behind) {
                 let points = pass.readings.iter().map(|row| [begun + row.along, row.reading]).collect();
-                curves.push(Curve { points, pen: Pen::Measured, guest: false });
+                curves.push(Curve { points, pen: Pen::Measured, is_clipped: false });
                 begun += pass.length;
             }
         }
@@ -247,22 +247,22 @@ impl ReadingsReport {
             .flatten()
             .collect(),
             chart: Chart {
-                across: "Path of the ball centre, mm".to_owned(),
+                x_label: "Path of the ball centre, mm".to_owned(),
                 guides: Vec::new(),
                 gaps,
                 graphs: vec![Graph {
-                    up: "Reading: distance of the ball from the surface, mm".to_owned(),
+                    y_label: "Reading: distance of the ball from the surface, mm".to_owned(),
                     curves,
                     band: self.tolerance.into_iter().flat_map(limit).collect(),
-                    zero: true,
-                    signs: Vec::new(),
+                    has_zero_line: true,
+                    markers: Vec::new(),
                 }],
             },
         }
     }
 }
 
-/// Nobody wants to read −0, nor a residue as one.
+/// Replaces −0 and rounding residues by 0.
 fn plain(value: f64, residue: f64) -> f64 {
     if value.abs() < residue { 0.0 } else { value }
 }

@@ -1,4 +1,4 @@
-//! What `run` answers: the end state of a control, its operator stops, and if asked for every move.
+//! The result of `run`: the end state of a control, its operator stops, and optionally every move.
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -19,20 +19,21 @@ pub struct RunReport {
     pub outcome: &'static str,
     pub alarm: Option<AlarmReport>,
     pub stops: Vec<StopReport>,
-    /// What the program printed, line by line; bytes that are no text as `\xNN`.
+    /// The program's printed output, line by line; bytes that are not text as `\xNN`.
     pub output: Vec<String>,
     /// M codes left to the machine builder's logic.
-    pub passed_on: Vec<PassedOnReport>,
-    /// What the control did without a word.
+    #[serde(rename = "passed_on")]
+    pub auxiliary_codes: Vec<AuxiliaryCodeReport>,
+    /// The notes: what the control did without a message.
     pub notes: Vec<NoteReport>,
     #[serde(serialize_with = "variables")]
     #[schemars(with = "BTreeMap<String, f64>")]
     pub variables: Vec<(u32, f64)>,
-    /// What `--show` asked for; null is vacant.
+    /// The system variables of `--show`; null is vacant.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "shown")]
     #[schemars(with = "BTreeMap<String, Option<f64>>")]
     pub system: Vec<(u32, Option<f64>)>,
-    /// The end point in the active work coordinate system.
+    /// End point in the active work coordinate system.
     pub position: Coordinates,
     pub machine: Coordinates,
     pub blocks: u64,
@@ -62,15 +63,16 @@ pub struct StopReport {
     pub text: String,
 }
 
-/// An M code without an effect on the control, and the first block that has it.
+/// An M code without an effect on the control, and its first block.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct PassedOnReport {
+#[schemars(rename = "PassedOnReport")]
+pub struct AuxiliaryCodeReport {
     pub code: String,
     pub program: String,
     pub line: u32,
 }
 
-/// One kind of thing that is no alarm and hardly meant, and the first block that has it.
+/// A note: a condition that is not an alarm and probably not intended, and the first block that has it.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct NoteReport {
     pub code: &'static str,
@@ -120,7 +122,7 @@ impl std::fmt::Display for Coordinates {
     }
 }
 
-/// Nobody wants to read −0.
+/// Replaces −0 by 0.
 fn plain(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value }
 }
@@ -133,25 +135,25 @@ fn shown<S: Serializer>(all: &[(u32, Option<f64>)], serializer: S) -> Result<S::
     serializer.collect_map(all.iter().map(|(number, value)| (format!("#{number}"), value.map(plain))))
 }
 
-/// More moves than this aren't written down: a loop that never ends must not fill the memory.
-pub const MOST_MOVES: usize = 1_000_000;
+/// Largest number of recorded moves: a loop that never ends must not fill the memory.
+pub const MAX_MOVES: usize = 1_000_000;
 
-/// Writes down every move that goes somewhere, and every dwell.
+/// Records every move that changes the position, and every dwell.
 #[derive(Debug, Default)]
-pub struct Moves {
-    /// There were more than [`MOST_MOVES`].
-    pub too_many: bool,
-    at: Position,
-    found: Vec<(&'static str, Position, f64, Option<f64>, Span)>,
+pub struct MoveRecorder {
+    /// There were more than [`MAX_MOVES`].
+    pub is_truncated: bool,
+    position: Position,
+    moves: Vec<(&'static str, Position, f64, Option<f64>, Span)>,
 }
 
-impl EventSink for Moves {
+impl EventSink for MoveRecorder {
     fn event(&mut self, event: &Event<'_>) {
         let (kind, to, feed) = match event.kind {
             EventKind::Rapid { to } => ("rapid", *to, None),
             EventKind::Feed { to, rate } | EventKind::Skip { to, rate, .. } => ("feed", *to, Some(rate.0)),
             EventKind::Arc { to, rate, .. } => ("arc", *to, Some(rate.0)),
-            EventKind::Dwell { .. } => ("dwell", self.at, None),
+            EventKind::Dwell { .. } => ("dwell", self.position, None),
             EventKind::ToolChange { .. }
             | EventKind::ToolLength { .. }
             | EventKind::WorkZeroUnknown { .. }
@@ -160,19 +162,19 @@ impl EventSink for Moves {
             | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => return,
         };
-        if to != self.at || matches!(kind, "arc" | "dwell") {
-            self.too_many = self.found.len() >= MOST_MOVES;
-            if !self.too_many {
-                self.found.push((kind, to, event.seconds.0, feed, event.block));
+        if to != self.position || matches!(kind, "arc" | "dwell") {
+            self.is_truncated = self.moves.len() >= MAX_MOVES;
+            if !self.is_truncated {
+                self.moves.push((kind, to, event.seconds.0, feed, event.block));
             }
         }
-        self.at = to;
+        self.position = to;
     }
 }
 
 impl RunReport {
-    /// The end state of a run; `path` and the values of `system` variables are there if asked for.
-    pub fn new(run: &Run, moves: Option<&Moves>, system: Vec<(u32, Value)>) -> Self {
+    /// Builds the report of a run; `moves` and the values of `system` variables are optional.
+    pub fn new(run: &Run, moves: Option<&MoveRecorder>, system: Vec<(u32, Value)>) -> Self {
         let control = &run.control;
         let axes = &control.settings().axes;
         let machine = control.machine_position();
@@ -183,7 +185,7 @@ impl RunReport {
                     let to = Coordinates::new(axes, |axis| to[axis]);
                     MoveReport { kind, to, seconds: *seconds, feed: *feed, program, line }
                 };
-            moves.found.iter().map(report).collect()
+            moves.moves.iter().map(report).collect()
         });
         Self {
             outcome: match run.outcome {
@@ -198,12 +200,12 @@ impl RunReport {
                 .map(|stop| StopReport { kind: stop.kind.name(), text: stop.text.clone() })
                 .collect(),
             output: control.output().iter().map(|line| printable(line)).collect(),
-            passed_on: control
+            auxiliary_codes: control
                 .auxiliary_codes()
                 .iter()
                 .map(|(code, span)| {
                     let (program, line) = run.locate(*span);
-                    PassedOnReport { code: format!("M{code:02}"), program, line }
+                    AuxiliaryCodeReport { code: format!("M{code:02}"), program, line }
                 })
                 .collect(),
             notes: control
@@ -225,7 +227,7 @@ impl RunReport {
         }
     }
 
-    /// The same for people.
+    /// Formats the result for a terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let word = match self.outcome {
@@ -244,7 +246,7 @@ impl RunReport {
         for line in &self.output {
             let _ = writeln!(text, "output     {line}");
         }
-        for PassedOnReport { code, program, line } in &self.passed_on {
+        for AuxiliaryCodeReport { code, program, line } in &self.auxiliary_codes {
             let _ = writeln!(
                 text,
                 "passed on  {code}, first in {program} line {line}: left to the machine builder, not simulated"

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::changes::{change_found, counted, entries, place_in};
+use super::changes::{append_entries, change_found, counted, place_in};
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::diag::Severity;
 use gcode_review::{BlockLocation, Change, Totals};
@@ -14,11 +14,11 @@ use gcode_review::{BlockLocation, Change, Totals};
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TestReport {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: String,
-    /// Which part of the cases this is; `None` for all.
+    /// The shard of the cases; `None` for all.
     pub shard: Option<Shard>,
-    /// What differs by no more than this is the same, mm or degrees.
+    /// Tolerance for equality, mm or degrees.
     pub tolerance: f64,
     pub cases: Vec<CaseReport>,
     /// The names of the cases whose results were accepted now.
@@ -32,7 +32,7 @@ pub struct Shard {
     /// Counts from 1.
     pub number: usize,
     pub of: usize,
-    /// How many cases there are in all parts.
+    /// Number of cases in all shards.
     pub cases: usize,
 }
 
@@ -40,16 +40,16 @@ pub struct Shard {
 #[serde(deny_unknown_fields)]
 pub struct CaseReport {
     pub name: String,
-    /// The main program's file; where none is to be run, a file of the case.
+    /// The main program's file; without one, a file of the case.
     pub file: Option<String>,
     pub answer: CaseAnswer,
     pub changes: Vec<Change>,
-    /// What an accepted result of an earlier version doesn't say, so that nothing is held against it.
+    /// What an accepted result of an earlier version does not record, so that it is not compared.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_compared: Vec<String>,
-    /// What the reference says against the holes.
+    /// The first error of the verification against the reference.
     pub against: Option<FirstFailure>,
-    /// Why the case can't be used.
+    /// Why the case is invalid.
     pub error: Option<String>,
     pub totals: Option<Totals>,
     /// How the run ended, in words.
@@ -64,11 +64,11 @@ pub enum CaseAnswer {
     /// As accepted.
     Same,
     Changed,
-    /// As accepted in all that was noted when it was accepted, and that is less than is noted now.
+    /// Accepted by an earlier version that recorded less; everything it recorded is unchanged.
     Older,
     /// Nothing is accepted yet.
     New,
-    /// The case can't be used.
+    /// The case is invalid.
     Refused,
 }
 
@@ -76,14 +76,14 @@ pub enum CaseAnswer {
 pub(super) const OLDER_TEXT: &str =
     "accepted by an earlier version that recorded less; everything it recorded is unchanged";
 
-/// The first thing that a failed verdict has against a program.
+/// The first error of a failed verdict.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FirstFailure {
     /// The code of the finding.
     pub code: String,
     pub message: String,
-    /// The block that does it, where it is one.
+    /// The block that causes it, if any.
     pub place: Option<BlockLocation>,
 }
 
@@ -104,7 +104,7 @@ impl TestReport {
     /// The same for people: what isn't as accepted, and how many are.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        self.cases.iter().for_each(|case| case.tell(&mut text));
+        self.cases.iter().for_each(|case| case.append_text(&mut text));
         for name in &self.accepted {
             let case = self.cases.iter().find(|case| case.name == *name);
             let ending = case.and_then(CaseReport::alarm);
@@ -195,7 +195,7 @@ impl CaseReport {
     }
 
     /// What isn't as it should be; nothing of a good case.
-    pub(super) fn tell(&self, text: &mut String) {
+    pub(super) fn append_text(&self, text: &mut String) {
         let name = &self.name;
         let mut totals = self.totals.as_ref().map_or_else(String::new, |totals| {
             format!("{}, {}", counted(totals.holes as u64, "hole"), counted(totals.moves, "move"))
@@ -212,9 +212,9 @@ impl CaseReport {
             CaseAnswer::Older => writeln!(text, "older    {name}: {OLDER_TEXT} ({totals})"),
             CaseAnswer::Same => Ok(()),
         };
-        entries(text, &self.changes, "    ");
+        append_entries(text, &self.changes, "    ");
         if !self.not_compared.is_empty() {
-            let _ = writeln!(text, "    {}", self.left_open());
+            let _ = writeln!(text, "    {}", self.unrecorded_text());
         }
         if let Some(FirstFailure { code, message, .. }) = &self.against {
             let _ = writeln!(text, "fails    {name}: {code}: {message}");
@@ -222,7 +222,7 @@ impl CaseReport {
     }
 
     /// What can't be held against a result of an earlier version.
-    pub(super) fn left_open(&self) -> String {
+    pub(super) fn unrecorded_text(&self) -> String {
         format!("not compared (not recorded in the accepted result): {}", self.not_compared.join(", "))
     }
 
@@ -248,7 +248,7 @@ impl CaseReport {
             CaseAnswer::Same | CaseAnswer::Changed | CaseAnswer::Older => {}
         }
         if !self.not_compared.is_empty() {
-            all.push(found("case-older", self.left_open(), None, &[]));
+            all.push(found("case-older", self.unrecorded_text(), None, &[]));
         }
         let before = format!("{}: ", self.name);
         for change in &self.changes {

@@ -1,4 +1,4 @@
-//! What the top view shows: holes found, and where there is a reference, the verdict on each.
+//! Contents of the top view: actual holes and, with a reference, the verdict on each.
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
@@ -15,34 +15,34 @@ use gcode_part::Reference;
 use gcode_part::Surface;
 use gcode_session::Simulation;
 
-/// The holes of a program nobody has judged.
+/// Builds the view of holes without a reference.
 pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopView {
     let rotary = Rotary::of(machine);
-    let found = simulation.list().holes;
-    let side = along(&found).unwrap_or_else(|| side(machine));
+    let found = simulation.hole_list().holes;
+    let side = side_along_holes(&found).unwrap_or_else(|| side(machine));
     let holes = simulation.extracted.holes.iter().zip(found).enumerate();
     let drawn = holes.map(|(index, (found, hole))| DrawnHole {
         id: (index + 1).to_string(),
         nominal: None,
-        found: Some(hole),
-        standing: HoleStatus::Unjudged,
-        phi: None,
-        turn: rotary.turn(found),
+        actual: Some(hole),
+        status: HoleStatus::Unjudged,
+        position_deviation: None,
+        rotary_angle: rotary.angle(found),
         remarks: Vec::new(),
     });
     let mut holes: Vec<DrawnHole> = drawn.collect();
-    still(&mut holes);
+    hide_constant_rotary(&mut holes);
     TopView {
         name: name.to_owned(),
         side,
         rotary: rotary.letter(),
-        backwards: rotary.backwards(),
+        is_rotary_reversed: rotary.is_reversed(),
         holes,
         ..TopView::default()
     }
 }
 
-/// The holes as they were judged: found and wanted, missing and too many.
+/// Builds the view of a verdict: actual and nominal, missing and extra holes.
 pub fn of_verdict(
     name: &str,
     simulation: &Simulation,
@@ -57,10 +57,10 @@ pub fn of_verdict(
     let judged = verdict.holes.iter().map(|hole| DrawnHole {
         id: hole.id.clone(),
         nominal: wanted(&hole.id).cloned(),
-        found: Some(found[hole.drilled_index].hole(nowhere)),
-        standing: if hole.ok { HoleStatus::Good } else { HoleStatus::Bad },
-        phi: Some(hole.position_deviation),
-        turn: rotary.turn(&found[hole.drilled_index]),
+        actual: Some(found[hole.drilled_index].hole(no_location)),
+        status: if hole.ok { HoleStatus::Good } else { HoleStatus::Bad },
+        position_deviation: Some(hole.position_deviation),
+        rotary_angle: rotary.angle(&found[hole.drilled_index]),
         remarks: hole
             .objections
             .first()
@@ -74,10 +74,10 @@ pub fn of_verdict(
     let missing = verdict.missing.iter().map(|id| DrawnHole {
         id: id.clone(),
         nominal: wanted(id).cloned(),
-        found: None,
-        standing: HoleStatus::Missing,
-        phi: None,
-        turn: None,
+        actual: None,
+        status: HoleStatus::Missing,
+        position_deviation: None,
+        rotary_angle: None,
         remarks: Vec::new(),
     });
     let extra = verdict.extra.iter().map(|extra| DrawnHole {
@@ -87,17 +87,17 @@ pub fn of_verdict(
             .as_ref()
             .map_or_else(String::new, |from| format!("{}:{}", from.program, from.line)),
         nominal: None,
-        found: Some(extra.hole.clone()),
-        standing: HoleStatus::Extra,
-        phi: None,
-        turn: None,
+        actual: Some(extra.hole.clone()),
+        status: HoleStatus::Extra,
+        position_deviation: None,
+        rotary_angle: None,
         remarks: Vec::new(),
     });
     let mut holes: Vec<DrawnHole> = judged.chain(missing).chain(extra).collect();
-    still(&mut holes);
+    hide_constant_rotary(&mut holes);
     TopView {
         name: name.to_owned(),
-        side: along(&reference.holes)
+        side: side_along_holes(&reference.holes)
             .filter(|_| reference.surface.is_none())
             .unwrap_or_else(|| side(machine)),
         outline: reference.surface.and_then(outline),
@@ -105,32 +105,32 @@ pub fn of_verdict(
         lines: reference
             .pattern
             .iter()
-            .map(closing)
-            .chain(verdict.neighbours.iter().flat_map(apart))
+            .map(closing_sentence)
+            .chain(verdict.neighbours.iter().flat_map(neighbour_range))
             .collect(),
         tolerance: Some(verdict.tolerance),
         rotary: rotary.letter(),
-        backwards: rotary.backwards(),
+        is_rotary_reversed: rotary.is_reversed(),
         holes,
         ..TopView::default()
     }
 }
 
-/// An axis that stands at 0 for every hole is nothing to be told at each.
-pub(super) fn still(holes: &mut [DrawnHole]) {
-    if holes.iter().all(|hole| hole.turn.is_none_or(|turn| turn == 0.0)) {
-        holes.iter_mut().for_each(|hole| hole.turn = None);
+/// Removes the angles of a rotary axis that is at 0 for every hole.
+pub(super) fn hide_constant_rotary(holes: &mut [DrawnHole]) {
+    if holes.iter().all(|hole| hole.rotary_angle.is_none_or(|turn| turn == 0.0)) {
+        holes.iter_mut().for_each(|hole| hole.rotary_angle = None);
     }
 }
 
-/// The next of 1, 2, 5, 10, 20, … from `value` on.
+/// Returns the next of 1, 2, 5, 10, 20, … from `value` on.
 pub(super) fn round_up(value: f64) -> f64 {
     let decade = libm::pow(10.0, libm::floor(libm::log10(value)));
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| value <= step * decade * (1.0 + 1e-9));
     step.unwrap_or(10.0) * decade
 }
 
-/// The radius of the part seen along y, where that is a circle.
+/// Returns the radius of the part's outline seen along y; `None` if it is not a circle.
 pub(super) fn outline(surface: Surface) -> Option<f64> {
     match surface {
         Surface::Ellipsoid { a, .. } => Some(a),
@@ -138,14 +138,14 @@ pub(super) fn outline(surface: Surface) -> Option<f64> {
     }
 }
 
-/// From where most of the holes are looked into: seen from beside them a plate would be a line.
-pub(super) fn along(holes: &[Hole]) -> Option<Side> {
+/// Returns the side along which most holes point: seen across, a plate would be a line.
+pub(super) fn side_along_holes(holes: &[Hole]) -> Option<Side> {
     let is_along = |hole: &Hole, side: Side| 0.99 < Vector3::from(hole.axis).dot(&side.towards()).abs();
     let are_most = |side: &Side| holes.len() < 2 * holes.iter().filter(|hole| is_along(hole, *side)).count();
     [Side::Y, Side::Z, Side::X].into_iter().find(are_most)
 }
 
-/// A spindle that stands along z looks at the part from there.
+/// Returns the side of the spindle: +z for a fixed spindle along z, else +y.
 pub(super) fn side(machine: &Machine) -> Side {
     match machine.head.kind {
         HeadKind::Fixed(out) if out.z > 0.99 => Side::Z,
@@ -163,49 +163,49 @@ pub(super) fn cylinder(reference: &Reference) -> Option<Cylinder> {
     }
 }
 
-/// `91 + 91 rows close with a pitch of 9.9659 mm (arc)`.
-fn closing(pattern: &Pattern) -> String {
+/// Returns `91 + 91 rows close with pitch 9.9659 (arc)`.
+fn closing_sentence(pattern: &Pattern) -> String {
     let (half, metric) = (pattern.rows / 2, pattern.metric.name());
     format!("{half} + {half} rows close with pitch {:.4} ({metric})", pattern.pitch)
 }
 
-/// The nearest and the farthest neighbours.
-fn apart(neighbours: &Neighbours) -> Option<String> {
+/// Returns the distances of the nearest and the farthest neighbours.
+fn neighbour_range(neighbours: &Neighbours) -> Option<String> {
     let (min, max) = (neighbours.min.as_ref()?, neighbours.max.as_ref()?);
     Some(format!("neighbours {:.4} to {:.4} mm apart", min.distance, max.distance))
 }
 
-/// A picture shows no blocks.
-pub(super) fn nowhere(_: gcode_lang::source::Span) -> (String, u32) {
+/// Locates no block: a picture shows none.
+pub(super) fn no_location(_: gcode_lang::source::Span) -> (String, u32) {
     (String::new(), 0)
 }
 
-/// The axis that turns the part: the one whose angle an operator looks for.
+/// The rotary axis of the table, whose angle is shown at each hole.
 pub(super) struct Rotary(Option<(AxisIndex, char, bool)>);
 
 impl Rotary {
     pub(super) fn of(machine: &Machine) -> Self {
-        let turns = |link: &&AxisLink| matches!(link.motion, LinkMotion::Turn { .. });
+        let turns = |link: &&AxisLink| matches!(link.motion, LinkMotion::Rotary { .. });
         let link = machine.table.0.iter().find(turns);
-        Self(link.map(|link| (link.axis, machine.axes.letter(link.axis), turns_backwards(link))))
+        Self(link.map(|link| (link.axis, machine.axes.letter(link.axis), is_link_reversed(link))))
     }
 
     pub(super) fn letter(&self) -> String {
         self.0.map_or_else(String::new, |(_, letter, _)| letter.to_string())
     }
 
-    pub(super) fn backwards(&self) -> bool {
+    pub(super) fn is_reversed(&self) -> bool {
         self.0.is_some_and(|(_, _, backwards)| backwards)
     }
 
-    pub(super) fn turn(&self, found: &DrilledHole) -> Option<f64> {
+    pub(super) fn angle(&self, found: &DrilledHole) -> Option<f64> {
         self.0.map(|(axis, ..)| found.axis_position[axis])
     }
 }
 
-/// About x, the one direction a cylinder lies along.
-fn turns_backwards(link: &AxisLink) -> bool {
-    matches!(link.motion, LinkMotion::Turn { about, .. } if link.sign * about.x < 0.0)
+/// Returns true if the axis decreases about +x, the axis of every cylinder.
+fn is_link_reversed(link: &AxisLink) -> bool {
+    matches!(link.motion, LinkMotion::Rotary { about, .. } if link.sign * about.x < 0.0)
 }
 
 #[cfg(test)]
@@ -227,14 +227,14 @@ mod tests {
     #[test]
     fn a_part_is_seen_along_most_of_its_holes() {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-        assert_eq!(along(&holes(&[z, z])), Some(Side::Z));
-        assert_eq!(along(&holes(&[[0.0, 0.0, -1.0]])), Some(Side::Z), "drilled from below");
-        assert_eq!(along(&holes(&[x, x, y])), Some(Side::X));
-        assert_eq!(along(&holes(&[y])), Some(Side::Y));
-        // A tenth of a radian off z still counts as z, a fifth doesn't: cos 0.1 = 0.995, cos 0.2 = 0.980.
-        assert_eq!(along(&holes(&[[0.0, 0.0998, 0.9950]])), Some(Side::Z));
-        assert_eq!(along(&holes(&[[0.0, 0.1987, 0.9801]])), None);
-        assert_eq!(along(&holes(&[y, z])), None, "no more along one than along the other");
-        assert_eq!(along(&[]), None);
+        assert_eq!(side_along_holes(&holes(&[z, z])), Some(Side::Z));
+        assert_eq!(side_along_holes(&holes(&[[0.0, 0.0, -1.0]])), Some(Side::Z), "drilled from below");
+        assert_eq!(side_along_holes(&holes(&[x, x, y])), Some(Side::X));
+        assert_eq!(side_along_holes(&holes(&[y])), Some(Side::Y));
+        // A tenth of a radian off z still counts as z, a fifth does not: cos 0.1 = 0.995, cos 0.2 = 0.980.
+        assert_eq!(side_along_holes(&holes(&[[0.0, 0.0998, 0.9950]])), Some(Side::Z));
+        assert_eq!(side_along_holes(&holes(&[[0.0, 0.1987, 0.9801]])), None);
+        assert_eq!(side_along_holes(&holes(&[y, z])), None, "no more along one than along the other");
+        assert_eq!(side_along_holes(&[]), None);
     }
 }

@@ -1,11 +1,11 @@
-//! What stands below a verdict's table: the answer, the worst hole, what is missing or too many.
+//! The summary below a verdict's table: the answer, the worst hole, missing and extra holes.
 use std::fmt::Write;
 
-use super::figures::{count, near};
+use super::figures::{count, rounded};
 use gcode_inspect::verify::{Answer, Distance, HoleVerdict, Neighbours, Verdict};
 
-/// How many ids of missing holes, and how many extra ones, are written out; the rest is counted.
-const LISTED: usize = 12;
+/// Number of missing and of extra holes that are listed; the others are counted.
+const MAX_LISTED: usize = 12;
 
 pub(super) fn summary(text: &mut String, verdict: &Verdict) {
     let good = verdict.holes.iter().filter(|hole| hole.ok).count();
@@ -25,13 +25,13 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
     if motion != 0 {
         parts.push(format!("{} in the motion", count(motion, "error")));
     }
-    put(text, &format!("{answer}     {}", parts.join(", ")));
+    append_line(text, &format!("{answer}     {}", parts.join(", ")));
     if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
-        put(
+        append_line(
             text,
             &format!(
                 "worst    Φ{}, tolerance Φ{}: {}",
-                near(worst, 4),
+                rounded(worst, 4),
                 verdict.tolerance,
                 from.replace("; ", "\n         ")
             ),
@@ -39,19 +39,19 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
         let by_phi =
             |a: &&HoleVerdict, b: &&HoleVerdict| a.position_deviation.total_cmp(&b.position_deviation);
         if let Some(hole) = verdict.holes.iter().rev().max_by(by_phi) {
-            put(text, &format!("         made by {}", made_by(hole)));
+            append_line(text, &format!("         made by {}", made_by(hole)));
         }
     }
     if let Some(neighbours) = &verdict.neighbours {
-        say_neighbours(text, neighbours);
+        append_neighbours(text, neighbours);
     }
     if let Some(rounding) = verdict.rounding {
         let share = rounding / verdict.tolerance * 100.0;
         let said = "rounding to the control's least increment alone can cause";
-        put(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the tolerance zone"));
+        append_line(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the tolerance zone"));
         if verdict.tolerance < rounding {
             let why = "use a finer increment or a wider tolerance";
-            put(
+            append_line(
                 text,
                 &format!(
                     "WARNING  this control's least increment is too coarse for Φ{}: {why}",
@@ -61,21 +61,31 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
         }
     }
     for what in &verdict.not_checked {
-        put(text, &format!("not checked: {what}"));
+        append_line(text, &format!("not checked: {what}"));
     }
     if !verdict.missing.is_empty() {
-        put(text, &format!("missing  {}", some(&verdict.missing, |id| id.clone(), ", ")));
+        append_line(text, &format!("missing  {}", list_first(&verdict.missing, |id| id.clone(), ", ")));
     }
     if !verdict.extra.is_empty() {
-        put(text, &format!("extra    {}", some(&verdict.extra, |extra| extra.why.clone(), "\n         ")));
+        append_line(
+            text,
+            &format!(
+                "extra    {}",
+                list_first(
+                    &verdict.extra,
+                    |extra| extra.why.trim_start_matches("extra ").to_owned(),
+                    "\n         "
+                )
+            ),
+        );
     }
 }
 
-/// How far neighbours are from one another, and where the extremes are.
-fn say_neighbours(text: &mut String, neighbours: &Neighbours) {
+/// Writes the distances of neighbours and the places of the extremes.
+fn append_neighbours(text: &mut String, neighbours: &Neighbours) {
     let Neighbours { metric, nominal: wanted, with_six, with_six_nominal: with_six_wanted, min, max } =
         neighbours;
-    put(
+    append_line(
         text,
         &format!(
             "neighbour distance, nominal {wanted:.4} mm ({metric}); {with_six} of {with_six_wanted} inner \
@@ -84,26 +94,26 @@ fn say_neighbours(text: &mut String, neighbours: &Neighbours) {
     );
     for (what, extreme) in [("nearest", min), ("farthest", max)] {
         if let Some(Distance { distance, between: [one, other] }) = extreme {
-            put(text, &format!("           {what:<8} {distance:.4} mm: {one} and {other}"));
+            append_line(text, &format!("           {what:<8} {distance:.4} mm: {one} and {other}"));
         }
     }
 }
 
-/// The first few, and how many more there are.
-fn some<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> String {
-    let mut shown: Vec<_> = all.iter().take(LISTED).map(name).collect();
-    if LISTED < all.len() {
-        shown.push(format!("… and {} more", all.len() - LISTED));
+/// Joins the first few items and the number of the others.
+fn list_first<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> String {
+    let mut shown: Vec<_> = all.iter().take(MAX_LISTED).map(name).collect();
+    if MAX_LISTED < all.len() {
+        shown.push(format!("… and {} more", all.len() - MAX_LISTED));
     }
     shown.join(between)
 }
 
-pub(super) fn put(text: &mut String, line: &str) {
-    // Writing to a string can't fail.
+pub(super) fn append_line(text: &mut String, line: &str) {
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "{}", line.trim_end());
 }
 
-/// `O8101 line 53, T2, called from O8100 line 20`.
+/// Returns `O8101 line 53, T2, called from O8100 line 20`.
 pub(super) fn made_by(hole: &HoleVerdict) -> String {
     let tool = hole.from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
     let calls: Vec<_> =

@@ -1,22 +1,22 @@
-//! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
-use super::figures::{count, near, signed, signed_to};
-use super::verdict_summary::{made_by, put, summary};
+//! A verdict as an inspection table: nominal, actual, deviation, position, out of tolerance.
+use super::figures::{count, rounded, signed, signed_to};
+use super::verdict_summary::{append_line, made_by, summary};
 use gcode_inspect::verify::{HoleGeometry, HoleVerdict, Verdict};
 
-/// How much of it, and in which order.
+/// Extent and order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
-    /// By position, the worst hole first; else in the order of the reference.
+    /// Sorts by position deviation, the worst hole first; else in the order of the reference.
     pub worst_first: bool,
-    /// Every column of an inspection report, four lines a hole, instead of one line a hole.
+    /// Writes every column of an inspection report, four lines per hole, instead of one line.
     pub full: bool,
 }
 
-/// So many holes have a line each; of more, those that fail and the worst of the others, as many as are listed here.
+/// Largest number of holes with a line each, and the number of worst holes listed beyond it.
 const LINES: usize = 100;
 const OF_MANY: usize = 24;
 
-/// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
+/// Formats the verdict; lengths in mm, angles in degrees. Values are judged unrounded and shown rounded.
 pub fn table(verdict: &Verdict, layout: Layout) -> String {
     let all = verdict.holes.len();
     let mut holes: Vec<&HoleVerdict> = match layout.full || all <= LINES {
@@ -37,14 +37,17 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
     } else {
         lines(&mut text, &holes);
         if holes.len() < all {
-            put(&mut text, &format!("the worst {} of {all} holes; --full lists them all\n", holes.len()));
+            append_line(
+                &mut text,
+                &format!("the worst {} of {all} holes; --full lists them all\n", holes.len()),
+            );
         }
     }
     summary(&mut text, verdict);
     text
 }
 
-/// Of many holes those that fail, then the farthest off, in the order of the reference.
+/// Returns the worst holes, failed ones before others, in the order of the reference.
 fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     let mut order: Vec<usize> = (0..holes.len()).collect();
     if OF_MANY < order.len() {
@@ -58,13 +61,13 @@ fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     order.into_iter().map(|index| &holes[index]).collect()
 }
 
-/// One line a hole.
+/// Writes one line per hole.
 fn lines(text: &mut String, holes: &[&HoleVerdict]) {
     if holes.is_empty() {
         return;
     }
     let wide = holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(4, 12);
-    put(
+    append_line(
         text,
         &format!(
             "{:<wide$} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  verdict",
@@ -72,38 +75,38 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
         ),
     );
     for hole in holes {
-        let [x, y, z] = hole.nominal.entry.map(|v| near(v, 3));
+        let [x, y, z] = hole.nominal.entry.map(|v| rounded(v, 3));
         let [dx, dy, dz] = off(hole).map(signed);
-        put(
+        append_line(
             text,
             &format!(
                 "{:<wide$} {x:>9} {y:>9} {z:>9} {dx:>8} {dy:>8} {dz:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  {}",
                 hole.id,
-                near(hole.at_entry, 4),
-                near(hole.at_bottom, 4),
-                near(hole.tilt, 4),
+                rounded(hole.at_entry, 4),
+                rounded(hole.at_bottom, 4),
+                rounded(hole.tilt, 4),
                 signed(hole.depth_error),
-                near(hole.position_deviation, 4),
-                near(hole.out_of_tolerance, 4),
-                said(hole)
+                rounded(hole.position_deviation, 4),
+                rounded(hole.out_of_tolerance, 4),
+                remarks_of(hole)
             ),
         );
     }
     text.push('\n');
 }
 
-/// Every column, a line each for nominal, actual and deviation.
+/// Writes every column, with a line each for nominal, actual and deviation.
 fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     let head = ["x", "y", "z", "i", "j", "k", "d", "l"].map(|name| format!("{name:>10}")).concat();
-    put(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
+    append_line(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
     let columns = |placed: &HoleGeometry| {
-        let [x, y, z] = placed.entry.map(|v| near(v, 4));
-        let [i, j, k] = placed.axis.map(|v| near(v, 6));
-        let d = placed.diameter.map_or("-".to_owned(), |d| near(d, 3));
-        [x, y, z, i, j, k, d, near(placed.depth, 4)].map(|column| format!("{column:>10}")).concat()
+        let [x, y, z] = placed.entry.map(|v| rounded(v, 4));
+        let [i, j, k] = placed.axis.map(|v| rounded(v, 6));
+        let d = placed.diameter.map_or("-".to_owned(), |d| rounded(d, 3));
+        [x, y, z, i, j, k, d, rounded(placed.depth, 4)].map(|column| format!("{column:>10}")).concat()
     };
-    put(text, &format!("{:<11}{}", " nominal", columns(&hole.nominal)));
-    put(text, &format!("{:<11}{}", " actual", columns(&hole.actual)));
+    append_line(text, &format!("{:<11}{}", " nominal", columns(&hole.nominal)));
+    append_line(text, &format!("{:<11}{}", " actual", columns(&hole.actual)));
     let (nominal, actual) = (&hole.nominal, &hole.actual);
     let axis = [0, 1, 2].map(|i| signed_to(actual.axis[i] - nominal.axis[i], 6));
     let diameter = match (actual.diameter, nominal.diameter) {
@@ -112,22 +115,22 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     };
     let rest = [diameter, signed(hole.depth_error)];
     let all = off(hole).map(signed).into_iter().chain(axis).chain(rest);
-    put(
+    append_line(
         text,
         &format!("{:<11}{}", " deviation", all.map(|column| format!("{column:>10}")).collect::<String>()),
     );
-    put(
+    append_line(
         text,
         &format!(
             " position   Φ{}, tolerance Φ{tolerance}, out of tolerance by {} (entry {}, bottom {}, tilt {}°)",
-            near(hole.position_deviation, 4),
-            near(hole.out_of_tolerance, 4),
-            near(hole.at_entry, 4),
-            near(hole.at_bottom, 4),
-            near(hole.tilt, 4)
+            rounded(hole.position_deviation, 4),
+            rounded(hole.out_of_tolerance, 4),
+            rounded(hole.at_entry, 4),
+            rounded(hole.at_bottom, 4),
+            rounded(hole.tilt, 4)
         ),
     );
-    put(text, &format!(" verdict    {}; made by {}", said(hole), made_by(hole)));
+    append_line(text, &format!(" verdict    {}; made by {}", remarks_of(hole), made_by(hole)));
     text.push('\n');
 }
 
@@ -135,7 +138,7 @@ fn off(hole: &HoleVerdict) -> [f64; 3] {
     [0, 1, 2].map(|i| hole.actual.entry[i] - hole.nominal.entry[i])
 }
 
-fn said(hole: &HoleVerdict) -> String {
+fn remarks_of(hole: &HoleVerdict) -> String {
     let why: Vec<_> = hole.objections.iter().map(|code| code.trim_start_matches("hole-")).collect();
     if hole.ok { "pass".to_owned() } else { format!("FAIL {}", why.join(", ")) }
 }
@@ -238,7 +241,7 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }
 
-    /// Φ0.0211 by rounding alone is more than a zone of 0.02, and less than one of 0.0212.
+    /// Rounding alone causes Φ0.0211: more than a zone of 0.02, less than one of 0.0212.
     #[test]
     fn a_zone_smaller_than_rounding_is_warned_of() {
         let told = |tolerance: f64| table(&Verdict { tolerance, ..verdict() }, Layout::default());

@@ -27,7 +27,7 @@ fn passed(wish: &Wish) -> FluteVerdict {
     let job = wish.job();
     let checked = check(&job, &families::emit(&job)).unwrap();
     assert!(checked.refusals.is_empty(), "{}\n{}", checked.refusals.concat(), wish.text());
-    let verdict = checked.judgement.into_flutes().unwrap();
+    let verdict = checked.verdict.into_flutes().unwrap();
     assert!(verdict.verdict == Answer::Pass);
     verdict
 }
@@ -60,7 +60,9 @@ proptest! {
 /// The verdict on an emitted program in which `from` is replaced.
 fn replaced(from: &str, to: &str) -> FluteVerdict {
     let job = two_flutes().job();
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("a burr has flutes")
+    };
     let mut package = families::emit(&job);
     for program in &mut package.programs {
         program.text = program.text.replace(from, to);
@@ -100,7 +102,7 @@ fn an_offset_that_is_off_is_told_as_that() {
     let told = verdict.findings.iter().find(|finding| finding.code == "flute-surface").unwrap();
     let deepest = 0.02 * (1.0 - Deg(85.0).cos());
     assert!((verdict.surface_deviation.unwrap() - deepest).abs() < 0.002, "{told:?}");
-    assert!(told.notes[0].contains("X40.000 Y-15.020 from the C axis, where it is X40 Y-15"), "{told:?}");
+    assert!(told.notes[0].contains("X40.000 Y-15.020 from the C axis instead of X40 Y-15"), "{told:?}");
     let verdict = replaced("I40. ", "I40.03 ");
     let told = verdict.findings.iter().find(|finding| finding.code == "flute-surface").unwrap();
     assert!(told.notes[0].contains("X40.030 Y-15.000 from the C axis"), "{told:?}");
@@ -206,7 +208,9 @@ fn there_are_as_few_moves_as_hold_the_chord_error() {
 fn each_axis_sign_counts() {
     let job = two_flutes().job();
     let package = families::emit(&job);
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("a burr has flutes")
+    };
     for letter in ["X", "Y", "A", "B", "C"] {
         let (before, after) = package.machine.split_once(&format!("letter = \"{letter}\"")).unwrap();
         let turned = after.replacen("sign = 1", "sign = -1", 1);
@@ -220,7 +224,9 @@ fn each_axis_sign_counts() {
 #[test]
 fn without_a_wheel_there_is_no_verdict() {
     let job = example().job();
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("a burr has flutes")
+    };
     let package = Package { machine: String::new(), ..families::emit(&job) };
     let error = grind(&request(&package), &mut Programs(&package), &wanted).unwrap_err().to_string();
     assert!(error.starts_with("the machine file has no [wheel]"), "{error}");
@@ -271,7 +277,9 @@ fn the_macro_refuses_what_can_not_be_ground() {
 /// The verdict on a program with more blocks before its end, at C 0 with the wheel clear of the burr.
 fn with(blocks: &str) -> FluteVerdict {
     let job = two_flutes().job();
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("a burr has flutes")
+    };
     let mut package = families::emit(&job);
     let main = package.programs.iter_mut().find(|program| program.number == 8400).unwrap();
     assert!(main.text.contains(" G00 C0.\n"));
@@ -283,7 +291,7 @@ fn with(blocks: &str) -> FluteVerdict {
 #[test]
 fn what_goes_into_the_blank_without_a_pass_is_told() {
     let depth = example_depth();
-    let below = |y: f64| format!("{:.3} mm below the blank's surface", depth - y);
+    let below = |y: f64| format!("{:.3} mm below the blank surface", depth - y);
     let cases = [
         (
             "X-19.\nG01 Y0. F30.\nX0.\nG00 Y50.\n",
@@ -295,7 +303,7 @@ fn what_goes_into_the_blank_without_a_pass_is_told() {
         ("X-19.\nG01 Y0. F30.\nG00 Y50.\n", format!("is fed {} where no pass begins", below(0.0))),
         ("X-19.\nG01 Y0. F30.\n", format!("is fed {} where no pass begins", below(0.0))),
         ("X-19.\nG01 Y-0.1 F30.\nG00 Y50.\n", "0.100 mm below the tooth bottom".to_owned()),
-        ("X-19.\nY0.\nG00 Y50.\n", format!("rapid motion while the wheel touches the blank, {}", "")),
+        ("X-19.\nY0.\nG00 Y50.\n", format!("rapid motion with the wheel in the blank, {}", "")),
     ];
     for (blocks, told) in cases {
         let verdict = with(blocks);
@@ -312,7 +320,7 @@ fn what_goes_into_the_blank_without_a_pass_is_told() {
 }
 
 fn example_depth() -> f64 {
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&example().job()).unwrap() else {
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&example().job()).unwrap() else {
         panic!("a burr has flutes")
     };
     wanted.tooth_depth.max(wanted.surface_tolerance)
@@ -342,7 +350,7 @@ fn moves_without_measure_end_in_a_finding() {
 #[test]
 fn where_the_axes_stand_at_the_start_is_told_as_not_checked() {
     let verdict = passed(&two_flutes());
-    let told = "rapid motion up to where the wheel first stands off the blank (1 move)";
+    let told = "rapid motion up to where the wheel is first clear of the blank (1 move)";
     assert!(verdict.not_checked.iter().any(|line| line.starts_with(told)), "{:?}", verdict.not_checked);
 }
 
@@ -367,7 +375,7 @@ fn a_control_too_coarse_for_the_helix_angle_is_told() {
     let job = Job::parse(&text).unwrap();
     let Err(error) = check(&job, &families::emit(&job)) else { panic!("nothing is refused") };
     let error = error.to_string();
-    assert!(error.starts_with("the helix angle can't be kept within 0.05°"), "{error}");
+    assert!(error.starts_with("the helix angle cannot be kept within 0.05°"), "{error}");
     assert!(error.contains("control.increment = \"IS-C\", if the control has it"), "{error}");
 }
 

@@ -1,12 +1,12 @@
-//! The chord program on candidates whose places are known: the best pair is searched for here as well, and E and F have
-//! to get their model coordinates.
+//! Trial of the chord program on candidates at known positions: it must choose the pair of an exhaustive
+//! search and bring E and F to their model coordinates.
 use gcode_inspect::machine::{Machine, Placement};
 use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
 use gcode_part::job::{Alignment, Surface};
 use gcode_session::Run;
 
-use super::{CheckError, TrialProgram, TrialResult, common, search};
+use super::{CheckError, TrialProgram, TrialResult, common_variable, search};
 use crate::families::alignment::CHORD_MATCH;
 
 type Point = [f64; 3];
@@ -14,18 +14,18 @@ type Point = [f64; 3];
 /// The candidates that are E and F themselves, as numbers from 1.
 const TRUE_PAIR: [usize; 2] = [3, 8];
 
-/// How a part stands that the run-out has set right: shift along y in mm, turned about y in degrees.
-const STANDS: [(f64, f64); 2] = [(-0.3, 0.25), (0.1, -0.2)];
+/// Positions of a part after the run-out correction: shift along y in mm, rotation about y in degrees.
+const TRIAL_PLACEMENTS: [(f64, f64); 2] = [(-0.3, 0.25), (0.1, -0.2)];
 
-pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
+pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let job = bench.job;
     let mut tried = TrialResult::default();
-    let (mut off, allowed) = (0.0_f64, allowed(job));
+    let (mut off, allowed) = (0.0_f64, tolerance(job));
     let mut farthest = 0.0_f64;
-    for (high, turned) in STANDS {
+    for (high, turned) in TRIAL_PLACEMENTS {
         let tilt = [Deg::ZERO, Deg(turned), Deg::ZERO];
         let part = Placement { shift: [0.0, high, 0.0].into(), tilt, ..Placement::default() };
-        let measured = candidates(job).map(|points| points.map(|p| moved(&part, p)));
+        let measured = candidates(job).map(|points| points.map(|p| transform(&part, p)));
         for (points, end) in measured.iter().zip(ends(job)) {
             let distances =
                 points.iter().flat_map(|p| p.iter().zip(end).map(|(value, end)| (value - end).abs()));
@@ -35,17 +35,17 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
             (first..).zip(points.iter().take(job.chord.candidates as usize).flatten().copied())
         });
         let run = bench.run(part, variables.collect())?;
-        tried.refusals.extend(bench.stopped(&run));
+        tried.refusals.extend(bench.stop_messages(&run));
         tried.seconds = run.control.seconds().0;
-        let (pair, difference) = best(job, &measured);
-        let found = [570, 571, 572].map(|number| common(&run, number));
+        let (pair, difference) = best_pair(job, &measured);
+        let found = [570, 571, 572].map(|number| common_variable(&run, number));
         let wanted = [pair[0] as f64, pair[1] as f64, difference];
         if !found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-6) {
             let message = format!("#570 to #572 are {found:?}; a search through all pairs gives {wanted:?}");
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
         for (end, name) in ends(job).into_iter().zip(["E", "F"]) {
-            let there = corrected(bench, &run, part, end)?;
+            let there = corrected_position(bench, &run, part, end)?;
             let far = distance(there, end);
             off = off.max(far);
             if far.is_nan() || far > allowed {
@@ -55,9 +55,9 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
         }
     }
     if !tried.refusals.is_empty() {
-        tried.refusals.extend(search::too_short(bench, "the candidates of these parts are", farthest));
+        tried.refusals.extend(search::search_advice(bench, "the candidates of these parts are", farthest));
     }
-    touched(bench, &mut tried)?;
+    check_touched_candidates(bench, &mut tried)?;
     tried.report = format!(
         "{}  of {} by {} candidates the pair of the exhaustive search; after the correction E and F are \
          {off:.4} mm from their model positions\n",
@@ -68,18 +68,19 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
     Ok(tried)
 }
 
-/// Candidates that the program touches itself, on a part that stands too high: they have to be points of its surface.
-fn touched(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), CheckError> {
+/// Lets the program touch the candidates itself, on a part that stands too high: they must be points of its
+/// surface.
+fn check_touched_candidates(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), CheckError> {
     let job = bench.job;
     let Surface { a, b } = job.surface;
     let high = 0.3;
     let part = Placement { shift: [0.0, high, 0.0].into(), ..Placement::default() };
     tried.seconds = {
         let run = bench.run(part, Vec::new())?;
-        tried.refusals.extend(bench.stopped(&run));
+        tried.refusals.extend(bench.stop_messages(&run));
         run.control.seconds().0
     };
-    // O8201 uses the points up: here it is one that leaves them.
+    // O8201 uses the points up; this replacement leaves them.
     let mut package = bench.package.clone();
     for program in package.programs.iter_mut().filter(|program| program.number == CHORD_MATCH) {
         program.text = format!("%\nO{CHORD_MATCH}\nM99\n%\n");
@@ -87,7 +88,7 @@ fn touched(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), Chec
     let run = TrialProgram { package: &package, ..*bench }.run(part, Vec::new())?;
     let count = job.chord.candidates;
     for first in (501..501 + 3 * count).chain(531..531 + 3 * count).step_by(3) {
-        let [x, y, z] = [0, 1, 2].map(|axis| common(&run, first + axis));
+        let [x, y, z] = [0, 1, 2].map(|axis| common_variable(&run, first + axis));
         let [x, y, z] = [x / a, (y - high) / b, z / a];
         let off = ((x * x + y * y + z * z).sqrt() - 1.0) * a.min(b);
         if off.is_nan() || off.abs() > 0.001 {
@@ -98,20 +99,21 @@ fn touched(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), Chec
     Ok(())
 }
 
-/// Half an increment of each axis, and what half of one of the rotary is at the equator.
-fn allowed(job: &Alignment) -> f64 {
+/// Returns the allowed error: half an increment of each axis, and half an increment of the rotary axis at the
+/// equator.
+fn tolerance(job: &Alignment) -> f64 {
     let increment = job.control.increment.size();
     increment + job.surface.a * Deg(increment / 2.0).to_rad()
 }
 
-/// E and F as the model has them.
+/// Returns E and F of the model.
 fn ends(job: &Alignment) -> [Point; 2] {
     let Surface { a, b } = job.surface;
     [job.chord.e_radius, job.chord.f_radius].map(|x| [x, b * (1.0 - (x / a) * (x / a)).sqrt(), 0.0])
 }
 
-/// Ten points of the surface round each of E and F, one of them E or F itself; the others in no order that one could
-/// share with the other's.
+/// Returns ten points of the surface round each of E and F, one of them E or F itself. The two groups are
+/// arranged differently, so that no two pairs are alike.
 fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
     let Surface { a, b } = job.surface;
     let count = job.chord.candidates as usize;
@@ -122,7 +124,7 @@ fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
             let angle = Deg(turn * (index + 1) as f64);
             let [along, aside] = [angle.cos(), angle.sin()].map(|part| part * job.chord.circle / 2.0);
             let [x, y, z] = [p[0] + along, p[1] - along, aside];
-            // Back onto the surface, seen from its centre.
+            // Projected back onto the surface, from its centre.
             let beyond = ((x * x + z * z) / (a * a) + y * y / (b * b)).sqrt();
             *p = [x, y, z].map(|c| c / beyond);
         }
@@ -130,8 +132,9 @@ fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
     all
 }
 
-/// The pair whose distance is nearest to the model's, as numbers from 1, and how much longer it is.
-fn best(job: &Alignment, [e, f]: &[[Point; 10]; 2]) -> ([usize; 2], f64) {
+/// Returns the pair whose distance is nearest to the model's, as numbers from 1, and the excess of its
+/// distance.
+fn best_pair(job: &Alignment, [e, f]: &[[Point; 10]; 2]) -> ([usize; 2], f64) {
     let [model_e, model_f] = ends(job);
     let model = distance(model_e, model_f);
     let count = job.chord.candidates as usize;
@@ -142,10 +145,16 @@ fn best(job: &Alignment, [e, f]: &[[Point; 10]; 2]) -> ([usize; 2], f64) {
     (found, longer(found))
 }
 
-/// Where a point of the misplaced part stands in the corrected work coordinates, with the rotary at its corrected 0.
-fn corrected(bench: &TrialProgram<'_>, run: &Run, part: Placement, p: Point) -> Result<Point, CheckError> {
+/// Returns a point of the misplaced part in the corrected work coordinates, with the rotary axis at its
+/// corrected 0.
+fn corrected_position(
+    bench: &TrialProgram<'_>,
+    run: &Run,
+    part: Placement,
+    p: Point,
+) -> Result<Point, CheckError> {
     let machine = Machine { part, ..bench.machine()? };
-    let offset = |axis: usize| common(run, 5221 + axis as u32);
+    let offset = |axis: usize| common_variable(run, 5221 + axis as u32);
     let letter = bench.job.machine.rotary.letter;
     let rotary = machine.axes.find(letter as u8);
     let rotary = rotary.ok_or_else(|| bench.broken(&format!("the machine has no axis {letter}")))?;
@@ -155,7 +164,7 @@ fn corrected(bench: &TrialProgram<'_>, run: &Run, part: Placement, p: Point) -> 
     Ok([x - offset(0), y - offset(1), z - offset(2)])
 }
 
-fn moved(part: &Placement, p: Point) -> Point {
+fn transform(part: &Placement, p: Point) -> Point {
     part.frame().transform_point(&p.into()).coords.into()
 }
 

@@ -1,25 +1,25 @@
-//! The ellipse program on a part that stands where it should: the ball has to keep its distance from the surface all the way,
-//! between the programmed points too.
+//! Trial of the ellipse program on a part in its nominal position: the ball must keep its distance from the
+//! surface all along, also between the programmed points.
 use gcode_inspect::machine::Placement;
 use gcode_inspect::stylus::{Reading, ReadingPass};
 use gcode_lang::diag::Severity;
 use gcode_part::Surface;
-use gcode_session::follow;
+use gcode_session::read_stylus;
 use gcode_sim::report::diagnostic;
 
 use super::{CheckError, TrialProgram, TrialResult};
 
-pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
+pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let job = bench.job;
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
     let request = bench.request(Placement::default())?;
-    let following =
-        follow(&request, &mut bench.programs(), surface, job.probe_radius).map_err(|e| bench.broken(&e))?;
+    let following = read_stylus(&request, &mut bench.programs(), surface, job.probe_radius)
+        .map_err(|e| bench.broken(&e))?;
     let mut tried = TrialResult { seconds: following.run.control.seconds().0, ..TrialResult::default() };
     let sources = following.run.control.memory().sources();
-    let findings = following.followed.findings.iter().filter(|finding| Severity::Warning <= finding.severity);
+    let findings = following.readings.findings.iter().filter(|finding| Severity::Warning <= finding.severity);
     tried.refusals.extend(findings.map(|finding| diagnostic::render(finding, sources)));
-    let passes = following.followed.passes.as_slice();
+    let passes = following.readings.passes.as_slice();
     let [pass] = passes else {
         let message = format!("{} passes along the surface, 1 specified", passes.len());
         tried.refusals.push(format!("{}: {message}\n", bench.name()));
@@ -35,11 +35,14 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
         tried.refusals.push(format!("{}: {message}\n", bench.name()));
     }
     for (reading, wanted) in ends(pass).into_iter().zip([job.ellipse.from, job.ellipse.to]) {
-        // The ball touches where the normal from its centre meets the surface.
-        let x = reading.at.x - surface.nearest(&reading.at).normal.x * (job.probe_radius + reading.value);
-        // Rounding moves the centre by half an increment in x and y each, and the foot of the normal no farther than twice that.
-        if (x - wanted).abs() > 2.0 * job.control.increment.size() || reading.at.z != 0.0 {
-            let message = format!("an end is at {}; x = {wanted} on the ellipse is specified", reading.at);
+        // The ball touches where the normal through its centre meets the surface.
+        let x = reading.ball_centre.x
+            - surface.nearest(&reading.ball_centre).normal.x * (job.probe_radius + reading.value);
+        // Rounding moves the centre by up to half an increment in x and y each, and the foot of the normal by
+        // at most twice that.
+        if (x - wanted).abs() > 2.0 * job.control.increment.size() || reading.ball_centre.z != 0.0 {
+            let message =
+                format!("an end is at {}; x = {wanted} on the ellipse is specified", reading.ball_centre);
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
     }
@@ -47,7 +50,7 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
         "{}  {} moves along {:.1} mm; the distance of the ball from the surface is off by at most \
          {worst:.4} mm, between programmed points too\n",
         bench.name(),
-        pass.places.len(),
+        pass.backtraces.len(),
         pass.length()
     );
     Ok(tried)

@@ -1,4 +1,4 @@
-//! The run-out program on parts whose shift and tilt are known: it has to find them by probing alone.
+//! Trial of the run-out program on parts of known shift and tilt, which it must determine by probing alone.
 use gcode_control::Outcome;
 use gcode_inspect::machine::Placement;
 use gcode_lang::units::Deg;
@@ -10,29 +10,29 @@ use gcode_sim::report::figures::short;
 
 use crate::families::alignment::ALARMS;
 
-use super::{CheckError, TrialProgram, TrialResult, common, search};
+use super::{CheckError, TrialProgram, TrialResult, common_variable, search};
 
-/// What has to be found to within this: mm, degrees.
-const ALLOWED: [f64; 2] = [0.01, 0.004];
+/// Allowed errors of the results: mm, degrees.
+const TOLERANCES: [f64; 2] = [0.01, 0.004];
 
-/// TOUCHES V BEFORE SURFACE and NO CONTACT of O8211.
-const MISSED: [u32; 2] = [154, 155];
+/// Alarm numbers of TOUCHES V BEFORE SURFACE and NO CONTACT in O8211.
+const MISSED_ALARMS: [u32; 2] = [154, 155];
 
-/// Shift in mm and tilt in degrees about x, y and z. Neither a shift in y nor a turn about y is asked for; the others
-/// have to be found in spite of them.
-const STANDS: [[[f64; 3]; 2]; 4] = [
+/// Shift in mm and tilt in degrees about x, y and z. The shift in y and the rotation about y need not be
+/// determined, but must not disturb the others.
+const TRIAL_PLACEMENTS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
     [[0.3, 0.0, -0.3], [0.3, 0.0, 0.3]],
     [[-0.3, 0.2, 0.25], [-0.3, 0.0, 0.2]],
     [[0.2, -0.3, 0.3], [0.2, 0.3, -0.3]],
 ];
 
-pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
+pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let mut tried = TrialResult::default();
-    let noise = match passed_on(bench.job) {
-        Ok(passed) => Noise::of(bench.job, passed),
+    let noise = match fit_uncertainty(bench.job) {
+        Ok(passed) => NoiseEstimate::of(bench.job, passed),
         Err(why) => {
-            tried.refusals.push(format!("{}: {}\n", bench.name(), untold(bench.job, why)));
+            tried.refusals.push(format!("{}: {}\n", bench.name(), describe_fit_error(bench.job, why)));
             return Ok(tried);
         }
     };
@@ -43,32 +43,32 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
         ..Placement::default()
     };
     let mut missed = false;
-    for [shift, tilt] in STANDS {
+    for [shift, tilt] in TRIAL_PLACEMENTS {
         let part = placed([shift, tilt]);
         let run = bench.run(part, Vec::new())?;
-        let stopped = bench.stopped(&run);
+        let stopped = bench.stop_messages(&run);
         tried.seconds = run.control.seconds().0;
         if !stopped.is_empty() {
             let stands =
                 format!("{}: with the part shifted by {shift:?} and tilted by {tilt:?}\n", bench.name());
             tried.refusals.push(stands);
             tried.refusals.extend(stopped);
-            missed |= not_met(&run);
+            missed |= is_contact_missed(&run);
             continue;
         }
         for (number, real, kind) in
             [(580, shift[0], 0), (581, shift[2], 0), (582, tilt[0], 1), (583, tilt[2], 1)]
         {
-            let off = (common(&run, number) - real).abs();
+            let off = (common_variable(&run, number) - real).abs();
             worst[kind] = worst[kind].max(off);
-            if off.is_nan() || off > ALLOWED[kind] {
-                let message = format!("#{number} is {}, nominal {real}", common(&run, number));
+            if off.is_nan() || off > TOLERANCES[kind] {
+                let message = format!("#{number} is {}, nominal {real}", common_variable(&run, number));
                 tried.refusals.push(format!("{}: {message}\n", bench.name()));
             }
         }
     }
     if missed {
-        tried.refusals.extend(search::advice(bench, &STANDS.map(placed)));
+        tried.refusals.extend(search::advice(bench, &TRIAL_PLACEMENTS.map(placed)));
     }
     let [shift, tilt] = worst;
     tried.warnings.extend(noise.warning().map(|warning| format!("warning: {}: {warning}\n", bench.name())));
@@ -81,14 +81,15 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
     Ok(tried)
 }
 
-/// Whether the run ended because a touch met the part too early or not at all.
-fn not_met(run: &Run) -> bool {
-    let text = |text: &str| ALARMS.iter().any(|alarm| MISSED.contains(&alarm.number) && alarm.text == text);
+/// Returns true if the run ended because a touch met the part too early or not at all.
+fn is_contact_missed(run: &Run) -> bool {
+    let text =
+        |text: &str| ALARMS.iter().any(|alarm| MISSED_ALARMS.contains(&alarm.number) && alarm.text == text);
     matches!(&run.outcome, Outcome::Alarm(stopped) if text(&stopped.alarm.row().message))
 }
 
-/// What the noise of one touch becomes in the results, by the job's own angles and heights.
-fn passed_on(job: &Alignment) -> Result<FitUncertainty, FitError> {
+/// Computes the amplification of touch noise in the results, from the job's angles and heights.
+fn fit_uncertainty(job: &Alignment) -> Result<FitUncertainty, FitError> {
     let runout = &job.runout;
     let sign = f64::from(job.machine.rotary.sign);
     let step = (runout.to - runout.from) / f64::from(runout.readings - 1);
@@ -101,11 +102,11 @@ fn passed_on(job: &Alignment) -> Result<FitUncertainty, FitError> {
     touches.uncertainty()
 }
 
-fn untold(job: &Alignment, why: FitError) -> String {
+fn describe_fit_error(job: &Alignment, why: FitError) -> String {
     let runout = &job.runout;
     let [low, high] = runout.heights.map(short);
     match why {
-        FitError::Missed { height } => {
+        FitError::NoContact { height } => {
             format!("key 'runout.heights': at y {} the ball passes the part without contact", short(height))
         }
         FitError::Degenerate if job.surface.a == job.surface.b => {
@@ -122,15 +123,15 @@ fn untold(job: &Alignment, why: FitError) -> String {
     }
 }
 
-/// What the job's own noise of a touch leaves in the results.
-struct Noise {
-    /// Of a touch, mm.
+/// Effect of the job's touch noise on the results.
+struct NoiseEstimate {
+    /// Noise of a touch, mm.
     touch: f64,
-    /// The largest standard deviations for noise of 1 mm: of #580 and #581 in mm, of #582 and #583 in degrees.
+    /// Largest standard deviations for noise of 1 mm: of #580 and #581 in mm, of #582 and #583 in degrees.
     factors: [f64; 2],
 }
 
-impl Noise {
+impl NoiseEstimate {
     fn of(job: &Alignment, passed: FitUncertainty) -> Self {
         let [x, _, z] = passed.shift;
         let [about_x, about_z] = passed.tilt;
@@ -149,18 +150,19 @@ impl Noise {
         )
     }
 
-    /// Where two standard deviations are more than what is promised: one pass in twenty is off by more than they are.
+    /// Returns a warning if two standard deviations exceed the allowed errors: one pass in twenty then
+    /// exceeds them.
     fn warning(&self) -> Option<String> {
         let twice = self.deviations().map(|deviation| 2.0 * deviation);
-        (twice[0] > ALLOWED[0] || twice[1] > ALLOWED[1]).then(|| {
+        (twice[0] > TOLERANCES[0] || twice[1] > TOLERANCES[1]).then(|| {
             format!(
                 "noise of {} mm per touch ('probe.noise') does not allow {} mm and {} degrees: one pass in \
                  twenty is off by more than {:.4} mm or {:.4} degrees (two standard deviations, {:.2} mm \
                  and {:.3} degrees for 1 mm of noise); use wider 'runout.angles', heights farther apart, \
                  more readings, or a better probe",
                 short(self.touch),
-                ALLOWED[0],
-                ALLOWED[1],
+                TOLERANCES[0],
+                TOLERANCES[1],
                 twice[0],
                 twice[1],
                 self.factors[0],
@@ -188,11 +190,12 @@ mod tests {
 
     fn warned(change: (&str, &str)) -> Option<String> {
         let job = job(change);
-        Noise::of(&job, passed_on(&job).unwrap()).warning()
+        NoiseEstimate::of(&job, fit_uncertainty(&job).unwrap()).warning()
     }
 
-    /// By the table of docs/methods/alignment.md a touch's 0.001 makes 0.0018 mm and 0.00087 degrees over ±25: 0.002 is allowed, for
-    /// twice the deviations are 0.0072 and 0.0035; 0.003 is not, for they are 0.0108. Over ±15 0.001 makes 0.0024 degrees.
+    /// By the table of docs/methods/alignment.md a touch noise of 0.001 mm causes 0.0018 mm and 0.00087
+    /// degrees over ±25. Noise of 0.002 is allowed, because twice the deviations are 0.0072 and 0.0035; 0.003
+    /// is not, because they are 0.0108. Over ±15, 0.001 causes 0.0024 degrees.
     #[test]
     fn a_probe_or_a_petal_that_the_promise_is_too_much_for_is_warned_of() {
         assert_eq!(warned(("radius = 3.0", "radius = 3.0")), None);
@@ -216,7 +219,7 @@ mod tests {
             (("b = 724.3", "b = 1158.8"), "the tilt of a sphere cannot be measured"),
         ] {
             let job = job(change);
-            let told = untold(&job, passed_on(&job).unwrap_err());
+            let told = describe_fit_error(&job, fit_uncertainty(&job).unwrap_err());
             assert!(told.contains(wanted), "{told}");
         }
     }

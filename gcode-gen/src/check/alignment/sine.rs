@@ -1,27 +1,29 @@
-//! The sine table's program for tilts either way: the height has to make the angle that takes the tilt away.
+//! Trial of the sine table's program for tilts in both directions: the height must give the angle that
+//! cancels the tilt.
 use gcode_inspect::machine::Placement;
 use gcode_lang::units::Deg;
 use gcode_part::gauge::Thickness;
 use gcode_part::job::SineTable;
 use gcode_sim::report::figures::short;
 
-use super::{CheckError, TrialProgram, TrialResult, common};
+use super::{CheckError, TrialProgram, TrialResult, common_variable};
 use crate::families::alignment::{LARGEST_TILT, STEEPEST, gap};
 
 /// Tilts of the part about z, degrees.
 const TILTS: [f64; 3] = [0.0, 0.08, -0.031];
 
-pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
+pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let table = &bench.job.sine_table;
     let step = table.gauge_blocks.step().mm();
     let mut tried = TrialResult::default();
     let mut worst = 0.0_f64;
-    // After the first run-out the table stands at the job's angle; after another one as the stop before has left it.
+    // After the first run-out the table is at the job's angle; after a later one at the angle of the previous
+    // setting.
     let set = [None, Some(table.phi + 0.05)];
     for (tilt, set) in TILTS.into_iter().flat_map(|tilt| set.map(|set| (tilt, set))) {
         let stands = set.unwrap_or(table.phi);
         let wanted = stands - f64::from(table.sign) * tilt;
-        // The macro refuses what no sine table is set to.
+        // The macro refuses angles outside a sine table's range.
         if !(0.0..=45.0).contains(&wanted) || !(0.0..=45.0).contains(&stands) {
             continue;
         }
@@ -29,10 +31,10 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
             Placement::default(),
             [(583, tilt), (585, 0.0)].into_iter().chain(set.map(|set| (596, set))).collect(),
         )?;
-        tried.refusals.extend(bench.stopped(&run));
+        tried.refusals.extend(bench.stop_messages(&run));
         tried.seconds = run.control.seconds().0;
-        let [angle, height, change, left] = [586, 587, 588, 589].map(|number| common(&run, number));
-        // Half a step, and what doubles round off.
+        let [angle, height, change, left] = [586, 587, 588, 589].map(|number| common_variable(&run, number));
+        // Half a step, and the rounding of doubles.
         let off = (height - table.length * Deg(wanted).sin()).abs();
         worst = worst.max(off);
         let made = Deg::asin(height / table.length);
@@ -40,8 +42,8 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
             && (angle - wanted).abs() < 1e-9
             && ((made.0 - wanted) * 3600.0 - left).abs() < 1e-3
             && (height - change - table.length * Deg(stands).sin()).abs() < 1e-9
-            && (common(&run, 596) - made.0).abs() < 1e-9
-            && common(&run, 583).is_nan();
+            && (common_variable(&run, 596) - made.0).abs() < 1e-9
+            && common_variable(&run, 583).is_nan();
         if !holds {
             let message = format!(
                 "for a tilt of {tilt} degrees on a table at {stands} the program gives PHI {angle}, H \
@@ -60,7 +62,7 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
     Ok(tried)
 }
 
-/// Tilts that the macro corrects and this table can't be set for.
+/// Returns warnings of tilts that the macro corrects but this table cannot be set for.
 fn warnings(table: &SineTable) -> impl Iterator<Item = String> {
     let phi = short(table.phi);
     let room = table.phi.min(STEEPEST - table.phi);

@@ -1,5 +1,5 @@
-//! Run-out: the part touched along X at two heights over the petal's angles, and its shift and tilt fitted on the
-//! control. After the operator's correction a second pass shows what remains.
+//! Run-out: touches the part along X at two heights over the petal's angles and fits its shift and tilt on
+//! the control. After the operator's correction a second pass measures the remainder.
 use gcode_part::job::Alignment;
 
 use super::writes::Writes;
@@ -9,10 +9,10 @@ use crate::nc::block::Block;
 use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8210;
 
-/// Readings and fit.
+/// O-number of the macro with readings and fit.
 const FIT: u32 = 8211;
 
 pub(super) const MEASUREMENT: Measurement = Measurement {
@@ -43,7 +43,7 @@ fn write(job: &Alignment, text: &mut Text) {
         format!("CALLS O{FIT} TWICE, BETWEEN THEM A STOP TO CORRECT THE PART"),
         "#580 #581 SHIFT OF THE PART IN X AND Z, #582 #583 ITS TILT ABOUT".to_owned(),
         "X AND Z, OF THE LAST PASS".to_owned(),
-        "#584 ITS SHIFT IN Y, LESS SURE. #585 WHAT THE FIT LEAVES".to_owned(),
+        "#584 ITS SHIFT IN Y, LESS ACCURATE. #585 RESIDUAL OF THE FIT".to_owned(),
         "#590-#595 THE SAME OF THE FIRST PASS".to_owned(),
         format!("AT THE STOP, AT {rotary}0., THE PART IS MOVED BACK BY #580 #581 AND"),
         "SHIMMED BACK BY #582, THE TILT #583 IS LEFT TO O8230. CYCLE START".to_owned(),
@@ -55,7 +55,7 @@ fn write(job: &Alignment, text: &mut Text) {
         text.remark(line);
     }
     begin(job, text);
-    // What stands there is of the part before; first what says of each pass that it is whole.
+    // These values are of the previous part; the first to be cleared are those that mark a pass as complete.
     for number in [585].into_iter().chain((590..596).rev()) {
         text.block(Block::of(format!("#{number}=#0")));
     }

@@ -1,7 +1,9 @@
-//! The sine table: which gauge blocks set φ, and on the control by how much they change for the tilt that the run-out found.
+//! The sine table: the gauge blocks that set φ, and on the control their change for the tilt that the run-out
+//! determined.
 //!
-//! The macro gives the height and not the blocks: the fewest of a set are a search through all stacks, which is done here for
-//! the job's φ; for the corrected one they are found by the digits of the height, the last one first, as always at the machine.
+//! The macro gives the height, not the blocks. The fewest blocks of a set need a search through all stacks,
+//! which is done here for the job's φ; for the corrected angle the operator chooses them by the digits of the
+//! height, last digit first, as usual.
 use gcode_lang::units::{Deg, Mm};
 use gcode_part::gauge::{self, SineSetting, Thickness};
 use gcode_part::job::{Alignment, SineTable};
@@ -13,14 +15,15 @@ use crate::nc::block::Block;
 use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8230;
 
-/// The largest tilt that O8231 corrects, and the steepest φ that it tells; degrees.
+/// Largest tilt that O8231 corrects, degrees.
 pub const LARGEST_TILT: f64 = 1.0;
+/// Largest φ that O8231 gives, degrees.
 pub const STEEPEST: f64 = 45.0;
 
-/// Height and angle.
+/// O-number of the macro that computes height and angle.
 const TABLE: u32 = 8231;
 
 pub(super) const MEASUREMENT: Measurement = Measurement {
@@ -41,16 +44,16 @@ fn write(job: &Alignment, text: &mut Text) {
     let k = control::alarm_thousands(job.control.dialect);
     let [phi, length] = [table.phi, table.length].map(number);
     let set = table.gauge_blocks;
-    let setting = gauge::setting(Mm(table.length), Deg(table.phi), &set);
+    let setting = gauge::sine_setting(Mm(table.length), Deg(table.phi), &set);
     text.remark(format!("L {length} PHI {phi}, H = L*SIN[PHI] = {:.5}", setting.height.0));
     text.remark(format!("GAUGE BLOCKS {}", set.name));
     for line in stack(&setting) {
         text.remark(line);
     }
     for line in [
-        "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM TELLS".to_owned(),
+        "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM GIVES".to_owned(),
         "#586 PHI TO SET, #587 HEIGHT OF THE BLOCKS, #588 ITS CHANGE".to_owned(),
-        "#589 SECONDS OF ARC BY WHICH #587 MAKES TOO MUCH".to_owned(),
+        "#589 ERROR OF #587 IN SECONDS OF ARC".to_owned(),
     ] {
         text.remark(line);
     }
@@ -60,7 +63,7 @@ fn write(job: &Alignment, text: &mut Text) {
     }
     for line in [
         "#596 IS PHI AS THE TABLE IS SET, VACANT AT FIRST, THEN IT IS".to_owned(),
-        format!("{phi}. WHOEVER SETS THE TABLE OTHERWISE WRITES IT THERE"),
+        format!("{phi}. IF THE TABLE IS SET DIFFERENTLY WRITE IT THERE"),
         "THE FIRST STOP ASKS WHETHER IT IS RIGHT, IF NOT RESET AND WRITE IT".to_owned(),
         "CYCLE START AT THE SECOND SAYS THAT THE TABLE IS SET, #596 IS CHANGED".to_owned(),
         "AND #583 IS USED UP. THEN O8210 AGAIN".to_owned(),
@@ -83,28 +86,29 @@ fn write(job: &Alignment, text: &mut Text) {
     );
     text.block(Block::of("#3006=1(TABLE STANDS AT PHI #596)"));
     text.block(Block::of("#3006=1(SET BLOCKS TO H #587)"));
-    // Whatever RESET leaves is the state before, the one behind, or one that the next start refuses.
+    // RESET leaves the state before, the state after, or one that the next start refuses.
     text.block(Block::of("#596=-1."));
     text.block(Block::of("#583=#0"));
     text.block(Block::of(format!("#596=ASIN[#587/{length}]")));
     text.block(Block::of("M30"));
 }
 
-/// The lowest height within the tilts that O8231 corrects for which the set has no stack.
+/// Returns the lowest height within the tilts that O8231 corrects for which the set has no stack.
 pub fn gap(table: &SineTable) -> Option<Thickness> {
     let [low, high] = [-LARGEST_TILT, LARGEST_TILT]
         .map(|tilt| gauge::height(Mm(table.length), Deg((table.phi + tilt).clamp(0.0, STEEPEST))));
     table.gauge_blocks.first_gap(low, high)
 }
 
-/// The blocks in lines that a control can show, and what they leave of the angle. Jobs in which no block comes near are refused.
+/// Returns the blocks in lines that a control can show, and the error of the angle. Jobs without a sufficient
+/// stack are refused.
 fn stack(setting: &SineSetting) -> Vec<String> {
     if setting.stack.blocks.is_empty() {
         return vec!["NO BLOCKS, THE TABLE LIES FLAT".to_owned()];
     }
     let names: Vec<_> = setting.stack.blocks.iter().map(ToString::to_string).collect();
     let mut lines: Vec<_> = names.chunks(8).map(|names| format!("BLOCKS {}", names.join(" + "))).collect();
-    let over = if setting.left < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
-    lines.push(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.left.abs()));
+    let over = if setting.remainder < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
+    lines.push(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.remainder.abs()));
     lines
 }

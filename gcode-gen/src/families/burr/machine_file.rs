@@ -1,9 +1,9 @@
-//! The machine file of a burr job: the grinder that `gcode-sim --machine` follows the programs on.
+//! The machine file of a burr job: the grinder for `gcode-sim --machine`.
 use gcode_part::job::Burr;
 
 use crate::families::control;
 
-/// The text of `machine.toml`.
+/// Returns the text of `machine.toml`.
 pub(super) fn machine_file(job: &Burr) -> String {
     let [x, y] = job.grinder.c_offset;
     let signs = job.grinder.signs;
@@ -16,7 +16,7 @@ pub(super) fn machine_file(job: &Burr) -> String {
          axes = \"XYABC\"\n\
          \n\
          # Machine zero is on the C axis, with X and Y at 0.\n\
-         # X and Y slide the table C, which carries the head A, which turns the burr about its own axis.\n\
+         # X and Y slide the table C, which carries the head A, which rotates the burr about its own axis.\n\
          {}{}{}{}\
          # The burr: x along its axis towards the shank, origin where its cylinder ends.\n\
          [part]\n\

@@ -1,14 +1,14 @@
-//! The gauge blocks under the sine table, from the thickest to the thinnest; only a part that is set up has them.
+//! The gauge blocks under the sine table, thickest first; for alignment jobs only.
 use gcode_lang::units::{Deg, Mm};
 use gcode_part::gauge;
 use gcode_part::job::Job;
-use gcode_sim::report::figures::{near, short, signed_to};
+use gcode_sim::report::figures::{rounded, short, signed_to};
 use maud::{Markup, html};
 
 use super::{cell, table};
 use crate::sheet::Sheet;
 
-/// Which way the part turns when the blocks get higher.
+/// Returns the sentence on the part's direction of rotation when the blocks get higher.
 fn sense(sign: i8) -> &'static str {
     if sign < 0 {
         "Direction: higher blocks rotate the part back, from Y towards X (sine_table.sign -1). A tilt #583 \
@@ -24,7 +24,7 @@ fn sense(sign: i8) -> &'static str {
 pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
     let Job::Alignment(job) = sheet.job else { return html! {} };
     let sine = &job.sine_table;
-    let setting = gauge::setting(Mm(sine.length), Deg(sine.phi), &sine.gauge_blocks);
+    let setting = gauge::sine_setting(Mm(sine.length), Deg(sine.phi), &sine.gauge_blocks);
     let rows = setting.stack.blocks.iter().enumerate();
     let rows = rows
         .map(|(index, block)| vec![html! { (index + 1) }, cell(block.to_string()), html! { span.tick {} }]);
@@ -35,16 +35,16 @@ pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
         div.together {
             h2 { "Gauge blocks under the sine table" }
             p {
-                "Rollers " (short(sine.length)) " mm apart, angle " (short(sine.phi)) "°: H = L·sin φ = " (near(setting.height.0, 5))
+                "Rollers " (short(sine.length)) " mm apart, angle " (short(sine.phi)) "°: H = L·sin φ = " (rounded(setting.height.0, 5))
                 " mm, with the fewest blocks of the set " (sine.gauge_blocks.name) " that come nearest. The remaining error is "
-                (signed_to(setting.left, 2)) "″ (seconds of arc)."
+                (signed_to(setting.remainder, 2)) "″ (seconds of arc)."
             }
             @if setting.stack.blocks.is_empty() {
                 p { "No blocks: the table is flat." }
             } @else {
                 (table(&["#block", "#mm", "wrung"], rows.chain([sum])))
             }
-            p.note { "For one minute of arc more the stack is " (near(minute, 4)) " mm higher." }
+            p.note { "For one minute of arc more the stack is " (rounded(minute, 4)) " mm higher." }
             p { (sense(sine.sign)) }
         }
     }
@@ -54,7 +54,7 @@ pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
 mod tests {
     use super::*;
 
-    /// U·#583 is taken off φ: with the sign −1 a tilt above 0 makes it larger, and the blocks higher.
+    /// U·#583 is subtracted from φ: with the sign −1 a tilt above 0 makes it larger, and the blocks higher.
     #[test]
     fn the_sense_of_the_table_is_that_of_its_sign() {
         assert!(sense(1).contains(

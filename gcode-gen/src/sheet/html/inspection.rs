@@ -1,7 +1,7 @@
-//! What to measure: requirements, room for results, and beside them what the simulation says.
+//! The inspection form: requirements, empty columns for results, and the predictions.
 use gcode_inspect::verify::{HoleVerdict, Verdict};
 use gcode_sim::report::encode::base64;
-use gcode_sim::report::figures::{near, signed, signed_to};
+use gcode_sim::report::figures::{rounded, signed, signed_to};
 use maud::{Markup, html};
 
 use super::{cell, table};
@@ -9,15 +9,15 @@ use crate::check::PackageVerdict;
 use crate::sheet::measure::{LISTED, characteristics};
 use crate::sheet::{BASIS, Sheet};
 
-/// In the manner of form 3 of AS9102: requirements are filled in, results are the inspector's.
+/// Builds the form after AS9102, form 3: requirements are filled in, results are the inspector's.
 pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
-    let all = characteristics(sheet.job, &sheet.checked.judgement);
+    let all = characteristics(sheet.job, &sheet.checked.verdict);
     html! {
         h2 { "Inspection" }
         p {
             "In the manner of AS9102, form 3. The columns for results are for the inspector and are empty here: "
             "a simulation is not a measurement. "
-            @if let PackageVerdict::Holes(_) = sheet.checked.judgement { "Nominal positions are in the tables of holes below." }
+            @if let PackageVerdict::Holes(_) = sheet.checked.verdict { "Nominal positions are in the tables of holes below." }
         }
         div.wide { table {
             thead { tr {
@@ -41,25 +41,25 @@ pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// Nominal and predicted places; of many holes the worst ones.
+/// Returns nominal and predicted positions; of many holes the worst ones.
 pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
-    let PackageVerdict::Holes(verdict) = &sheet.checked.judgement else { return html! {} };
+    let PackageVerdict::Holes(verdict) = &sheet.checked.verdict else { return html! {} };
     let shown = shown(verdict);
     let nominal = shown.iter().map(|hole| {
         let placed = &hole.nominal;
-        let diameter = placed.diameter.map_or("-".to_owned(), |d| near(d, 3));
-        let place = placed.entry.map(|v| near(v, 3)).into_iter().chain(placed.axis.map(|v| near(v, 6)));
-        let all = std::iter::once(hole.id.clone()).chain(place).chain([near(placed.depth, 3), diameter]);
+        let diameter = placed.diameter.map_or("-".to_owned(), |d| rounded(d, 3));
+        let place = placed.entry.map(|v| rounded(v, 3)).into_iter().chain(placed.axis.map(|v| rounded(v, 6)));
+        let all = std::iter::once(hole.id.clone()).chain(place).chain([rounded(placed.depth, 3), diameter]);
         all.map(cell).collect()
     });
     let predicted = shown.iter().map(|hole| {
         let off = std::array::from_fn::<_, 3, _>(|i| signed(hole.actual.entry[i] - hole.nominal.entry[i]));
         let rest = [
-            near(hole.tilt, 4),
+            rounded(hole.tilt, 4),
             signed_to(hole.depth_error, 4),
-            format!("Φ{}", near(hole.position_deviation, 4)),
+            format!("Φ{}", rounded(hole.position_deviation, 4)),
             format!("Φ{}", verdict.tolerance),
-            near(hole.out_of_tolerance, 4),
+            rounded(hole.out_of_tolerance, 4),
         ];
         std::iter::once(hole.id.clone()).chain(off).chain(rest).map(cell).collect()
     });
@@ -91,7 +91,7 @@ fn shown(verdict: &Verdict) -> Vec<&HoleVerdict> {
     all
 }
 
-/// The part as the simulated program makes it.
+/// Returns the pictures of the part as the simulated program makes it.
 pub(super) fn pictures(sheet: &Sheet<'_>) -> Markup {
     if sheet.pictures.is_empty() {
         return html! {};

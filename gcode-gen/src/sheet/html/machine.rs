@@ -1,4 +1,4 @@
-//! What stands in the machine: the tools, the head's angles in their order, the settings of the control.
+//! Set-up of the machine: the tools, the sequence of head angles, the control settings.
 use gcode_inspect::verify::Verdict;
 use gcode_lang::units::Deg;
 use gcode_part::job::{HeadKind, Job, PinHoles};
@@ -10,7 +10,7 @@ use super::{blank, cell, table};
 use crate::check::PackageVerdict;
 use crate::order::passes;
 use crate::sheet::Sheet;
-use crate::sheet::settings::BLOCKS;
+use crate::sheet::settings::MAX_BLOCKS;
 use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
@@ -100,9 +100,9 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// The order in which the head is set, and the holes made with each setting; only pin holes have it.
+/// Returns the sequence of head settings with their holes, for pin holes only.
 pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
-    let (Job::PinHoles(job), PackageVerdict::Holes(verdict)) = (sheet.job, &sheet.checked.judgement) else {
+    let (Job::PinHoles(job), PackageVerdict::Holes(verdict)) = (sheet.job, &sheet.checked.verdict) else {
         return html! {};
     };
     let by = match job.machine.head.kind {
@@ -129,7 +129,7 @@ pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
 
 struct Setting {
     tool: u32,
-    /// Of the holes as the simulation made them.
+    /// Angle of the holes in the simulation, degrees.
     angle: Option<f64>,
     radius: f64,
     holes: Vec<String>,
@@ -139,7 +139,7 @@ fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
     let angle = |id: &str| {
         let hole = verdict.holes.iter().find(|hole| hole.id == id)?;
         let [x, y, z] = hole.actual.axis;
-        // In the plane z = 0 to which the table brings it; rounded like the angle that was set.
+        // In the plane z = 0, to which the table rotates it; rounded like the angle that was set.
         let angle = Deg::atan2(y, (x * x + z * z).sqrt()).0;
         Some(job.control.increment.round(angle))
     };
@@ -157,10 +157,10 @@ fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
     all
 }
 
-/// What the control must be set to for the numbers of this sheet.
+/// Returns the control settings on which the numbers of this sheet depend.
 pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
     let [slide, turn] = sheet.record.rapids;
-    let codes: Vec<String> = sheet.record.passed_on.iter().map(|code| format!("M{code:02}")).collect();
+    let codes: Vec<String> = sheet.record.auxiliary_codes.iter().map(|code| format!("M{code:02}")).collect();
     html! {
         div.together {
             h2 { "Control requirements" }
@@ -177,20 +177,20 @@ pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// The switches that the programs depend on.
+/// Returns the switches that the programs depend on.
 fn needed(sheet: &Sheet<'_>) -> Markup {
-    let (needed, waiting) = (&sheet.needed, &sheet.record.waiting);
+    let (needed, waiting) = (&sheet.required_settings, &sheet.record.alarmed_programs);
     html! {
         @for one in needed {
             li {
-                b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.otherwise) "."
+                b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.consequence) "."
             }
         }
         @if sheet.package.mains.len() > waiting.len() {
           li {
             "All settings in which controls differ (" code { "gcode-sim settings" } " lists them) were changed one by one: "
             @if needed.is_empty() { "none" } @else { "no other" }
-            " changes what the first " (BLOCKS) " blocks of a run do."
+            " changes what the first " (MAX_BLOCKS) " blocks of a run do."
             @if !waiting.is_empty() {
                 " Not tried with " (waiting.join(", ")) ", which ends in an alarm on a part in its nominal position."
             }

@@ -1,16 +1,16 @@
-//! The operator's stops in their order: what the control shows, what to do, a box to tick.
+//! The operator stops in order: message, actions, a box to tick.
 use gcode_part::job::Job;
-use gcode_sim::report::figures::{count, near};
+use gcode_sim::report::figures::{count, rounded};
 use maud::{Markup, html};
 
 use super::{cell, table};
 use crate::sheet::Sheet;
 use crate::sheet::record::OperatorStop;
-use crate::sheet::stop_instructions::duty;
+use crate::sheet::stop_instructions::instructions;
 
 pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
     let stops = &sheet.record.stops;
-    let waiting = &sheet.record.waiting;
+    let waiting = &sheet.record.alarmed_programs;
     if stops.is_empty() {
         return html! {
             h2 { "Operator stops" }
@@ -25,8 +25,8 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
             html! { (index + 1) },
             shown(stop),
             html! { @if let Some(tool) = stop.tool { "T" (tool) } },
-            html! { ol { @for step in duty(sheet.job, stop) { li { (step) } } } },
-            cell(near(stop.after / 60.0, 1)),
+            html! { ol { @for step in instructions(sheet.job, stop) { li { (step) } } } },
+            cell(rounded(stop.elapsed / 60.0, 1)),
             html! { span.tick {} },
         ]
     });
@@ -39,7 +39,7 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// Of a part to be set up: each program needs what those before it have put right.
+/// Returns the sequence of the alignment programs: each needs the corrections of those before it.
 fn order_of_the_work() -> Markup {
     html! {
         p {
@@ -55,7 +55,7 @@ fn order_of_the_work() -> Markup {
     }
 }
 
-/// Programs that couldn't be followed to their ends.
+/// Returns a note on programs that could not be simulated to their ends.
 fn unknown(waiting: &[String]) -> Markup {
     html! {
         @if !waiting.is_empty() {
@@ -66,9 +66,10 @@ fn unknown(waiting: &[String]) -> Markup {
     }
 }
 
-/// The message as the control shows it, and where the program stands.
+/// Returns the message as the control shows it, and its block and calls.
 fn shown(stop: &OperatorStop) -> Markup {
-    let at = stop.at.iter().map(|(program, line)| format!("{program} line {line}")).collect::<Vec<_>>();
+    let at =
+        stop.locations.iter().map(|(program, line)| format!("{program} line {line}")).collect::<Vec<_>>();
     html! {
         b { (stop.kind.name()) } " " span.mono { (stop.text) }
         div.note { (at.join(", called from ")) }

@@ -1,25 +1,25 @@
-//! Run time, and where rates are given the cost, beside the same part on other machines.
-use gcode_sim::report::figures::{near, short, signed_to};
+//! Running time and, with rates, the cost, compared with other machines.
+use gcode_sim::report::figures::{rounded, short, signed_to};
 use maud::{Markup, html};
 
 use super::{cell, table};
-use crate::sheet::cost::{Cost, MachineTime, costs, taken};
+use crate::sheet::cost::{Cost, MachineTime, costs, machine_time};
 use crate::sheet::{BASIS, Sheet};
 
 pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
     let times = sheet.record.times;
-    let own = taken(sheet.job.sheet(), &sheet.record);
-    let minutes = |seconds: f64| near(seconds / 60.0, 1);
+    let own = machine_time(sheet.job.sheet(), &sheet.record);
+    let minutes = |seconds: f64| rounded(seconds / 60.0, 1);
     html! {
         div.together {
             h2 { "Run time and cost" }
-            @if sheet.record.waiting.len() < sheet.package.mains.len() { p {
-                "The program runs " b { (minutes(times.all())) " min" } ": feed " (minutes(times.feed)) ", rapid "
+            @if sheet.record.alarmed_programs.len() < sheet.package.mains.len() { p {
+                "The program runs " b { (minutes(times.total())) " min" } ": feed " (minutes(times.feed)) ", rapid "
                 (minutes(times.rapid)) ", dwell " (minutes(times.dwell)) ". " (BASIS) ": paths divided by feeds and rapid rates, "
                 "without acceleration, which makes it longer at the machine."
             } }
-            @if !sheet.record.waiting.is_empty() {
-                p { "Without " (sheet.record.waiting.join(", ")) ", which ends in an alarm on a part in its nominal position." }
+            @if !sheet.record.alarmed_programs.is_empty() {
+                p { "Without " (sheet.record.alarmed_programs.join(", ")) ", which ends in an alarm on a part in its nominal position." }
             }
             @match sheet.rates {
                 Some(rates) => {
@@ -39,19 +39,19 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// `6 × 10`, or that nobody said.
+/// Returns `60.0 (6 × 10)`, or that the time is not given.
 fn times(count: usize, each: Option<f64>, all: Option<f64>) -> String {
     match (count, each, all) {
         (0, ..) => "none".to_owned(),
-        (_, Some(each), Some(all)) => format!("{} ({count} × {})", near(all, 1), short(each)),
+        (_, Some(each), Some(all)) => format!("{} ({count} × {})", rounded(all, 1), short(each)),
         _ => format!("not given ({count})"),
     }
 }
 
 fn parts(taken: &MachineTime) -> [String; 4] {
     [
-        taken.minutes.setup.map_or("not given".to_owned(), |minutes| near(minutes, 1)),
-        near(taken.run, 1),
+        taken.minutes.setup.map_or("not given".to_owned(), |minutes| rounded(minutes, 1)),
+        rounded(taken.run, 1),
         times(taken.stops, taken.minutes.stop, taken.all_stops()),
         times(taken.tool_changes, taken.minutes.tool_change, taken.all_tool_changes()),
     ]
@@ -60,7 +60,7 @@ fn parts(taken: &MachineTime) -> [String; 4] {
 const PARTS: [&str; 4] = ["set-up, min", "run, min", "operator stops, min", "tool changes, min"];
 
 fn time_table(own: &MachineTime) -> Markup {
-    let sum = (near(own.all(), 1), near(own.all() / 60.0, 2));
+    let sum = (rounded(own.total(), 1), rounded(own.total() / 60.0, 2));
     let rows = PARTS.iter().zip(parts(own)).map(|(name, value)| vec![cell(name), cell(value)]);
     let last = vec![html! { b { "machine time, min" } }, html! { b { (sum.0) " (" (sum.1) " h)" } }];
     table(&["", "#this job"], rows.chain([last]))
@@ -72,22 +72,22 @@ fn cost_table(all: &[Cost], currency: &str) -> Markup {
         .iter()
         .enumerate()
         .map(|(row, name)| {
-            let values = all.iter().map(|cost| cell(&parts(&cost.taken)[row]));
+            let values = all.iter().map(|cost| cell(&parts(&cost.time)[row]));
             std::iter::once(cell(name)).chain(values).collect()
         })
         .collect();
     let mut row = |name: String, value: &dyn Fn(&Cost) -> Markup| {
         rows.push(std::iter::once(cell(name)).chain(all.iter().map(value)).collect());
     };
-    row("machine time, h".to_owned(), &|cost| cell(near(cost.taken.all() / 60.0, 2)));
+    row("machine time, h".to_owned(), &|cost| cell(rounded(cost.time.total() / 60.0, 2)));
     row(format!("rate, {currency} a machine hour"), &|cost| cell(short(cost.rate)));
-    row(format!("cost of one part, {currency}"), &|cost| html! { b { (near(cost.cost(), 2)) } });
+    row(format!("cost of one part, {currency}"), &|cost| html! { b { (rounded(cost.cost(), 2)) } });
     let columns: Vec<String> =
         std::iter::once(String::new()).chain(names.map(|name| format!("#{name}"))).collect();
     table(&columns.iter().map(String::as_str).collect::<Vec<_>>(), rows)
 }
 
-/// One sentence with the difference.
+/// Returns one sentence with the difference.
 fn beside(own: &Cost, other: &Cost) -> Markup {
     html! {
         p {
@@ -96,7 +96,7 @@ fn beside(own: &Cost, other: &Cost) -> Markup {
                 Some(change) => b { (signed_to(change, 1)) " %" },
                 None => "not compared: a time is given for one of them only",
             }
-            " (" (near(own.cost(), 2)) " beside " (near(other.cost(), 2)) ")."
+            " (" (rounded(own.cost(), 2)) " beside " (rounded(other.cost(), 2)) ")."
         }
     }
 }
@@ -107,7 +107,7 @@ fn assumed(all: &[Cost]) -> Markup {
             p.note {
                 "Assumed, not simulated: the other machines have the same numbers of stops and tool changes, and the same "
                 "times where none are given"
-                @if all.iter().skip(1).any(|cost| !cost.run_given) { ", the run time too" }
+                @if all.iter().skip(1).any(|cost| !cost.is_run_specified) { ", the run time too" }
                 ". Rates and minutes are the user's."
             }
         }
@@ -119,7 +119,7 @@ fn uncounted(own: &MachineTime) -> Markup {
     html! {
         @if !keys.is_empty() {
             p.note {
-                "Not counted, because the job's section " code { "[sheet]" } " doesn't say it: " (keys.join(", ")) "."
+                "Not counted, because the job's section " code { "[sheet]" } " does not give it: " (keys.join(", ")) "."
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Curves over a way: graphs one above the other over the same way, with numbers at round places, bands and signs.
+//! Charts: graphs above one another over a common abscissa, with ticks, tolerance bands and markers.
 use super::ink::{Align, Dash, DrawCommand, Px, Rect, Rgb, px};
 use super::obstacle::Obstacle;
 use super::palette;
@@ -7,53 +7,60 @@ use super::symbol;
 use super::ticks::Ticks;
 use super::words::Words;
 
-/// Graphs over one way.
+/// Graphs over a common abscissa, usually a distance in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
-    /// What is counted to the right, with its unit.
-    pub across: String,
-    /// Upright lines at places of the way, with their names.
+    /// Name of the abscissa, with its unit.
+    pub x_label: String,
+    /// Vertical guide lines: abscissa and caption.
     pub guides: Vec<(f64, String)>,
-    /// From where to where nothing is known, marked as such.
+    /// Intervals of the abscissa without data, marked as such.
     pub gaps: Vec<[f64; 2]>,
-    /// From above down.
+    /// Graphs from top to bottom.
     pub graphs: Vec<Graph>,
 }
 
-/// What is counted upwards over the way.
+/// One graph: curves, tolerance band and markers over the chart's abscissa.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Graph {
-    /// With its unit.
-    pub up: String,
+    /// Name of the ordinate, with its unit.
+    pub y_label: String,
+    /// Curves, the later ones on top.
     pub curves: Vec<Curve>,
-    /// What is allowed: way, least, greatest.
+    /// Tolerance band: abscissa, lower limit, upper limit.
     pub band: Vec<[f64; 3]>,
-    /// Zero has a line of its own and is never left out.
-    pub zero: bool,
-    pub signs: Vec<ChartMarker>,
+    /// Whether zero is in range and has a line of its own.
+    pub has_zero_line: bool,
+    /// Markers with a name.
+    pub markers: Vec<ChartMarker>,
 }
 
-/// A line of a graph.
+/// A polyline of a graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
+    /// Abscissa and ordinate, in the units of the axes.
     pub points: Vec<Point>,
+    /// Line style.
     pub pen: Pen,
-    /// Drawn as far as the graph reaches that the others need.
-    pub guest: bool,
+    /// Whether the curve is left out of the graph's range and clipped to it.
+    pub is_clipped: bool,
 }
 
-/// A place of a graph to look at, with what it is.
+/// A named marker in a graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChartMarker {
-    pub at: Point,
-    pub standing: HoleStatus,
+    /// Abscissa and ordinate of the marker.
+    pub position: Point,
+    /// Status that selects the symbol.
+    pub status: HoleStatus,
+    /// Text beside the symbol.
     pub name: String,
 }
 
 impl Chart {
-    /// Into an area of the page.
+    /// Draws the graphs into an area of the page.
     pub(super) fn draw(&self, area: Rect, words: &mut Words<'_>) {
-        let (text, soft) = (words.text, palette::SOFT_TEXT);
+        let (text, soft) = (words.text_size, palette::SOFT_TEXT);
         let count = self.graphs.len().max(1) as f64;
         let guided = if self.guides.is_empty() { 0.0 } else { 1.4 * text };
         let (head, gap, foot) = (2.0 * text, 0.8 * text, 3.4 * text);
@@ -71,16 +78,16 @@ impl Chart {
         let mut top = area.top + guided;
         for (index, (graph, range)) in self.graphs.iter().zip(&ranges).enumerate() {
             let frame = Rect { left: west, top: top + head, right: east, bottom: top + head + tall };
-            words.write(px(area.left, top + text), Align::Left, text, soft, &graph.up, area.width());
+            words.write(px(area.left, top + text), Align::Left, text, soft, &graph.y_label, area.width());
             let place = ChartArea { frame, x: &x, range };
             graph.draw_band(&place, words);
             let grid = palette::pen(Pen::Grid, text);
             for at in across.all().map(x) {
-                words.inks.push(stroke(vec![px(at, frame.bottom), px(at, frame.top)], grid));
+                words.commands.push(stroke(vec![px(at, frame.bottom), px(at, frame.top)], grid));
             }
             for (at, name) in &self.guides {
                 let pen = palette::pen(Pen::Construction, text);
-                words.inks.push(stroke(vec![px(x(*at), frame.bottom), px(x(*at), frame.top)], pen));
+                words.commands.push(stroke(vec![px(x(*at), frame.bottom), px(x(*at), frame.top)], pen));
                 if index == 0 {
                     words.write_if_free(px(x(*at), frame.top - 0.5 * text), Align::Centre, text, soft, name);
                 }
@@ -95,29 +102,29 @@ impl Chart {
             words.write(base, Align::Centre, text, soft, &across.name(at), east - west);
         }
         let middle = px((west + east) / 2.0, bottom + foot);
-        words.write(middle, Align::Centre, text, soft, &self.across, area.width());
+        words.write(middle, Align::Centre, text, soft, &self.x_label, area.width());
     }
 }
 
 impl Chart {
-    /// Between two upright lines a thick one at zero.
+    /// Draws two vertical lines for each gap and a thick line at zero between them.
     fn draw_gaps(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
-        let (text, frame) = (words.text, place.frame);
-        let color = palette::standing(HoleStatus::Bad);
+        let (text, frame) = (words.text_size, place.frame);
+        let color = palette::status_colour(HoleStatus::Bad);
         let dash = Dash::Pattern([0.25 * text, 0.35 * text]);
         for [from, to] in self.gaps.iter().map(|gap| gap.map(place.x)) {
             for x in [from, to] {
                 let upright = vec![px(x, frame.bottom), px(x, frame.top)];
-                words.inks.push(stroke(upright, (color, 0.1 * text, dash)));
+                words.commands.push(stroke(upright, (color, 0.1 * text, dash)));
             }
             let level = place.px([0.0, 0.0]).y.clamp(frame.top, frame.bottom);
             let along = vec![px(from, level), px(to, level)];
-            words.inks.push(stroke(along, (color, 0.4 * text, Dash::Solid)));
+            words.commands.push(stroke(along, (color, 0.4 * text, Dash::Solid)));
         }
     }
 }
 
-/// Where a graph stands on the sheet.
+/// The frame of one graph on the sheet, with its scales.
 struct ChartArea<'c> {
     frame: Rect,
     x: &'c dyn Fn(f64) -> f64,
@@ -130,7 +137,7 @@ impl ChartArea<'_> {
         px((self.x)(x), self.frame.bottom - self.frame.height() * (y - low) / (high - low))
     }
 
-    /// A level line from side to side.
+    /// Returns a horizontal line across the frame.
     fn level(&self, at: f64, pen: (Rgb, f64, Dash)) -> DrawCommand {
         let y = self.px([0.0, at]).y;
         stroke(vec![px(self.frame.left, y), px(self.frame.right, y)], pen)
@@ -143,40 +150,40 @@ impl Graph {
         if 1 < self.band.len() {
             let (low, high): (Vec<Px>, Vec<Px>) = (edge(1).collect(), edge(2).collect());
             let points = low.iter().chain(high.iter().rev()).copied().collect();
-            words.inks.push(DrawCommand::Area { points, color: palette::BAND });
-            let pen = palette::pen(Pen::Limit, words.text);
-            words.inks.extend([low, high].map(|points| stroke(points, pen)));
+            words.commands.push(DrawCommand::Area { points, color: palette::BAND });
+            let pen = palette::pen(Pen::Limit, words.text_size);
+            words.commands.extend([low, high].map(|points| stroke(points, pen)));
         }
     }
 
     fn draw(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
-        let (text, ticks) = (words.text, &place.range.ticks);
+        let (text, ticks) = (words.text_size, &place.range.ticks);
         for at in ticks.all() {
-            words.inks.push(place.level(at, palette::pen(Pen::Grid, text)));
+            words.commands.push(place.level(at, palette::pen(Pen::Grid, text)));
             let beside = px(place.frame.left - 0.5 * text, place.px([0.0, at]).y + 0.36 * text);
             let room = place.frame.left;
             words.write(beside, Align::Right, text, palette::SOFT_TEXT, &ticks.name(at), room);
         }
-        if self.zero {
-            words.inks.push(place.level(0.0, (palette::TEXT, 0.08 * text, Dash::Solid)));
+        if self.has_zero_line {
+            words.commands.push(place.level(0.0, (palette::TEXT, 0.08 * text, Dash::Solid)));
         }
         for curve in &self.curves {
             let Range { low, high, .. } = *place.range;
             for piece in between(&curve.points, low, high) {
                 let points = piece.into_iter().map(|point| place.px(point)).collect();
-                words.inks.push(stroke(points, palette::pen(curve.pen, text)));
+                words.commands.push(stroke(points, palette::pen(curve.pen, text)));
             }
         }
-        for sign in &self.signs {
-            let at = place.px(sign.at);
-            words.inks.extend(symbol::standing(sign.standing, at, 0.55 * text));
+        for sign in &self.markers {
+            let at = place.px(sign.position);
+            words.commands.extend(symbol::status_sign(sign.status, at, 0.55 * text));
             self.name(sign, at, place, words);
         }
     }
 
-    /// Writes what a sign stands for where no curve runs: beside it, else above or below.
+    /// Writes a marker's name where no curve runs: beside the symbol, else above or below it.
     fn name(&self, sign: &ChartMarker, at: Px, place: &ChartArea<'_>, words: &mut Words<'_>) {
-        let text = words.text;
+        let text = words.text_size;
         let beside = [(Align::Left, 0.8), (Align::Right, -0.8)];
         let level = beside.map(|(align, x)| (align, px(at.x + x * text, at.y + 0.36 * text)));
         let above = beside.map(|(align, x)| (align, px(at.x - x * text, at.y - text)));
@@ -197,7 +204,7 @@ fn stroke(points: Vec<Px>, (color, width, dash): (Rgb, f64, Dash)) -> DrawComman
     DrawCommand::Line { points, closed: false, width: width.max(1.0), dash, color }
 }
 
-/// The pieces of a curve from `low` to `high`.
+/// Returns the pieces of a curve between the ordinates `low` and `high`.
 fn between(points: &[Point], low: f64, high: f64) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     for pair in points.windows(2) {
@@ -227,7 +234,7 @@ fn between(points: &[Point], low: f64, high: f64) -> Vec<Vec<Point>> {
     pieces
 }
 
-/// From where to where a graph reaches, and the numbers beside it.
+/// Range of a graph's ordinate and its ticks.
 struct Range {
     low: f64,
     high: f64,
@@ -236,11 +243,11 @@ struct Range {
 
 impl Range {
     fn of(graph: &Graph, tall: f64, text: f64) -> Self {
-        let fitted = graph.curves.iter().filter(|curve| !curve.guest);
+        let fitted = graph.curves.iter().filter(|curve| !curve.is_clipped);
         let curves = fitted.flat_map(|curve| &curve.points).map(|point| point[1]);
         let band = graph.band.iter().flat_map(|[_, low, high]| [*low, *high]);
-        let signs = graph.signs.iter().map(|sign| sign.at[1]);
-        let zero = graph.zero.then_some(0.0);
+        let signs = graph.markers.iter().map(|sign| sign.position[1]);
+        let zero = graph.has_zero_line.then_some(0.0);
         let (low, high) = spread(curves.chain(band).chain(signs).chain(zero), 1e-3);
         let room = 0.05 * (high - low);
         let (low, high) = (low - room, high + room);
@@ -248,7 +255,7 @@ impl Range {
     }
 }
 
-/// The least and the greatest value; where they are as good as one, `least` apart.
+/// Returns the least and the greatest value; values closer together than `least` give a range of that width.
 fn spread(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
     let reach = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), reach);
@@ -263,7 +270,7 @@ fn spread(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Up from 0 to 4 and down again, seen between 1 and 3: two pieces, cut where the line is at 1 and at 3.
+    /// A curve from 0 up to 4 and down again, clipped to 1 to 3, gives two pieces that end on the limits.
     #[test]
     fn a_curve_is_cut_where_it_leaves_its_graph() {
         let roof = [[0.0, 0.0], [4.0, 4.0], [8.0, 0.0]];
@@ -275,7 +282,11 @@ mod tests {
 
     #[test]
     fn a_graph_reaches_as_far_as_what_it_shows() {
-        let curve = |y: f64, guest: bool| Curve { points: vec![[0.0, y], [9.0, y]], pen: Pen::First, guest };
+        let curve = |y: f64, guest: bool| Curve {
+            points: vec![[0.0, y], [9.0, y]],
+            pen: Pen::First,
+            is_clipped: guest,
+        };
         let graph = Graph {
             curves: vec![curve(20.1, false), curve(70.0, true)],
             band: vec![[0.0, 19.7, 20.3], [9.0, 19.7, 20.3]],
@@ -283,7 +294,7 @@ mod tests {
         };
         let range = Range::of(&graph, 400.0, 10.0);
         assert!((range.low - 19.67).abs() < 1e-9 && (range.high - 20.33).abs() < 1e-9);
-        let range = Range::of(&Graph { zero: true, ..graph }, 400.0, 10.0);
+        let range = Range::of(&Graph { has_zero_line: true, ..graph }, 400.0, 10.0);
         assert!(range.low < 0.0 && range.high < 22.0);
     }
 }

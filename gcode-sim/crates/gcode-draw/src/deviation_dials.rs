@@ -1,4 +1,4 @@
-//! How much can be shown of each hole: where there is room for a dial with the misfit, how large, how enlarged.
+//! Level of detail per hole: which holes have a dial with their deviation, its size and its magnification.
 use nalgebra::Point3;
 
 use super::frame::{Frame, LABEL_LIMIT};
@@ -8,55 +8,56 @@ use super::role::HoleStatus;
 use super::scene::{Mark, Scene};
 use gcode_part::PointTree;
 
-/// Nearer than this, in heights of a line, one sign would cover another: that of a surplus hole moves aside.
-pub(super) const COVERING: f64 = 0.8;
+/// Distance in text heights below which two symbols overlap; the symbol of an extra hole then moves aside.
+pub(super) const MIN_SIGN_DISTANCE: f64 = 0.8;
 
-/// How much is drawn of the holes, tried in this order until every hole has its number.
+/// Level of detail, tried in this order until every hole has its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
     AllDeviations,
-    MisfitsOfBadOnes,
+    BadDeviations,
     Signs,
     SignsWithoutAxes,
 }
 
 impl Detail {
     pub(super) const ALL: [Self; 4] =
-        [Self::AllDeviations, Self::MisfitsOfBadOnes, Self::Signs, Self::SignsWithoutAxes];
+        [Self::AllDeviations, Self::BadDeviations, Self::Signs, Self::SignsWithoutAxes];
 
-    fn shows_misfit(self, mark: &Mark) -> bool {
-        mark.misfit.is_some()
+    fn shows_deviation(self, mark: &Mark) -> bool {
+        mark.deviation.is_some()
             && match self {
                 Self::AllDeviations => true,
-                Self::MisfitsOfBadOnes => !mark.standing.is_good(),
+                Self::BadDeviations => !mark.status.is_good(),
                 Self::Signs | Self::SignsWithoutAxes => false,
             }
     }
 }
 
-/// Where misfits are shown on this sheet, and how large.
+/// The dials of one sheet: which holes have one, and how large.
 #[derive(Clone, Debug)]
 pub(super) struct DeviationDials {
-    /// Times enlarged and radius of the zone's circle in pixels.
-    pub(super) shown: Option<(f64, f64)>,
+    /// Magnification, and radius of the tolerance zone's circle in pixels.
+    pub(super) zone_circle: Option<(f64, f64)>,
     /// Whether a hole has a dial.
-    has: Vec<bool>,
+    has_dial: Vec<bool>,
     /// Distance of each hole to its nearest neighbour, pixels.
     gaps: Vec<f64>,
     /// Whether a hole may shrink to a dot.
-    dots: Vec<bool>,
+    can_be_dot: Vec<bool>,
     pub(super) detail: Detail,
 }
 
 impl DeviationDials {
-    /// As large as the distances of three in four holes allow, but legible; a hole closer to a neighbour has none.
+    /// Chooses the size from the spacing of three quarters of the holes; a hole closer to a neighbour has no
+    /// dial.
     pub(super) fn choose(scene: &Scene, frame: &Frame, detail: Detail) -> Self {
         let gaps = gaps(scene, frame);
-        let wanted: Vec<bool> = scene.marks.iter().map(|mark| detail.shows_misfit(mark)).collect();
+        let wanted: Vec<bool> = scene.marks.iter().map(|mark| detail.shows_deviation(mark)).collect();
         let mut room: Vec<f64> = gaps.iter().zip(&wanted).filter(|(_, w)| **w).map(|(gap, _)| *gap).collect();
         room.sort_by(f64::total_cmp);
         let quarter = room.get(room.len() / 4).copied().unwrap_or(0.0);
-        let most = (0.42 * quarter).min(frame.largest_dial).max(0.8 * frame.text);
+        let most = (0.42 * quarter).min(frame.largest_dial).max(0.8 * frame.text_size);
         let shown = scene.zone.filter(|zone| 0.0 < *zone).map(|zone| {
             let times = magnification(most / (zone / 2.0 * frame.scale.factor));
             (times, times * zone / 2.0 * frame.scale.factor)
@@ -64,48 +65,48 @@ impl DeviationDials {
         let radius = shown.map_or(f64::INFINITY, |(_, radius)| radius);
         let has: Vec<bool> = wanted.iter().zip(&gaps).map(|(w, gap)| *w && 2.0 * radius <= *gap).collect();
         let many = LABEL_LIMIT < scene.marks.len();
-        // Where hundreds aren't good, none of them stands out any more, and what counts is where they lie.
-        let dense = LABEL_LIMIT < scene.marks.iter().filter(|mark| !mark.standing.is_good()).count();
-        let dots = scene.marks.iter().map(|mark| many && (dense || mark.standing.is_good())).collect();
-        Self { shown, has, gaps, dots, detail }
+        // Among hundreds of bad holes none stands out, and their positions matter more.
+        let dense = LABEL_LIMIT < scene.marks.iter().filter(|mark| !mark.status.is_good()).count();
+        let dots = scene.marks.iter().map(|mark| many && (dense || mark.status.is_good())).collect();
+        Self { zone_circle: shown, has_dial: has, gaps, can_be_dot: dots, detail }
     }
 
-    /// Times enlarged and radius of the circle, for a hole that has a dial.
-    pub(super) fn of(&self, index: usize) -> Option<(f64, f64)> {
-        self.shown.filter(|_| self.has[index])
+    /// Returns magnification and circle radius for a hole that has a dial.
+    pub(super) fn dial(&self, index: usize) -> Option<(f64, f64)> {
+        self.zone_circle.filter(|_| self.has_dial[index])
     }
 
-    /// Times enlarged, if any misfit is drawn.
+    /// Returns the magnification if any deviation is drawn.
     pub(super) fn magnification(&self) -> Option<f64> {
-        self.shown.filter(|_| self.has.contains(&true)).map(|(times, _)| times)
+        self.zone_circle.filter(|_| self.has_dial.contains(&true)).map(|(times, _)| times)
     }
 
-    /// Radius of a hole's sign: as large as its neighbours allow, but legible. Among thousands a good hole may be a
-    /// mere dot, so that those that aren't good stand out.
+    /// Returns the radius of a hole's symbol: as large as its neighbours allow, but legible. Among hundreds a
+    /// good hole may be a mere dot, so that bad holes stand out.
     pub(super) fn badge(&self, index: usize, text: f64) -> f64 {
-        let least = if self.dots[index] { 1.2 } else { 0.28 * text };
+        let least = if self.can_be_dot[index] { 1.2 } else { 0.28 * text };
         (0.36 * self.gaps[index]).min(0.55 * text).max(least)
     }
 
-    /// Whether the hole is one of so many that its sign may shrink to a dot in its very place.
+    /// Returns true if the hole's symbol may shrink to a dot at its exact position.
     pub(super) fn is_dot(&self, index: usize) -> bool {
-        self.dots[index]
+        self.can_be_dot[index]
     }
 
-    /// Whether holes of such standings are drawn as they are, without a sign.
-    pub(super) fn are_plain(&self, scene: &Scene, of: impl Fn(HoleStatus) -> bool) -> bool {
-        self.dots.iter().zip(&scene.marks).any(|(dot, mark)| *dot && of(mark.standing))
+    /// Returns true if holes whose status satisfies `of` are drawn to scale, without a symbol.
+    pub(super) fn has_plain(&self, scene: &Scene, of: impl Fn(HoleStatus) -> bool) -> bool {
+        self.can_be_dot.iter().zip(&scene.marks).any(|(dot, mark)| *dot && of(mark.status))
     }
 
-    /// Signs that lie on each other: a label beside them could belong to either.
+    /// Returns true if the symbol overlaps another: a label beside them could belong to either.
     pub(super) fn is_crowded(&self, index: usize, text: f64) -> bool {
         self.gaps[index] < 2.0 * self.badge(index, text)
     }
 
-    /// What is left out.
+    /// Returns a note that counts the omitted deviations.
     pub(super) fn note(&self, scene: &Scene) -> Option<String> {
-        let known = scene.marks.iter().filter(|m| m.misfit.is_some() && scene.zone.is_some()).count();
-        match known - self.has.iter().filter(|has| **has).count() {
+        let known = scene.marks.iter().filter(|m| m.deviation.is_some() && scene.zone.is_some()).count();
+        match known - self.has_dial.iter().filter(|has| **has).count() {
             0 => None,
             left if left == known => Some("Deviations not drawn: no room.".to_owned()),
             left => Some(format!("Deviations of {left} of {known} holes not drawn: no room.")),
@@ -113,16 +114,17 @@ impl DeviationDials {
     }
 }
 
-/// The distance from each hole to its nearest neighbour, pixels. A surplus hole in the place of another doesn't count:
-/// its sign moves aside.
+/// Returns the distance from each hole to its nearest neighbour, pixels. An extra hole at the position of
+/// another does not count: its symbol moves aside.
 fn gaps(scene: &Scene, frame: &Frame) -> Vec<f64> {
-    let places: Vec<Px> = scene.marks.iter().map(|mark| frame.scale.px(mark.at)).collect();
+    let places: Vec<Px> = scene.marks.iter().map(|mark| frame.scale.px(mark.position)).collect();
     let flat = |place: &Px| Point3::new(place.x, place.y, 0.0);
     let tree = PointTree::new(places.iter().map(flat));
-    let is_extra = |index: usize| scene.marks[index].standing == HoleStatus::Extra;
+    let is_extra = |index: usize| scene.marks[index].status == HoleStatus::Extra;
     let gap = |(index, place): (usize, &Px)| {
         let counts = |other: usize, distance: f64| {
-            other != index && (COVERING * frame.text <= distance || !is_extra(index) && !is_extra(other))
+            other != index
+                && (MIN_SIGN_DISTANCE * frame.text_size <= distance || !is_extra(index) && !is_extra(other))
         };
         tree.nearest_matching(&flat(place), &counts).map_or(f64::INFINITY, |(_, distance)| distance)
     };
@@ -139,13 +141,21 @@ mod tests {
 
     fn mark(at: [f64; 2], standing: HoleStatus) -> Mark {
         let misfit = Some(ZoneDeviation { entry: [0.01, 0.0], bottom: [0.01, 0.0] });
-        Mark { at, radius: 3.0, standing, label: Vec::new(), direction: None, misfit, found: None }
+        Mark {
+            position: at,
+            radius: 3.0,
+            status: standing,
+            label: Vec::new(),
+            direction: None,
+            deviation: misfit,
+            actual: None,
+        }
     }
 
-    /// 1 px a mm, text of 10 px.
+    /// 1 px per mm, text of 10 px.
     fn frame() -> Frame {
         let scale = Scale::fitting(([0.0, 0.0], [100.0, 100.0]), Rect::new(0.0, 0.0, 100.0, 100.0));
-        Frame { font: Font::embedded(), text: 10.0, scale, largest_dial: 25.0, axis_reach: 20.0 }
+        Frame { font: Font::embedded(), text_size: 10.0, scale, largest_dial: 25.0, axis_reach: 20.0 }
     }
 
     #[test]
@@ -153,7 +163,7 @@ mod tests {
         let marks = vec![mark([0.0, 0.0], HoleStatus::Good), mark([50.0, 0.0], HoleStatus::Good)];
         let scene = Scene { marks, zone: Some(0.1), ..Scene::default() };
         let dials = DeviationDials::choose(&scene, &frame(), Detail::AllDeviations);
-        // 0.42 of 50 px are 21 px; the zone's radius is 0.05 px: 420 times at most.
+        // 0.42 of 50 px is 21 px; the zone's radius is 0.05 px: at most 420 times.
         assert_eq!(dials.magnification().map(|m| m.round()), Some(400.0));
         assert_eq!(dials.note(&scene), None);
     }
@@ -165,8 +175,8 @@ mod tests {
         marks.push(mark([3.0, 0.0], HoleStatus::Good));
         let scene = Scene { marks, zone: Some(0.1), ..Scene::default() };
         let dials = DeviationDials::choose(&scene, &frame(), Detail::AllDeviations);
-        assert_eq!((dials.of(0), dials.of(8)), (None, None));
-        assert!(dials.of(4).is_some());
+        assert_eq!((dials.dial(0), dials.dial(8)), (None, None));
+        assert!(dials.dial(4).is_some());
         assert!(dials.is_crowded(0, 10.0) && !dials.is_crowded(4, 10.0));
         assert_eq!(dials.note(&scene).unwrap(), "Deviations of 2 of 9 holes not drawn: no room.");
     }

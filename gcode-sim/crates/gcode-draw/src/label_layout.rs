@@ -1,10 +1,10 @@
-//! Letters holes and lines: as many lines of every label as there is room for, and a note of what had none.
+//! Labels of holes and lines: as many lines of each label as fit, and notes on omitted ones.
 use super::font::{ASCENT, DESCENT};
 use super::frame::{Frame, LABEL_LIMIT};
 use super::ink::{Align, DrawCommand, Px, Rect, px};
 use super::labels::{LabelArea, LabelPlacement, LeaderRule, Symbol};
 use super::lines::is_path;
-use super::marks::Drawn;
+use super::marks::DrawnMark;
 use super::obstacle::Obstacle;
 use super::palette;
 use super::role::Pen;
@@ -12,29 +12,29 @@ use super::scene::{Mark, Scene, Shape, Stroke};
 use super::symbol;
 use gcode_lang::units::Deg;
 
-/// Height of a line of text in parts of its size.
+/// Line spacing in parts of the text size.
 const LEADING: f64 = 1.18;
 
 /// The labels of all holes, placed.
 pub(super) struct LabelLayout {
-    /// The field with the labels in it.
+    /// The label area with these labels in it.
     pub(super) field: LabelArea,
     labels: Vec<Label>,
 }
 
-/// Which hole, where, and how many lines of its label.
+/// A placed label: hole, position and number of lines shown.
 struct Label {
     mark: usize,
-    spot: LabelPlacement,
+    placement: LabelPlacement,
     lines: usize,
 }
 
 impl LabelLayout {
-    /// As many lines for every good hole as all good holes have room for; the others get all they can, unless that
-    /// costs others their number.
-    pub(super) fn of(scene: &Scene, drawn: &[Drawn], frame: &Frame, field: &LabelArea) -> Self {
+    /// Gives all good holes the same number of label lines, as many as fit. Bad holes get all their lines
+    /// unless that costs another hole its number.
+    pub(super) fn of(scene: &Scene, drawn: &[DrawnMark], frame: &Frame, field: &LabelArea) -> Self {
         let mut order: Vec<usize> = (0..scene.marks.len()).collect();
-        order.sort_by_key(|i| (scene.marks[*i].standing, *i));
+        order.sort_by_key(|i| (scene.marks[*i].status, *i));
         order.truncate(LABEL_LIMIT);
         let most = scene.marks.iter().map(|m| m.label.len()).max().unwrap_or(0);
         let mut best = Self { field: field.clone(), labels: Vec::new() };
@@ -57,23 +57,32 @@ impl LabelLayout {
         (good, bad): (usize, usize),
         order: &[usize],
         scene: &Scene,
-        drawn: &[Drawn],
+        drawn: &[DrawnMark],
         frame: &Frame,
         field: LabelArea,
     ) -> Self {
         let mut trial = Self { field, labels: Vec::new() };
         for i in order {
             let (mark, hole) = (&scene.marks[*i], &drawn[*i]);
-            let full = if mark.standing.is_good() { good } else { bad }.min(mark.label.len());
-            let way = if hole.crowded { LeaderRule::OutOfCrowd } else { LeaderRule::Clear };
-            let found = trial.place(mark, full, Symbol { at: hole.centre, clear: hole.clear, way }, frame);
-            // What is wrong must be found again: its number may stand far off, on a line over other holes.
-            let far = Symbol { at: hole.centre, clear: hole.clear, way: LeaderRule::ThroughAll };
+            let full = if mark.status.is_good() { good } else { bad }.min(mark.label.len());
+            let way = if hole.is_crowded { LeaderRule::OutOfCrowd } else { LeaderRule::Clear };
+            let found = trial.place(
+                mark,
+                full,
+                Symbol { position: hole.centre, clearance: hole.label_clearance, leader_rule: way },
+                frame,
+            );
+            // A bad hole must be identifiable: its number may be far off, on a leader over other holes.
+            let far = Symbol {
+                position: hole.centre,
+                clearance: hole.label_clearance,
+                leader_rule: LeaderRule::ThroughAll,
+            };
             let found = match found {
-                None if !mark.standing.is_good() => trial.place(mark, full, far, frame),
+                None if !mark.status.is_good() => trial.place(mark, full, far, frame),
                 found => found,
             };
-            trial.labels.extend(found.map(|(lines, spot)| Label { mark: *i, spot, lines }));
+            trial.labels.extend(found.map(|(lines, spot)| Label { mark: *i, placement: spot, lines }));
         }
         trial
     }
@@ -87,11 +96,11 @@ impl LabelLayout {
     ) -> Option<(usize, LabelPlacement)> {
         (1..=lines).rev().find_map(|n| {
             let size = text_box(&mark.label[..n], frame);
-            Some((n, self.field.place(symbol, size, frame.text * LEADING)?))
+            Some((n, self.field.place(symbol, size, frame.text_size * LEADING)?))
         })
     }
 
-    /// How many holes that have a label are drawn without one.
+    /// Returns the number of holes whose label is omitted.
     pub(super) fn unlabelled(&self, scene: &Scene) -> usize {
         scene.marks.iter().filter(|m| !m.label.is_empty()).count() - self.labels.len()
     }
@@ -102,19 +111,19 @@ impl LabelLayout {
         frame: &Frame,
         inks: &mut Vec<DrawCommand>,
     ) -> Vec<(Rect, Vec<String>)> {
-        let thin = (0.05 * frame.text).max(1.0);
-        let leaders = self.labels.iter().filter_map(|l| l.spot.leader);
+        let thin = (0.05 * frame.text_size).max(1.0);
+        let leaders = self.labels.iter().filter_map(|l| l.placement.leader);
         inks.extend(leaders.map(|(from, to)| DrawCommand::line(from, to, thin, palette::THIN)));
         let mut labels = Vec::new();
         for label in &self.labels {
             let lines = scene.marks[label.mark].label[..label.lines].to_vec();
-            write(&lines, &label.spot, frame, inks);
-            labels.push((label.spot.rect, lines));
+            write(&lines, &label.placement, frame, inks);
+            labels.push((label.placement.rect, lines));
         }
         labels
     }
 
-    /// What is left out.
+    /// Returns notes that count the omitted and the shortened labels.
     pub(super) fn notes(&self, scene: &Scene) -> Vec<String> {
         let mut notes = Vec::new();
         let without = self.unlabelled(scene);
@@ -131,9 +140,9 @@ impl LabelLayout {
     }
 }
 
-/// Radii and the like, on the lines that are `wanted`: somewhere round a circle, from the lower left on, on a straight
-/// line, at the end of a scale's tick, along a path or on a leader to its middle. Gives back those that found no room;
-/// a scale can do without some of its numbers.
+/// Captions the lines that are `wanted`, such as radii, and returns the captions without room. A circle's
+/// caption lies anywhere on it, from the lower left on; a straight line's on its middle; a scale's at the end
+/// of the tick; a path's on the path or on a leader to its middle. A scale may lose numbers without a note.
 pub(super) fn caption_strokes(
     scene: &Scene,
     wanted: impl Fn(&Stroke) -> bool,
@@ -154,12 +163,12 @@ pub(super) fn caption_strokes(
                 let angles = (0..48).map(|i| Deg(f64::from(i) * 7.5 + 225.0));
                 angles.map(|angle| centre.toward(symbol::direction(angle), radius)).collect()
             }
-            // A number on one of several paths covers none of the others: nobody should take it for theirs.
+            // The number of one path must not cover another path, to which a reader would assign it.
             Shape::Line(_) if is_path(stroke.pen) => {
                 let own = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke));
                 let mut places = own.into_iter().flat_map(|path| path.points.iter().copied());
                 let apart = |place: &Px| {
-                    let rect = around(*place, size).grown(0.1 * frame.text);
+                    let rect = around(*place, size).grown(0.1 * frame.text_size);
                     let mut others = paths.iter().filter(|path| !std::ptr::eq(path.stroke, stroke));
                     field.is_free(&rect) && !others.any(|path| path.runs_through(&rect))
                 };
@@ -169,7 +178,7 @@ pub(super) fn caption_strokes(
                 .windows(2)
                 .flat_map(|ends| {
                     let (from, to) = (frame.scale.px(ends[0]), frame.scale.px(ends[1]));
-                    // Beyond an upright tick it would stand between its neighbours.
+                    // Beyond a vertical tick the number would collide with its neighbours.
                     let is_level = stroke.pen == Pen::Scale && from.y == to.y;
                     let middle = px((from.x + to.x) / 2.0, (from.y + to.y) / 2.0);
                     [is_level.then(|| beyond(from, to, size)), Some(middle)]
@@ -180,14 +189,18 @@ pub(super) fn caption_strokes(
         let spot = field.place_on(places, size).or_else(|| {
             let path = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke))?;
             let at = path.points[path.points.len() / 2];
-            field.place(Symbol { at, clear: 0.0, way: LeaderRule::ThroughAll }, size, frame.text * LEADING)
+            field.place(
+                Symbol { position: at, clearance: 0.0, leader_rule: LeaderRule::ThroughAll },
+                size,
+                frame.text_size * LEADING,
+            )
         });
         if let Some(spot) = spot {
             if let Some((from, to)) = spot.leader {
-                inks.push(DrawCommand::line(from, to, (0.05 * frame.text).max(1.0), palette::THIN));
+                inks.push(DrawCommand::line(from, to, (0.05 * frame.text_size).max(1.0), palette::THIN));
                 inks.push(DrawCommand::Disc {
                     centre: from,
-                    radius: 0.17 * frame.text,
+                    radius: 0.17 * frame.text_size,
                     color: palette::TEXT,
                 });
             }
@@ -200,19 +213,19 @@ pub(super) fn caption_strokes(
     left
 }
 
-/// The middle of a box that goes on where a level line ends.
+/// Returns the middle of a box that continues a horizontal line at its end.
 fn beyond(from: Px, to: Px, (width, _): (f64, f64)) -> Px {
     px(to.x + (width / 2.0).copysign(to.x - from.x), to.y)
 }
 
-/// A tool's path that has a number, and the rectangle round it: some of its points will do.
+/// A captioned tool path: a sample of its points and their bounding box.
 struct Path<'s> {
     stroke: &'s Stroke,
     points: Vec<Px>,
     bounds: Rect,
 }
 
-/// So many points of a path are looked at.
+/// Number of points sampled from a path.
 const POINTS: usize = 120;
 
 impl<'s> Path<'s> {
@@ -244,14 +257,14 @@ fn around(middle: Px, (width, height): (f64, f64)) -> Rect {
 }
 
 fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
-    let widest = lines.iter().map(|l| frame.font.width(l, frame.text)).fold(0.0, f64::max);
-    let height = frame.text * (LEADING * (lines.len() as f64 - 1.0) + ASCENT + DESCENT);
-    (widest + 0.3 * frame.text, height + 0.1 * frame.text)
+    let widest = lines.iter().map(|l| frame.font.width(l, frame.text_size)).fold(0.0, f64::max);
+    let height = frame.text_size * (LEADING * (lines.len() as f64 - 1.0) + ASCENT + DESCENT);
+    (widest + 0.3 * frame.text_size, height + 0.1 * frame.text_size)
 }
 
-/// The lines in a box that interrupts what is below it, as a dimension interrupts its line.
+/// Writes the lines in a box that interrupts the lines below it, as a dimension interrupts its line.
 fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<DrawCommand>) {
-    let (rect, size, align) = (spot.rect, frame.text, spot.align);
+    let (rect, size, align) = (spot.rect, frame.text_size, spot.align);
     inks.push(DrawCommand::area(rect, palette::PAPER));
     let x = match align {
         Align::Left => rect.left + 0.15 * size,
@@ -298,11 +311,11 @@ mod tests {
         let sheet = sheet(names.iter().enumerate().map(|(n, name)| (path(n), Pen::Feed, *name)).collect());
         assert!(sheet.notes.is_empty(), "{:?}", sheet.notes);
         let places: Vec<Rect> = names.iter().map(|name| place(&sheet, name)).collect();
-        let ends = sheet.inks.iter().filter(|ink| matches!(ink, DrawCommand::Disc { .. })).count();
+        let ends = sheet.commands.iter().filter(|ink| matches!(ink, DrawCommand::Disc { .. })).count();
         assert!(3 <= ends, "{places:?}");
     }
 
-    /// The left one's number goes on to the left where the tick ends, the upper one's interrupts its tick.
+    /// The number of the left tick continues it to the left; the number of the upper tick interrupts it.
     #[test]
     fn a_scales_number_stands_beside_a_level_tick_and_on_an_upright_one() {
         let tick = |from: Point, to: Point, name: &'static str| (vec![from, to], Pen::Scale, name);
@@ -310,7 +323,7 @@ mod tests {
             sheet(vec![tick([-1.0, 30.0], [-4.0, 30.0], "left"), tick([50.0, 61.0], [50.0, 68.0], "over")]);
         let (left, over) = (place(&sheet, "left"), place(&sheet, "over"));
         let ends = |upright: bool| {
-            let lines = sheet.inks.iter().filter_map(|ink| match ink {
+            let lines = sheet.commands.iter().filter_map(|ink| match ink {
                 DrawCommand::Line { points, .. } if points.len() == 2 => Some((points[0], points[1])),
                 _ => None,
             });

@@ -1,26 +1,26 @@
-//! Finds a free place for every label: near its symbol, else further away on a leader, else none at all.
+//! Finds a free position for every label: near its symbol, else farther away on a leader, else none.
 //!
-//! Greedy and deterministic: the most important label first, each at its cheapest free place. A label is only put
-//! where it covers nothing that is in the field, so two labels can never overlap.
+//! The search is greedy and deterministic: the most important label first, each at its cheapest free
+//! position. A label never covers anything in the area, so two labels never overlap.
 use super::ink::{Align, Px, Rect, px};
 use super::obstacle::Obstacle;
 use gcode_lang::units::Deg;
 
-/// What a label belongs to.
+/// The symbol that a label belongs to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Symbol {
-    pub(super) at: Px,
-    /// Labels keep this far from it.
-    pub(super) clear: f64,
-    pub(super) way: LeaderRule,
+    pub(super) position: Px,
+    /// Least distance of labels from the centre, pixels.
+    pub(super) clearance: f64,
+    pub(super) leader_rule: LeaderRule,
 }
 
-/// What a leader may pass over.
+/// Obstacles that a leader may cross.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LeaderRule {
-    /// Nothing; it ends at the symbol's rim.
+    /// None; the leader ends at the symbol's rim.
     Clear,
-    /// The symbols of the crowd it starts in; it ends in the very place.
+    /// Symbols that overlap its own; the leader ends at the symbol's centre.
     OutOfCrowd,
     /// All symbols, but no label.
     ThroughAll,
@@ -28,7 +28,7 @@ pub(super) enum LeaderRule {
 
 impl Symbol {
     fn align(&self, rect: &Rect) -> Align {
-        let aside = rect.centre().x - self.at.x;
+        let aside = rect.centre().x - self.position.x;
         match rect.width() / 4.0 {
             middle if middle < aside => Align::Left,
             middle if aside < -middle => Align::Right,
@@ -37,77 +37,83 @@ impl Symbol {
     }
 
     fn leader(&self, rect: &Rect) -> (Px, Px) {
-        let end = rect.nearest(self.at);
-        let length = self.at.distance(end).max(1e-9);
-        let start = if self.way == LeaderRule::OutOfCrowd { 0.0 } else { self.clear };
-        (self.at.toward([(end.x - self.at.x) / length, (end.y - self.at.y) / length], start), end)
+        let end = rect.nearest(self.position);
+        let length = self.position.distance(end).max(1e-9);
+        let start = if self.leader_rule == LeaderRule::OutOfCrowd { 0.0 } else { self.clearance };
+        (
+            self.position
+                .toward([(end.x - self.position.x) / length, (end.y - self.position.y) / length], start),
+            end,
+        )
     }
 }
 
-/// Where a label stands, and the line that leads to it.
+/// Position of a label, and its leader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LabelPlacement {
     pub(super) rect: Rect,
     pub(super) leader: Option<(Px, Px)>,
-    /// The side of the box that is towards the symbol: lines of unequal length keep to it.
+    /// Alignment of the text: lines of unequal length keep to the side towards the symbol.
     pub(super) align: Align,
 }
 
-/// The area for labels and what is already in it, sorted into cells so that asking stays cheap.
+/// The area for labels and its obstacles, sorted into cells for fast queries.
 #[derive(Clone)]
 pub(super) struct LabelArea {
     area: Rect,
     cell: f64,
     columns: usize,
     cells: Vec<Vec<Obstacle>>,
-    /// Lines that may be interrupted by a label where nothing better is found.
-    soft: Vec<Obstacle>,
+    /// Lines that a label may interrupt if no better position is free.
+    soft_obstacles: Vec<Obstacle>,
 }
 
 const DIRECTIONS: u32 = 24;
-/// Distances between symbol and label, in heights of a line; from the second on there is a leader.
+/// Distances between symbol and label in line heights; from the second on the label has a leader.
 const DISTANCES: [f64; 12] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5, 9.0, 12.0, 16.0, 21.0];
-/// A label whose leader may not pass over other symbols stays within so many distances.
-const NEAR: usize = 8;
+/// Number of distances tried for a label whose leader must not cross other symbols.
+const NEAR_DISTANCES: usize = 8;
 
 impl LabelArea {
     pub(super) fn new(area: Rect, cell: f64) -> Self {
         let columns = (area.width() / cell).max(0.0) as usize + 1;
         let rows = (area.height() / cell).max(0.0) as usize + 1;
-        Self { area, cell, columns, cells: vec![Vec::new(); columns * rows], soft: Vec::new() }
+        Self { area, cell, columns, cells: vec![Vec::new(); columns * rows], soft_obstacles: Vec::new() }
     }
 
-    /// Nothing will be placed over it.
+    /// Adds an obstacle that no label may cover.
     pub(super) fn block(&mut self, obstacle: Obstacle) {
-        let cells = self.touched(&obstacle.bounds());
+        let cells = self.touched_cells(&obstacle.bounds());
         for index in cells {
             self.cells[index].push(obstacle);
         }
     }
 
-    /// Labels keep off it if they can.
+    /// Adds an obstacle that labels avoid if possible.
     pub(super) fn discourage(&mut self, obstacle: Obstacle) {
-        self.soft.push(obstacle);
+        self.soft_obstacles.push(obstacle);
     }
 
     pub(super) fn is_free(&self, rect: &Rect) -> bool {
         self.area.contains(rect)
-            && self.touched(rect).into_iter().all(|i| self.cells[i].iter().all(|o| !o.hits(rect)))
+            && self.touched_cells(rect).into_iter().all(|i| self.cells[i].iter().all(|o| !o.hits(rect)))
     }
 
-    /// Puts a label of this size beside a symbol and blocks its place; `line` is the height of a line of text.
+    /// Places a label of this size beside a symbol and blocks its position; `line` is the height of a text
+    /// line.
     pub(super) fn place(
         &mut self,
         symbol: Symbol,
         (width, height): (f64, f64),
         line: f64,
     ) -> Option<LabelPlacement> {
-        let Symbol { at, clear, .. } = symbol;
-        let reach = if symbol.way == LeaderRule::ThroughAll { DISTANCES.len() } else { NEAR };
+        let Symbol { position: at, clearance: clear, .. } = symbol;
+        let reach =
+            if symbol.leader_rule == LeaderRule::ThroughAll { DISTANCES.len() } else { NEAR_DISTANCES };
         let mut best: Option<(f64, LabelPlacement)> = None;
         for (step, distance) in DISTANCES.iter().take(reach).enumerate() {
             for turn in 0..DIRECTIONS {
-                // From the upper right, alternately to both sides: where a reader expects a number.
+                // The search starts at the upper right and alternates sides: readers expect a number there.
                 let side = if turn % 2 == 0 { 1.0 } else { -1.0 };
                 let off = f64::from(turn.div_ceil(2)) * side * 360.0 / f64::from(DIRECTIONS);
                 let angle = Deg(-30.0 + off);
@@ -127,15 +133,18 @@ impl LabelArea {
                 if !self.is_free(&rect) {
                     continue;
                 }
-                let leader =
-                    (symbol.way != LeaderRule::Clear || 0 < step || self.is_nearer_to_another(&rect, symbol))
-                        .then(|| symbol.leader(&rect));
+                let leader = (symbol.leader_rule != LeaderRule::Clear
+                    || 0 < step
+                    || self.is_nearer_to_another(&rect, symbol))
+                .then(|| symbol.leader(&rect));
                 if leader.is_some_and(|leader| self.is_crossed(leader, symbol)) {
                     continue;
                 }
                 let doubtful =
                     if leader.is_some() && self.is_nearer_to_another(&rect, symbol) { 3.0 } else { 0.0 };
-                let cost = cost + doubtful + 2.0 * self.soft.iter().filter(|o| o.hits(&rect)).count() as f64;
+                let cost = cost
+                    + doubtful
+                    + 2.0 * self.soft_obstacles.iter().filter(|o| o.hits(&rect)).count() as f64;
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, LabelPlacement { rect, leader, align: symbol.align(&rect) }));
                 }
@@ -149,7 +158,7 @@ impl LabelArea {
         Some(spot)
     }
 
-    /// Puts a label onto one of `middles`, the first that is free.
+    /// Centres a label on the first free point of `middles`.
     pub(super) fn place_on(
         &mut self,
         middles: impl IntoIterator<Item = Px>,
@@ -162,37 +171,37 @@ impl LabelArea {
         Some(LabelPlacement { rect, leader: None, align: Align::Centre })
     }
 
-    /// Whether a reader would take the label for another symbol's.
+    /// Returns true if a reader would assign the label to another symbol.
     fn is_nearer_to_another(&self, rect: &Rect, symbol: Symbol) -> bool {
-        let own = rect.nearest(symbol.at).distance(symbol.at) - symbol.clear;
-        let cells = self.touched(&rect.grown(1.5 * own.max(0.0)));
+        let own = rect.nearest(symbol.position).distance(symbol.position) - symbol.clearance;
+        let cells = self.touched_cells(&rect.grown(1.5 * own.max(0.0)));
         cells.into_iter().flat_map(|i| &self.cells[i]).any(|o| match *o {
             Obstacle::Disc { centre, radius } => {
-                symbol.clear < centre.distance(symbol.at)
+                symbol.clearance < centre.distance(symbol.position)
                     && rect.nearest(centre).distance(centre) - radius < 1.5 * own
             }
             Obstacle::Box(_) | Obstacle::Ring { .. } | Obstacle::Segment(..) => false,
         })
     }
 
-    /// Whether something lies in the leader's way.
+    /// Returns true if an obstacle lies across the leader.
     fn is_crossed(&self, (from, to): (Px, Px), symbol: Symbol) -> bool {
-        let passable = |o: &Obstacle| match (symbol.way, *o) {
+        let passable = |o: &Obstacle| match (symbol.leader_rule, *o) {
             (LeaderRule::Clear, _) | (_, Obstacle::Box(_) | Obstacle::Ring { .. }) => false,
             (LeaderRule::ThroughAll, Obstacle::Disc { .. } | Obstacle::Segment(..)) => true,
             (LeaderRule::OutOfCrowd, Obstacle::Disc { centre, radius }) => {
-                centre.distance(symbol.at) < symbol.clear + radius
+                centre.distance(symbol.position) < symbol.clearance + radius
             }
             (LeaderRule::OutOfCrowd, Obstacle::Segment(a, b)) => {
-                a.distance(symbol.at).min(b.distance(symbol.at)) < 2.0 * symbol.clear
+                a.distance(symbol.position).min(b.distance(symbol.position)) < 2.0 * symbol.clearance
             }
         };
         let bounds = Obstacle::Segment(from, to).bounds();
-        let cells = self.touched(&bounds);
+        let cells = self.touched_cells(&bounds);
         cells.into_iter().any(|i| self.cells[i].iter().any(|o| !passable(o) && o.crosses(from, to)))
     }
 
-    fn touched(&self, rect: &Rect) -> Vec<usize> {
+    fn touched_cells(&self, rect: &Rect) -> Vec<usize> {
         let rows = self.cells.len() / self.columns;
         let clamp = |v: f64, most: usize| ((v / self.cell).max(0.0) as usize).min(most - 1);
         let (left, right) = (
@@ -210,7 +219,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn symbol(x: f64, y: f64, clear: f64) -> Symbol {
-        Symbol { at: px(x, y), clear, way: LeaderRule::Clear }
+        Symbol { position: px(x, y), clearance: clear, leader_rule: LeaderRule::Clear }
     }
 
     fn field() -> LabelArea {
@@ -238,7 +247,7 @@ mod tests {
         assert!(!Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 }.hits(&spot.rect));
         field.block(Obstacle::Disc { centre: px(100.0, 100.0), radius: 26.0 });
         let spot = field.place(symbol(100.0, 100.0, 10.0), (30.0, 12.0), 12.0);
-        // The leader itself would run through the disc that fills the surroundings.
+        // The leader itself would cross the disc that fills the surroundings.
         assert_eq!(spot, None);
     }
 

@@ -1,5 +1,5 @@
-//! Holes on the sheet: symbol, direction of the axis, and round it the dial that shows the misfit enlarged.
-use super::deviation_dials::{COVERING, Detail, DeviationDials};
+//! Holes on the sheet: symbol, axis direction, and the dial that shows the deviation enlarged.
+use super::deviation_dials::{Detail, DeviationDials, MIN_SIGN_DISTANCE};
 use super::frame::Frame;
 use super::ink::{Dash, DrawCommand, Px, Rgb};
 use super::labels::LabelArea;
@@ -10,48 +10,48 @@ use super::scene::{Mark, Scene, ZoneDeviation};
 use super::symbol;
 use gcode_lang::units::Deg;
 
-/// A hole as drawn.
+/// A drawn hole.
 #[derive(Clone, Debug)]
-pub(super) struct Drawn {
+pub(super) struct DrawnMark {
     pub(super) centre: Px,
-    /// Labels keep this far from the centre.
-    pub(super) clear: f64,
-    /// Other signs are so close that a label needs a line to the very place.
-    pub(super) crowded: bool,
-    pub(super) inks: Vec<DrawCommand>,
-    /// Its misfit is longer than the sheet shows.
-    pub(super) cut: bool,
-    /// A line leads to where it is instead.
-    pub(super) strayed: bool,
-    /// Its axis is drawn.
-    pub(super) directed: bool,
+    /// Least distance of labels from the centre, pixels.
+    pub(super) label_clearance: f64,
+    /// Whether symbols overlap, so that a label needs a leader to the exact centre.
+    pub(super) is_crowded: bool,
+    pub(super) commands: Vec<DrawCommand>,
+    /// Whether the deviation is longer than drawn.
+    pub(super) is_truncated: bool,
+    /// Whether a dotted line leads to the actual position instead.
+    pub(super) has_displacement_line: bool,
+    /// Whether the axis is drawn.
+    pub(super) has_axis_arrow: bool,
 }
 
-/// A misfit is drawn up to this many radii of its zone.
-const LONGEST: f64 = 1.7;
+/// Largest drawn deviation, in radii of the tolerance zone.
+const MAX_DEVIATION_RADII: f64 = 1.7;
 
-/// Draws the holes and blocks their places for labels.
+/// Draws the holes and blocks their positions for labels.
 pub(super) fn draw_marks(
     scene: &Scene,
     frame: &Frame,
     dials: &DeviationDials,
     field: &mut LabelArea,
-) -> Vec<Drawn> {
-    let mut drawn: Vec<Drawn> = Vec::new();
+) -> Vec<DrawnMark> {
+    let mut drawn: Vec<DrawnMark> = Vec::new();
     for (index, mark) in scene.marks.iter().enumerate() {
-        let hole = match (dials.of(index), mark.misfit) {
+        let hole = match (dials.dial(index), mark.deviation) {
             (Some(dial), Some(misfit)) => {
-                draw_dial(mark, misfit, dial, dials.badge(index, frame.text), frame, field)
+                draw_dial(mark, misfit, dial, dials.badge(index, frame.text_size), frame, field)
             }
             _ => draw_sign(mark, index, frame, dials, &drawn, field),
         };
-        field.block(Obstacle::Disc { centre: hole.centre, radius: hole.clear });
+        field.block(Obstacle::Disc { centre: hole.centre, radius: hole.label_clearance });
         drawn.push(hole);
     }
     drawn
 }
 
-/// The zone's circle with the hole in its centre, the misfit, and the verdict on the rim.
+/// Draws the zone's circle with the hole in its centre, the deviation, and the status symbol on the rim.
 fn draw_dial(
     mark: &Mark,
     misfit: ZoneDeviation,
@@ -59,10 +59,10 @@ fn draw_dial(
     badge: f64,
     frame: &Frame,
     field: &mut LabelArea,
-) -> Drawn {
-    let text = frame.text;
-    let centre = frame.scale.px(mark.at);
-    let thin = thin(text);
+) -> DrawnMark {
+    let text = frame.text_size;
+    let centre = frame.scale.px(mark.position);
+    let thin = thin_width(text);
     let hole = (mark.radius * frame.scale.factor).max(0.28 * text);
     let mut inks = vec![
         DrawCommand::Disc { centre, radius: zone, color: palette::PAPER },
@@ -70,14 +70,14 @@ fn draw_dial(
         ring(centre, hole, thin, palette::TEXT),
     ];
     let (mut cut, mut strayed) = (false, false);
-    match mark.found.map(|found| frame.scale.px(found)) {
+    match mark.actual.map(|found| frame.scale.px(found)) {
         Some(found) if 2.0 * zone < centre.distance(found) => {
-            inks.extend(line_astray(centre, found, hole, text, field));
+            inks.extend(displacement_line(centre, found, hole, text, field));
             strayed = true;
         }
         _ => {
             let enlarge = times * frame.scale.factor;
-            let (lines, beyond) = misfit_inks(mark.standing, misfit, enlarge, centre, zone, text);
+            let (lines, beyond) = deviation_commands(mark.status, misfit, enlarge, centre, zone, text);
             inks.extend(lines);
             if let Some(tip) = beyond {
                 field.block(Obstacle::Segment(centre, tip));
@@ -85,36 +85,44 @@ fn draw_dial(
             }
         }
     }
-    let directed = across(mark).is_some();
+    let directed = projected_axis(mark).is_some();
     let mut taken = Vec::new();
     let [right, up] = misfit.entry;
     if zone / 3.0 < libm::hypot(right, up) * times * frame.scale.factor {
         taken.push(Deg::atan2(up, right));
     }
-    if let Some((along, projected)) = across(mark) {
+    if let Some((along, projected)) = projected_axis(mark) {
         inks.extend(axis_arrow(centre, along, projected, zone, text, field));
         taken.push(Deg::atan2(-along[1], along[0]));
     }
     let at = centre.toward(symbol::direction(badge_angle(&taken)), zone);
-    inks.extend(symbol::standing(mark.standing, at, badge));
+    inks.extend(symbol::status_sign(mark.status, at, badge));
     field.block(Obstacle::Disc { centre: at, radius: badge * 1.2 });
-    Drawn { centre, clear: zone + 0.15 * text, crowded: false, inks, cut, strayed, directed }
+    DrawnMark {
+        centre,
+        label_clearance: zone + 0.15 * text,
+        is_crowded: false,
+        commands: inks,
+        is_truncated: cut,
+        has_displacement_line: strayed,
+        has_axis_arrow: directed,
+    }
 }
 
-/// A hole so far from its place that it needs no enlarging: a dotted line to where it is.
-fn line_astray(centre: Px, found: Px, hole: f64, text: f64, field: &mut LabelArea) -> [DrawCommand; 2] {
+/// Draws a dotted line to the actual position of a hole too far off to need enlarging.
+fn displacement_line(centre: Px, found: Px, hole: f64, text: f64, field: &mut LabelArea) -> [DrawCommand; 2] {
     let radius = hole.max(0.3 * text);
     field.block(Obstacle::Disc { centre: found, radius: radius + 0.1 * text });
     field.block(Obstacle::Segment(centre, found));
     let dash = Dash::Pattern([0.15 * text, 0.2 * text]);
-    let (width, color) = (thin(text), palette::TEXT);
+    let (width, color) = (thin_width(text), palette::TEXT);
     let line = DrawCommand::Line { points: vec![centre, found], closed: false, width, dash, color };
     [line, ring(found, radius, width, color)]
 }
 
-/// Lines from the centre to the entry and on to the bottom: a tilted hole shows as a line across its dial. What is
-/// longer than the sheet shows ends in an arrow, whose tip is given back.
-fn misfit_inks(
+/// Draws lines from the centre to the deviation at the entry and on to that at the bottom: a tilted hole
+/// shows as a line across its dial. A deviation longer than drawn ends in an arrow, whose tip is returned.
+fn deviation_commands(
     standing: HoleStatus,
     misfit: ZoneDeviation,
     enlarge: f64,
@@ -122,14 +130,15 @@ fn misfit_inks(
     zone: f64,
     text: f64,
 ) -> (Vec<DrawCommand>, Option<Px>) {
-    let color = palette::standing(standing);
+    let color = palette::status_colour(standing);
     let width = (0.12 * text).max(1.4);
     let mut inks = Vec::new();
     let mut beyond = None;
     let ends = [misfit.entry, misfit.bottom].map(|[right, up]| {
         let (x, y) = (right * enlarge, -up * enlarge);
         let length = libm::hypot(x, y);
-        let short = if LONGEST * zone < length { LONGEST * zone / length } else { 1.0 };
+        let short =
+            if MAX_DEVIATION_RADII * zone < length { MAX_DEVIATION_RADII * zone / length } else { 1.0 };
         let end = centre.toward([x * short, y * short], 1.0);
         if short < 1.0 {
             inks.extend(symbol::arrow(centre, end, width, 0.6 * text, color));
@@ -146,18 +155,18 @@ fn misfit_inks(
     (inks, beyond)
 }
 
-/// A hole without a dial: the sign itself marks the place. A surplus hole in the place of another moves aside. One of
-/// hundreds is drawn as the hole itself, as wide as it is and as flat as it is seen.
+/// Draws a hole without a dial: the symbol marks the position. The symbol of an extra hole on top of another
+/// moves aside. One of hundreds is drawn to scale, foreshortened by its tilt.
 fn draw_sign(
     mark: &Mark,
     index: usize,
     frame: &Frame,
     dials: &DeviationDials,
-    before: &[Drawn],
+    before: &[DrawnMark],
     field: &mut LabelArea,
-) -> Drawn {
-    let text = frame.text;
-    let place = frame.scale.px(mark.at);
+) -> DrawnMark {
+    let text = frame.text_size;
+    let place = frame.scale.px(mark.position);
     let true_radius = mark.radius * frame.scale.factor;
     let badge = dials.badge(index, text);
     let is_dot = dials.is_dot(index);
@@ -168,51 +177,59 @@ fn draw_sign(
     };
     let mut inks = Vec::new();
     let mut centre = place;
-    if mark.standing == HoleStatus::Extra
+    if mark.status == HoleStatus::Extra
         && !is_dot
-        && let Some(other) = before.iter().find(|d| d.centre.distance(place) < COVERING * text)
+        && let Some(other) = before.iter().find(|d| d.centre.distance(place) < MIN_SIGN_DISTANCE * text)
     {
-        let step = other.clear + radius + 0.3 * text;
-        let free = |c: &Px| before.iter().all(|d| d.clear + radius <= c.distance(d.centre));
+        let step = other.label_clearance + radius + 0.3 * text;
+        let free = |c: &Px| before.iter().all(|d| d.label_clearance + radius <= c.distance(d.centre));
         let mut around =
             (0..8).map(|i| other.centre.toward(symbol::direction(Deg(200.0 + 45.0 * f64::from(i))), step));
         if let Some(beside) = around.find(free) {
-            inks.push(DrawCommand::line(place, beside, thin(text), palette::TEXT));
+            inks.push(DrawCommand::line(place, beside, thin_width(text), palette::TEXT));
             centre = beside;
         }
     }
     if radius < true_radius {
-        inks.push(ring(place, true_radius, thin(text), palette::TEXT));
+        inks.push(ring(place, true_radius, thin_width(text), palette::TEXT));
     }
-    let far = mark.found.map(|found| frame.scale.px(found)).filter(|found| text < place.distance(*found));
+    let far = mark.actual.map(|found| frame.scale.px(found)).filter(|found| text < place.distance(*found));
     let strayed = far.is_some();
     if let Some(found) = far {
-        inks.extend(line_astray(place, found, true_radius, text, field));
+        inks.extend(displacement_line(place, found, true_radius, text, field));
     }
     if is_dot {
-        let (along, projected) = across(mark).unwrap_or(([0.0, 1.0], 0.0));
+        let (along, projected) = projected_axis(mark).unwrap_or(([0.0, 1.0], 0.0));
         let flat = (1.0 - projected * projected).max(0.0).sqrt();
-        inks.extend(symbol::hole(mark.standing, centre, radius, along, flat));
+        inks.extend(symbol::hole(mark.status, centre, radius, along, flat));
     } else {
-        inks.extend(symbol::standing(mark.standing, centre, radius));
+        inks.extend(symbol::status_sign(mark.status, centre, radius));
     }
-    let direction = across(mark).filter(|_| dials.detail != Detail::SignsWithoutAxes && !is_dot);
+    let direction = projected_axis(mark).filter(|_| dials.detail != Detail::SignsWithoutAxes && !is_dot);
     let directed = direction.is_some();
     if let Some((along, projected)) = direction {
         inks.extend(axis_arrow(centre, along, projected, radius * 1.15, text, field));
     }
     let crowded = dials.is_crowded(index, text);
-    Drawn { centre, clear: radius * 1.2 + 0.15 * text, crowded, inks, cut: false, strayed, directed }
+    DrawnMark {
+        centre,
+        label_clearance: radius * 1.2 + 0.15 * text,
+        is_crowded: crowded,
+        commands: inks,
+        is_truncated: false,
+        has_displacement_line: strayed,
+        has_axis_arrow: directed,
+    }
 }
 
-/// The direction on the sheet of an axis that doesn't point at the reader, and how much of it is seen.
-fn across(mark: &Mark) -> Option<([f64; 2], f64)> {
+/// Returns the sheet direction of the hole axis and its projected length; `None` if it points at the reader.
+fn projected_axis(mark: &Mark) -> Option<([f64; 2], f64)> {
     let [right, up] = mark.direction?;
     let projected = libm::hypot(right, up);
     (0.02 < projected).then(|| ([right / projected, -up / projected], projected))
 }
 
-/// The part of the hole's axis that is seen: longer, the more the hole lies across the view.
+/// Draws the projected hole axis; the arrow is longer, the more the hole lies across the view.
 fn axis_arrow(
     centre: Px,
     along: [f64; 2],
@@ -227,7 +244,7 @@ fn axis_arrow(
     symbol::arrow(start, end, (0.08 * text).max(1.0), 0.5 * text, palette::TEXT)
 }
 
-/// A place for the verdict on the dial's rim that covers neither arrow nor misfit: upper right if possible.
+/// Chooses an angle on the dial's rim clear of arrow and deviation: upper right if possible.
 fn badge_angle(taken: &[Deg]) -> Deg {
     let apart = |angle: f64, other: &Deg| {
         let turn = (angle - other.0).rem_euclid(360.0);
@@ -235,7 +252,7 @@ fn badge_angle(taken: &[Deg]) -> Deg {
     };
     let free = |angle: f64| taken.iter().map(|other| apart(angle, other)).fold(60.0, f64::min);
     let choices = [45.0, 135.0, -45.0, -135.0, 0.0, 180.0, 90.0, -90.0];
-    // The first of the freest.
+    // Equally free angles: the first wins.
     Deg(choices.into_iter().fold(45.0, |best, angle| if free(best) < free(angle) { angle } else { best }))
 }
 
@@ -243,7 +260,7 @@ fn ring(centre: Px, radius: f64, width: f64, color: Rgb) -> DrawCommand {
     DrawCommand::Ring { centre, radius, width, dash: Dash::Solid, color }
 }
 
-fn thin(text: f64) -> f64 {
+fn thin_width(text: f64) -> f64 {
     (0.06 * text).max(1.0)
 }
 

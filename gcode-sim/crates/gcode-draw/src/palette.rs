@@ -1,6 +1,8 @@
-//! Colours and line kinds of the roles: Okabe and Ito's palette, which the colour-blind can tell apart, on white.
+//! Colours and line styles of the pens and statuses: Okabe and Ito's palette, safe for colour-blind readers,
+//! on white.
 //!
-//! Colour never stands alone: every standing has a shape and a mark of its own (`symbol`), every pen its dashes.
+//! Colour never carries meaning alone: every status has its own shape and mark (`symbol`), every pen its own
+//! width or dash pattern.
 use super::ink::{Dash, Rgb};
 use super::role::{HoleStatus, Pen};
 
@@ -11,10 +13,10 @@ pub(super) const RULE: Rgb = Rgb(150, 150, 150);
 /// Leaders, direction arrows, the circle of the tolerance zone.
 pub(super) const THIN: Rgb = Rgb(90, 90, 90);
 
-/// What lies within the limits of a graph.
+/// Tolerance band of a graph.
 pub(super) const BAND: Rgb = Rgb(238, 238, 238);
 
-pub(super) fn standing(standing: HoleStatus) -> Rgb {
+pub(super) fn status_colour(standing: HoleStatus) -> Rgb {
     match standing {
         HoleStatus::Good => Rgb(0, 114, 178),
         HoleStatus::Bad => Rgb(213, 94, 0),
@@ -24,7 +26,7 @@ pub(super) fn standing(standing: HoleStatus) -> Rgb {
     }
 }
 
-/// Colour, width in parts of the text's height, dashes in the same unit.
+/// Returns colour, width and dash pattern of a pen at a text height of `text` pixels.
 pub(super) fn pen(pen: Pen, text: f64) -> (Rgb, f64, Dash) {
     match pen {
         Pen::Outline => (Rgb(0, 0, 0), 0.13 * text, Dash::Solid),
@@ -34,9 +36,9 @@ pub(super) fn pen(pen: Pen, text: f64) -> (Rgb, f64, Dash) {
         Pen::Faulty => (Rgb(213, 94, 0), 0.24 * text, Dash::Solid),
         Pen::Hidden => (Rgb(213, 94, 0), 0.08 * text, Dash::Pattern([0.4 * text, 0.3 * text])),
         Pen::Rapid => (Rgb(86, 180, 233), 0.07 * text, Dash::Pattern([0.25 * text, 0.25 * text])),
-        Pen::Kept => (Rgb(150, 150, 150), 0.07 * text, Dash::Solid),
-        Pen::Now => (Rgb(213, 94, 0), 0.24 * text, Dash::Solid),
-        Pen::Before => (Rgb(0, 0, 0), 0.09 * text, Dash::Pattern([0.4 * text, 0.3 * text])),
+        Pen::Unchanged => (Rgb(150, 150, 150), 0.07 * text, Dash::Solid),
+        Pen::New => (Rgb(213, 94, 0), 0.24 * text, Dash::Solid),
+        Pen::Old => (Rgb(0, 0, 0), 0.09 * text, Dash::Pattern([0.4 * text, 0.3 * text])),
         Pen::Grid => (Rgb(205, 205, 205), 0.05 * text, Dash::Solid),
         Pen::First => (Rgb(0, 0, 0), 0.12 * text, Dash::Pattern([0.8 * text, 0.5 * text])),
         Pen::Measured => (Rgb(0, 114, 178), 0.14 * text, Dash::Solid),

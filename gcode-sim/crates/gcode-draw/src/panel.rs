@@ -8,16 +8,16 @@ use super::role::HoleStatus;
 use super::scene::{LegendItem, Sample, Scene};
 use super::symbol;
 
-/// Where the drawing goes, and the columns beside it or below it.
+/// The areas of drawing, title block and legend on the page.
 pub(super) struct Panel {
     pub(super) drawing: Rect,
     page: Rect,
     title: Rect,
-    /// Below the title block where nothing else is said.
+    /// Column of the legend; `None` if it continues below the title block.
     legend: Option<Rect>,
 }
 
-/// One line or group of lines of a column.
+/// One row of a column.
 enum PanelRow {
     Text {
         text: String,
@@ -26,25 +26,25 @@ enum PanelRow {
         important: bool,
     },
     Verdict(HoleStatus, String),
-    /// ⌖ | Φ0.1 as a feature control frame has it.
+    /// Feature control frame: ⌖ | Φ0.1.
     Zone(f64),
     Sample(Sample, String),
     Gap,
     Rule,
-    /// Something is left out.
+    /// Marks omitted rows.
     Dots,
 }
 
 impl PanelRow {
-    /// The higher, the later it is left out.
+    /// Returns the importance of the row; the least important rows are omitted first.
     fn importance(&self) -> u8 {
         match self {
             Self::Gap => 0,
             Self::Sample(Sample::Pen(_), _) => 1,
-            Self::Sample(Sample::Direction | Sample::Astray, _) => 2,
+            Self::Sample(Sample::Direction | Sample::Displacement, _) => 2,
             Self::Text { important: false, .. } => 3,
             Self::Rule => 4,
-            Self::Sample(Sample::Misfit | Sample::Standing(_) | Sample::Plain(_), _) => 5,
+            Self::Sample(Sample::Deviation | Sample::Status(_) | Sample::Plain(_), _) => 5,
             Self::Text { important: true, .. } => 6,
             Self::Zone(_) => 7,
             Self::Verdict(..) => 8,
@@ -53,11 +53,11 @@ impl PanelRow {
     }
 }
 
-/// A text of more lines than this is cut short.
+/// Largest number of lines of a row; longer texts are cut short.
 const MOST_LINES: usize = 3;
 
 impl Panel {
-    /// Beside the drawing on a wide page, below it on a tall one.
+    /// Places the columns beside the drawing on a wide page, below it on a tall one.
     pub(super) fn beside(page: Rect, scene: &Scene, font: &Font, text: f64) -> Self {
         let space = 0.6 * text;
         if page.height() <= page.width() {
@@ -73,14 +73,14 @@ impl Panel {
         }
         let middle = page.centre().x;
         let column = Rect::new(0.0, 0.0, page.width() / 2.0 - 2.0 * space, 0.0);
-        // Two lines are kept for notes, which are known only when everything has its place.
+        // Two lines are reserved for notes, which are known only after the layout.
         let notes = vec!["n".to_owned(), "n".to_owned()];
         let all = LegendUse {
             magnification: Some(1000.0),
             directions: true,
-            astray: true,
-            plain_good: false,
-            plain_rest: false,
+            displacements: true,
+            has_plain_good: false,
+            has_plain_rest: false,
         };
         let (_, title) = flow(&title_rows(scene, text), column, font, text);
         let (_, legend) = flow(&legend_rows(scene, all, &notes, text), column, font, text);
@@ -141,11 +141,11 @@ impl Panel {
     }
 }
 
-/// The rows in the largest text that the column has room for; what finds none even in the smallest is left out, the
-/// least important first, and a row of dots says so.
+/// Sets the rows in the largest text that fits the column. If even the smallest is too large, the least
+/// important rows are omitted and a row of dots marks the omission.
 fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<PanelRow>) -> Vec<DrawCommand> {
-    let least = 9.5f64.min(frame.text);
-    let mut text = frame.text;
+    let least = 9.5f64.min(frame.text_size);
+    let mut text = frame.text_size;
     let (mut inks, mut height) = flow(&rows(text), column, &frame.font, text);
     while column.height() < height && least < text {
         text = (text - 0.5).max(least);
@@ -190,16 +190,20 @@ fn title_rows(scene: &Scene, text: f64) -> Vec<PanelRow> {
 fn legend_rows(scene: &Scene, shown: LegendUse, notes: &[String], text: f64) -> Vec<PanelRow> {
     let item = |item: &LegendItem| {
         let words = match item.sample {
-            Sample::Misfit => format!("{} ×{}", item.text, plain(shown.magnification?)),
+            Sample::Deviation => format!("{} ×{}", item.text, plain(shown.magnification?)),
             Sample::Direction if !shown.directions => return None,
-            Sample::Astray if !shown.astray => return None,
-            Sample::Direction | Sample::Astray | Sample::Pen(_) | Sample::Standing(_) | Sample::Plain(_) => {
-                item.text.clone()
-            }
+            Sample::Displacement if !shown.displacements => return None,
+            Sample::Direction
+            | Sample::Displacement
+            | Sample::Pen(_)
+            | Sample::Status(_)
+            | Sample::Plain(_) => item.text.clone(),
         };
         let sample = match item.sample {
-            Sample::Standing(standing) if shown.plain_good && standing.is_good() => Sample::Plain(standing),
-            Sample::Standing(standing) if shown.plain_rest && !standing.is_good() => Sample::Plain(standing),
+            Sample::Status(standing) if shown.has_plain_good && standing.is_good() => Sample::Plain(standing),
+            Sample::Status(standing) if shown.has_plain_rest && !standing.is_good() => {
+                Sample::Plain(standing)
+            }
             sample => sample,
         };
         Some(PanelRow::Sample(sample, words))
@@ -218,7 +222,7 @@ fn legend_rows(scene: &Scene, shown: LegendUse, notes: &[String], text: f64) -> 
     rows
 }
 
-/// Sets the rows below each other; also says how high they are.
+/// Sets the rows below each other; returns the commands and the height.
 fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCommand>, f64) {
     let mut inks = Vec::new();
     let mut y = column.top;
@@ -249,7 +253,7 @@ fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCom
             }
             PanelRow::Zone(zone) => y += zone_frame(*zone, px(column.left, y), font, text, &mut inks),
             PanelRow::Verdict(standing, words) => {
-                inks.extend(symbol::standing(
+                inks.extend(symbol::status_sign(
                     *standing,
                     px(column.left + 0.8 * text, y + 0.5 * text),
                     0.62 * text,
@@ -311,7 +315,7 @@ fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
     let half = 0.8 * text;
     let (left, right) = (px(middle.x - half, middle.y), px(middle.x + half, middle.y));
     match sample {
-        Sample::Standing(standing) => symbol::standing(standing, middle, 0.5 * text),
+        Sample::Status(standing) => symbol::status_sign(standing, middle, 0.5 * text),
         Sample::Plain(standing) => symbol::hole(standing, middle, 0.4 * text, [0.0, 1.0], 1.0),
         Sample::Pen(pen) => {
             let (color, width, dash) = palette::pen(pen, text);
@@ -324,7 +328,7 @@ fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
             }]
         }
         Sample::Direction => symbol::arrow(left, right, (0.08 * text).max(1.0), 0.5 * text, palette::TEXT),
-        Sample::Astray => {
+        Sample::Displacement => {
             let (width, dash) = ((0.06 * text).max(1.0), Dash::Pattern([0.15 * text, 0.2 * text]));
             let color = palette::TEXT;
             vec![
@@ -332,10 +336,10 @@ fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
                 DrawCommand::Ring { centre: right, radius: 0.3 * text, width, dash: Dash::Solid, color },
             ]
         }
-        Sample::Misfit => {
+        Sample::Deviation => {
             let thin = (0.06 * text).max(1.0);
             let end = px(middle.x + 0.3 * text, middle.y - 0.2 * text);
-            let color = palette::standing(HoleStatus::Good);
+            let color = palette::status_colour(HoleStatus::Good);
             vec![
                 DrawCommand::Ring {
                     centre: middle,

@@ -7,34 +7,36 @@ use super::size::Size;
 use super::words::Words;
 use super::{PictureError, paint, png};
 
-/// A picture of curves.
+/// A chart with a title and notes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
+    /// Title above the chart.
     pub title: String,
     /// Lines below the title.
     pub notes: Vec<String>,
+    /// The chart, which fills the rest of the page.
     pub chart: Chart,
 }
 
 impl Plot {
-    /// As a PNG file of exactly this size.
+    /// Draws the chart as a PNG file of exactly this size.
     ///
     /// # Errors
-    /// What the encoder has to say.
+    /// [`PictureError::Encode`] if the PNG encoder fails.
     pub fn draw(&self, size: Size) -> Result<Vec<u8>, PictureError> {
         png(&paint(&self.lay_out(size)))
     }
 
-    /// The title and notes stand above the chart.
-    pub fn lay_out(&self, size: Size) -> Sheet {
+    /// Places title and notes above the chart.
+    fn lay_out(&self, size: Size) -> Sheet {
         let font = Font::embedded();
         let text = size.text();
         let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height())).grown(-2.0 * text);
         let mut words = Words::new(&font, text);
         let top = words.head(&page, &self.title, &self.notes) + 1.4 * text;
         self.chart.draw(Rect { top, ..page }, &mut words);
-        let Words { inks, labels, .. } = words;
-        Sheet { size, inks, labels, notes: Vec::new(), magnification: None }
+        let Words { commands: inks, labels, .. } = words;
+        Sheet { size, commands: inks, labels, notes: Vec::new(), magnification: None }
     }
 }
 
@@ -47,8 +49,8 @@ mod tests {
 
     fn plot(high: f64, length: f64) -> Plot {
         let sign = |part: f64| ChartMarker {
-            at: [length * part, high],
-            standing: HoleStatus::Bad,
+            position: [length * part, high],
+            status: HoleStatus::Bad,
             name: "too far".to_owned(),
         };
         let curve = (0..=100).map(|n| [length * f64::from(n) / 100.0, high * libm::sin(f64::from(n) / 15.0)]);
@@ -57,14 +59,14 @@ mod tests {
             notes: vec!["a note".to_owned(), "and another one".to_owned()],
             chart: Chart {
                 gaps: vec![[length / 3.0, length / 2.0]],
-                across: "Way of the ball, mm".to_owned(),
+                x_label: "Way of the ball, mm".to_owned(),
                 guides: vec![(0.3 * length, "a place".to_owned()), (0.31 * length, "another".to_owned())],
                 graphs: vec![Graph {
-                    up: "Reading, mm".to_owned(),
-                    curves: vec![Curve { points: curve.collect(), pen: Pen::Measured, guest: false }],
+                    y_label: "Reading, mm".to_owned(),
+                    curves: vec![Curve { points: curve.collect(), pen: Pen::Measured, is_clipped: false }],
                     band: vec![[0.0, -high / 2.0, high / 2.0], [length, -high / 2.0, high / 2.0]],
-                    zero: true,
-                    signs: vec![sign(0.9), sign(0.91)],
+                    has_zero_line: true,
+                    markers: vec![sign(0.9), sign(0.91)],
                 }],
             },
         }
@@ -86,15 +88,15 @@ mod tests {
         }
     }
 
-    /// Twice as high is twice as far above the line at zero.
+    /// Twice the ordinate is twice the distance from the zero line.
     #[test]
     fn a_curve_stands_where_its_numbers_say() {
         let mut plot = plot(0.05, 100.0);
         let graph = &mut plot.chart.graphs[0];
         graph.curves[0].points = vec![[0.0, 0.0], [50.0, 0.02], [100.0, 0.04]];
-        graph.signs.clear();
+        graph.markers.clear();
         let sheet = plot.lay_out(Size::default());
-        let curves = sheet.inks.iter().filter_map(|ink| match ink {
+        let curves = sheet.commands.iter().filter_map(|ink| match ink {
             DrawCommand::Line { points, .. } if points.len() == 3 => Some(points),
             _ => None,
         });

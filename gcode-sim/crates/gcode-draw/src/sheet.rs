@@ -1,4 +1,4 @@
-//! Lays a scene out on a sheet of a given size: scale, dials, labels, scale bar, title block. Decides, doesn't paint.
+//! Lays a scene out on a sheet of a given size: scale, dials, labels, scale bar, title block.
 use super::PictureError;
 use super::deviation_dials::{Detail, DeviationDials};
 use super::font::Font;
@@ -15,24 +15,27 @@ use super::scene::{Scene, Shape, Stroke};
 use super::size::Size;
 use super::words::Words;
 
-/// A picture, laid out: every ink has its place in pixels.
+/// A laid-out picture: every command has its position in pixels.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    pub size: Size,
-    pub inks: Vec<DrawCommand>,
-    /// The labels of the holes and lines, as placed: none overlaps another.
+    pub(super) size: Size,
+    pub(super) commands: Vec<DrawCommand>,
+    /// Labels of holes and lines with their boxes; none overlaps another.
     pub labels: Vec<(Rect, Vec<String>)>,
-    /// What the picture leaves out, as it says itself.
+    /// Omissions that the picture itself states.
     pub notes: Vec<String>,
-    /// How many times misfits are enlarged against the part; none is drawn without.
+    /// Magnification of deviations; `None` if none is drawn.
     pub magnification: Option<f64>,
 }
 
-/// Coordinates beyond are slips, not parts, mm.
-const FARTHEST: f64 = 1e6;
+/// Largest coordinate, mm; larger values are mistakes.
+const MAX_COORDINATE: f64 = 1e6;
 
+/// Places a scene on a sheet with as much detail as leaves every hole its number.
+///
 /// # Errors
-/// A coordinate that is no number, or farther than a kilometre from the origin.
+/// [`PictureError::OffTheSheet`] if a coordinate is not a number or lies more than a kilometre from the
+/// origin.
 pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
     check(scene)?;
     let font = Font::embedded();
@@ -47,7 +50,7 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
     let largest_dial = (2.4 * text).min(0.05 * drawing.width().min(drawing.height()));
     let frame_of = |axis_reach: f64| {
         let scale = Scale::fitting(extent, drawing.grown(-axis_reach - 0.9 * text));
-        Frame { font: Font::embedded(), text, scale, largest_dial, axis_reach }
+        Frame { font: Font::embedded(), text_size: text, scale, largest_dial, axis_reach }
     };
     let mut frame = frame_of(2.0 * text);
     if are_arrows_hidden(scene, &frame, extent) {
@@ -57,9 +60,9 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
     if let Some(chart) = &scene.chart {
         let mut words = Words::new(&frame.font, text);
         chart.draw(panel.drawing.grown(-text), &mut words);
-        let Words { mut inks, labels, .. } = words;
+        let Words { commands: mut inks, labels, .. } = words;
         inks.extend(panel.inks(scene, &frame, LegendUse::NOTHING, &[]));
-        return Ok(Sheet { size, inks, labels, notes: Vec::new(), magnification: None });
+        return Ok(Sheet { size, commands: inks, labels, notes: Vec::new(), magnification: None });
     }
     let mut plans = Detail::ALL.iter().map(|detail| Plan::new(scene, &frame, drawing, extent, *detail));
     let mut best = plans.next().expect("there is a first detail");
@@ -71,48 +74,49 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
             best = plan;
         }
     }
-    let Plan { mut inks, labels, notes, shown, .. } = best;
+    let Plan { commands: mut inks, labels, notes, legend_use: shown, .. } = best;
     inks.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
     inks.extend(panel.inks(scene, &frame, shown, &notes));
-    Ok(Sheet { size, inks, labels, notes, magnification: shown.magnification })
+    Ok(Sheet { size, commands: inks, labels, notes, magnification: shown.magnification })
 }
 
-/// The drawing with some of the detail there could be.
+/// One attempt at a layout, at a given level of detail.
 struct Plan {
-    inks: Vec<DrawCommand>,
+    commands: Vec<DrawCommand>,
     labels: Vec<(Rect, Vec<String>)>,
     notes: Vec<String>,
-    shown: LegendUse,
-    /// Holes without a number.
+    legend_use: LegendUse,
+    /// Number of holes without a label.
     unlabelled: usize,
 }
 
 impl Plan {
     fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
-        let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text), frame.text);
+        let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text_size), frame.text_size);
         let mut inks = Vec::new();
         for stroke in &scene.strokes {
             inks.push(stroke_ink(stroke, frame));
             block_stroke(&mut field, stroke, frame);
         }
         inks.extend(axes(scene, frame, extent, drawing, &mut field));
-        // The number on a straight line has one place, a hole's label many, the number on a circle or a path any.
+        // A straight line's caption has one position, a hole's label many, the caption of a circle or path
+        // any.
         let mut labels = Vec::new();
         let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !is_path(stroke.pen);
         let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut inks, &mut labels);
         let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
-        // What isn't good comes last, on top.
+        // Bad holes are drawn last, on top.
         for good in [true, false] {
-            let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.standing.is_good() == good);
-            inks.extend(holes.flat_map(|(_, hole)| hole.inks.iter().cloned()));
+            let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.status.is_good() == good);
+            inks.extend(holes.flat_map(|(_, hole)| hole.commands.iter().cloned()));
         }
         let mut lettering = LabelLayout::of(scene, &drawn, frame, &field);
         labels.extend(lettering.write(scene, frame, &mut inks));
         let is_circle = |stroke: &Stroke| !is_line(stroke);
         bare.extend(caption_strokes(scene, is_circle, frame, &mut lettering.field, &mut inks, &mut labels));
         let mut notes: Vec<String> = dials.note(scene).into_iter().collect();
-        if drawn.iter().any(|d| d.cut) {
+        if drawn.iter().any(|d| d.is_truncated) {
             notes.push("Deviation with an arrow: longer than drawn.".to_owned());
         }
         notes.extend(lettering.notes(scene));
@@ -122,21 +126,21 @@ impl Plan {
         let unlabelled = lettering.unlabelled(scene);
         let shown = LegendUse {
             magnification: dials.magnification(),
-            directions: drawn.iter().any(|d| d.directed),
-            astray: drawn.iter().any(|d| d.strayed),
-            plain_good: dials.are_plain(scene, HoleStatus::is_good),
-            plain_rest: dials.are_plain(scene, |standing| !standing.is_good()),
+            directions: drawn.iter().any(|d| d.has_axis_arrow),
+            displacements: drawn.iter().any(|d| d.has_displacement_line),
+            has_plain_good: dials.has_plain(scene, HoleStatus::is_good),
+            has_plain_rest: dials.has_plain(scene, |standing| !standing.is_good()),
         };
         if detail == Detail::SignsWithoutAxes {
             notes.push("Axes of the holes not drawn: no room.".to_owned());
         }
-        Self { inks, labels, notes, shown, unlabelled }
+        Self { commands: inks, labels, notes, legend_use: shown, unlabelled }
     }
 }
 
 fn check(scene: &Scene) -> Result<(), PictureError> {
-    let fits = |p: &Point| p.iter().all(|v| v.abs() <= FARTHEST);
-    let off = |what: String| PictureError::OffTheSheet { what, limit: FARTHEST };
+    let fits = |p: &Point| p.iter().all(|v| v.abs() <= MAX_COORDINATE);
+    let off = |what: String| PictureError::OffTheSheet { what, limit: MAX_COORDINATE };
     for stroke in &scene.strokes {
         let fine = match &stroke.shape {
             Shape::Line(points) => points.iter().all(fits),
@@ -148,20 +152,21 @@ fn check(scene: &Scene) -> Result<(), PictureError> {
     }
     for mark in &scene.marks {
         let places =
-            [mark.found, mark.direction, mark.misfit.map(|m| m.entry), mark.misfit.map(|m| m.bottom)];
-        if !(fits(&mark.at) && fits(&[mark.radius, 0.0]) && places.iter().flatten().all(fits)) {
+            [mark.actual, mark.direction, mark.deviation.map(|m| m.entry), mark.deviation.map(|m| m.bottom)];
+        if !(fits(&mark.position) && fits(&[mark.radius, 0.0]) && places.iter().flatten().all(fits)) {
             return Err(off(format!("hole {}", mark.label.first().map_or("", String::as_str))));
         }
     }
     Ok(())
 }
 
-/// The path of the tool that somebody looks for.
+/// Returns true for pens of changed cuts, which are part of the extent.
 fn is_changed(pen: Pen) -> bool {
-    matches!(pen, Pen::Now | Pen::Before)
+    matches!(pen, Pen::New | Pen::Old)
 }
 
-/// What must be seen, mm: every line but the tool's path where it is as before, every hole, and the origin where there are axes.
+/// Returns the extent of the drawing, mm: all holes, all lines except unchanged tool paths, and the origin if
+/// axes are drawn.
 fn extent(scene: &Scene) -> (Point, Point) {
     let mut seen: Vec<(Point, f64)> = Vec::new();
     let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| is_path(s.pen));
@@ -175,7 +180,9 @@ fn extent(scene: &Scene) -> (Point, Point) {
         }
     }
     for mark in &scene.marks {
-        seen.extend([Some(mark.at), mark.found].into_iter().flatten().map(|place| (place, mark.radius)));
+        seen.extend(
+            [Some(mark.position), mark.actual].into_iter().flatten().map(|place| (place, mark.radius)),
+        );
     }
     if !scene.axes.is_empty() || seen.is_empty() {
         seen.push(([0.0, 0.0], 0.0));
@@ -185,7 +192,7 @@ fn extent(scene: &Scene) -> (Point, Point) {
         low = [low[0].min(at[0] - radius), low[1].min(at[1] - radius)];
         high = [high[0].max(at[0] + radius), high[1].max(at[1] + radius)];
     }
-    // A single hole without a part round it would fill the sheet.
+    // A single hole without an outline would fill the sheet.
     let widest = (high[0] - low[0]).max(high[1] - low[1]);
     let alone = scene.strokes.iter().all(|stroke| is_path(stroke.pen));
     let least = 20.0 * scene.marks.iter().map(|m| m.radius).fold(0.5, f64::max);
@@ -223,9 +230,9 @@ mod tests {
             marks,
             zone: Some(0.1),
             legend: vec![
-                item(Sample::Standing(HoleStatus::Good)),
-                item(Sample::Standing(HoleStatus::Bad)),
-                item(Sample::Misfit),
+                item(Sample::Status(HoleStatus::Good)),
+                item(Sample::Status(HoleStatus::Bad)),
+                item(Sample::Deviation),
                 item(Sample::Direction),
                 item(Sample::Pen(Pen::Outline)),
                 item(Sample::Pen(Pen::Construction)),
@@ -241,17 +248,17 @@ mod tests {
         let off = 0.01 * index as f64;
         let judged = matches!(standing, HoleStatus::Good | HoleStatus::Bad);
         Mark {
-            at,
+            position: at,
             radius: 3.0,
-            standing,
+            status: standing,
             label: vec![format!("{}", index + 1), format!("B {index}°"), "Φ0.020".to_owned()],
             direction: Some([at[0] / 800.0, at[1] / 800.0]),
-            misfit: judged.then_some(ZoneDeviation { entry: [off, 0.01], bottom: [off, -0.01] }),
-            found: judged.then_some([at[0] + off, at[1]]),
+            deviation: judged.then_some(ZoneDeviation { entry: [off, 0.01], bottom: [off, -0.01] }),
+            actual: judged.then_some([at[0] + off, at[1]]),
         }
     }
 
-    /// How far an ink reaches, pixels.
+    /// Returns the extent of a command, pixels.
     fn reach(ink: &DrawCommand, font: &Font) -> Rect {
         match ink {
             DrawCommand::Line { points, .. } | DrawCommand::Area { points, .. } => {
@@ -280,7 +287,7 @@ mod tests {
     fn holds(scene: &Scene, size: Size) -> Result<(), TestCaseError> {
         let sheet = lay_out(scene, size).unwrap();
         let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
-        for ink in &sheet.inks {
+        for ink in &sheet.commands {
             prop_assert!(page.contains(&reach(ink, &Font::embedded())), "{size:?} {ink:?}");
         }
         for (i, (rect, lines)) in sheet.labels.iter().enumerate() {
@@ -325,7 +332,7 @@ mod tests {
     fn too_many_holes_for_their_numbers_are_said_to_be() {
         let places = (0..900).map(|i| [f64::from(i % 30) * 30.0 - 435.0, f64::from(i / 30) * 30.0 - 435.0]);
         let scene = scene(
-            places.enumerate().map(|(i, at)| Mark { standing: HoleStatus::Good, ..mark(i, at) }).collect(),
+            places.enumerate().map(|(i, at)| Mark { status: HoleStatus::Good, ..mark(i, at) }).collect(),
         );
         let sheet = lay_out(&scene, Size::new(480, 360).unwrap()).unwrap();
         let numbered = sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count();

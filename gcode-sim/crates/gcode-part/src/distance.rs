@@ -5,7 +5,7 @@ use super::surface::{Surface, bisect};
 
 /// The place of the surface that is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub struct NearestPoint {
     /// mm; below 0 inside the body.
     pub distance: f64,
     /// The surface's normal there, out of the body.
@@ -13,13 +13,13 @@ pub struct Nearest {
 }
 
 impl Surface {
-    pub fn nearest(&self, p: &Point3<f64>) -> Nearest {
+    pub fn nearest(&self, p: &Point3<f64>) -> NearestPoint {
         match *self {
-            Self::Ellipsoid { a, b } => to_ellipsoid(a, b, p),
+            Self::Ellipsoid { a, b } => nearest_on_ellipsoid(a, b, p),
             Self::Cylinder { radius } => {
                 let out = Vector3::new(0.0, p.y, p.z);
                 let normal = Unit::try_new(out, f64::MIN_POSITIVE).unwrap_or(Vector3::y_axis());
-                Nearest { distance: out.norm() - radius, normal }
+                NearestPoint { distance: out.norm() - radius, normal }
             }
         }
     }
@@ -41,7 +41,7 @@ impl Surface {
 /// lies on the surface is one equation for t, whose left side falls as t grows; the nearest foot is its largest root.
 ///
 /// Solved for s = t + m², m the smaller semi-axis: that loses no digits where s is small, deep inside.
-fn to_ellipsoid(a: f64, b: f64, p: &Point3<f64>) -> Nearest {
+fn nearest_on_ellipsoid(a: f64, b: f64, p: &Point3<f64>) -> NearestPoint {
     let m = a.min(b);
     let (round, along) = (a * a - m * m, b * b - m * m);
     let rho = libm::hypot(p.x, p.z);
@@ -55,19 +55,21 @@ fn to_ellipsoid(a: f64, b: f64, p: &Point3<f64>) -> Nearest {
     // p − q is t times this.
     let slope = Vector3::new(p.x / (s + round), p.y / (s + along), p.z / (s + round));
     match Unit::try_new_and_get(slope, 1e-9 / m) {
-        Some((normal, length)) if !on_the_long_axis(s, m, short) => Nearest { distance: t * length, normal },
-        _ => across_the_short_axis(a, b, p),
+        Some((normal, length)) if !is_on_long_axis(s, m, short) => {
+            NearestPoint { distance: t * length, normal }
+        }
+        _ => nearest_from_long_axis(a, b, p),
     }
 }
 
 /// Between the centres of curvature on the long axis two feet are equally near, and the equation has no root above 0.
-fn on_the_long_axis(s: f64, m: f64, short: f64) -> bool {
+fn is_on_long_axis(s: f64, m: f64, short: f64) -> bool {
     s < 1e-9 * m * m && short < 1e-9 * m
 }
 
 /// Of a point on the long axis (for a flat body: in the plane of its equator), so deep inside that the nearest foot lies
 /// to the side: its coordinate along the long axis is p·l²/(l² − m²).
-fn across_the_short_axis(a: f64, b: f64, p: &Point3<f64>) -> Nearest {
+fn nearest_from_long_axis(a: f64, b: f64, p: &Point3<f64>) -> NearestPoint {
     let flat = b < a;
     let (long, m) = if flat { (a, b) } else { (b, a) };
     let far = if flat { libm::hypot(p.x, p.z) } else { p.y.abs() };
@@ -81,7 +83,7 @@ fn across_the_short_axis(a: f64, b: f64, p: &Point3<f64>) -> Nearest {
     };
     let side = if flat { Vector3::y() } else { Vector3::x() };
     let out = along * (foot / (long * long)) + side * (height / (m * m));
-    Nearest { distance: -libm::hypot(foot - far, height), normal: Unit::new_normalize(out) }
+    NearestPoint { distance: -libm::hypot(foot - far, height), normal: Unit::new_normalize(out) }
 }
 
 #[cfg(test)]

@@ -44,7 +44,7 @@ pub struct Flutes {
 }
 
 impl Flutes {
-    pub fn of_job(job: &Burr) -> Self {
+    pub fn from_job(job: &Burr) -> Self {
         let profile = Profile::new(&job.shape);
         Self {
             profile,
@@ -59,12 +59,12 @@ impl Flutes {
             surface_tolerance: job.chord_error,
             helix_tolerance: Deg(job.tolerance.helix),
             index_tolerance: Deg(job.tolerance.index),
-            speed: job.program.speed_said.then_some(job.program.speed),
-            plunge: job.program.plunge_said.then_some(job.program.plunge),
-            clearance: job.grinder.clearance_said.then_some(job.grinder.clearance),
-            wheel: job.program.wheel_said.then_some(job.program.wheel),
+            speed: job.program.is_speed_specified.then_some(job.program.speed),
+            plunge: job.program.is_plunge_specified.then_some(job.program.plunge),
+            clearance: job.grinder.is_clearance_specified.then_some(job.grinder.clearance),
+            wheel: job.program.is_wheel_specified.then_some(job.program.wheel),
             c_offset: job.grinder.c_offset,
-            signs: job.grinder.signs_said.then_some(job.grinder.signs),
+            signs: job.grinder.are_signs_specified.then_some(job.grinder.signs),
         }
     }
 
@@ -72,7 +72,7 @@ impl Flutes {
     pub fn length(&self) -> f64 {
         let steps = (90.0 - self.tip_angle.0).ceil().max(1.0);
         let polar = |step: f64| Deg(90.0 + (self.tip_angle.0 - 90.0) * step / steps);
-        let at = |step: f64| self.profile.at_polar(polar(step));
+        let at = |step: f64| self.profile.point_at_polar(polar(step));
         let chords = (0..steps as u32).map(|step| (at(f64::from(step) + 1.0) - at(f64::from(step))).norm());
         let meridian = (self.start - at(0.0).x).abs() + chords.sum::<f64>();
         f64::from(self.count) * meridian / self.helix.cos()
@@ -98,8 +98,8 @@ impl Flutes {
     }
 
     /// The helix angle that a law has at a polar angle.
-    pub fn angle(&self, law: FluteLaw, polar: Deg) -> Deg {
-        Deg::atan2(self.slope(law, &self.profile.at_polar(polar)), 1.0)
+    pub fn helix_angle(&self, law: FluteLaw, polar: Deg) -> Deg {
+        Deg::atan2(self.slope(law, &self.profile.point_at_polar(polar)), 1.0)
     }
 }
 
@@ -114,7 +114,7 @@ mod tests {
              law = \"published\"\ntip_angle = 5.0\nchord_error = 0.002\n[machine]\nc_offset = [40.0, -15.0]\n{more}"
         );
         match Job::parse(&text).unwrap() {
-            Job::Burr(job) => Flutes::of_job(&job),
+            Job::Burr(job) => Flutes::from_job(&job),
             other => panic!("{other:?} is no burr"),
         }
     }
@@ -125,9 +125,9 @@ mod tests {
         let flutes = flutes(30.0, "");
         assert!((flutes.start - 19.0).abs() < 1e-12);
         for (polar, angle) in [(90.0, 30.0), (60.0, 33.690_067), (30.0, 49.106_605), (5.0, 81.415_551)] {
-            let found = flutes.angle(FluteLaw::Published, Deg(polar));
+            let found = flutes.helix_angle(FluteLaw::Published, Deg(polar));
             assert!((found.0 - angle).abs() < 1e-3, "{found:?} at {polar}");
-            let constant = flutes.angle(FluteLaw::ConstantHelix, Deg(polar));
+            let constant = flutes.helix_angle(FluteLaw::ConstantHelix, Deg(polar));
             assert!((constant.0 - 30.0).abs() < 1e-9);
         }
     }

@@ -3,9 +3,8 @@
 //!
 //! The part's frame: x along the cylinder's axis, its origin where x = 0 in the first row's first hole; the first row lies at
 //! +z, and azimuth counts from z towards y. Both senses give the same holes.
-use nalgebra::{Point3, Vector3};
-
 use super::hole::Hole;
+use super::pattern::{Pattern, point, solve_pitch};
 use super::process::{ProcessLimits, ToolProcess};
 use super::read::ReferenceError;
 use super::reference::Reference;
@@ -14,101 +13,13 @@ use crate::job::{Cylinder, Drill, Honeycomb, Metric, Spacing};
 use gcode_lang::units::Deg;
 
 /// No cylinder that is drilled hole by hole has more.
-const MOST_HOLES: f64 = 200_000.0;
-
-/// What a hole's neighbours must be like.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pattern {
-    pub metric: Metric,
-    /// Of the cylinder on which the distances count, mm.
-    pub diameter: f64,
-    /// Rows of both groups together.
-    pub rows: u32,
-    /// The distance of all neighbours once the pattern closes, mm.
-    pub pitch: f64,
-    /// The pitch that was asked for, mm; `None` where divisions were.
-    pub asked: Option<f64>,
-    /// Holes stand at 0 ≤ x ≤ length, mm.
-    pub length: f64,
-    /// Where the holes begin, mm.
-    pub outer: f64,
-    /// 0 where the cylinder is solid, mm.
-    pub bore: f64,
-}
-
-impl Pattern {
-    /// The distance of two points of the cylinder in the pattern's metric, mm.
-    pub fn distance(&self, a: &Point3<f64>, b: &Point3<f64>) -> f64 {
-        match self.metric {
-            Metric::Chord => (b - a).norm(),
-            Metric::Arc => libm::hypot(b.x - a.x, self.arc(angle(a, b))),
-        }
-    }
-
-    /// So long is an angle on the cylinder, mm.
-    pub fn arc(&self, angle: Deg) -> f64 {
-        self.diameter / 2.0 * angle.to_rad()
-    }
-
-    /// Where a straight line out of the part crosses the cylinder on which the distances count; `None` where it
-    /// doesn't.
-    pub fn crossing(&self, on: &Point3<f64>, out: &Vector3<f64>) -> Option<Point3<f64>> {
-        // |p + t·u| = r in the yz plane, the outer one of both solutions.
-        let (p, u) = (on.yz().coords, out.yz());
-        let (a, half_b, c) = (u.dot(&u), p.dot(&u), p.dot(&p) - self.diameter * self.diameter / 4.0);
-        let root = half_b * half_b - a * c;
-        (a > 1e-12 && root >= 0.0).then(|| on + out * ((root.sqrt() - half_b) / a))
-    }
-
-    /// From a hole to the one abreast of it two rows further: behind the six neighbours the nearest, mm.
-    pub fn abreast(&self) -> f64 {
-        let radius = self.diameter / 2.0;
-        self.distance(&point(0.0, Deg::ZERO, radius), &point(0.0, self.step() * 2.0, radius))
-    }
-
-    /// The row whose azimuth is nearest to that of a point, counted from 0.
-    pub fn row_of(&self, p: &Point3<f64>) -> usize {
-        let rows = (azimuth(p).0 / self.step().0).round();
-        rows.rem_euclid(f64::from(self.rows)) as usize
-    }
-
-    /// The pitch that so many rows of both groups close with, mm.
-    pub fn pitch_of(&self, rows: u32) -> f64 {
-        closed(self.metric, self.diameter, rows)
-    }
-
-    /// The pitch that the same rows close with in the other metric, mm.
-    pub fn pitch_in(&self, metric: Metric) -> f64 {
-        closed(metric, self.diameter, self.rows)
-    }
-
-    /// From one row to the next.
-    pub fn step(&self) -> Deg {
-        Deg(360.0 / f64::from(self.rows))
-    }
-}
-
-/// Azimuth of a point, from z towards y, −180 to 180.
-pub fn azimuth(p: &Point3<f64>) -> Deg {
-    Deg::atan2(p.y, p.z)
-}
-
-/// From the one azimuth to the other, 0 to 180.
-fn angle(a: &Point3<f64>, b: &Point3<f64>) -> Deg {
-    let (cross, dot) = (a.y * b.z - a.z * b.y, a.y * b.y + a.z * b.z);
-    Deg::atan2(cross.abs(), dot)
-}
-
-/// A point of the cylinder of this radius.
-fn point(x: f64, azimuth: Deg, radius: f64) -> Point3<f64> {
-    Point3::new(x, radius * azimuth.sin(), radius * azimuth.cos())
-}
+const MAX_HOLES: f64 = 200_000.0;
 
 /// What the job's part should get.
 pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
     let pattern = pattern(job)?;
     let (outer, drill) = (job.cylinder.outer / 2.0, job.drill);
-    possible(job, &pattern)?;
+    check_drillable(job, &pattern)?;
     let mut holes = Vec::new();
     for row in 0..pattern.rows {
         let azimuth = Deg(f64::from(row) * 360.0 / f64::from(pattern.rows));
@@ -132,26 +43,26 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
         position: Some(job.position_tolerance),
         depth: Some(job.depth_tolerance),
         surface: Some(Surface::Cylinder { radius: outer }),
-        conduct: conduct(job),
+        process_limits: process_limits(job),
         pattern: Some(pattern),
     })
 }
 
-fn conduct(job: &Honeycomb) -> ProcessLimits {
-    let Drill { number, speed, feed, peck, depth, diameter, said } = job.drill;
+fn process_limits(job: &Honeycomb) -> ProcessLimits {
+    let Drill { number, speed, feed, peck, depth, diameter, specified: said } = job.drill;
     ProcessLimits {
         clearance: Some(job.machine.clearance),
-        approach: job.machine.clearance_said.then_some(job.machine.clearance),
-        retract: job.machine.retract_said.then_some(job.machine.retract),
+        approach: job.machine.is_clearance_specified.then_some(job.machine.clearance),
+        retract: job.machine.is_retract_specified.then_some(job.machine.retract),
         rotary: Some(job.machine.rotary),
         clamp: job.machine.clamp,
         tools: vec![ToolProcess {
             number,
-            offset: said.number.then_some(number),
-            speed: said.speed.then_some(speed),
-            feed: said.feed.then_some(feed),
+            offset: said.has_number.then_some(number),
+            speed: said.has_speed.then_some(speed),
+            feed: said.has_feed.then_some(feed),
             // Shallower holes are drilled in one go.
-            peck: (said.peck && 3.0 * diameter < depth).then_some(peck),
+            peck: (said.has_peck && 3.0 * diameter < depth).then_some(peck),
         }],
     }
 }
@@ -159,27 +70,27 @@ fn conduct(job: &Honeycomb) -> ProcessLimits {
 /// How many rows, and the pitch at which all six neighbours are equally far.
 fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
     let (diameter, metric) = (job.cylinder.diameter, job.metric);
-    let told = |message: String| Err(ReferenceError { line: None, message });
+    let error = |message: String| Err(ReferenceError { line: None, message });
     let (rows, asked) = match job.spacing {
         Spacing::Divisions(divisions) => (2 * divisions, None),
         Spacing::Pitch(pitch) => match nearest_count(diameter, pitch) {
             Some(count) => (2 * count, Some(pitch)),
             None => {
-                return told(format!(
-                    "key 'pattern.pitch': {pitch} round diameter {diameter} gives more than {MOST_HOLES} \
+                return error(format!(
+                    "key 'pattern.pitch': {pitch} round diameter {diameter} gives more than {MAX_HOLES} \
                      rows: use a larger pitch"
                 ));
             }
         },
     };
     if rows < 4 {
-        return told(format!(
+        return error(format!(
             "key 'pattern.pitch': fewer than two rows of one group fit round diameter {diameter}: use a smaller pitch"
         ));
     }
     let Cylinder { length, outer, bore, .. } = job.cylinder;
-    let pitch = closed(metric, diameter, rows);
-    Ok(Pattern { metric, diameter, rows, pitch, asked, length, outer, bore })
+    let pitch = solve_pitch(metric, diameter, rows);
+    Ok(Pattern { metric, diameter, rows, pitch, specified_pitch: asked, length, outer, bore })
 }
 
 /// How many rows of each group come nearest to the pitch that was asked for; `None` where they are too many.
@@ -187,11 +98,11 @@ fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
 /// The pitch each count closes with is measured on the developed surface, in either metric; how far it is off the
 /// asked one adds up over the rows, and the count with the least sum is it. Of two as near the larger, the smaller pitch.
 fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
-    let too_far = |count: u32| asked < closed(Metric::Arc, diameter, 2 * count);
+    let too_far = |count: u32| asked < solve_pitch(Metric::Arc, diameter, 2 * count);
     // The more rows the smaller the pitch: the last count that is too far apart stands before the first that isn't.
     let (mut far, mut near) = (0, 1);
     while too_far(near) {
-        if MOST_HOLES < f64::from(near) {
+        if MAX_HOLES < f64::from(near) {
             return None;
         }
         (far, near) = (near, 2 * near);
@@ -203,48 +114,24 @@ fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
     if far == 0 {
         return Some(near);
     }
-    let sum = |count: u32| f64::from(count) * (closed(Metric::Arc, diameter, 2 * count) - asked).abs();
+    let sum = |count: u32| f64::from(count) * (solve_pitch(Metric::Arc, diameter, 2 * count) - asked).abs();
     Some(if sum(far) < sum(near) { far } else { near })
 }
 
-/// The pitch at which so many rows close: a hole's neighbours in the next row are as far as those in its own, mm.
-fn closed(metric: Metric, diameter: f64, rows: u32) -> f64 {
-    let guess =
-        Pattern { metric, diameter, rows, pitch: 0.0, asked: None, length: 0.0, outer: diameter, bore: 0.0 };
-    // The neighbour in the next row stands half a pitch further: with a small pitch it is farther than the pitch.
-    let next = |pitch: f64| {
-        let (here, there) =
-            (point(0.0, Deg::ZERO, diameter / 2.0), point(pitch / 2.0, guess.step(), diameter / 2.0));
-        guess.distance(&here, &there)
-    };
-    let (mut low, mut high) = (0.0, 2.0 * next(0.0));
-    loop {
-        let middle = low + (high - low) / 2.0;
-        if middle <= low || high <= middle {
-            return middle;
-        }
-        if next(middle) > middle {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-}
-
 /// Whether the part can have these holes: they must not run into each other, down to where they end in the material.
-fn possible(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
+fn check_drillable(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
     let deepest = (job.cylinder.outer / 2.0 - job.drill.depth).max(job.cylinder.bore / 2.0);
     let p = pattern.pitch;
     let apart = |x: f64, rows: f64, radius: f64| {
-        (point(x, pattern.step() * rows, radius) - point(0.0, Deg::ZERO, radius)).norm()
+        (point(x, pattern.row_angle() * rows, radius) - point(0.0, Deg::ZERO, radius)).norm()
     };
-    let told = |message: String| Err(ReferenceError { line: None, message });
+    let error = |message: String| Err(ReferenceError { line: None, message });
     for (x, rows, what) in
         [(p, 0.0, "in a row"), (p / 2.0, 1.0, "of neighbouring rows"), (0.0, 2.0, "of one group")]
     {
         let distance = apart(x, rows, deepest);
         if distance <= job.drill.diameter {
-            return told(format!(
+            return error(format!(
                 "the holes overlap: with {} rows the pitch is {p:.3} mm, and holes {what} are \
                  {distance:.3} mm apart at radius {deepest:.3}, where they end, with a drill of {} mm: use \
                  a larger pitch, a smaller drill or depth",
@@ -253,9 +140,9 @@ fn possible(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
         }
     }
     let holes = f64::from(pattern.rows) * (job.cylinder.length / p + 1.0);
-    if holes > MOST_HOLES {
-        return told(format!(
-            "the pattern has {holes:.0} holes, at most {MOST_HOLES}: use a larger pitch, or a part of the pattern"
+    if holes > MAX_HOLES {
+        return error(format!(
+            "the pattern has {holes:.0} holes, at most {MAX_HOLES}: use a larger pitch, or a part of the pattern"
         ));
     }
     Ok(())
@@ -265,6 +152,7 @@ fn possible(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
 mod tests {
     use super::*;
     use crate::job::Job;
+    use nalgebra::Point3;
 
     fn job(changes: &[(&str, &str)]) -> Honeycomb {
         let mut text = String::from(
@@ -308,7 +196,7 @@ mod tests {
     fn a_chord_worked_by_hand() {
         let tube = [("pitch = 10", "divisions = 24"), ("arc", "chord"), ("diameter = 500", "diameter = 100")];
         let pattern = holes(&tube).pattern.unwrap();
-        assert_eq!((pattern.rows, pattern.asked), (48, None));
+        assert_eq!((pattern.rows, pattern.specified_pitch), (48, None));
         assert!((pattern.pitch - 7.552_103).abs() < 1e-5, "{}", pattern.pitch);
     }
 

@@ -23,7 +23,7 @@ pub struct TiltedEllipsoid {
 ///
 /// A sphere shows nothing, and neither does any part to first order at its equator: a tilt is seen the better the farther the
 /// indicator is from there.
-pub fn tilted(a: Mm, b: Mm, y: Mm, tilt: Deg) -> Option<TiltedEllipsoid> {
+pub fn tilted_ellipsoid(a: Mm, b: Mm, y: Mm, tilt: Deg) -> Option<TiltedEllipsoid> {
     let body = Surface::Ellipsoid { a: a.0, b: b.0 };
     // In the part's frame the indicator is turned the other way.
     let reach = |turned: Deg| {
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     fn at(a: f64, b: f64, y: f64, tilt: f64) -> TiltedEllipsoid {
-        tilted(Mm(a), Mm(b), Mm(y), Deg(tilt)).unwrap()
+        tilted_ellipsoid(Mm(a), Mm(b), Mm(y), Deg(tilt)).unwrap()
     }
 
     fn near(found: Mm, expected: f64) {
@@ -101,8 +101,11 @@ mod tests {
 
     #[test]
     fn past_the_pole_it_shows_nothing() {
-        assert_eq!(tilted(Mm(1000.0), Mm(500.0), Mm(501.0), Deg(0.0)), None);
-        assert_eq!(tilted(Mm(1000.0), Mm(1000.0), Mm(200.0), Deg(5.0)).unwrap().first_order, Mm::ZERO);
+        assert_eq!(tilted_ellipsoid(Mm(1000.0), Mm(500.0), Mm(501.0), Deg(0.0)), None);
+        assert_eq!(
+            tilted_ellipsoid(Mm(1000.0), Mm(1000.0), Mm(200.0), Deg(5.0)).unwrap().first_order,
+            Mm::ZERO
+        );
     }
 
     proptest! {

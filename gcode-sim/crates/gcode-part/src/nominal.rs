@@ -37,15 +37,15 @@ impl NominalPart {
             return Err(ReferenceError { line: None, message });
         }
         let job = Job::parse(text).map_err(|e| ReferenceError { line: e.line, message: e.message })?;
-        Self::of_job(&job)
+        Self::from_job(&job)
     }
 
     /// Computed from the geometry of the job's part.
-    pub fn of_job(job: &Job) -> Result<Self, ReferenceError> {
+    pub fn from_job(job: &Job) -> Result<Self, ReferenceError> {
         match job {
             Job::PinHoles(job) => super::pin_holes::reference(job).map(Self::Holes),
             Job::Honeycomb(job) => super::honeycomb::reference(job).map(Self::Holes),
-            Job::Burr(job) => Ok(Self::Flutes(Flutes::of_job(job))),
+            Job::Burr(job) => Ok(Self::Flutes(Flutes::from_job(job))),
             Job::Alignment(_) => {
                 let message = "the family 'alignment' measures the position of a part and makes nothing, \
                                so there is no reference to verify against: run its programs with gcode-sim \

@@ -10,7 +10,7 @@ pub struct Overlap {
     /// Between the axes where they are nearest, from entry to bottom, mm.
     pub distance: f64,
     /// Of the two radii, mm.
-    pub radii: f64,
+    pub radius_sum: f64,
 }
 
 impl Overlap {
@@ -19,7 +19,7 @@ impl Overlap {
         let [one, other] = self.holes.map(|index| holes[index].id.as_deref().unwrap_or("?"));
         format!(
             "holes {one} and {other} overlap: their axes come within {:.3} mm, their radii add up to {:.3} mm",
-            self.distance, self.radii
+            self.distance, self.radius_sum
         )
     }
 }
@@ -41,10 +41,10 @@ pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
     let mut found = Vec::new();
     for (place, &(one, radius, reach)) in sized.iter().enumerate() {
         for &(other, other_radius, _) in sized[place + 1..].iter().take_while(|next| next.2[0] < reach[1]) {
-            let (distance, radii) = (between(&holes[one], &holes[other]), radius + other_radius);
+            let (distance, radii) = (axis_distance(&holes[one], &holes[other]), radius + other_radius);
             // Those that only touch have no material between them at one line; arithmetic can't tell.
             if distance < radii - 1e-9 {
-                found.push(Overlap { holes: [one.min(other), one.max(other)], distance, radii });
+                found.push(Overlap { holes: [one.min(other), one.max(other)], distance, radius_sum: radii });
             }
         }
     }
@@ -54,7 +54,7 @@ pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
 
 /// How near the axes of two holes come from entry to bottom. The nearest pair of points is either inside both, where
 /// the axes' common perpendicular is, or has an end of one of them.
-fn between(one: &Hole, other: &Hole) -> f64 {
+fn axis_distance(one: &Hole, other: &Hole) -> f64 {
     let [(p, u), (q, v)] =
         [one, other].map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis) * -hole.depth));
     let foot = |point: &Point3<f64>, from: &Point3<f64>, along: &Vector3<f64>| {
@@ -91,7 +91,7 @@ mod tests {
         assert_eq!(overlaps(&[at(0.0, 6.0), at(5.0, 4.0), at(40.0, 6.0)]), []);
         let found = overlaps(&[at(4.9, 4.0), at(40.0, 6.0), at(0.0, 6.0)]);
         assert_eq!(found.len(), 1);
-        assert_eq!((found[0].holes, found[0].radii), ([0, 2], 5.0));
+        assert_eq!((found[0].holes, found[0].radius_sum), ([0, 2], 5.0));
         assert!((found[0].distance - 4.9).abs() < 1e-12);
     }
 

@@ -19,12 +19,12 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
         position: Some(job.position_tolerance),
         depth: Some(job.depth_tolerance),
         surface: Some(surface),
-        conduct: conduct(job),
+        process_limits: process_limits(job),
         pattern: None,
     })
 }
 
-fn conduct(job: &PinHoles) -> ProcessLimits {
+fn process_limits(job: &PinHoles) -> ProcessLimits {
     let duty = |tool: &Tool| ToolProcess {
         number: tool.number,
         offset: Some(tool.number),
@@ -34,33 +34,33 @@ fn conduct(job: &PinHoles) -> ProcessLimits {
     };
     ProcessLimits {
         clearance: Some(job.machine.clearance),
-        approach: job.machine.clearance_said.then_some(job.machine.clearance),
-        retract: job.machine.retract_said.then_some(job.machine.retract),
+        approach: job.machine.is_clearance_specified.then_some(job.machine.clearance),
+        retract: job.machine.is_retract_specified.then_some(job.machine.retract),
         rotary: Some(job.machine.rotary),
         clamp: None,
-        tools: job.tools.iter().filter(|_| job.tools_said).map(duty).collect(),
+        tools: job.tools.iter().filter(|_| job.are_tools_specified).map(duty).collect(),
     }
 }
 
 /// The upper half's point over (r·cos α, r·sin α).
-fn pin_hole(surface: &Surface, wanted: &HoleSpec) -> Result<Hole, ReferenceError> {
-    let azimuth = Deg(wanted.azimuth);
-    let under = Point3::new(wanted.radius * azimuth.cos(), 0.0, wanted.radius * azimuth.sin());
+fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, ReferenceError> {
+    let azimuth = Deg(spec.azimuth);
+    let under = Point3::new(spec.radius * azimuth.cos(), 0.0, spec.radius * azimuth.sin());
     let missed = || ReferenceError {
         line: None,
-        message: format!("hole '{}': a line at radius {} misses the surface", wanted.id, wanted.radius),
+        message: format!("hole '{}': a line at radius {} misses the surface", spec.id, spec.radius),
     };
     let entry = surface.exit(&under, &Vector3::y_axis()).ok_or_else(missed)?;
-    let axis = match wanted.axis {
+    let axis = match spec.axis {
         AxisDirection::Axial => Vector3::y_axis(),
         AxisDirection::Normal => surface.normal(&entry).ok_or_else(missed)?,
     };
     Ok(Hole {
-        id: Some(wanted.id.clone()),
+        id: Some(spec.id.clone()),
         entry: entry.coords.into(),
         axis: axis.into_inner().into(),
-        depth: wanted.depth,
-        diameter: Some(wanted.diameter),
+        depth: spec.depth,
+        diameter: Some(spec.diameter),
         from: None,
     })
 }

@@ -23,7 +23,7 @@ impl ProbedPart {
             let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
             return Ok(Self { surface, radius: Some(job.probe_radius), rotary: Some(job.machine.rotary) });
         }
-        let surface = NominalPart::of_job(&job)?.into_holes().and_then(|reference| reference.surface);
+        let surface = NominalPart::from_job(&job)?.into_holes().and_then(|reference| reference.surface);
         let message = "this family's part has no surface to probe".to_owned();
         let surface = surface.ok_or(ReferenceError { line: None, message })?;
         Ok(Self { surface, radius: None, rotary: None })

@@ -97,7 +97,7 @@ impl Profile {
     }
 
     /// The surface's point whose normal has that polar angle, in the plane z = 0 with y below 0.
-    pub fn at_polar(&self, polar: Deg) -> Point3<f64> {
+    pub fn point_at_polar(&self, polar: Deg) -> Point3<f64> {
         let out = Vector2::new(-polar.cos(), polar.sin());
         let there = |circle: Circle| circle.centre + out * circle.radius;
         let [first, second] = self.arcs.map(there);
@@ -160,9 +160,9 @@ mod tests {
             let p = Point3::from(p);
             assert!((profile.distance(&p) - distance).abs() < 1e-12, "{p}: {}", profile.distance(&p));
         }
-        let junction = profile.at_polar(Deg(53.130_102_354_155_98));
+        let junction = profile.point_at_polar(Deg(53.130_102_354_155_98));
         assert!((junction - Point3::new(-8.4, -3.2, 0.0)).norm() < 1e-9, "{junction}");
-        let small = profile.at_polar(Deg(30.0));
+        let small = profile.point_at_polar(Deg(30.0));
         assert!((small - Point3::new(-6.0 - 4.0 * 0.75f64.sqrt(), -2.0, 0.0)).norm() < 1e-9, "{small}");
     }
 

@@ -93,7 +93,7 @@ fn csv_error(e: &csv::Error) -> ReferenceError {
 }
 
 /// The holes with an id each and axes of length 1 exactly, or the first thing that's wrong with them.
-pub(super) fn checked(mut holes: Vec<Hole>) -> Result<Vec<Hole>, ReferenceError> {
+pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, ReferenceError> {
     let mut ids = BTreeMap::new();
     for (index, hole) in holes.iter_mut().enumerate() {
         check(hole, index).map_err(|message| error(None, message))?;

@@ -1,6 +1,6 @@
 //! The wanted holes: computed from a job's geometry, or read from a list.
 use super::hole::{Hole, HoleList, Unit};
-use super::honeycomb::Pattern;
+use super::pattern::Pattern;
 use super::process::ProcessLimits;
 use super::read;
 pub(crate) use super::read::ReferenceError;
@@ -17,7 +17,7 @@ pub struct Reference {
     pub depth: Option<f64>,
     pub surface: Option<Surface>,
     /// How the part is to be worked, as far as the reference says it.
-    pub conduct: ProcessLimits,
+    pub process_limits: ProcessLimits,
     /// What the holes' neighbours must be like, of a part where that matters.
     pub pattern: Option<Pattern>,
 }
@@ -26,11 +26,11 @@ impl Reference {
     /// A list of holes, each given an id where it has none.
     pub fn of_list(list: HoleList) -> Result<Self, ReferenceError> {
         Ok(Self {
-            holes: read::checked(list.holes)?,
+            holes: read::check_all(list.holes)?,
             position: None,
             depth: None,
             surface: None,
-            conduct: ProcessLimits::default(),
+            process_limits: ProcessLimits::default(),
             pattern: None,
         })
     }

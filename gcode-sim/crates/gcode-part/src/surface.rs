@@ -63,8 +63,8 @@ impl Surface {
         if self.value(&at(inside)) > 1e-12 {
             return None;
         }
-        let beyond = grow(inside, 1.0, |t| self.value(&at(t)) > 0.0);
-        Some(at(zero(inside, beyond, |t| self.value(&at(t)))))
+        let beyond = grow_until(inside, 1.0, |t| self.value(&at(t)) > 0.0);
+        Some(at(find_zero(inside, beyond, |t| self.value(&at(t)))))
     }
 
     /// Whether turning about an axis through a point leaves the body as it is, to the last digits.
@@ -111,14 +111,14 @@ impl Surface {
     /// Where along a line the value is least: there its slope changes sign, once, because the body is convex.
     fn innermost(&self, on: &Point3<f64>, along: &Unit<Vector3<f64>>) -> f64 {
         let slope = |t: f64| self.gradient(&(on + along.into_inner() * t)).dot(along);
-        let high = grow(0.0, 1.0, |t| slope(t) > 0.0);
-        let low = grow(0.0, -1.0, |t| slope(t) <= 0.0);
-        zero(low, high, slope)
+        let high = grow_until(0.0, 1.0, |t| slope(t) > 0.0);
+        let low = grow_until(0.0, -1.0, |t| slope(t) <= 0.0);
+        find_zero(low, high, slope)
     }
 }
 
 /// The first of `from` + `step`·1, 2, 4, 8 … where `reached` holds.
-fn grow(from: f64, mut step: f64, reached: impl Fn(f64) -> bool) -> f64 {
+fn grow_until(from: f64, mut step: f64, reached: impl Fn(f64) -> bool) -> f64 {
     while !reached(from + step) && step.abs() < 1e12 {
         step *= 2.0;
     }
@@ -128,7 +128,7 @@ fn grow(from: f64, mut step: f64, reached: impl Fn(f64) -> bool) -> f64 {
 /// Where `value` changes from 0 or less at `low` to more at `high`, to the last bit: as [`bisect`], in a few steps where
 /// that takes fifty. A step goes where the chord is 0; an end that stays counts half the next time (the Illinois method).
 /// What isn't found by chords is found by halves.
-fn zero(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
+fn find_zero(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
     let (mut below, mut above) = (value(low), value(high));
     let (mut was_above, mut chords) = (None, 40_u32);
     loop {
@@ -229,10 +229,10 @@ mod tests {
         #[test]
         fn chords_lead_where_halves_do(a in 0.0..1e-3, b in -1.0..1.0, c in 0.0..1.0) {
             let value = |t: f64| a * t * t + b * t - c;
-            let high = grow(0.0, 1.0, |t| value(t) > 0.0);
+            let high = grow_until(0.0, 1.0, |t| value(t) > 0.0);
             prop_assume!(value(high) > 0.0);
             let steps = std::cell::Cell::new(0);
-            let by_chords = zero(0.0, high, |t| {
+            let by_chords = find_zero(0.0, high, |t| {
                 steps.set(steps.get() + 1);
                 value(t)
             });

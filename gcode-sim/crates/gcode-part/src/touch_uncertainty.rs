@@ -5,7 +5,7 @@ use super::surface::Surface;
 use gcode_lang::units::Deg;
 
 /// What would come out so many times as large as a touch's noise isn't told.
-const TOO_MUCH: f64 = 300.0;
+const MAX_FACTOR: f64 = 300.0;
 
 /// Where a stylus' ball touches a part along x, in the plane z = 0; lengths in mm.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ pub struct FitUncertainty {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FitError {
     /// The ball passes the part at this height.
-    Missed { height: f64 },
+    NoContact { height: f64 },
     /// One of the five unknowns makes the same readings as others, or so nearly that noise would come out 300 times as large.
     Degenerate,
 }
@@ -49,7 +49,7 @@ impl TouchPlan {
         for (height, azimuth) in
             self.heights.iter().flat_map(|height| self.azimuths.iter().map(move |azimuth| (height, azimuth)))
         {
-            let (out, along, up) = self.contact(*height).ok_or(FitError::Missed { height: *height })?;
+            let (out, along, up) = self.contact(*height).ok_or(FitError::NoContact { height: *height })?;
             let turned = |r: f64, y: f64| Vector3::new(r * azimuth.cos(), y, r * azimuth.sin());
             let (ball, n) = (turned(out, *height), turned(along, up));
             let moment = ball.cross(&n) / lever;
@@ -61,7 +61,7 @@ impl TouchPlan {
         }
         let inverse = normal.try_inverse().ok_or(FitError::Degenerate)?;
         let found = (inverse * spread * inverse).diagonal().map(f64::sqrt);
-        let told = found.iter().all(|deviation| *deviation < TOO_MUCH);
+        let told = found.iter().all(|deviation| *deviation < MAX_FACTOR);
         let angle = |index: usize| found[index] / lever * 180.0 / std::f64::consts::PI;
         let passed = FitUncertainty { shift: [found[0], found[1], found[2]], tilt: [angle(3), angle(4)] };
         told.then_some(passed).ok_or(FitError::Degenerate)
@@ -154,6 +154,6 @@ mod tests {
         let narrow = (0..11).map(|n| -1.0 + 0.2 * f64::from(n));
         assert_eq!(touches(1158.8, 724.3, [150.0, 420.0], narrow).uncertainty(), alike);
         let above_the_pole = touches(1158.8, 724.3, [150.0, 730.0], petal()).uncertainty();
-        assert_eq!(above_the_pole, Err(FitError::Missed { height: 730.0 }));
+        assert_eq!(above_the_pole, Err(FitError::NoContact { height: 730.0 }));
     }
 }

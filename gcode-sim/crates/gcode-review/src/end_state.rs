@@ -1,59 +1,44 @@
 //! How the runs ended and what they leave behind: outcome, printed lines, variables, offsets and modes.
 use std::collections::BTreeSet;
 
-use super::align::StepPair;
-use super::change::Change;
+use super::change::Effect;
 use super::record::{Record, ResidualEntry};
-use super::steps::{Category, Step, UnsimulatedKind};
-use gcode_control::mode_name;
-
-/// The parts counter: M02 and M30 count it up.
-pub(super) const PARTS: &str = "#3901";
-
-/// All output signals as one number.
-pub(super) const OUTPUTS: &str = "#1132";
 
 /// Whether the runs ended in the same way.
-pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
+pub(super) fn outcome(old: &Record, new: &Record) -> Option<Effect> {
     let (was, is) = (&old.ending, &new.ending);
     (was.words != is.words).then(|| {
-        Change::new("outcome", format!("{}; before: {}", is.words, was.words))
+        Effect::new("outcome", format!("{}; before: {}", is.words, was.words))
             .with_old(was.stopped.as_ref())
             .with_new(is.stopped.as_ref())
     })
 }
 
 /// Whether the main programs have one name.
-pub(super) fn program(old: &Record, new: &Record) -> Option<Change> {
+pub(super) fn program(old: &Record, new: &Record) -> Option<Effect> {
     let (was, is) = (old.program.as_ref()?, new.program.as_ref()?);
     let message = || format!("{is} instead of {was}: a different program on the control");
-    (was != is).then(|| Change::new("program", message()))
+    (was != is).then(|| Effect::new("program", message()))
 }
 
-/// The code of a group that the next program finds in force, of a run to the end.
-pub(super) fn mode(record: &Record, group: u32) -> Option<String> {
-    let left = record.ending.left.get(&mode_name(group));
-    left.filter(|_| record.outcome() == "end").map(|left| g_code(left.value))
-}
-
-/// All but the names in `told`.
-pub(super) fn compare(old: &Record, new: &Record, told: &BTreeSet<String>, tolerance: f64) -> Vec<Change> {
-    let mut changes: Vec<Change> = printed(&old.ending.output, &new.ending.output).into_iter().collect();
+/// Everything that the runs print or leave behind differently.
+pub(super) fn compare(old: &Record, new: &Record, tolerance: f64) -> Vec<Effect> {
+    let mut effects: Vec<Effect> = printed(&old.ending.output, &new.ending.output).into_iter().collect();
     let (was, is) = (&old.ending.left, &new.ending.left);
-    let names: BTreeSet<&String> = was.keys().chain(is.keys()).filter(|name| !told.contains(*name)).collect();
-    changes.extend(names.into_iter().filter_map(|name| value(name, was.get(name), is.get(name), tolerance)));
-    changes
+    let names: BTreeSet<&String> = was.keys().chain(is.keys()).collect();
+    effects.extend(names.into_iter().filter_map(|name| value(name, was.get(name), is.get(name), tolerance)));
+    effects
 }
 
 /// The first line that DPRNT or BPRNT prints differently.
-fn printed(was: &[String], is: &[String]) -> Option<Change> {
+fn printed(was: &[String], is: &[String]) -> Option<Effect> {
     if was == is {
         return None;
     }
     let same = was.iter().zip(is).take_while(|(a, b)| a == b).count();
     let line = |lines: &[String]| lines.get(same).map_or("nothing".to_owned(), |line| format!("'{line}'"));
     let message = format!("printed line {}: {} instead of {}", same + 1, line(is), line(was));
-    Some(Change::new("output", message))
+    Some(Effect::new("output", message))
 }
 
 /// What the next program finds under a name.
@@ -62,7 +47,7 @@ fn value(
     was: Option<&ResidualEntry>,
     is: Option<&ResidualEntry>,
     tolerance: f64,
-) -> Option<Change> {
+) -> Option<Effect> {
     let code = was.or(is)?.code.as_str();
     // Only offsets are lengths and angles; what a variable means nobody knows.
     let is_length = matches!(code, "work-offset" | "tool-offset");
@@ -85,7 +70,7 @@ fn value(
         }
         _ => format!("{name} ends as {} instead of {}", shown(is), shown(was)),
     };
-    (!same).then(|| Change::new(known(code), message()).with_old(old).with_new(new))
+    (!same).then(|| Effect::new(known(code), message()).with_old(old).with_new(new))
 }
 
 /// The name of a change as every entry has it; a file may hold any.
@@ -103,13 +88,4 @@ fn g_code(value: f64) -> String {
 /// Digits that nobody can set aren't shown.
 fn plain(value: f64) -> f64 {
     (value * 1e9).round() / 1e9 + 0.0
-}
-
-/// An output signal is set otherwise: what it is left at comes of that.
-pub(super) fn is_output_switched(old: &Record, new: &Record, links: &[StepPair]) -> bool {
-    let is_signal = |step: &Step| step.kind.category() == Category::Silent(UnsimulatedKind::Signal);
-    links.iter().filter(|link| !matches!(link, StepPair::Same(..))).any(|link| {
-        let (i, j) = link.sides();
-        i.is_some_and(|i| is_signal(&old.steps[i])) || j.is_some_and(|j| is_signal(&new.steps[j]))
-    })
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::cause::Cause;
-use super::change::listed;
+use super::change::{Effect, listed};
 use super::descriptions::coordinates;
 use super::pass_changes::PassChange;
 use super::steps::near;
@@ -50,6 +50,15 @@ impl HoleDifference {
     }
 }
 
+/// What is different about one or more holes.
+pub(super) struct HoleEffect {
+    pub effect: Effect,
+    /// The feeds that make it so, by their numbers in either run.
+    pub steps: [Vec<usize>; 2],
+    /// The blocks that have put the tools in, where it is about a tool.
+    pub tools: [Option<usize>; 2],
+}
+
 /// A changed hole, by its number in the old run.
 pub(super) struct ChangedHole {
     pub hole: usize,
@@ -58,6 +67,8 @@ pub(super) struct ChangedHole {
     pub feeds: (usize, usize),
     /// How far that feed ends from where it ended, in machine coordinates.
     pub shift: Position,
+    /// The passes that end elsewhere too.
+    pub others: Vec<(usize, usize)>,
     pub cause: Cause,
 }
 

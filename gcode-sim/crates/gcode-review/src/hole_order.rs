@@ -2,9 +2,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::align::StepPair;
-use super::change::Change;
+use super::change::Effect;
 use super::cut_settings::changed_cut_settings;
-use super::hole_groups::named;
+use super::hole_groups::{HoleEffect, named};
 use super::passes::{Passes, in_words};
 use super::record::Record;
 
@@ -19,20 +19,14 @@ struct SharedPass {
     steps: (usize, usize),
 }
 
-/// What is told of the order, and the feeds that it is told of.
-pub(super) struct Order {
-    pub changes: Vec<Change>,
-    pub steps: Vec<(usize, usize)>,
-}
-
 /// The fewest passes that can be called moved, those whose steps are linked staying where they can. Passes of holes
 /// that are made more or less often are made at another time because of that.
-pub(super) fn order(
-    (old, new): (&Record, &Record),
+pub(super) fn hole_order<'a>(
+    (old, new): (&'a Record, &'a Record),
     links: &[StepPair],
     passes: &(Passes, Passes),
     partner: &[Option<usize>],
-) -> Order {
+) -> Vec<HoleEffect> {
     let pairs = partner.iter().enumerate().filter_map(|(hole, other)| Some((hole, (*other)?)));
     let mut all: Vec<SharedPass> = pairs.flat_map(|(hole, other)| of_hole(passes, hole, other)).collect();
     all.sort_unstable_by_key(|pass| pass.steps.0);
@@ -63,16 +57,15 @@ pub(super) fn order(
         }
     }
     all.sort_unstable_by_key(|pass| pass.steps.1);
-    let change = |group: &Vec<ReorderedPasses>| {
-        let first = group[0].passes[0].steps;
-        let place = |record: &Record, step: usize| record.places.get(record.steps[step].place).cloned();
-        Change {
-            old: place(old, first.0),
-            new: place(new, first.1),
-            ..Change::new("hole-order", message(group, &all))
-        }
+    let effect = |group: &Vec<ReorderedPasses>| {
+        let (was, is): (Vec<usize>, Vec<usize>) =
+            group.iter().flat_map(|late| &late.passes).map(|pass| pass.steps).unzip();
+        let place = |record: &'a Record, step: usize| record.places.get(record.steps[step].place);
+        let effect = Effect::new("hole-order", message(group, &all));
+        let effect = effect.with_old(place(old, was[0])).with_new(place(new, is[0]));
+        HoleEffect { effect, steps: [was, is], tools: [None, None] }
     };
-    Order { changes: groups.iter().map(change).collect(), steps }
+    groups.iter().map(effect).collect()
 }
 
 /// Its passes one by one, where they are as many as before.

@@ -5,13 +5,13 @@ use nalgebra::{Point3, Vector3};
 
 use super::align::StepPair;
 use super::cause::cause;
-use super::change::Change;
-use super::hole_groups::{ChangedHole, HoleDifference, HoleGroup, groups, named, plain, runs};
-use super::hole_order::order;
+use super::change::Effect;
+use super::hole_groups::{ChangedHole, HoleDifference, HoleEffect, HoleGroup, groups, named, plain, runs};
+use super::hole_order::hole_order;
 use super::pass_changes::pass_changes;
 use super::passes::{Passes, in_words, more_or_fewer};
 use super::record::{BlockLocation, Record};
-use super::steps::{Step, difference, near};
+use super::steps::{Step, StepKind, difference, near};
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::verify::{Comparison, Tolerances};
 use gcode_lang::motion::Position;
@@ -21,9 +21,8 @@ use gcode_part::Hole;
 
 /// The changes of holes, which is which, and what of the motion they explain.
 pub(super) struct HoleChanges {
-    pub changes: Vec<Change>,
+    pub effects: Vec<HoleEffect>,
     pub pairs: Vec<Paired>,
-    pub moved: ExplainedSteps,
 }
 
 /// A hole of one revision and what has become of it in the other; both are counted from 0.
@@ -39,17 +38,6 @@ pub struct Paired {
     pub tilted: Deg,
     /// mm.
     pub deeper: f64,
-}
-
-/// Steps that are different because a hole is: its feeds, by their numbers in either run.
-#[derive(Default)]
-pub(super) struct ExplainedSteps {
-    /// Of holes that are somewhere else now, each with how much deeper its hole is, mm.
-    pub shifted: (BTreeMap<usize, f64>, BTreeMap<usize, f64>),
-    /// Of holes that are lost, added, or made at another time.
-    pub elsewhen: (BTreeSet<usize>, BTreeSet<usize>),
-    /// Tool numbers, before and now, that an entry about holes names.
-    pub tools: BTreeSet<(u32, u32)>,
 }
 
 /// With `by_motion` a hole is the one that the same feed makes, wherever it is; else the nearest comes first.
@@ -75,11 +63,11 @@ pub(super) fn compare(
         extra = comparison.extra.iter().map(|hole| is[*hole]).collect();
     }
     pair_by_motion(&mut partner, extra, links, &passes);
-    let mut told = HoleComparer { old, new, tolerance, passes, moved: ExplainedSteps::default() };
-    let mut changes = told.pairs(&partner);
-    changes.extend(told.order(&partner, links));
-    changes.extend(told.lost_and_added(&partner));
-    HoleChanges { changes, pairs: told.all(&partner), moved: told.moved }
+    let comparer = HoleComparer { old, new, tolerance, passes };
+    let mut effects = comparer.pairs(&partner);
+    effects.extend(hole_order((old, new), links, &comparer.passes, &partner));
+    effects.extend(comparer.lost_and_added(&partner));
+    HoleChanges { effects, pairs: comparer.all(&partner) }
 }
 
 /// The angle between their axes.
@@ -120,12 +108,11 @@ struct HoleComparer<'a> {
     new: &'a Record,
     tolerance: f64,
     passes: (Passes, Passes),
-    moved: ExplainedSteps,
 }
 
 impl HoleComparer<'_> {
     /// Holes that are there before and now, those that changed alike or for one reason in one entry.
-    fn pairs(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
+    fn pairs(&self, partner: &[Option<usize>]) -> Vec<HoleEffect> {
         let mut changed = Vec::new();
         for (hole, other) in partner.iter().enumerate() {
             let Some(other) = *other else { continue };
@@ -134,34 +121,41 @@ impl HoleComparer<'_> {
             if aspects.code().is_none() {
                 continue;
             }
-            if aspects.is_elsewhere() {
-                let with = |step: &usize| (*step, apart.deeper);
-                self.moved.shifted.0.extend(self.passes.0.steps[hole].iter().map(with));
-                self.moved.shifted.1.extend(self.passes.1.steps[other].iter().map(with));
-            }
-            for pass in &aspects.strayed {
-                self.moved.shifted.0.insert(pass.steps.0, pass.deeper);
-                self.moved.shifted.1.insert(pass.steps.1, pass.deeper);
-            }
             let Some(feeds) = last(self.old, hole).zip(last(self.new, other)) else { continue };
             let way = |(i, j): (usize, usize)| difference(&self.new.steps[j].to, &self.old.steps[i].to);
             let is_elsewhere = |feeds| !near(&way(feeds), &Position::default(), self.tolerance);
             let (was, is) = (&self.passes.0.steps[hole], &self.passes.1.steps[other]);
             let is_one_by_one = aspects.is_elsewhere() && was.len() == is.len();
             let passes = was.iter().copied().zip(is.iter().copied()).filter(|_| is_one_by_one);
-            let strayed = aspects.strayed.first().map(|pass| pass.steps);
-            let others = strayed.into_iter().chain(passes).filter(|feeds| is_elsewhere(*feeds));
-            let feeds =
-                std::iter::once(feeds).chain(others).find(|feeds| is_elsewhere(*feeds)).unwrap_or(feeds);
+            let strayed = aspects.strayed.iter().map(|pass| pass.steps);
+            let others: Vec<(usize, usize)> =
+                strayed.chain(passes).filter(|feeds| is_elsewhere(*feeds)).collect();
+            let feeds = if is_elsewhere(feeds) { feeds } else { others.first().copied().unwrap_or(feeds) };
             let [was, is] = self.blocks(feeds);
-            changed.push(ChangedHole { hole, aspects, feeds, shift: way(feeds), cause: cause(was, is) });
+            let cause = cause(was, is);
+            changed.push(ChangedHole { hole, aspects, feeds, others, shift: way(feeds), cause });
         }
-        let change = |group: HoleGroup| {
+        let effect = |group: HoleGroup| {
+            let feeds = group.all[0].feeds;
             let message = group.message(&self.old.axes, self.tolerance);
-            let [was, is] = self.blocks(group.all[0].feeds);
-            Change::new(group.code(), message).with_old(Some(was)).with_new(Some(is))
+            let [was, is] = self.blocks(feeds);
+            let is_by_tool = matches!(group.code(), "hole-tool" | "hole-diameter");
+            let tools = if is_by_tool { self.tool_changes(feeds) } else { [None, None] };
+            let feeds = group.all.iter().flat_map(|one| std::iter::once(&one.feeds).chain(&one.others));
+            let (was_made, is_made) = feeds.copied().unzip();
+            let effect = Effect::new(group.code(), message).with_old(Some(was)).with_new(Some(is));
+            HoleEffect { effect, steps: [was_made, is_made], tools }
         };
-        groups(changed, &self.old.axes, self.tolerance).into_iter().map(change).collect()
+        groups(changed, &self.old.axes, self.tolerance).into_iter().map(effect).collect()
+    }
+
+    /// The blocks that have put in the tools of two feeds.
+    fn tool_changes(&self, (i, j): (usize, usize)) -> [Option<usize>; 2] {
+        let last = |record: &Record, feed: usize| {
+            let mut steps = record.steps[..feed].iter().rev();
+            steps.find(|step| matches!(step.kind, StepKind::Tool(_))).map(Step::editable_at)
+        };
+        [last(self.old, i), last(self.new, j)]
     }
 
     /// The blocks of two steps, before and now.
@@ -170,7 +164,7 @@ impl HoleComparer<'_> {
     }
 
     /// Every hole with its partner; those that are there before first.
-    fn all(&mut self, partner: &[Option<usize>]) -> Vec<Paired> {
+    fn all(&self, partner: &[Option<usize>]) -> Vec<Paired> {
         let alone =
             Paired { old: None, new: None, changed: true, moved: 0.0, tilted: Deg::ZERO, deeper: 0.0 };
         let (old, new) = (self.old, self.new);
@@ -204,7 +198,7 @@ impl HoleComparer<'_> {
     }
 
     /// All that is different about one hole.
-    fn aspects(&mut self, hole: usize, other: usize, apart: &HoleOffset) -> HoleDifference {
+    fn aspects(&self, hole: usize, other: usize, apart: &HoleOffset) -> HoleDifference {
         let (old, new) = (&self.old.holes[hole], &self.new.holes[other]);
         if self.old.unfinished.contains(&hole) || self.new.unfinished.contains(&other) {
             return HoleDifference::default();
@@ -229,14 +223,8 @@ impl HoleComparer<'_> {
                     _ => Some(format!("made by {} instead of {}", in_words(is), in_words(was))),
                 };
                 others.extend(text.map(|text| ("hole-tool", text)));
-                self.moved.tools.extend(swapped);
             }
-            Some((text, swapped)) => {
-                self.moved.tools.extend(swapped);
-                self.moved.elsewhen.0.extend(&self.passes.0.steps[hole]);
-                self.moved.elsewhen.1.extend(&self.passes.1.steps[other]);
-                others.push(("hole-tool", text));
-            }
+            Some(text) => others.push(("hole-tool", text)),
         }
         HoleDifference {
             moved: far(apart.entry.norm()).then_some(apart.entry),
@@ -254,38 +242,37 @@ impl HoleComparer<'_> {
         }
     }
 
-    /// Holes, or passes of them, made in another order.
-    fn order(&mut self, partner: &[Option<usize>], links: &[StepPair]) -> Vec<Change> {
-        let order = order((self.old, self.new), links, &self.passes, partner);
-        let (was, is): (Vec<usize>, Vec<usize>) = order.steps.into_iter().unzip();
-        self.moved.elsewhen.0.extend(was);
-        self.moved.elsewhen.1.extend(is);
-        order.changes
-    }
-
-    fn lost_and_added(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
+    fn lost_and_added(&self, partner: &[Option<usize>]) -> Vec<HoleEffect> {
         let mut changes = Vec::new();
         let (firsts, of_new) = (self.passes.0.firsts(), self.passes.1.firsts());
         let gone: Vec<usize> = firsts.iter().copied().filter(|hole| partner[*hole].is_none()).collect();
-        self.moved.elsewhen.0.extend(gone.iter().flat_map(|hole| &self.passes.0.steps[*hole]));
         for run in runs(&gone, &firsts, |hole| Some(last_step(self.old, hole)?.place)) {
             let first = if run.len() == 1 { "" } else { "the first " };
             let rapid = self.rapid_to_bottom(run[0]);
             let lost = if rapid.is_some() { "a rapid instead of a feed goes to the bottom" } else { "lost" };
             let message = format!("{}: {lost}, {first}{}", named(&run), described(&self.old.holes[run[0]]));
-            let change = Change::new("hole-lost", message).with_old(place(self.old, run[0]));
-            changes.push(change.with_new(rapid.and_then(|step| self.new.places.get(step.place))));
+            let change = Effect::new("hole-lost", message).with_old(place(self.old, run[0]));
+            let effect = change.with_new(rapid.and_then(|step| self.new.places.get(step.place)));
+            changes.push(HoleEffect {
+                effect,
+                steps: [self.passes.0.of_holes(&run), Vec::new()],
+                tools: [None, None],
+            });
         }
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
         let more: Vec<usize> = of_new.iter().copied().filter(|hole| !known.contains(hole)).collect();
-        self.moved.elsewhen.1.extend(more.iter().flat_map(|hole| &self.passes.1.steps[*hole]));
         for run in runs(&more, &of_new, |hole| Some(last_step(self.new, hole)?.place)) {
             let first = described(&self.new.holes[run[0]]);
             let message = match run.len() {
                 1 => format!("a hole added: {first}"),
                 n => format!("{n} holes added: the first {first}"),
             };
-            changes.push(Change::new("hole-added", message).with_new(place(self.new, run[0])));
+            let effect = Effect::new("hole-added", message).with_new(place(self.new, run[0]));
+            changes.push(HoleEffect {
+                effect,
+                steps: [Vec::new(), self.passes.1.of_holes(&run)],
+                tools: [None, None],
+            });
         }
         changes
     }

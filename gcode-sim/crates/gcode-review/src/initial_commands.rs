@@ -3,40 +3,40 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::align::StepPair;
-use super::change::Change;
+use super::change::Effect;
 use super::modal_conditions::ModalAspect;
 use super::record::Record;
 use gcode_control::{Modal, modal_code};
 
-/// What is commanded.
+/// The kind of command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum CommandKind {
     /// A modal code.
     Mode,
-    /// The place of an axis, wherever it stood.
+    /// An absolute position of an axis.
     Axis,
     /// A value of an offset.
     Offset,
 }
 
-/// Something that the program commands, at its first time.
+/// The first command of a mode, an axis or an offset.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FirstCommand {
     pub what: CommandKind,
-    /// What can't be commanded twice: the group of a mode, `03`, an axis, an offset, `G10 L2 P1 X`.
+    /// What is commanded: the group of a mode, `03`, an axis, an offset, `G10 L2 P1 X`.
     pub name: String,
-    /// As programs write it.
+    /// As written in programs.
     pub text: String,
-    /// How many moves were made before.
+    /// Number of moves before it.
     pub moves: usize,
     /// Its block, by its number in the record.
     pub place: usize,
 }
 
 /// What the old revision commands before moves that both make, and the new one doesn't.
-pub(super) fn compare(old: &Record, new: &Record, links: &[StepPair]) -> Vec<Change> {
+pub(super) fn compare(old: &Record, new: &Record, links: &[StepPair]) -> Vec<Effect> {
     let (Some(was), Some(is)) = (&old.begun, &new.begun) else { return Vec::new() };
     let moves = moves_of_both(old, new, links);
     let mut groups: Vec<MissingCommands<'_>> = Vec::new();
@@ -130,7 +130,7 @@ struct MissingCommands<'a> {
 }
 
 impl MissingCommands<'_> {
-    fn change(&self, old: &Record, new: &Record) -> Change {
+    fn change(&self, old: &Record, new: &Record) -> Effect {
         let names: Vec<&str> = self.all.iter().map(|begun| begun.text.as_str()).collect();
         let one = names.len() == 1;
         let names = match names.as_slice() {
@@ -158,7 +158,7 @@ impl MissingCommands<'_> {
                 )
             }
         };
-        Change::new("start", message)
+        Effect::new("start", message)
             .with_old(old.places.get(self.all[0].place))
             .with_new(new.places.get(new.steps[self.first.steps.1].place))
     }

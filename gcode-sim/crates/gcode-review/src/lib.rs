@@ -10,15 +10,17 @@ mod change;
 mod condition_changes;
 mod cut_settings;
 mod descriptions;
+mod differences;
+mod edits;
+mod effects;
 mod end_state;
-mod groups;
+mod entries;
 mod hole_groups;
 mod hole_order;
 mod holes;
 mod initial_commands;
 mod legacy_records;
 mod modal_conditions;
-mod motion;
 mod pass_changes;
 mod passes;
 mod path;
@@ -26,17 +28,14 @@ mod record;
 mod recorder;
 mod redundant_commands;
 mod reordered_cuts;
-mod return_rapids;
-mod same_block;
 mod shifted_events;
-mod single_edit;
 mod steps;
 mod store;
 mod tool_setup;
 mod unexecuted;
 mod uniform_shift;
 
-pub use change::{CODES, Change};
+pub use change::{CODES, Change, Effect};
 pub use holes::Paired;
 pub use path::Leg;
 pub use record::{BlockLocation, Record, Revision, Totals};
@@ -45,10 +44,10 @@ pub use store::AcceptedFile;
 pub use store::StoreError;
 pub use unexecuted::{UnexecutedChange, unexecuted};
 
-use std::collections::BTreeSet;
-
 use self::align::StepPair;
-use gcode_control::mode_name;
+use self::edits::{Causes, Edits};
+use self::effects::Effects;
+use self::entries::{CausedEffect, entries};
 
 /// Everything that is different: how the runs ended and the holes first, then the motion that no changed hole explains, then the rest.
 ///
@@ -82,36 +81,28 @@ impl RevisionDiff {
         links = whole.unwrap_or(links);
         let runs = reordered_cuts::displaced(&mut links, old, new, tolerance);
         let holes = holes::compare(old, new, &links, is_whole, tolerance);
-        let is_by_other = outcome.is_some();
-        let is_to_the_end = !is_by_other || [old, new].iter().all(|record| record.outcome() == "end");
-        let mut changes: Vec<Change> = outcome.into_iter().collect();
-        changes.extend(end_state::program(old, new));
-        changes.extend(initial_commands::compare(old, new, &links));
-        changes.extend(holes.changes);
-        let is_all_same = links.iter().all(|link| matches!(link, StepPair::Same(..)));
-        let edit = if is_all_same { None } else { single_edit::edit(old, new) };
-        let displaced = reordered_cuts::ReorderedCuts::new(&runs, &links, (old, new), tolerance);
-        let explained = (&holes.moved, &displaced);
-        let (motion, modes) = motion::compare((old, new), &links, explained, tolerance, edit.is_some());
-        changes.extend(motion);
-        // Where all moves go where they went, they may be made otherwise.
-        if !changes.is_empty()
-            && let Some(edit) = edit.or_else(|| single_edit::edit(old, new))
-        {
-            changes = single_edit::merge_into_edit(changes, &edit);
-        }
-        if !is_to_the_end && [old, new].iter().any(|record| record.outcome() == "limit") {
-            // Which round of a program without an end the other one is held against, nobody knows.
-            changes.truncate(1);
-        }
+        let is_to_the_end = outcome.is_none() || [old, new].iter().all(|record| record.outcome() == "end");
+        let edits = Edits::new(old, new);
+        let causes = Causes::new(&edits, [old, new]);
+        let caused = |effect: Effect| (causes.of(&effect), effect);
+        let mut effects: Vec<CausedEffect> = outcome.into_iter().map(caused).collect();
+        effects.extend(end_state::program(old, new).map(|effect| (Vec::new(), effect)));
+        effects.extend(initial_commands::compare(old, new, &links).into_iter().map(caused));
+        effects.extend(holes.effects.into_iter().map(|hole| (causes.of_holes(&hole), hole.effect)));
+        effects.extend(condition_changes::condition_changes((old, new), &links, &edits));
+        let cuts = reordered_cuts::ReorderedCuts::new(&runs, &links, (old, new), tolerance);
+        let (differences, relied) = differences::differences((old, new), &links, &cuts, tolerance);
+        let mut counted = Effects::new([old, new], &edits, tolerance);
+        differences.iter().for_each(|difference| counted.add(difference));
+        effects.extend(counted.finish());
+        effects.extend(cuts.effects(&links).into_iter().chain(relied).map(caused));
         if is_to_the_end {
-            let mut told: BTreeSet<String> = modes.into_iter().map(mode_name).collect();
-            told.extend(
-                end_state::is_output_switched(old, new, &links).then(|| end_state::OUTPUTS.to_owned()),
-            );
-            told.extend(is_by_other.then(|| end_state::PARTS.to_owned()));
-            changes.extend(end_state::compare(old, new, &told, tolerance));
+            effects.extend(end_state::compare(old, new, tolerance).into_iter().map(caused));
+        } else if [old, new].iter().any(|record| record.outcome() == "limit") {
+            // Which iteration of a program without an end is compared with the other's end is unknown.
+            effects.truncate(1);
         }
+        let mut changes = entries(effects, &edits);
         changes.iter_mut().for_each(|change| anchor::set_anchor(change, old, new, &links));
         let different = links.iter().filter(|link| !matches!(link, StepPair::Same(..)));
         let (was, is): (Vec<_>, Vec<_>) = different.map(|link| link.sides()).unzip();

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use gcode_control::State;
 use gcode_lang::program::modes::WorkSystem;
 
-/// One of the things that are in force.
+/// One kind of modal condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum ModalAspect {
@@ -17,7 +17,7 @@ pub(super) enum ModalAspect {
     Cutter,
     /// G61 to G64.
     Path,
-    /// G98, G99; only where a cycle is in force.
+    /// G98, G99; only while a cycle is in force.
     Level,
     /// With its Q.
     Cycle,
@@ -27,7 +27,7 @@ impl ModalAspect {
     pub(super) const ALL: [Self; 6] =
         [Self::System, Self::Length, Self::Cutter, Self::Path, Self::Level, Self::Cycle];
 
-    /// What a change of it is called.
+    /// The code of a change of it.
     pub(super) fn code(self) -> &'static str {
         match self {
             Self::System => "work-system",

@@ -1,6 +1,4 @@
 //! How often and by which tools a hole is made: all passes on its line, those as well that a tool makes again for nothing.
-use std::collections::BTreeSet;
-
 use super::align::common;
 use super::record::Record;
 use super::steps::StepKind;
@@ -41,6 +39,11 @@ impl Passes {
         Self { first, again, steps, tools }
     }
 
+    /// The steps that cut some holes.
+    pub(super) fn of_holes(&self, holes: &[usize]) -> Vec<usize> {
+        holes.iter().flat_map(|hole| self.steps[*hole].iter().copied()).collect()
+    }
+
     /// The holes that aren't others made again.
     pub(super) fn firsts(&self) -> Vec<usize> {
         (0..self.first.len()).filter(|hole| self.first[*hole] == *hole).collect()
@@ -55,8 +58,8 @@ impl Record {
     }
 }
 
-/// Which passes are gone and which are new, and the tools that are gone, each with those there now; `None` where as many are made.
-pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<(String, BTreeSet<(u32, u32)>)> {
+/// Which passes are gone and which are new; `None` where as many are made.
+pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
     if was.len() == is.len() || was.is_empty() || is.is_empty() {
         return None;
     }
@@ -81,8 +84,7 @@ pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<(String, BTreeSet
         });
     }
     words.push(format!("in total by {}", in_words(is)));
-    let swapped = gone.iter().flat_map(|gone| is.iter().map(|tool| (*gone, *tool))).collect();
-    Some((words.join(", "), swapped))
+    Some(words.join(", "))
 }
 
 /// `T1`, `T1 and T2`, `T1, T2 and T1`; a tool that follows itself is counted, `T1 and T2 (3 times)`.

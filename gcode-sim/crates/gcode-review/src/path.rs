@@ -85,7 +85,7 @@ fn set_up(setup: &mut Setup, kind: &StepKind) {
         StepKind::Tool(number) => setup.tool = Some(*number),
         StepKind::Length(offset) => setup.offset = *offset,
         StepKind::Stop(StopKind::Message, text, named) => {
-            if let HeadMessage::Angle(angle) = HeadMessage::of(text, named) {
+            if let HeadMessage::Angle(angle) = HeadMessage::parse(text, named) {
                 setup.head_angle = Some(angle);
             }
         }
@@ -103,7 +103,7 @@ fn way(
     let travel = AxisMotion { from, to, arc };
     let Some(wheel) = &machine.wheel else {
         let mut points = Vec::new();
-        machine.follow(&travel, setup, CHORD, |pose| points.push(pose.tip));
+        machine.for_each_pose(&travel, setup, CHORD, |pose| points.push(pose.tip));
         return points;
     };
     let turning = (0..MAX_AXES).filter(|axis| machine.axes.is_rotary(*axis));

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::initial_commands::FirstCommand;
 use super::modal_conditions::ModalConditions;
-use super::recorder::{EndCause, ExecutedBlocks, MOST_STEPS, Recorder, SharedRecorder};
+use super::recorder::{EndCause, ExecutedBlocks, FirstExecutions, MOST_STEPS, Recorder, SharedRecorder};
 use super::steps::{Step, StepKind};
 use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue, mode_name};
 use gcode_inspect::holes::DrilledHole;
@@ -41,10 +41,12 @@ pub struct Record {
     pub(super) ending: EndState,
     /// What was read; nothing of what was read from a file.
     pub(super) sources: Option<Sources>,
+    /// When the run first executed each block; nothing of what was read from a file.
+    pub(super) reached: FirstExecutions,
     pub totals: Totals,
 }
 
-/// A block as people find it, and the calls that led to it, innermost first.
+/// A block by program and line, and the calls that led to it, innermost first.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlockLocation {
@@ -55,7 +57,7 @@ pub struct BlockLocation {
     pub calls: Vec<Self>,
 }
 
-/// One revision in numbers.
+/// Totals of one revision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Totals {
@@ -65,30 +67,30 @@ pub struct Totals {
     pub seconds: f64,
 }
 
-/// How a run ended and what it leaves behind.
+/// End and final state of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct EndState {
     /// `end`, `alarm` or `limit`.
     pub outcome: String,
-    /// In words that two revisions are compared by.
+    /// The words by which two revisions are compared.
     pub words: String,
-    /// The block that ended or stopped it; of one without an end the block that goes back.
+    /// The block that ended or stopped the run; for a run without an end the block that jumps back.
     pub stopped: Option<BlockLocation>,
-    /// The lines of DPRNT and BPRNT; bytes that are no text as `\xNN`.
+    /// The lines of DPRNT and BPRNT; bytes that are not text as `\xNN`.
     pub output: Vec<String>,
-    /// What the next program finds, by name: all that isn't vacant or 0.
+    /// The final state by name: every value that is neither vacant nor 0.
     pub left: BTreeMap<String, ResidualEntry>,
 }
 
-/// A value that outlives the run.
+/// A value of the final state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ResidualEntry {
-    /// What a change of it is called.
+    /// The code of a change of it.
     pub code: String,
     pub value: f64,
-    /// The block that has put a mode in force, or has written the value last.
+    /// The block that set the mode, or wrote the value last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<BlockLocation>,
 }
@@ -178,8 +180,19 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     recorder.forget_taken_up();
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
-    let Recorder { mut steps, places, mut conditions, mut set, assigned, written, begun, last, end, .. } =
-        recorder;
+    let Recorder {
+        mut steps,
+        places,
+        mut conditions,
+        mut set,
+        assigned,
+        written,
+        begun,
+        reached,
+        last,
+        end,
+        ..
+    } = recorder;
     let mut begun: Vec<FirstCommand> = begun.into_values().collect();
     if conditions.is_empty() {
         conditions.push(ModalConditions::default());
@@ -204,6 +217,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
         },
         ending: ending(run, &by, (last.as_ref(), end)),
         sources: Some(run.control.memory().sources().clone()),
+        reached,
         begun: Some(begun),
         program: run.control.memory().programs().first().map(Program::label),
         conditions,

@@ -46,6 +46,8 @@ pub(super) struct Recorder {
     pub begun: BTreeMap<(What, String), FirstCommand>,
     /// The blocks that were done whole.
     pub done: ExecutedBlocks,
+    /// When each block was first executed.
+    pub reached: FirstExecutions,
     moves: usize,
     block: Option<PendingBlock>,
     at: Position,
@@ -64,6 +66,9 @@ pub(super) struct Recorder {
     /// Steps whose conditions are known.
     settled: usize,
 }
+
+/// How many steps a run has made when it first executes each block, by text and place.
+pub(super) type FirstExecutions = BTreeMap<(SourceId, u32), usize>;
 
 /// The blocks that a run has done whole, by text and place.
 pub(super) type ExecutedBlocks = BTreeSet<(SourceId, u32)>;
@@ -118,6 +123,7 @@ impl Recorder {
             self.end = EndCause::OfText;
         }
         self.block = next.map(|block| {
+            self.reached.entry((block.source, block.start)).or_insert(self.steps.len());
             let silent = control.next_unsimulated();
             let tables = if silent.writes { control.residual_values() } else { Vec::new() };
             let mut assigned = control.next_assigned_variables();
@@ -236,6 +242,14 @@ impl Recorder {
                 _ => {}
             }
         }
+        // Blocks count the steps that are left.
+        let left: Vec<usize> = std::iter::once(0)
+            .chain(stays.iter().scan(0, |left, stays| {
+                *left += usize::from(*stays);
+                Some(*left)
+            }))
+            .collect();
+        self.reached.values_mut().for_each(|step| *step = left[*step]);
         let mut stays = stays.into_iter();
         self.steps.retain(|_| stays.next() == Some(true));
     }

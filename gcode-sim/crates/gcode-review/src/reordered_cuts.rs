@@ -2,7 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::align::StepPair;
-use super::change::Change;
+use super::change::Effect;
 use super::cut_settings::changed_cut_settings;
 use super::descriptions::point;
 use super::record::Record;
@@ -206,7 +206,7 @@ impl<'a> ReorderedCuts<'a> {
     }
 
     /// One entry for all runs that are made otherwise by the same because of their time, or not at all.
-    pub(super) fn changes(&self, links: &[StepPair]) -> Vec<Change> {
+    pub(super) fn effects(&self, links: &[StepPair]) -> Vec<Effect> {
         let is_cut = |(i, _): &(usize, usize)| self.old.steps[*i].kind.rate().is_some();
         let cuts = |run: &MoveRun| run.0.iter().copied().filter(is_cut).collect::<Vec<_>>();
         let all: Vec<(usize, usize)> = self.runs.iter().flat_map(cuts).collect();
@@ -221,10 +221,10 @@ impl<'a> ReorderedCuts<'a> {
                 None => groups.push((text, vec![run])),
             }
         }
-        groups.iter().map(|(with, runs)| self.change(runs, with, links)).collect()
+        groups.iter().map(|(with, runs)| self.effect(runs, with, links)).collect()
     }
 
-    fn change(&self, runs: &[&MoveRun], with: &str, links: &[StepPair]) -> Change {
+    fn effect(&self, runs: &[&MoveRun], with: &str, links: &[StepPair]) -> Effect {
         let (i, j) = runs[0].0[0];
         let (old, new) = (&self.old.steps[i], &self.new.steps[j]);
         let is_first = |link: &&StepPair| {
@@ -244,7 +244,7 @@ impl<'a> ReorderedCuts<'a> {
                 )
             }
         };
-        Change::new("move-order", what + with)
+        Effect::new("move-order", what + with)
             .with_old(self.old.places.get(old.place))
             .with_new(self.new.places.get(new.place))
     }

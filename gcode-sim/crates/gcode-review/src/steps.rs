@@ -46,25 +46,26 @@ pub(super) enum StepKind {
     Silent(UnsimulatedKind, String),
 }
 
-/// What moves nothing here and means something on a machine.
+/// A command without simulated effect that has an effect on a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum UnsimulatedKind {
-    /// A block skip in front of a block that is done, or inside.
+    /// A block skip before or inside an executed block.
     Skip,
-    /// How exactly corners are cut in this block, how far is read ahead.
+    /// Exact stop and lookahead of a single block.
     Path,
     /// Another G code without effect here.
     GCode,
     /// An M code without effect here.
     MCode,
-    /// A T whose tool isn't put in before another is called: the magazine turns, or the machine's own codes change tools.
+    /// A T whose tool is not loaded before another is called: the magazine moves, or the machine's own codes
+    /// change tools.
     Tool,
-    /// An S with the spindle off that no M03 or M04 takes up: the machine's own codes may.
+    /// An S with the spindle off that no M03 or M04 uses: the machine's own codes may use it.
     Speed,
     /// #3003 or #3004: single block, waiting for M codes, feed hold, override, exact stop.
     Switch,
-    /// An assignment to an output: a pulse leaves nothing behind.
+    /// An assignment to an output, which a pulse does not leave in the final state.
     Signal,
 }
 
@@ -206,26 +207,6 @@ impl Step {
 
 /// How far rounded end points of moves that go together may be apart, mm or degrees.
 pub(super) const ROUNDED: f64 = 0.0025;
-
-/// A move of a hole's old and new revision, each with the hole's feed: it has moved as the hole has, in every axis or in
-/// none, or stands as far above the hole's bottom on its line as before.
-pub(super) fn goes_with(
-    (old, feed_old): (&Step, &Step),
-    (new, feed_new): (&Step, &Step),
-    deeper: f64,
-    tolerance: f64,
-) -> bool {
-    if std::mem::discriminant(&old.kind) != std::mem::discriminant(&new.kind) {
-        return false;
-    }
-    let (shift, hole) = (difference(&new.to, &old.to), difference(&feed_new.to, &feed_old.to));
-    // A hole that is moved: the ends of its other moves are rounded each for itself.
-    let rounded = if near(&hole, &Position::default(), tolerance) { tolerance } else { ROUNDED };
-    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= rounded;
-    let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
-    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == StepKind::Rapid);
-    moved_alike || is_as_far_above((old, feed_old), (new, feed_new), deeper)
-}
 
 /// Whether a move stands on the line of the hole's feed, as far above the hole's bottom as before.
 pub(super) fn is_as_far_above(

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::initial_commands::FirstCommand;
+use super::legacy_records::present_words;
 use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
 use super::record::{BlockLocation, EndState, Record, Totals};
 use super::steps::{Step, StepKind, UnsimulatedKind, difference};
@@ -28,14 +29,14 @@ pub struct AcceptedFile {
     totals: Totals,
     ending: EndState,
     places: Vec<BlockLocation>,
-    /// What the program commands, each at its first time.
+    /// The first commands of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     begun: Option<Vec<FirstCommand>>,
     steps: Vec<StepLine>,
     holes: Vec<Hole>,
 }
 
-/// A step: what is done, where the axes that it moves stand then (mm and degrees), and the number of its block.
+/// A step: its action, the end positions of the axes it moves (mm and degrees), and the number of its block.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 enum StepLine {
@@ -94,13 +95,13 @@ enum StepLine {
         named: Vec<(u32, f64)>,
         place: usize,
     },
-    /// What a block says that moves nothing.
+    /// A command of a block without motion.
     Silent {
         what: UnsimulatedKind,
         code: String,
         place: usize,
     },
-    /// No step: what is in force from here on. Holes don't count it among their steps.
+    /// Not a step: a modal condition from here on. Holes do not count it among their steps.
     Under {
         what: ModalAspect,
         code: String,
@@ -136,7 +137,7 @@ struct Hole {
     diameter: Option<f64>,
     tool: Option<u32>,
     steps: Vec<usize>,
-    /// The hole that this one makes again, counted from 0.
+    /// The hole that this one repeats, counted from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     again: Option<usize>,
 }
@@ -239,7 +240,8 @@ impl Record {
                 begun.text, begun.place
             )));
         }
-        let (places, ending, totals) = (file.places, file.ending, file.totals);
+        let (places, mut ending, totals) = (file.places, file.ending, file.totals);
+        ending.words = present_words(&ending.words);
         let unfinished = BTreeSet::new();
         let (begun, program) = (file.begun, file.program);
         Ok(Self {
@@ -254,6 +256,7 @@ impl Record {
             program,
             ending,
             sources: None,
+            reached: BTreeMap::new(),
             totals,
         })
     }

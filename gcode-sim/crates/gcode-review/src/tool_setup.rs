@@ -3,50 +3,21 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::align::StepPair;
-use super::change::Change;
+use super::change::Effect;
 use super::descriptions::describe;
-use super::holes::ExplainedSteps;
 use super::modal_conditions::ModalAspect;
-use super::motion::feed_of;
 use super::record::{BlockLocation, Record};
-use super::steps::{Category, Step, StepKind, UnsimulatedKind, near};
+use super::steps::{StepKind, UnsimulatedKind, near};
 use gcode_lang::motion::{Axes, Position, SpindleDirection};
 
-/// Tool changes, lengths, spindle and coolant that come or go together with a pass of a hole.
-pub(super) fn set_up(
-    links: &[StepPair],
-    explained: &ExplainedSteps,
-    (old, new): (&[Step], &[Step]),
-) -> BTreeSet<usize> {
-    let mut known = BTreeSet::new();
-    let runs = (0..links.len()).collect::<Vec<_>>();
-    let side = |k: &usize| match links[*k] {
-        StepPair::Lost(i) => (Some(false), Some(&old[i])),
-        StepPair::Added(j) => (Some(true), Some(&new[j])),
-        StepPair::Same(..) | StepPair::Changed(..) => (None, None),
-    };
-    for run in runs.chunk_by(|a, b| side(a).0.is_some() && side(a).0 == side(b).0) {
-        if !run.iter().any(|k| feed_of(&links[*k], explained).is_some_and(|feed| feed.deeper.is_none())) {
-            continue;
-        }
-        let is_set_up = |k: &&usize| {
-            let category = side(k).1.map(|step| step.kind.category());
-            use Category::{Coolant, Length, Spindle, Tool};
-            category.is_some_and(|category| [Coolant, Length, Spindle, Tool].contains(&category))
-        };
-        known.extend(run.iter().filter(is_set_up));
-    }
-    known
-}
-
-/// Spindle, coolant and tool length of `untold` steps that are otherwise now at a cut of both revisions: one entry for each step
-/// that has made it so. Where H is another as well, the conditions tell it.
+/// Spindle, coolant and tool length of `untold` steps that are otherwise now at a cut of both revisions: one effect for each step
+/// that has made it so, with its link. Where H is another as well, the conditions tell it.
 pub(super) fn relied_on_changes(
     links: &[StepPair],
     untold: impl Fn(usize) -> bool,
     (old, new): (&Record, &Record),
     tolerance: f64,
-) -> Vec<Change> {
+) -> Vec<(usize, Effect)> {
     if !(0..links.len()).any(&untold) {
         return Vec::new();
     }
@@ -74,7 +45,7 @@ pub(super) fn relied_on_changes(
             }
         }
     }
-    all.iter().map(|relied| relied.change(links[relied.link], old, new)).collect()
+    all.iter().map(|relied| (relied.link, relied.effect(links[relied.link], old, new))).collect()
 }
 
 /// A step that cuts relied on, or that they are made under now.
@@ -89,7 +60,7 @@ struct ReliedOnStep {
 }
 
 impl ReliedOnStep {
-    fn change(&self, link: StepPair, old: &Record, new: &Record) -> Change {
+    fn effect(&self, link: StepPair, old: &Record, new: &Record) -> Effect {
         let (was, is) = link.sides();
         let (was, is) = (was.map(|i| &old.steps[i]), is.map(|j| &new.steps[j]));
         let what = was.or(is).map(|step| describe(&step.kind, &old.axes)).unwrap_or_default();
@@ -98,7 +69,7 @@ impl ReliedOnStep {
         let counted = if self.moves == 1 { String::new() } else { format!(" ({} moves)", self.moves) };
         let cut = new.places.get(self.first).map(name).unwrap_or_default();
         let message = format!("{what} {gone}: {whether}{cut} is cut with {now} instead of {before}{counted}");
-        Change::new(self.code, message)
+        Effect::new(self.code, message)
             .with_old(was.and_then(|step| old.places.get(step.place)))
             .with_new(is.and_then(|step| new.places.get(step.place)))
     }

@@ -9,7 +9,7 @@ use gcode_lang::motion::Backtrace;
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::parse;
 
-/// Such a block, before and now; one of them where it is new or gone.
+/// An unexecuted changed block, old and new; only one of them if it is added or removed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct UnexecutedChange {
     pub old: Option<BlockLocation>,

@@ -1,27 +1,29 @@
-//! What a run did block by block: how often each was executed, and what the variables in it were.
+//! Trace of a run, block by block: execution counts and values of variables.
 use std::collections::BTreeMap;
 
 use gcode_control::{Control, Observer, Outcome, Value};
 use gcode_lang::source::{SourceId, Span};
 use gcode_lang::syntax::parse;
 
-/// As many values of one block are kept; a block that fills a table by computed numbers has thousands.
-const MOST_VALUES: usize = 40;
+/// Largest number of variables recorded per block; a block that fills a table by computed numbers has
+/// thousands.
+const MAX_VALUES: usize = 40;
 
-/// Reading a clock tells a control that the program waits, and these have nothing to show besides: alarm, clocks, date.
-const NOT_LOOKED_AT: [u32; 5] = [3000, 3001, 3002, 3011, 3012];
+/// Variables that are not recorded: alarm, clocks and date. The control treats reading a clock as waiting.
+const IGNORED_VARIABLES: [u32; 5] = [3000, 3001, 3002, 3011, 3012];
 
-/// Every block that was executed.
+/// All executed blocks of a run, with the values of their variables. Record it with
+/// [`run_observed`](crate::run_observed).
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    blocks: BTreeMap<(SourceId, u32), Executed>,
-    /// The variables that the blocks of each text name by number.
-    named: BTreeMap<(SourceId, u32), Vec<u32>>,
-    read: Vec<SourceId>,
-    now: Option<CurrentBlock>,
+    blocks: BTreeMap<(SourceId, u32), ExecutedBlock>,
+    /// Variables that each block names by number.
+    named_variables: BTreeMap<(SourceId, u32), Vec<u32>>,
+    read_sources: Vec<SourceId>,
+    current: Option<CurrentBlock>,
 }
 
-/// The block at hand.
+/// The block being executed.
 #[derive(Clone, Debug)]
 struct CurrentBlock {
     block: Span,
@@ -29,57 +31,65 @@ struct CurrentBlock {
     assigned: Vec<u32>,
 }
 
-/// One block of the text.
+/// Executions of one block.
 #[derive(Clone, Debug)]
-pub struct Executed {
+pub struct ExecutedBlock {
+    /// The block in its file.
     pub block: Span,
-    pub times: u64,
-    pub values: Vec<Values>,
-    /// There were more variables than are kept.
-    pub cut: bool,
+    /// Number of executions.
+    pub count: u64,
+    /// Values of its variables, in the order of first use.
+    pub values: Vec<VariableValues>,
+    /// Whether the block has more variables than are recorded.
+    pub is_truncated: bool,
 }
 
-/// What one variable was in one block.
+/// Values of one variable in one block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Values {
+pub struct VariableValues {
+    /// Number of the variable.
     pub number: u32,
+    /// Use of the variable in the block.
     pub role: VariableRole,
-    pub times: u64,
+    /// Number of recorded values.
+    pub count: u64,
+    /// First value.
     pub first: Value,
+    /// Last value.
     pub last: Value,
-    /// The least and the greatest of the numbers it was; `None` where it was never one.
+    /// Least and greatest numeric value; `None` if it was never a number.
     pub range: Option<(f64, f64)>,
 }
 
-/// What the block does with it.
+/// Use of a variable in a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum VariableRole {
-    /// It is named; its value before the block.
+    /// The block names it; the value before the block.
     Read,
-    /// Its value behind the block.
+    /// The block assigns it; the value after the block.
     Assigned,
-    /// A local of the program that is called: an argument.
-    Passed,
+    /// A local variable of the called program: an argument.
+    Argument,
 }
 
 impl Trace {
-    /// The blocks in the order of the texts.
-    pub fn blocks(&self) -> impl Iterator<Item = &Executed> {
+    /// Returns the blocks in the order of the files and their lines.
+    pub fn blocks(&self) -> impl Iterator<Item = &ExecutedBlock> {
         self.blocks.values()
     }
 
-    /// Reads a text for the variables in it, once.
-    fn read(&mut self, control: &Control, source: SourceId) {
-        if self.read.contains(&source) {
+    /// Records the variables that the blocks of a file name, once per file.
+    fn read_source(&mut self, control: &Control, source: SourceId) {
+        if self.read_sources.contains(&source) {
             return;
         }
-        self.read.push(source);
+        self.read_sources.push(source);
         let bytes = &control.memory().sources().get(source).bytes;
         for block in parse(source, bytes).iter().flat_map(|program| &program.blocks) {
             let mut numbers = gcode_lint::variables_read(block);
-            numbers.retain(|number| !NOT_LOOKED_AT.contains(number));
+            numbers.retain(|number| !IGNORED_VARIABLES.contains(number));
             if !numbers.is_empty() {
-                self.named.insert((source, block.span.start), numbers);
+                self.named_variables.insert((source, block.span.start), numbers);
             }
         }
     }
@@ -87,25 +97,25 @@ impl Trace {
 
 impl Observer for Trace {
     fn before_block(&mut self, control: &mut Control) {
-        self.now = None;
+        self.current = None;
         let Some(block) = control.next_block() else { return };
-        self.read(control, block.source);
+        self.read_source(control, block.source);
         let key = (block.source, block.start);
-        let executed = self.blocks.entry(key).or_insert_with(|| Executed {
+        let executed = self.blocks.entry(key).or_insert_with(|| ExecutedBlock {
             block,
-            times: 0,
+            count: 0,
             values: Vec::new(),
-            cut: false,
+            is_truncated: false,
         });
-        executed.times += 1;
-        for number in self.named.get(&key).into_iter().flatten() {
+        executed.count += 1;
+        for number in self.named_variables.get(&key).into_iter().flatten() {
             if let Ok(value) = control.variable(*number) {
-                executed.note(*number, VariableRole::Read, value);
+                executed.record_value(*number, VariableRole::Read, value);
             }
         }
         let mut assigned = control.next_assigned_variables();
-        assigned.retain(|number| !NOT_LOOKED_AT.contains(number));
-        self.now = Some(CurrentBlock { block, level: control.vars().level(), assigned });
+        assigned.retain(|number| !IGNORED_VARIABLES.contains(number));
+        self.current = Some(CurrentBlock { block, level: control.vars().level(), assigned });
     }
 
     fn after_block(&mut self, control: &Control) {
@@ -113,41 +123,43 @@ impl Observer for Trace {
         if matches!(control.outcome(), Some(Outcome::Alarm(_))) {
             return;
         }
-        let Some(now) = self.now.take() else { return };
+        let Some(now) = self.current.take() else { return };
         let Some(executed) = self.blocks.get_mut(&(now.block.source, now.block.start)) else { return };
         for number in now.assigned {
             if let Ok(value) = control.variable(number) {
-                executed.note(number, VariableRole::Assigned, value);
+                executed.record_value(number, VariableRole::Assigned, value);
             }
         }
         if control.vars().level() > now.level {
             let locals = control.vars().locals();
             for number in (1..=33).filter(|number| !locals.get(*number).is_vacant()) {
-                executed.note(number as u32, VariableRole::Passed, locals.get(number));
+                executed.record_value(number as u32, VariableRole::Argument, locals.get(number));
             }
         }
     }
 }
 
-impl Executed {
-    fn note(&mut self, number: u32, role: VariableRole, value: Value) {
+impl ExecutedBlock {
+    fn record_value(&mut self, number: u32, role: VariableRole, value: Value) {
         let at = self.values.iter().position(|values| values.number == number && values.role == role);
         match at {
             Some(at) => self.values[at].add(value),
-            None if self.values.len() < MOST_VALUES => self.values.push(Values::new(number, role, value)),
-            None => self.cut = true,
+            None if self.values.len() < MAX_VALUES => {
+                self.values.push(VariableValues::new(number, role, value))
+            }
+            None => self.is_truncated = true,
         }
     }
 }
 
-impl Values {
+impl VariableValues {
     fn new(number: u32, role: VariableRole, value: Value) -> Self {
         let range = value.as_number().map(|number| (number, number));
-        Self { number, role, times: 1, first: value, last: value, range }
+        Self { number, role, count: 1, first: value, last: value, range }
     }
 
     fn add(&mut self, value: Value) {
-        self.times += 1;
+        self.count += 1;
         self.last = value;
         if let Some(number) = value.as_number() {
             let (low, high) = self.range.unwrap_or((number, number));
@@ -170,16 +182,16 @@ mod tests {
         trace
     }
 
-    /// The times of the lines, counted from 1; lines that weren't executed are left out.
+    /// Returns the executed lines, counted from 1, with their numbers of executions.
     fn times(text: &str) -> Vec<(usize, u64)> {
-        let line = |executed: &Executed| text[..executed.block.start as usize].lines().count() + 1;
-        trace(text).blocks().map(|executed| (line(executed), executed.times)).collect()
+        let line = |executed: &ExecutedBlock| text[..executed.block.start as usize].lines().count() + 1;
+        trace(text).blocks().map(|executed| (line(executed), executed.count)).collect()
     }
 
     #[test]
     fn blocks_are_counted_and_those_jumped_over_are_not() {
         let text = "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#1=#1+1\nEND1\nGOTO9\n#2=1\nN9 M30\n";
-        // The loop's condition is looked at a fourth time, and doesn't hold.
+        // The loop's condition is evaluated a fourth time and is false.
         assert_eq!(times(text), [(2, 1), (3, 4), (4, 3), (5, 3), (6, 1), (8, 1)]);
     }
 
@@ -188,15 +200,15 @@ mod tests {
         let trace = trace("O1\n#1=3\nWHILE[#1 GT 0]DO1\n#1=#1-1\nEND1\nM30\n");
         let block = trace.blocks().nth(2).unwrap();
         let number = Value::Number;
-        let read = Values {
+        let read = VariableValues {
             number: 1,
             role: VariableRole::Read,
-            times: 3,
+            count: 3,
             first: number(3.0),
             last: number(1.0),
             range: Some((1.0, 3.0)),
         };
-        let assigned = Values {
+        let assigned = VariableValues {
             role: VariableRole::Assigned,
             first: number(2.0),
             last: number(0.0),
@@ -211,13 +223,13 @@ mod tests {
         let trace = trace("O1\nG65 P2 A4.5 X2.\nM30\nO2\n#2=#1\nM99\n");
         let passed: Vec<_> =
             trace.blocks().next().unwrap().values.iter().map(|v| (v.number, v.role)).collect();
-        assert_eq!(passed, [(1, VariableRole::Passed), (24, VariableRole::Passed)], "A is #1, X is #24");
+        assert_eq!(passed, [(1, VariableRole::Argument), (24, VariableRole::Argument)], "A is #1, X is #24");
     }
 
     #[test]
     fn a_block_that_alarms_assigns_nothing() {
         let trace = trace("O1\n#1=2/0\nM30\n");
         let block = trace.blocks().next().unwrap();
-        assert_eq!((block.times, block.values.len()), (1, 0));
+        assert_eq!((block.count, block.values.len()), (1, 0));
     }
 }

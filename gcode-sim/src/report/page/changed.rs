@@ -1,12 +1,12 @@
-//! What two revisions do differently, each change with its blocks and the calls that led to them.
+//! The changes between two revisions, each with its blocks and the calls that led to them.
 use maud::{Markup, html};
 
 use super::lines::Lines;
 use super::words::shown;
-use super::{Difference, MOST_CHANGES, Side, listed};
-use gcode_review::{BlockLocation, UnexecutedChange};
+use super::{Difference, MOST_CHANGES, ReviewSide, listed};
+use gcode_review::{BlockLocation, Effect, UnexecutedChange};
 
-pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup {
+pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let all = &difference.compared.changes;
     html! {
         @if all.is_empty() {
@@ -23,6 +23,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
                 li {
                     code.code { (change.code) } " " (shown(&change.message))
                     (both(&change.old, &change.new, sides))
+                    @if !change.also.is_empty() { (also(&change.also, sides)) }
                 }
             }
         }
@@ -41,8 +42,19 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
     }
 }
 
-/// The block before and now.
-fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[Side<'_>]) -> Markup {
+/// Lists the further effects of the same edit.
+fn also(effects: &[Effect], sides: &[ReviewSide<'_>]) -> Markup {
+    html! {
+        ul.also {
+            @for Effect { code, message, old, new } in listed(effects) {
+                li { "also " code.code { (code) } " " (shown(message)) (both(old, new, sides)) }
+            }
+        }
+    }
+}
+
+/// Returns the block of the old and of the new revision.
+fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[ReviewSide<'_>]) -> Markup {
     let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {
         @for (word, place) in [("old", old), ("new", new)] {
@@ -53,7 +65,7 @@ fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[Side<
     }
 }
 
-/// A block and the calls that led to it, each a link to its line.
+/// Returns a block and the calls that led to it, each a link to its line.
 pub(super) fn chain(place: &BlockLocation, lines: &Lines) -> Markup {
     html! {
         (block(place, lines))

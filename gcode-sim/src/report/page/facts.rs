@@ -1,13 +1,13 @@
-//! What the page says first: the answer, and both runs in numbers.
+//! The head of the page: the answer, and both runs in numbers.
 use maud::{Markup, html};
 
 use super::words::{count, duration, shown};
-use super::{Page, Side, heading};
+use super::{Page, ReviewSide, heading};
 use crate::report::figures;
 use gcode_inspect::verify::Answer;
 
-/// The answer in one or two lines.
-pub(super) fn answer(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
+/// Returns the answer in one or two lines.
+pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let difference = page.old.map(|(_, difference)| difference);
     html! {
         @if let Some(difference) = difference {
@@ -23,8 +23,8 @@ pub(super) fn answer(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
             }
         }
         @for side in sides {
-            @let stopped = side.seen.revision.record.outcome() != "end";
-            @if let Some(verdict) = side.seen.verdict {
+            @let stopped = side.observed.revision.record.outcome() != "end";
+            @if let Some(verdict) = side.observed.verdict {
                 @let good = verdict.holes.iter().filter(|hole| hole.ok).count();
                 @let wanted = verdict.holes.len() + verdict.missing.len();
                 p.answer.yes[verdict.verdict == Answer::Pass].no[verdict.verdict == Answer::Fail] {
@@ -38,16 +38,16 @@ pub(super) fn answer(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
             @if stopped {
                 p.answer.no {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
-                    "stopped, " (shown(side.seen.revision.record.words()))
+                    "stopped, " (shown(side.observed.revision.record.words()))
                 }
             }
         }
     }
 }
 
-/// Both runs in numbers.
-pub(super) fn summary(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
-    let row = |name: &str, value: &dyn Fn(&Side<'_>) -> String| {
+/// Returns the table of both runs in numbers.
+pub(super) fn summary(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
+    let row = |name: &str, value: &dyn Fn(&ReviewSide<'_>) -> String| {
         html! {
             tr {
                 th scope="row" { (name) }
@@ -55,7 +55,7 @@ pub(super) fn summary(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
             }
         }
     };
-    let totals = |side: &Side<'_>| side.seen.revision.record.totals.clone();
+    let totals = |side: &ReviewSide<'_>| side.observed.revision.record.totals.clone();
     html! {
         div.scroll {
             table.facts {
@@ -63,17 +63,17 @@ pub(super) fn summary(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
                     thead { tr { td {} @for side in sides { th scope="col" { (heading(side, sides)) } } } }
                 }
                 tbody {
-                    (row("Program", &|side| shown(&side.seen.request.name)))
-                    (row("Run", &|side| shown(side.seen.revision.record.words())))
+                    (row("Program", &|side| shown(&side.observed.request.name)))
+                    (row("Run", &|side| shown(side.observed.revision.record.words())))
                     (row("Holes", &|side| count(totals(side).holes as u64)))
                     (row("Moves", &|side| count(totals(side).moves)))
                     (row("Blocks executed", &|side| count(totals(side).blocks)))
                     (row("Time, without acceleration", &|side| duration(totals(side).seconds)))
-                    (row("Operator stops", &|side| count(side.seen.revision.simulation.run.control.stops().len() as u64)))
-                    @if sides.iter().any(|side| side.seen.verdict.is_some()) {
+                    (row("Operator stops", &|side| count(side.observed.revision.simulation.run.control.stops().len() as u64)))
+                    @if sides.iter().any(|side| side.observed.verdict.is_some()) {
                         (row("Worst position", &worst))
-                        @if sides.iter().any(|side| side.seen.verdict.is_some_and(|v| !v.not_checked.is_empty())) {
-                            (row("Not checked", &|side| side.seen.verdict.map_or_else(String::new, |v| v.not_checked.join("; "))))
+                        @if sides.iter().any(|side| side.observed.verdict.is_some_and(|v| !v.not_checked.is_empty())) {
+                            (row("Not checked", &|side| side.observed.verdict.map_or_else(String::new, |v| v.not_checked.join("; "))))
                         }
                     }
                 }
@@ -89,10 +89,10 @@ pub(super) fn summary(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
     }
 }
 
-/// `Φ0.0012 of Φ0.1, hole 3`.
-fn worst(side: &Side<'_>) -> String {
-    let Some(verdict) = side.seen.verdict else { return String::new() };
+/// Returns `Φ0.0012, tolerance Φ0.1: hole 3`.
+fn worst(side: &ReviewSide<'_>) -> String {
+    let Some(verdict) = side.observed.verdict else { return String::new() };
     let Some(worst) = verdict.worst else { return "no hole found".to_owned() };
     let from = verdict.worst_from.as_deref().unwrap_or_default();
-    format!("Φ{}, tolerance Φ{}: {}", figures::near(worst, 4), verdict.tolerance, shown(from))
+    format!("Φ{}, tolerance Φ{}: {}", figures::rounded(worst, 4), verdict.tolerance, shown(from))
 }

@@ -1,5 +1,4 @@
-//! The programs, line by line, those of two revisions side by side: which blocks were executed, how often, and what the
-//! variables in them were.
+//! The programs line by line, two revisions side by side, with execution counts and the values of variables.
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
@@ -7,33 +6,33 @@ use maud::{Markup, html};
 use super::lines::Text;
 use super::stops::stops;
 use super::words::{count, value};
-use super::{Page, Side, heading};
+use super::{Page, ReviewSide, heading};
 use gcode_control::Value;
 use gcode_lang::source::SourceId;
 use gcode_review::common_lines;
-use gcode_session::{Executed, Values, VariableRole};
+use gcode_session::{ExecutedBlock, VariableRole, VariableValues};
 
-/// So many rows of all programs together; of longer ones those lines as well that something on the page leads to.
-const MOST_ROWS: usize = 5_000;
+/// Number of rows of all programs together; beyond it only lines that the page links to are kept.
+const MAX_ROWS: usize = 5_000;
 
-/// What was executed of one side, by text and line.
+/// Executed blocks of one side, by file and line.
 struct ExecutedLines<'a> {
-    blocks: BTreeMap<(SourceId, u32), Vec<&'a Executed>>,
-    /// Operator stops that the other side doesn't make in the same way: how, and how many.
+    blocks: BTreeMap<(SourceId, u32), Vec<&'a ExecutedBlock>>,
+    /// Operator stops that the other side makes differently: the mark, and their number.
     stops: BTreeMap<(SourceId, u32), (&'static str, u64)>,
-    /// Lines that holes, findings and those stops lead to.
-    wanted: BTreeSet<(SourceId, u32)>,
+    /// Lines that holes, findings and those stops link to.
+    linked_lines: BTreeSet<(SourceId, u32)>,
 }
 
-/// One text of each side, where it is there.
-type Pair<'a> = Vec<Option<&'a Text>>;
+/// One file of each side, if present.
+type TextPair<'a> = Vec<Option<&'a Text>>;
 
-/// One line of each side, by its place from 0.
-type Line = Vec<Option<usize>>;
+/// One line of each side, counted from 0.
+type LinePair = Vec<Option<usize>>;
 
-pub(super) fn listing(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
+pub(super) fn listing(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let done: Vec<ExecutedLines<'_>> = sides.iter().map(|side| executed(page, side)).collect();
-    let mut left = MOST_ROWS;
+    let mut left = MAX_ROWS;
     html! {
         p.note {
             "Executed blocks have a bar and the number of executions. "
@@ -48,16 +47,16 @@ pub(super) fn listing(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
     }
 }
 
-fn executed<'a>(page: &Page<'_>, side: &Side<'a>) -> ExecutedLines<'a> {
-    let run = &side.seen.revision.simulation.run;
+fn executed<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> ExecutedLines<'a> {
+    let run = &side.observed.revision.simulation.run;
     let sources = run.control.memory().sources();
-    let mut blocks: BTreeMap<(SourceId, u32), Vec<&Executed>> = BTreeMap::new();
-    for executed in side.seen.trace.blocks() {
+    let mut blocks: BTreeMap<(SourceId, u32), Vec<&ExecutedBlock>> = BTreeMap::new();
+    for executed in side.observed.trace.blocks() {
         let line = sources.line_column(executed.block).line;
         blocks.entry((executed.block.source, line)).or_default().push(executed);
     }
-    let holes = side.seen.revision.simulation.extracted.holes.iter().map(|hole| &hole.backtrace);
-    let findings = &side.seen.revision.simulation.extracted.findings;
+    let holes = side.observed.revision.simulation.extracted.holes.iter().map(|hole| &hole.backtrace);
+    let findings = &side.observed.revision.simulation.extracted.findings;
     let places = holes.chain(findings.iter().filter_map(|finding| finding.backtrace.as_ref()));
     let spans = places.flat_map(|place| {
         std::iter::once(place.block).chain(place.calls.as_ref().map(|call| call.calling_block))
@@ -70,16 +69,16 @@ fn executed<'a>(page: &Page<'_>, side: &Side<'a>) -> ExecutedLines<'a> {
         }
     }
     wanted.extend(marked.keys());
-    ExecutedLines { blocks, stops: marked, wanted }
+    ExecutedLines { blocks, stops: marked, linked_lines: wanted }
 }
 
-/// The texts that belong together: those with the same programs in them, the main programs in any case.
-fn pairs<'a>(sides: &[Side<'a>]) -> Vec<Pair<'a>> {
+/// Pairs the files that contain the same programs; the main programs always form a pair.
+fn pairs<'a>(sides: &[ReviewSide<'a>]) -> Vec<TextPair<'a>> {
     let [old, new] = sides else {
         return sides.iter().flat_map(|side| side.lines.texts.iter().map(|text| vec![Some(text)])).collect();
     };
     let mut free: Vec<&Text> = old.lines.texts.iter().collect();
-    let mut pairs: Vec<Pair<'a>> = Vec::new();
+    let mut pairs: Vec<TextPair<'a>> = Vec::new();
     for (place, text) in new.lines.texts.iter().enumerate() {
         let same = |other: &&Text| {
             let main = other.source == SourceId::default();
@@ -92,9 +91,14 @@ fn pairs<'a>(sides: &[Side<'a>]) -> Vec<Pair<'a>> {
     pairs
 }
 
-fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'_>], left: &mut usize) -> Markup {
+fn program(
+    pair: &TextPair<'_>,
+    sides: &[ReviewSide<'_>],
+    done: &[ExecutedLines<'_>],
+    left: &mut usize,
+) -> Markup {
     let Some(named) = pair.iter().rev().flatten().next() else { return html! {} };
-    let shown = shown(lines(pair), pair, done, left);
+    let shown = listed_rows(lines(pair), pair, done, left);
     html! {
         h3.program { (named.programs.join(", ")) }
         div.listing.two[sides.len() == 2] {
@@ -110,7 +114,7 @@ fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'_>], left
                 @match one {
                     ListingRow::Line(line) => (row(line, pair, sides, done)),
                     ListingRow::Gap(lines) => div.gap {
-                        (count(*lines)) " lines are omitted here: a page holds " (MOST_ROWS)
+                        (count(*lines)) " lines are omitted here: a page holds " (MAX_ROWS)
                         " and those with a hole or a finding"
                     },
                 }
@@ -119,17 +123,22 @@ fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'_>], left
     }
 }
 
-/// A line, or how many are left out.
+/// A line, or the number of omitted lines.
 enum ListingRow {
-    Line(Line),
+    Line(LinePair),
     Gap(u64),
 }
 
-/// As many lines as are left, and those behind them that something leads to.
-fn shown(lines: Vec<Line>, pair: &Pair<'_>, done: &[ExecutedLines<'_>], left: &mut usize) -> Vec<ListingRow> {
+/// Returns the remaining number of lines, and the linked lines after them.
+fn listed_rows(
+    lines: Vec<LinePair>,
+    pair: &TextPair<'_>,
+    done: &[ExecutedLines<'_>],
+    left: &mut usize,
+) -> Vec<ListingRow> {
     let mut all: Vec<ListingRow> = Vec::new();
     for line in lines {
-        let wanted = || line.iter().zip(pair).zip(done).any(|((at, text), done)| is_wanted(*at, *text, done));
+        let wanted = || line.iter().zip(pair).zip(done).any(|((at, text), done)| is_linked(*at, *text, done));
         if *left > 0 || wanted() {
             *left = left.saturating_sub(1);
             all.push(ListingRow::Line(line));
@@ -142,12 +151,12 @@ fn shown(lines: Vec<Line>, pair: &Pair<'_>, done: &[ExecutedLines<'_>], left: &m
     all
 }
 
-fn is_wanted(at: Option<usize>, text: Option<&Text>, done: &ExecutedLines<'_>) -> bool {
-    at.zip(text).is_some_and(|(at, text)| done.wanted.contains(&(text.source, at as u32 + 1)))
+fn is_linked(at: Option<usize>, text: Option<&Text>, done: &ExecutedLines<'_>) -> bool {
+    at.zip(text).is_some_and(|(at, text)| done.linked_lines.contains(&(text.source, at as u32 + 1)))
 }
 
-/// The lines of both texts so that equal ones stand side by side, and between them those that changed.
-fn lines(pair: &Pair<'_>) -> Vec<Line> {
+/// Aligns the lines of both files: equal ones side by side, changed ones between them.
+fn lines(pair: &TextPair<'_>) -> Vec<LinePair> {
     let [Some(old), Some(new)] = pair.as_slice() else {
         let most = pair.iter().flatten().map(|text| text.lines.len()).max().unwrap_or(0);
         let is_there =
@@ -170,47 +179,50 @@ fn lines(pair: &Pair<'_>) -> Vec<Line> {
     all
 }
 
-/// What stands in one half of a row.
+/// Contents of one half of a row.
 struct ListingCell<'a> {
     text: &'a str,
-    times: u64,
+    count: u64,
     values: Vec<String>,
     stop: Option<String>,
 }
 
-fn half<'a>(at: usize, text: &'a Text, done: &ExecutedLines<'_>) -> ListingCell<'a> {
+fn cell<'a>(at: usize, text: &'a Text, done: &ExecutedLines<'_>) -> ListingCell<'a> {
     let executed = done.blocks.get(&(text.source, at as u32 + 1));
     let blocks = executed.into_iter().flatten();
-    let mut values: Vec<String> =
-        blocks.clone().flat_map(|block| in_order(&block.values)).map(|values| said(&values)).collect();
-    values.extend(blocks.clone().any(|block| block.cut).then(|| "and more variables".to_owned()));
-    let times = blocks.map(|block| block.times).max().unwrap_or(0);
+    let mut values: Vec<String> = blocks
+        .clone()
+        .flat_map(|block| in_order(&block.values))
+        .map(|values| describe_values(&values))
+        .collect();
+    values.extend(blocks.clone().any(|block| block.is_truncated).then(|| "and more variables".to_owned()));
+    let times = blocks.map(|block| block.count).max().unwrap_or(0);
     let stop = done.stops.get(&(text.source, at as u32 + 1)).map(|(mark, stops)| match stops {
         1 => format!("stop {mark}"),
         _ => format!("{} stops {mark}", count(*stops)),
     });
-    ListingCell { text: &text.lines[at], times, values, stop }
+    ListingCell { text: &text.lines[at], count: times, values, stop }
 }
 
-/// What is read, what is assigned, what is passed.
-fn in_order(values: &[Values]) -> Vec<Values> {
+/// Sorts the values by role: read, assigned, passed.
+fn in_order(values: &[VariableValues]) -> Vec<VariableValues> {
     let mut values = values.to_vec();
     values.sort_by_key(|values| values.role);
     values
 }
 
-fn said(values: &Values) -> String {
+fn describe_values(values: &VariableValues) -> String {
     let (before, sign) = match values.role {
         VariableRole::Read => ("", ""),
         VariableRole::Assigned => ("", "← "),
-        VariableRole::Passed => ("→ ", ""),
+        VariableRole::Argument => ("→ ", ""),
     };
     let word = |one: Value| one.as_number().map_or_else(|| "vacant".to_owned(), value);
     let (first, last) = (word(values.first), word(values.last));
     let mut text = format!("{before}#{} {sign}{first}", values.number);
     let constant = first == last && values.range.is_none_or(|(low, high)| low == high);
     if !constant {
-        text.push_str(&format!(" … {last} ({}×", values.times));
+        text.push_str(&format!(" … {last} ({}×", values.count));
         if let Some((low, high)) = values.range {
             let outside = |bound: f64| ![values.first, values.last].contains(&Value::Number(bound));
             if outside(low) || outside(high) {
@@ -222,26 +234,26 @@ fn said(values: &Values) -> String {
     text
 }
 
-fn row(line: &Line, pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'_>]) -> Markup {
+fn row(line: &LinePair, pair: &TextPair<'_>, sides: &[ReviewSide<'_>], done: &[ExecutedLines<'_>]) -> Markup {
     let halves: Vec<Option<ListingCell<'_>>> = line
         .iter()
         .zip(pair)
         .zip(done)
-        .map(|((at, text), done)| at.zip(*text).map(|(at, text)| half(at, text, done)))
+        .map(|((at, text), done)| at.zip(*text).map(|(at, text)| cell(at, text, done)))
         .collect();
     let class = match halves.as_slice() {
         [Some(old), Some(new)] if old.text != new.text => "edited",
-        [Some(old), Some(new)] if old.times != new.times || old.values != new.values => "differs",
+        [Some(old), Some(new)] if old.count != new.count || old.values != new.values => "differs",
         [Some(old), Some(new)] if old.stop.is_some() || new.stop.is_some() => "differs",
         [None, _] | [_, None] => "edited",
         _ => "same",
     };
-    let idle = halves.iter().flatten().all(|half| half.times == 0);
+    let idle = halves.iter().flatten().all(|half| half.count == 0);
     html! {
         div.row.(class).idle[idle] {
             @for (place, half) in halves.iter().enumerate() {
                 @match (half, line[place], pair[place]) {
-                    (Some(half), Some(at), Some(text)) => (half_of(half, at as u32 + 1, text, &sides[place])),
+                    (Some(half), Some(at), Some(text)) => (cell_markup(half, at as u32 + 1, text, &sides[place])),
                     _ => div.half.nothing {},
                 }
             }
@@ -249,11 +261,11 @@ fn row(line: &Line, pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'
     }
 }
 
-fn half_of(half: &ListingCell<'_>, line: u32, text: &Text, side: &Side<'_>) -> Markup {
+fn cell_markup(half: &ListingCell<'_>, line: u32, text: &Text, side: &ReviewSide<'_>) -> Markup {
     html! {
-        div.half.(side.word).done[half.times > 0] id=(side.lines.anchor(text.source, line)) tabindex="-1" {
+        div.half.(side.word).done[half.count > 0] id=(side.lines.anchor(text.source, line)) tabindex="-1" {
             span.line { (line) }
-            span.times { @if half.times > 0 { (count(half.times)) "×" } }
+            span.times { @if half.count > 0 { (count(half.count)) "×" } }
             code { (half.text) }
             @if let Some(stop) = &half.stop { strong.mark { (stop) } }
             @if !half.values.is_empty() {
@@ -284,20 +296,23 @@ mod tests {
     #[test]
     fn values_are_told_by_their_first_last_and_extremes() {
         let number = Value::Number;
-        let one = Values {
+        let one = VariableValues {
             number: 7,
             role: VariableRole::Read,
-            times: 1,
+            count: 1,
             first: number(2.5),
             last: number(2.5),
             range: Some((2.5, 2.5)),
         };
-        assert_eq!(said(&one), "#7 2.5");
-        assert_eq!(said(&Values { role: VariableRole::Assigned, ..one }), "#7 ← 2.5");
-        let several = Values { times: 4, last: number(1.0), range: Some((1.0, 2.5)), ..one };
-        assert_eq!(said(&several), "#7 2.5 … 1 (4×)");
-        assert_eq!(said(&Values { range: Some((-3.0, 2.5)), ..several }), "#7 2.5 … 1 (4×, from -3 to 2.5)");
-        let vacant = Values { first: Value::Vacant, ..several };
-        assert_eq!(said(&vacant), "#7 vacant … 1 (4×, from 1 to 2.5)");
+        assert_eq!(describe_values(&one), "#7 2.5");
+        assert_eq!(describe_values(&VariableValues { role: VariableRole::Assigned, ..one }), "#7 ← 2.5");
+        let several = VariableValues { count: 4, last: number(1.0), range: Some((1.0, 2.5)), ..one };
+        assert_eq!(describe_values(&several), "#7 2.5 … 1 (4×)");
+        assert_eq!(
+            describe_values(&VariableValues { range: Some((-3.0, 2.5)), ..several }),
+            "#7 2.5 … 1 (4×, from -3 to 2.5)"
+        );
+        let vacant = VariableValues { first: Value::Vacant, ..several };
+        assert_eq!(describe_values(&vacant), "#7 vacant … 1 (4×, from 1 to 2.5)");
     }
 }

@@ -1,4 +1,4 @@
-//! What the operator and the control have to say: stops, alarms, findings and printed lines of each run.
+//! Messages of each run: operator stops, alarms, findings and printed lines.
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
@@ -7,34 +7,34 @@ use maud::{Markup, html};
 use super::changed::chain;
 use super::stops::{Stop, stops};
 use super::words::{shown, value};
-use super::{Page, Side, heading};
+use super::{Page, ReviewSide, heading};
 use gcode_control::printable;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::StopKind;
 use gcode_review::BlockLocation;
 
-/// More of a kind than this aren't listed.
-const MOST: usize = 200;
+/// Number of messages of one kind that are listed.
+const MAX_LISTED: usize = 200;
 
-pub(super) fn messages(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
+pub(super) fn messages(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     html! {
         div.sides {
             @for side in sides {
                 div {
                     @if sides.len() == 2 { h3 { (heading(side, sides)) } }
                     (findings(side, sides))
-                    (listed(side, &stops(page, side)))
-                    (printed(side))
+                    (stop_list(side, &stops(page, side)))
+                    (printed_lines(side))
                 }
             }
         }
     }
 }
 
-/// What a run or its verdict has to say, the worst first.
-fn findings_of<'a>(side: &Side<'a>) -> Vec<&'a Diagnostic> {
-    let of_run = &side.seen.revision.simulation.extracted.findings;
-    let mut all: Vec<&Diagnostic> = match side.seen.verdict {
+/// Returns the findings of a run or of its verdict, most severe first.
+fn findings_of<'a>(side: &ReviewSide<'a>) -> Vec<&'a Diagnostic> {
+    let of_run = &side.observed.revision.simulation.extracted.findings;
+    let mut all: Vec<&Diagnostic> = match side.observed.verdict {
         Some(verdict) => verdict.diagnostics.iter().collect(),
         None => of_run.iter().collect(),
     };
@@ -42,12 +42,12 @@ fn findings_of<'a>(side: &Side<'a>) -> Vec<&'a Diagnostic> {
     all
 }
 
-fn findings(side: &Side<'_>, sides: &[Side<'_>]) -> Markup {
+fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let all = findings_of(side);
     let other = sides.iter().find(|other| other.word != side.word);
-    let key = |side: &Side<'_>, finding: &Diagnostic| {
+    let key = |side: &ReviewSide<'_>, finding: &Diagnostic| {
         let place = finding.backtrace.as_ref();
-        let block = place.map(|place| BlockLocation::of(&side.seen.revision.simulation.run, place).block);
+        let block = place.map(|place| BlockLocation::of(&side.observed.revision.simulation.run, place).block);
         (finding.code.clone(), finding.message.clone(), block)
     };
     let known: Option<BTreeSet<_>> =
@@ -62,7 +62,7 @@ fn findings(side: &Side<'_>, sides: &[Side<'_>]) -> Markup {
         html! {
             (shown(&finding.message)) (mark(finding))
             @if let Some(place) = &finding.backtrace {
-                div.place { (chain(&BlockLocation::of(&side.seen.revision.simulation.run, place), side.lines)) }
+                div.place { (chain(&BlockLocation::of(&side.observed.revision.simulation.run, place), side.lines)) }
             }
         }
     };
@@ -70,7 +70,7 @@ fn findings(side: &Side<'_>, sides: &[Side<'_>]) -> Markup {
         h4 { "Alarms and findings" }
         @if all.is_empty() { p { "None." } }
         ul.findings {
-            @for alike in groups(all.get(..MOST).unwrap_or(&all)) {
+            @for alike in groups(all.get(..MAX_LISTED).unwrap_or(&all)) {
                 @let finding = alike[0];
                 li class=(finding.severity.name()) {
                     strong { (finding.severity.name()) } " " code.code { (shown(&finding.code)) } " "
@@ -84,11 +84,11 @@ fn findings(side: &Side<'_>, sides: &[Side<'_>]) -> Markup {
                 }
             }
         }
-        (rest(all.len(), "findings"))
+        (truncation_note(all.len(), "findings"))
     }
 }
 
-/// Warnings and notes of one code together, where the first of them is; what is worse stands alone.
+/// Groups warnings and notes of one code at the first of them; errors stay separate.
 fn groups<'a>(all: &[&'a Diagnostic]) -> Vec<Vec<&'a Diagnostic>> {
     let mut groups: Vec<Vec<&Diagnostic>> = Vec::new();
     for finding in all {
@@ -106,13 +106,13 @@ fn groups<'a>(all: &[&'a Diagnostic]) -> Vec<Vec<&'a Diagnostic>> {
     groups
 }
 
-fn listed(side: &Side<'_>, known: &[Stop<'_>]) -> Markup {
-    let all = side.seen.revision.simulation.run.control.stops();
+fn stop_list(side: &ReviewSide<'_>, known: &[Stop<'_>]) -> Markup {
+    let all = side.observed.revision.simulation.run.control.stops();
     html! {
         h4 { "Operator stops" }
         @if all.is_empty() { p { "None." } }
         ol.stops {
-            @for (number, stop) in all.iter().take(MOST).enumerate() {
+            @for (number, stop) in all.iter().take(MAX_LISTED).enumerate() {
                 li {
                     code {
                         @match stop.kind {
@@ -130,21 +130,21 @@ fn listed(side: &Side<'_>, known: &[Stop<'_>]) -> Markup {
                 }
             }
         }
-        (rest(all.len(), "stops"))
+        (truncation_note(all.len(), "stops"))
     }
 }
 
-fn printed(side: &Side<'_>) -> Markup {
-    let all = side.seen.revision.simulation.run.control.output();
+fn printed_lines(side: &ReviewSide<'_>) -> Markup {
+    let all = side.observed.revision.simulation.run.control.output();
     html! {
         @if !all.is_empty() {
             h4 { "Printed" }
-            pre { @for line in all.iter().take(MOST) { (shown(&printable(line))) "\n" } }
-            (rest(all.len(), "printed lines"))
+            pre { @for line in all.iter().take(MAX_LISTED) { (shown(&printable(line))) "\n" } }
+            (truncation_note(all.len(), "printed lines"))
         }
     }
 }
 
-fn rest(all: usize, what: &str) -> Markup {
-    html! { @if MOST < all { p.note { "The first " (MOST) " of " (all) " " (what) " are listed." } } }
+fn truncation_note(all: usize, what: &str) -> Markup {
+    html! { @if MAX_LISTED < all { p.note { "The first " (MAX_LISTED) " of " (all) " " (what) " are listed." } } }
 }

@@ -8,47 +8,47 @@ use super::holes::HoleTable;
 use super::lines::Lines;
 use super::rows::HoleRowState;
 use super::words::{count, shown};
-use super::{Page, Side, heading};
+use super::{Page, ReviewSide, heading};
 use gcode_inspect::machine::HeadKind;
 use gcode_part::Hole;
 use gcode_review::BlockLocation;
 
-/// More moves than this aren't drawn, nor more points: the page must turn without a wait.
+/// Numbers of moves and points drawn; the page must rotate without delay.
 const MOST_MOVES: usize = 40_000;
 const MOST_POINTS: usize = 160_000;
-/// More holes than this aren't drawn.
+/// Number of holes drawn.
 const MOST_HOLES: usize = 10_000;
 
-/// What the script reads.
+/// The data for the script.
 #[derive(Debug, Serialize)]
 pub(super) struct Data {
-    /// Which axis of the part points up.
+    /// Axis of the part that points up.
     up: char,
     sides: Vec<SidePath>,
 }
 
-/// One side. Lists of moves have one entry a move.
+/// One side; lists of moves have one entry per move.
 #[derive(Debug, Serialize)]
 struct SidePath {
     word: &'static str,
-    /// `r`apid, `f`eed, `a`rc, `p`robing move.
+    /// Kinds of moves: `r`apid, `f`eed, `a`rc, `p`robing move.
     kinds: String,
-    /// How many points a move has.
+    /// Number of points of each move.
     counts: Vec<u32>,
-    /// x y z of all points, in thousandths of a millimetre.
+    /// Coordinates x y z of all points, in thousandths of a millimetre.
     points: Vec<i64>,
-    /// mm/min; 0 for a rapid.
+    /// Feed rates, mm/min; 0 for a rapid.
     feeds: Vec<f64>,
-    /// Which of `places`.
+    /// Index of each move's place in `places`.
     at: Vec<usize>,
-    /// The moves that the other side doesn't make.
+    /// Moves that the other side does not make.
     changed: Vec<usize>,
-    /// Anchor, name and text of every line that a move comes from or is called from.
+    /// Anchor, name and text of every line with a move or a call.
     lines: Vec<(Option<String>, String, String)>,
-    /// The block and the calls, innermost first, as places in `lines`.
+    /// Block and calls of each place, innermost first, as indices into `lines`.
     places: Vec<Vec<usize>>,
     holes: Vec<DrawnHole>,
-    /// How many moves and holes there are in all.
+    /// Total number of moves, drawn or not.
     moves: usize,
     all_holes: usize,
 }
@@ -60,13 +60,13 @@ struct DrawnHole {
     diameter: f64,
     id: String,
     state: &'static str,
-    /// The row of the table.
+    /// Row of the hole in the table.
     row: Option<usize>,
-    /// As in [`SidePath::lines`], the block and the call.
+    /// Block and call, as indices into [`SidePath::lines`].
     lines: Vec<usize>,
 }
 
-pub(super) fn data(page: &Page<'_>, sides: &[Side<'_>], table: &HoleTable) -> Data {
+pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable) -> Data {
     let up = match page.machine.head.kind {
         HeadKind::Fixed(out) if out.z > 0.99 => 'z',
         _ => 'y',
@@ -75,7 +75,7 @@ pub(super) fn data(page: &Page<'_>, sides: &[Side<'_>], table: &HoleTable) -> Da
     Data { up, sides: drawn.collect() }
 }
 
-/// Lines by what they are, each once.
+/// Index of lines, each stored once.
 #[derive(Default)]
 struct LineIndex {
     lines: Vec<(Option<String>, String, String)>,
@@ -98,8 +98,8 @@ impl LineIndex {
     }
 }
 
-fn drawn(page: &Page<'_>, place: usize, side: &Side<'_>, table: &HoleTable, sides: usize) -> SidePath {
-    let record = &side.seen.revision.record;
+fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable, sides: usize) -> SidePath {
+    let record = &side.observed.revision.record;
     let legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
     let mut known = LineIndex::default();
     let holes = holes(page, place, side, table, &mut known);
@@ -130,18 +130,18 @@ fn drawn(page: &Page<'_>, place: usize, side: &Side<'_>, table: &HoleTable, side
         places,
         holes,
         moves: record.moves(),
-        all_holes: side.seen.revision.simulation.extracted.holes.len(),
+        all_holes: side.observed.revision.simulation.extracted.holes.len(),
     }
 }
 
 fn holes(
     page: &Page<'_>,
     place: usize,
-    side: &Side<'_>,
+    side: &ReviewSide<'_>,
     table: &HoleTable,
     known: &mut LineIndex,
 ) -> Vec<DrawnHole> {
-    let simulation = &side.seen.revision.simulation;
+    let simulation = &side.observed.revision.simulation;
     let rows = table.of_side(place);
     let mut all = Vec::new();
     for (number, found) in simulation.extracted.holes.iter().enumerate().take(MOST_HOLES) {
@@ -152,7 +152,7 @@ fn holes(
         let state = row.map_or(HoleRowState::Unjudged, |(_, _, state)| *state);
         all.push(DrawnHole { lines, row: row.map(|(row, ..)| *row), ..hole_of(&hole, id, state) });
     }
-    let missing = side.seen.verdict.iter().flat_map(|verdict| &verdict.missing);
+    let missing = side.observed.verdict.iter().flat_map(|verdict| &verdict.missing);
     let wanted = page.reference.iter().flat_map(|reference| &reference.holes);
     let wanted: BTreeMap<_, _> = wanted.map(|hole| (hole.id.as_deref().unwrap_or_default(), hole)).collect();
     all.extend(
@@ -175,7 +175,7 @@ fn hole_of(hole: &Hole, id: String, state: HoleRowState) -> DrawnHole {
     }
 }
 
-pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
+pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
     let tools = [
         ("top", "Top"),
         ("front", "Front"),
@@ -235,8 +235,8 @@ fn label(action: &str) -> Option<&'static str> {
     }
 }
 
-/// What isn't in the drawing.
-fn left_out(side: &Side<'_>, sides: &[Side<'_>], drawn: &SidePath) -> Markup {
+/// Returns notes on omitted moves and holes.
+fn left_out(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>], drawn: &SidePath) -> Markup {
     let shown = drawn.counts.len();
     html! {
         @if shown < drawn.moves {

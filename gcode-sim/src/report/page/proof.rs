@@ -1,11 +1,11 @@
-//! What the result rests on: the conditions of the run, the digests of all files, and who answers for it.
+//! Basis of the result: conditions of the run, digests of all files, and lines for signatures.
 use maud::{Markup, html};
 
 use super::words::{count, shown};
-use super::{Page, Side};
+use super::{Page, ReviewSide};
 use crate::report::encode::sha256;
 
-pub(super) fn proof(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
+pub(super) fn proof(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let settings = &page.new.request.settings;
     let dialect = settings.dialect.name();
     let increment = settings.increment.name();
@@ -39,12 +39,12 @@ pub(super) fn proof(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
     }
 }
 
-/// Every file that was read, once for each side.
-fn files<'a>(page: &'a Page<'_>, sides: &'a [Side<'_>]) -> Vec<(String, String, &'a [u8])> {
+/// Returns every file that was read, once for each side.
+fn files<'a>(page: &'a Page<'_>, sides: &'a [ReviewSide<'_>]) -> Vec<(String, String, &'a [u8])> {
     let mut files = Vec::new();
     for side in sides {
         let word = if sides.len() == 2 { format!("{} ", side.word) } else { String::new() };
-        let memory = side.seen.revision.simulation.run.control.memory();
+        let memory = side.observed.revision.simulation.run.control.memory();
         for (place, (_, source)) in memory.sources().iter().enumerate() {
             let role = if place == 0 { "program" } else { "called program" };
             files.push((shown(&source.name), format!("{word}{role}"), &*source.bytes));
@@ -55,7 +55,7 @@ fn files<'a>(page: &'a Page<'_>, sides: &'a [Side<'_>]) -> Vec<(String, String, 
     files
 }
 
-/// Lines to sign on paper.
+/// Returns the lines to be signed on paper.
 pub(super) fn signatures() -> Markup {
     html! {
         table.signatures {

@@ -1,23 +1,23 @@
-//! The rows of the table of holes: of a reference, of two revisions, or of what one program makes.
+//! Rows of the table of holes: against a reference, of two revisions, or of one program.
 use std::collections::BTreeMap;
 
 use super::words::shown;
-use super::{Side, heading};
-use crate::report::figures::{near, signed};
+use super::{ReviewSide, heading};
+use crate::report::figures::{rounded, signed};
 use crate::report::hole_changes::{self, remarks};
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::verify::{ExtraHole, HoleVerdict, Verdict};
 use gcode_part::Reference;
 use gcode_review::Paired;
 
-/// What is to be said of a hole.
+/// State of a hole, most important first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum HoleRowState {
     Bad,
     Missing,
     Extra,
     Changed,
-    /// Within tolerance, and something about it is different.
+    /// In tolerance, but changed.
     Altered,
     Good,
     Same,
@@ -25,7 +25,7 @@ pub(super) enum HoleRowState {
 }
 
 impl HoleRowState {
-    /// As a class of the page's style and a word of its data.
+    /// Returns the CSS class of the state, also used in the script's data.
     pub(super) fn class(self) -> &'static str {
         match self {
             Self::Bad => "bad",
@@ -39,26 +39,26 @@ impl HoleRowState {
         }
     }
 
-    pub(super) fn is_worth_a_look(self) -> bool {
+    pub(super) fn needs_attention(self) -> bool {
         !matches!(self, Self::Good | Self::Same | Self::Unjudged)
     }
 }
 
-/// One cell: a text, what it is sorted by, and where it leads.
+/// One cell: text, sort value and links.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cell {
     pub text: String,
     pub value: Option<f64>,
-    /// Anchor and name.
+    /// Anchor and name of each link.
     pub links: Vec<(String, String)>,
 }
 
 impl Cell {
     fn number(value: f64, decimals: usize) -> Self {
-        Self { text: near(value, decimals), value: Some(value), links: Vec::new() }
+        Self { text: rounded(value, decimals), value: Some(value), links: Vec::new() }
     }
 
-    fn maybe(value: Option<f64>, decimals: usize) -> Self {
+    fn optional(value: Option<f64>, decimals: usize) -> Self {
         value.map_or_else(Self::default, |value| Self::number(value, decimals))
     }
 
@@ -73,13 +73,13 @@ pub(super) struct HoleTableRow {
     pub state: HoleRowState,
     pub words: String,
     pub cells: Vec<Cell>,
-    /// The hole of each side, counted from 0.
+    /// Index of the hole on each side.
     pub holes: Vec<Option<usize>>,
 }
 
-/// The block that finished a hole and the one that called its program.
-fn made_by(side: &Side<'_>, found: &DrilledHole) -> Cell {
-    let run = &side.seen.revision.simulation.run;
+/// Returns links to the block that finished a hole and to the call of its program.
+fn block_cell(side: &ReviewSide<'_>, found: &DrilledHole) -> Cell {
+    let run = &side.observed.revision.simulation.run;
     let mut links = Vec::new();
     let calls = found.backtrace.calls.as_ref().map(|call| call.calling_block);
     for span in std::iter::once(found.backtrace.block).chain(calls) {
@@ -90,12 +90,12 @@ fn made_by(side: &Side<'_>, found: &DrilledHole) -> Cell {
     Cell { text, value: None, links }
 }
 
-fn found<'a>(side: &Side<'a>, hole: usize) -> &'a DrilledHole {
-    &side.seen.revision.simulation.extracted.holes[hole]
+fn drilled_hole<'a>(side: &ReviewSide<'a>, hole: usize) -> &'a DrilledHole {
+    &side.observed.revision.simulation.extracted.holes[hole]
 }
 
-/// `Block`, or `Old block` and `New block`.
-fn titled(name: &str, side: &Side<'_>, sides: &[Side<'_>]) -> String {
+/// Returns `Block`, or `Old block` and `New block`.
+fn side_title(name: &str, side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> String {
     if sides.len() == 1 {
         name.to_owned()
     } else {
@@ -103,26 +103,26 @@ fn titled(name: &str, side: &Side<'_>, sides: &[Side<'_>]) -> String {
     }
 }
 
-/// The tools that make each hole of each side; where one only makes another again, its own.
-pub(super) fn tools_of(sides: &[Side<'_>]) -> Vec<Vec<Vec<u32>>> {
-    let of = |side: &Side<'_>| {
-        let holes = &side.seen.revision.simulation.extracted.holes;
-        let made = side.seen.revision.record.made_by().into_iter().zip(holes);
+/// Returns the tools of each hole of each side; a repeated pass on another hole has its own tool.
+pub(super) fn tools_of(sides: &[ReviewSide<'_>]) -> Vec<Vec<Vec<u32>>> {
+    let of = |side: &ReviewSide<'_>| {
+        let holes = &side.observed.revision.simulation.extracted.holes;
+        let made = side.observed.revision.record.made_by().into_iter().zip(holes);
         made.map(|(tools, hole)| if tools.is_empty() { hole.tool.into_iter().collect() } else { tools })
             .collect()
     };
     sides.iter().map(of).collect()
 }
 
-/// What a hole is: where, how deep, how wide, by which tools.
-fn described(found: Option<&DrilledHole>, tools: &[u32]) -> Vec<Cell> {
-    let entry = |axis: usize| Cell::maybe(found.map(|found| found.entry[axis]), 3);
+/// Returns the cells for position, depth, diameter and tools of a hole.
+fn description_cells(found: Option<&DrilledHole>, tools: &[u32]) -> Vec<Cell> {
+    let entry = |axis: usize| Cell::optional(found.map(|found| found.entry[axis]), 3);
     vec![
         entry(0),
         entry(1),
         entry(2),
-        Cell::maybe(found.map(|found| found.depth), 3),
-        Cell::maybe(found.and_then(|found| found.diameter), 2),
+        Cell::optional(found.map(|found| found.depth), 3),
+        Cell::optional(found.and_then(|found| found.diameter), 2),
         Cell {
             text: hole_changes::tools(tools),
             value: tools.last().copied().map(f64::from),
@@ -131,17 +131,20 @@ fn described(found: Option<&DrilledHole>, tools: &[u32]) -> Vec<Cell> {
     ]
 }
 
-const DESCRIBED: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tools"];
+const DESCRIPTION_COLUMNS: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tools"];
 
-/// Which of them are the tools.
+/// Index of the tools among these cells.
 const TOOL: usize = 5;
 
-pub(super) fn found_rows(sides: &[Side<'_>], tools: &[Vec<Vec<u32>>]) -> (Vec<String>, Vec<HoleTableRow>) {
+pub(super) fn found_rows(
+    sides: &[ReviewSide<'_>],
+    tools: &[Vec<Vec<u32>>],
+) -> (Vec<String>, Vec<HoleTableRow>) {
     let Some(side) = sides.last() else { return (Vec::new(), Vec::new()) };
-    let holes = side.seen.revision.simulation.extracted.holes.iter().enumerate();
+    let holes = side.observed.revision.simulation.extracted.holes.iter().enumerate();
     let rows = holes.map(|(number, hole)| {
-        let mut cells = described(Some(hole), tools.last().map_or(&[], |tools| &tools[number]));
-        cells.push(made_by(side, hole));
+        let mut cells = description_cells(Some(hole), tools.last().map_or(&[], |tools| &tools[number]));
+        cells.push(block_cell(side, hole));
         let words = "not verified".to_owned();
         HoleTableRow {
             id: (number + 1).to_string(),
@@ -151,35 +154,36 @@ pub(super) fn found_rows(sides: &[Side<'_>], tools: &[Vec<Vec<u32>>]) -> (Vec<St
             holes: vec![Some(number)],
         }
     });
-    (DESCRIBED.map(str::to_owned).into_iter().chain(["Block".to_owned()]).collect(), rows.collect())
+    (DESCRIPTION_COLUMNS.map(str::to_owned).into_iter().chain(["Block".to_owned()]).collect(), rows.collect())
 }
 
-/// Two revisions against one another.
+/// Returns the rows of two revisions.
 pub(super) fn paired_rows(
     pairs: &[Paired],
-    sides: &[Side<'_>],
+    sides: &[ReviewSide<'_>],
     tools: &[Vec<Vec<u32>>],
 ) -> (Vec<String>, Vec<HoleTableRow>) {
     let [old, new] = sides else { return (Vec::new(), Vec::new()) };
-    let mut columns = DESCRIBED.map(str::to_owned).to_vec();
+    let mut columns = DESCRIPTION_COLUMNS.map(str::to_owned).to_vec();
     columns.extend(["Moved", "Tilted °", "Deeper"].map(str::to_owned));
-    columns.extend([titled("Block", old, sides), titled("Block", new, sides)]);
+    columns.extend([side_title("Block", old, sides), side_title("Block", new, sides)]);
     let row = |pair: &Paired| {
-        let (was, is) = (pair.old.map(|hole| found(old, hole)), pair.new.map(|hole| found(new, hole)));
+        let (was, is) =
+            (pair.old.map(|hole| drilled_hole(old, hole)), pair.new.map(|hole| drilled_hole(new, hole)));
         let both = pair.old.is_some() && pair.new.is_some();
         let made = |side: usize, hole: Option<usize>| hole.map_or(&[][..], |hole| &tools[side][hole]);
         let (before, now) = (made(0, pair.old), made(1, pair.new));
-        let mut cells = described(is.or(was), if is.is_some() { now } else { before });
+        let mut cells = description_cells(is.or(was), if is.is_some() { now } else { before });
         if both && before != now {
             let [before, now] = [before, now].map(hole_changes::tools);
             cells[TOOL].text = format!("{before} → {now}");
         }
         cells.extend([
-            Cell::maybe(both.then_some(pair.moved), 4),
-            Cell::maybe(both.then_some(pair.tilted.0), 4),
+            Cell::optional(both.then_some(pair.moved), 4),
+            Cell::optional(both.then_some(pair.tilted.0), 4),
             Cell::signed(both.then_some(pair.deeper)),
-            was.map_or_else(Cell::default, |hole| made_by(old, hole)),
-            is.map_or_else(Cell::default, |hole| made_by(new, hole)),
+            was.map_or_else(Cell::default, |hole| block_cell(old, hole)),
+            is.map_or_else(Cell::default, |hole| block_cell(new, hole)),
         ]);
         let remarks = remarks(pair, was.zip(Some(before)), is.zip(Some(now))).join("; ");
         let (id, state, words) = match (pair.old, pair.new) {
@@ -198,48 +202,49 @@ pub(super) fn paired_rows(
     (columns, pairs.iter().map(row).collect())
 }
 
-/// Each wanted hole with the deviations on each side, and the holes nobody asked for.
+/// Returns a row for each nominal hole with its deviations on each side, and the rows of extra holes.
 pub(super) fn judged_rows(
     reference: &Reference,
-    judged: &[(Side<'_>, &Verdict)],
-    sides: &[Side<'_>],
+    judged: &[(ReviewSide<'_>, &Verdict)],
+    sides: &[ReviewSide<'_>],
     (pairs, tools): (&[Paired], &[Vec<Vec<u32>>]),
 ) -> (Vec<String>, Vec<HoleTableRow>) {
     let changed: BTreeMap<usize, &Paired> =
         pairs.iter().filter(|pair| pair.changed).filter_map(|pair| Some((pair.new?, pair))).collect();
-    // What is different about a hole of the new side.
+    // Returns the changes of a hole on the new side.
     let different = |hole: &HoleVerdict| {
         let pair = changed.get(&hole.drilled_index)?;
         let [old, new] = sides else { return None };
-        let made = |side, number: usize, place: usize| (found(side, number), tools[place][number].as_slice());
+        let made =
+            |side, number: usize, place: usize| (drilled_hole(side, number), tools[place][number].as_slice());
         let was = pair.old.map(|hole| made(old, hole, 0));
         Some(remarks(pair, was, pair.new.map(|hole| made(new, hole, 1)))).filter(|words| !words.is_empty())
     };
     let by_id: Vec<BTreeMap<&str, &HoleVerdict>> =
         judged.iter().map(|(_, v)| v.holes.iter().map(|hole| (hole.id.as_str(), hole)).collect()).collect();
-    let mut columns: Vec<String> = sides.iter().map(|side| titled("φ", side, sides)).collect();
+    let mut columns: Vec<String> = sides.iter().map(|side| side_title("φ", side, sides)).collect();
     columns.extend((sides.len() == 2).then(|| "Change of φ".to_owned()));
     columns.extend(["Deviation at entry", "Deviation at bottom", "Depth error", "Tilt °"].map(str::to_owned));
-    columns.extend(sides.iter().map(|side| titled("Block", side, sides)));
+    columns.extend(sides.iter().map(|side| side_title("Block", side, sides)));
     let wanted = reference.holes.iter().map(|hole| {
         let id = hole.id.as_deref().unwrap_or_default();
         let found_by: Vec<Option<&HoleVerdict>> = by_id.iter().map(|holes| holes.get(id).copied()).collect();
         let is = found_by.last().copied().flatten();
         let mut cells: Vec<Cell> =
-            found_by.iter().map(|hole| Cell::maybe(hole.map(|hole| hole.position_deviation), 4)).collect();
+            found_by.iter().map(|hole| Cell::optional(hole.map(|hole| hole.position_deviation), 4)).collect();
         if let [was, is] = found_by.as_slice() {
             cells.push(Cell::signed(
                 was.zip(*is).map(|(was, is)| is.position_deviation - was.position_deviation),
             ));
         }
         cells.extend([
-            Cell::maybe(is.map(|hole| hole.at_entry), 4),
-            Cell::maybe(is.map(|hole| hole.at_bottom), 4),
+            Cell::optional(is.map(|hole| hole.at_entry), 4),
+            Cell::optional(is.map(|hole| hole.at_bottom), 4),
             Cell::signed(is.map(|hole| hole.depth_error)),
-            Cell::maybe(is.map(|hole| hole.tilt), 4),
+            Cell::optional(is.map(|hole| hole.tilt), 4),
         ]);
         cells.extend(judged.iter().zip(&found_by).map(|((side, _), hole)| {
-            hole.map_or_else(Cell::default, |hole| made_by(side, found(side, hole.drilled_index)))
+            hole.map_or_else(Cell::default, |hole| block_cell(side, drilled_hole(side, hole.drilled_index)))
         }));
         let (state, words) = match (is, is.and_then(different)) {
             (None, _) => (HoleRowState::Missing, "missing".to_owned()),
@@ -259,18 +264,18 @@ pub(super) fn judged_rows(
     (columns, rows)
 }
 
-/// The holes nobody asked for.
+/// Returns the rows of extra holes.
 fn extra_rows(
     place: usize,
-    side: &Side<'_>,
+    side: &ReviewSide<'_>,
     verdict: &Verdict,
     columns: usize,
-    sides: &[Side<'_>],
+    sides: &[ReviewSide<'_>],
 ) -> Vec<HoleTableRow> {
     let of_old = sides.len() == 2 && place == 0;
     let row = |(number, extra): (usize, &ExtraHole)| {
         let mut cells = vec![Cell::default(); columns - sides.len()];
-        let block = made_by(side, found(side, extra.drilled_index));
+        let block = block_cell(side, drilled_hole(side, extra.drilled_index));
         cells.extend((0..sides.len()).map(|at| if at == place { block.clone() } else { Cell::default() }));
         let mut holes = vec![None; sides.len()];
         holes[place] = Some(extra.drilled_index);

@@ -1,16 +1,16 @@
-//! The operator stops of a side, those marked that the other side doesn't make in the same way.
-use super::{Page, Side};
+//! The operator stops of a side, with a mark if the other side makes them differently.
+use super::{Page, ReviewSide};
 use gcode_review::BlockLocation;
 
-/// Where a program waited for the operator.
+/// An operator stop.
 pub(super) struct Stop<'a> {
     pub place: &'a BlockLocation,
-    /// What the other program does instead.
+    /// Difference in the other program, if any.
     pub mark: Option<&'static str>,
 }
 
-/// In the order in which they were made.
-pub(super) fn stops<'a>(page: &Page<'_>, side: &Side<'a>) -> Vec<Stop<'a>> {
+/// Returns the stops in the order of execution.
+pub(super) fn stops<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> Vec<Stop<'a>> {
     let compared = page.old.map(|(_, difference)| difference.compared);
     let (place, [alone, changed]) = match side.word {
         "old" => (0, ["not executed here by the new program", "executed differently by the new program"]),
@@ -21,6 +21,6 @@ pub(super) fn stops<'a>(page: &Page<'_>, side: &Side<'a>) -> Vec<Stop<'a>> {
         let is_of = |steps: &[Vec<usize>; 2]| steps[place].binary_search(&step).is_ok();
         if is_of(&compared.unpaired_steps) { Some(alone) } else { is_of(&compared.steps).then_some(changed) }
     };
-    let all = side.seen.revision.record.stops();
+    let all = side.observed.revision.record.stops();
     all.map(|(step, place)| Stop { place, mark: mark(step) }).collect()
 }

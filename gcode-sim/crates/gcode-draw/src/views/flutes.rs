@@ -1,50 +1,15 @@
-//! A burr from the side and from its tip: its outline and the flutes on the side towards the reader.
+//! A burr from the side and from its tip: its outline and the flutes on the near side.
 //!
-//! From the side x points to the right and y up, so the tip is at the left, as on the machine. From the tip z points to
-//! the right and y up.
+//! In the side view x points to the right and y up, so the tip is at the left, as on the machine. In the tip
+//! view z points to the right and y up.
 use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
-use super::helix::HelixCourses;
+use super::flute_view::{Fault, FlutePoint, FluteView};
 
-/// What pictures of a burr are made of; mm and degrees.
-#[derive(Clone, Debug)]
-pub struct FluteView {
-    /// Of the program.
-    pub name: String,
-    pub verdict: (HoleStatus, String),
-    /// Further lines of the title block.
-    pub lines: Vec<String>,
-    /// Along the axis and away from it, from the shank's end of the flutes to the pole.
-    pub outline: Vec<[f64; 2]>,
-    /// Of the circle at which the flutes end.
-    pub tip_radius: f64,
-    /// Of each pass, in the order in which they are ground.
-    pub flutes: Vec<Vec<FlutePoint>>,
-    pub faults: Vec<Fault>,
-    pub helix: HelixCourses,
-}
-
-/// Where something is wrong.
-#[derive(Clone, Debug)]
-pub struct Fault {
-    pub spot: FlutePoint,
-    /// Counted from 0; none where no pass is.
-    pub pass: Option<usize>,
-    pub standing: HoleStatus,
-    /// What is wrong there, each in few words; empty where another mark of the same finding says it.
-    pub what: Vec<&'static str>,
-}
-
-/// A point of a flute in the part's frame, and the direction out of the surface there.
-#[derive(Clone, Copy, Debug)]
-pub struct FlutePoint {
-    pub at: [f64; 3],
-    pub out: [f64; 3],
-}
-
-/// Edge-on is not seen.
+/// Least component of a normal towards the reader at which the surface counts as visible.
 const FACING: f64 = 1e-6;
 
+/// Builds the scene of a burr seen from +z, the tip to the left.
 pub fn side_view(view: &FluteView) -> Scene {
     let seen = Viewpoint { place: |[x, y, _]| [x, y], towards: |[_, _, z]| z };
     let mut strokes = seen.flutes(view);
@@ -57,6 +22,7 @@ pub fn side_view(view: &FluteView) -> Scene {
     Scene { axes, marks: seen.faults(view), ..scene(view, what, strokes) }
 }
 
+/// Builds the scene of a burr seen from −x along its axis.
 pub fn tip_view(view: &FluteView) -> Scene {
     let seen = Viewpoint { place: |[_, y, z]| [z, y], towards: |[x, _, _]| -x };
     let mut strokes = seen.flutes(view);
@@ -78,21 +44,21 @@ fn axis(name: &str, direction: Point) -> Axis {
     Axis { name: name.to_owned(), direction }
 }
 
-/// From where the burr is looked at.
+/// A viewing direction on the burr.
 struct Viewpoint {
-    /// A point of the part on the sheet.
+    /// Projects a point of the part to the sheet.
     place: fn([f64; 3]) -> Point,
-    /// How much of a direction comes towards the reader.
+    /// Returns the component of a direction towards the reader.
     towards: fn([f64; 3]) -> f64,
 }
 
 impl Viewpoint {
-    /// The stretches of the flutes whose surface faces the reader, and all of a flute with a fault; the longest that is
-    /// seen of each pass has its number.
+    /// Returns the sections of the flutes on the near side, and all sections of a faulty pass. The longest visible
+    /// section of each pass has its number.
     fn flutes(&self, view: &FluteView) -> Vec<Stroke> {
         let mut strokes = Vec::new();
         for (pass, flute) in view.flutes.iter().enumerate() {
-            let faces = |spot: &FlutePoint| FACING < (self.towards)(spot.out);
+            let faces = |spot: &FlutePoint| FACING < (self.towards)(spot.normal);
             let stretches = || {
                 let all = flute.chunk_by(|one, other| faces(one) == faces(other));
                 all.filter(|stretch| 1 < stretch.len()).map(|stretch| (stretch, faces(&stretch[0])))
@@ -106,7 +72,7 @@ impl Viewpoint {
                     (false, true) => Pen::Hidden,
                     (false, false) => continue,
                 };
-                let points = stretch.iter().map(|spot| (self.place)(spot.at)).collect();
+                let points = stretch.iter().map(|spot| (self.place)(spot.position)).collect();
                 let is_longest = is_near && Some(stretch.len()) == longest;
                 let caption = is_longest.then(|| format!("{}", pass + 1));
                 strokes.push(Stroke { shape: Shape::Line(points), pen, caption });
@@ -117,21 +83,21 @@ impl Viewpoint {
 
     fn faults(&self, view: &FluteView) -> Vec<Mark> {
         let mark = |fault: &Fault| {
-            let behind = (self.towards)(fault.spot.out) <= FACING;
+            let behind = (self.towards)(fault.point.normal) <= FACING;
             let side = if behind { " (far side)" } else { "" };
             let pass = fault.pass.map(|pass| format!("pass {}{side}", pass + 1));
-            let what = fault.what.iter().enumerate().map(|(index, what)| match (index, fault.pass) {
+            let what = fault.labels.iter().enumerate().map(|(index, what)| match (index, fault.pass) {
                 (0, None) => format!("{what}{side}"),
                 _ => (*what).to_owned(),
             });
             Mark {
-                at: (self.place)(fault.spot.at),
+                position: (self.place)(fault.point.position),
                 radius: 0.0,
-                standing: fault.standing,
+                status: fault.status,
                 label: pass.into_iter().chain(what).collect(),
                 direction: None,
-                misfit: None,
-                found: None,
+                deviation: None,
+                actual: None,
             }
         };
         view.faults.iter().map(mark).collect()
@@ -142,9 +108,9 @@ fn item(sample: Sample, text: &str) -> LegendItem {
     LegendItem { sample, text: text.to_owned() }
 }
 
-/// All but the axes and the marks.
+/// Builds the scene except its axes and marks.
 fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
-    let is_there = |standing: HoleStatus| view.faults.iter().any(|fault| fault.standing == standing);
+    let is_there = |standing: HoleStatus| view.faults.iter().any(|fault| fault.status == standing);
     let signs = [
         (HoleStatus::Bad, "Fault, at its worst point"),
         (HoleStatus::Missing, "Position of a missing flute"),
@@ -152,7 +118,7 @@ fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
     ];
     let signs = signs.into_iter().filter(|(standing, _)| is_there(*standing));
     let mut legend: Vec<LegendItem> =
-        signs.map(|(standing, words)| item(Sample::Standing(standing), words)).collect();
+        signs.map(|(standing, words)| item(Sample::Status(standing), words)).collect();
     let lines = [
         (Pen::Feed, "Wheel contact path on the near side, with the number of its pass"),
         (Pen::Faulty, "Pass with a fault"),
@@ -178,10 +144,11 @@ fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
 
 #[cfg(test)]
 mod tests {
+    use super::super::flute_view::HelixCourses;
     use super::*;
 
     fn view(out: [[f64; 3]; 4]) -> FluteView {
-        let spot = |(n, out): (usize, [f64; 3])| FlutePoint { at: [n as f64, 1.0, 2.0], out };
+        let spot = |(n, out): (usize, [f64; 3])| FlutePoint { position: [n as f64, 1.0, 2.0], normal: out };
         FluteView {
             name: "b".to_owned(),
             verdict: (HoleStatus::Good, "PASS".to_owned()),
@@ -209,7 +176,7 @@ mod tests {
         let (front, back) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
         let seen = paths(&side_view(&view([front, front, back, front])));
         assert_eq!(seen, [vec![[0.0, 1.0], [1.0, 1.0]]]);
-        // On the cylinder the surface is seen edge-on from the tip.
+        // From the tip, the surface of the cylinder is edge-on.
         assert!(paths(&tip_view(&view([front, front, front, front]))).is_empty());
         let nose = [-0.5, 0.0, 0.8];
         assert_eq!(paths(&tip_view(&view([front, nose, nose, nose]))), [vec![[2.0, 1.0]; 3]]);

@@ -1,48 +1,15 @@
-//! The helix angle along the flutes: as ground, as asked for with what is allowed, and how far off that.
+//! Graphs of the helix angle along the flutes: actual, nominal with tolerance, and deviation.
 use super::super::chart::{Chart, ChartMarker, Curve, Graph};
 use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{LegendItem, Sample, Scene, Title};
-use super::flutes::FluteView;
+use super::flute_view::{FluteView, HelixCourses, HelixPoint};
 
-/// Helix angles along the flutes, left-hand ones below 0. The way is that along the tooth bottom's outline from the shank's
-/// end, mm; angles are degrees.
-#[derive(Clone, Debug, Default)]
-pub struct HelixCourses {
-    /// Of each pass, in the order in which they are ground.
-    pub passes: Vec<Vec<HelixAt>>,
-    /// The pass that is farthest from the law, counted from 0.
-    pub worst: usize,
-    /// Either way.
-    pub tolerance: f64,
-    /// Names of the law asked for and of the other one.
-    pub laws: [&'static str; 2],
-    /// What both laws have, where nothing is ground.
-    pub wanted: Vec<HelixAt>,
-    /// Places along the nose, with the polar angle there.
-    pub nose: Vec<(f64, String)>,
-}
+/// Height of a tolerance band, in parts of the graph's height, below which it is drawn as a line.
+const MIN_BAND_SHARE: f64 = 0.1;
+/// Least enlargement of deviations that justifies a separate graph.
+const MIN_MAGNIFICATION: f64 = 2.0;
 
-/// At one place of the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HelixAt {
-    pub way: f64,
-    pub found: f64,
-    /// By the law asked for, and by the other one.
-    pub wanted: f64,
-    pub other: f64,
-}
-
-impl HelixAt {
-    fn off(&self) -> f64 {
-        self.found - self.wanted
-    }
-}
-
-/// A band of less than this part of a graph's height is a mere line.
-const THIN: f64 = 0.1;
-/// Deviations have a graph of their own where it enlarges them by more than this.
-const WORTH: f64 = 2.0;
-
+/// Builds the scene with the graphs of the helix angle.
 pub fn helix_graph(view: &FluteView) -> Scene {
     let helix = &view.helix;
     let mut graphs = vec![helix.angles()];
@@ -50,8 +17,7 @@ pub fn helix_graph(view: &FluteView) -> Scene {
         graphs.push(helix.deviations());
     }
     let chart = Chart {
-        across: "Distance along the outline from the shank end, mm; above: polar angle θ on the nose"
-            .to_owned(),
+        x_label: "Along the outline from the shank end, mm; above: polar angle θ on the nose".to_owned(),
         guides: helix.nose.clone(),
         gaps: Vec::new(),
         graphs,
@@ -72,68 +38,69 @@ pub fn helix_graph(view: &FluteView) -> Scene {
 }
 
 impl HelixCourses {
-    /// The pass that is farthest from the law; the laws alone where there is none.
-    fn shown(&self) -> &[HelixAt] {
-        self.passes.get(self.worst).filter(|pass| !pass.is_empty()).unwrap_or(&self.wanted)
+    /// Returns the pass with the largest deviation from the law; the laws alone if no pass is ground.
+    fn shown(&self) -> &[HelixPoint] {
+        self.passes.get(self.worst_pass).filter(|pass| !pass.is_empty()).unwrap_or(&self.nominal)
     }
 
-    /// What is drawn of every pass: the worst last, on top.
-    fn curves(&self, value: impl Fn(&HelixAt) -> f64) -> Vec<Curve> {
-        let others = self.passes.iter().enumerate().filter(|(pass, _)| *pass != self.worst);
+    /// Returns the curves of all passes, the worst last, on top.
+    fn curves(&self, value: impl Fn(&HelixPoint) -> f64) -> Vec<Curve> {
+        let others = self.passes.iter().enumerate().filter(|(pass, _)| *pass != self.worst_pass);
         let all = others.map(|(_, pass)| (pass, Pen::Others));
-        let worst = self.passes.get(self.worst).map(|pass| (pass, Pen::Measured));
+        let worst = self.passes.get(self.worst_pass).map(|pass| (pass, Pen::Measured));
         all.chain(worst).map(|(pass, pen)| curve(pass, pen, &value)).collect()
     }
 
-    /// Whether what is allowed would be a mere line among the angles, and can be shown better.
+    /// Returns true if the tolerance band is too thin in the graph of angles and a separate graph enlarges it.
     fn needs_deviations(&self) -> bool {
         let all = || self.passes.iter().flatten();
-        let angles = spread(all().flat_map(|at| [at.found, at.wanted]));
+        let angles = spread(all().flat_map(|at| [at.actual, at.nominal]));
         let band = 2.0 * self.tolerance;
-        let off = band.max(spread(all().map(HelixAt::off).chain([0.0])));
-        band < THIN * angles && WORTH * off < angles
+        let off = band.max(spread(all().map(HelixPoint::error).chain([0.0])));
+        band < MIN_BAND_SHARE * angles && MIN_MAGNIFICATION * off < angles
     }
 
     fn angles(&self) -> Graph {
         let shown = self.shown();
-        let mut curves = vec![Curve { guest: true, ..curve(shown, Pen::Second, |at| at.other) }];
-        curves.extend(self.curves(|at| at.found));
-        curves.push(curve(shown, Pen::First, |at| at.wanted));
-        let allowed = |at: &HelixAt| [at.way, at.wanted - self.tolerance, at.wanted + self.tolerance];
+        let mut curves = vec![Curve { is_clipped: true, ..curve(shown, Pen::Second, |at| at.other_law) }];
+        curves.extend(self.curves(|at| at.actual));
+        curves.push(curve(shown, Pen::First, |at| at.nominal));
+        let allowed =
+            |at: &HelixPoint| [at.path_length, at.nominal - self.tolerance, at.nominal + self.tolerance];
         Graph {
-            up: "Helix angle, degrees".to_owned(),
+            y_label: "Helix angle, degrees".to_owned(),
             curves,
             band: shown.iter().map(allowed).collect(),
-            zero: false,
-            signs: self.sign(|at| at.found).into_iter().collect(),
+            has_zero_line: false,
+            markers: self.sign(|at| at.actual).into_iter().collect(),
         }
     }
 
     fn deviations(&self) -> Graph {
-        let allowed = |at: &HelixAt| [at.way, -self.tolerance, self.tolerance];
+        let allowed = |at: &HelixPoint| [at.path_length, -self.tolerance, self.tolerance];
         Graph {
-            up: "Deviation from the specified helix angle, degrees".to_owned(),
-            curves: self.curves(HelixAt::off),
+            y_label: "Deviation from the specified helix angle, degrees".to_owned(),
+            curves: self.curves(HelixPoint::error),
             band: self.shown().iter().map(allowed).collect(),
-            zero: true,
-            signs: self.sign(HelixAt::off).into_iter().collect(),
+            has_zero_line: true,
+            markers: self.sign(HelixPoint::error).into_iter().collect(),
         }
     }
 
-    /// Where a pass is farthest from the law, if that is more than allowed.
-    fn fault(&self, pass: &[HelixAt]) -> Option<HelixAt> {
-        let worst = pass.iter().copied().max_by(|a, b| a.off().abs().total_cmp(&b.off().abs()))?;
-        (self.tolerance < worst.off().abs()).then_some(worst)
+    /// Returns the largest deviation of a pass if it exceeds the tolerance.
+    fn fault(&self, pass: &[HelixPoint]) -> Option<HelixPoint> {
+        let worst = pass.iter().copied().max_by(|a, b| a.error().abs().total_cmp(&b.error().abs()))?;
+        (self.tolerance < worst.error().abs()).then_some(worst)
     }
 
-    fn sign(&self, value: impl Fn(&HelixAt) -> f64) -> Option<ChartMarker> {
-        let worst = self.fault(self.passes.get(self.worst)?)?;
+    fn sign(&self, value: impl Fn(&HelixPoint) -> f64) -> Option<ChartMarker> {
+        let worst = self.fault(self.passes.get(self.worst_pass)?)?;
         let others = self.passes.iter().filter(|pass| self.fault(pass).is_some()).count() - 1;
         let more = if others == 0 { String::new() } else { format!(", and {others} more") };
         Some(ChartMarker {
-            at: [worst.way, value(&worst)],
-            standing: HoleStatus::Bad,
-            name: format!("pass {}{more}", self.worst + 1),
+            position: [worst.path_length, value(&worst)],
+            status: HoleStatus::Bad,
+            name: format!("pass {}{more}", self.worst_pass + 1),
         })
     }
 
@@ -141,11 +108,11 @@ impl HelixCourses {
         let [asked, other] = self.laws;
         let pen = |pen: Pen, text: String| Some(LegendItem { sample: Sample::Pen(pen), text });
         let is_ground = !self.passes.is_empty();
-        let fault = self.sign(|at| at.found).map(|_| LegendItem {
-            sample: Sample::Standing(HoleStatus::Bad),
+        let fault = self.sign(|at| at.actual).map(|_| LegendItem {
+            sample: Sample::Status(HoleStatus::Bad),
             text: "Fault: out of tolerance".to_owned(),
         });
-        let worst = format!("Pass {}, the largest deviation from the law", self.worst + 1);
+        let worst = format!("Pass {}, the largest deviation from the law", self.worst_pass + 1);
         let items = [
             fault,
             pen(Pen::Measured, worst).filter(|_| is_ground),
@@ -158,16 +125,16 @@ impl HelixCourses {
     }
 }
 
-/// From the least to the greatest; below 0 of none.
+/// Returns the difference of the greatest and the least value; negative without values.
 fn spread(values: impl Iterator<Item = f64>) -> f64 {
     let reach = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), reach);
     high - low
 }
 
-fn curve(points: &[HelixAt], pen: Pen, value: impl Fn(&HelixAt) -> f64) -> Curve {
-    let points: Vec<Point> = points.iter().map(|at| [at.way, value(at)]).collect();
-    Curve { points, pen, guest: false }
+fn curve(points: &[HelixPoint], pen: Pen, value: impl Fn(&HelixPoint) -> f64) -> Curve {
+    let points: Vec<Point> = points.iter().map(|at| [at.path_length, value(at)]).collect();
+    Curve { points, pen, is_clipped: false }
 }
 
 #[cfg(test)]
@@ -175,23 +142,29 @@ mod tests {
     use super::*;
 
     fn courses(off: &[f64]) -> HelixCourses {
-        let at = |way: f64, off: f64| HelixAt { way, found: 20.0 + off, wanted: 20.0, other: 20.0 + way };
-        let passes: Vec<Vec<HelixAt>> = off
+        let at = |way: f64, off: f64| HelixPoint {
+            path_length: way,
+            actual: 20.0 + off,
+            nominal: 20.0,
+            other_law: 20.0 + way,
+        };
+        let passes: Vec<Vec<HelixPoint>> = off
             .iter()
             .map(|off| (0..=10).map(|n| at(f64::from(n), if n == 6 { *off } else { 0.01 })).collect())
             .collect();
         let worst = (0..off.len()).max_by(|a, b| off[*a].abs().total_cmp(&off[*b].abs())).unwrap_or(0);
         let laws = ["constant-helix", "published"];
-        HelixCourses { passes, worst, tolerance: 0.3, laws, ..HelixCourses::default() }
+        HelixCourses { passes, worst_pass: worst, tolerance: 0.3, laws, ..HelixCourses::default() }
     }
 
-    /// 0.6° of 40° of angles can't be seen; a fault of 30° is seen there as well as in a graph of its own.
+    /// A band of 0.6° in 40° of angles is too thin; a fault of 30° is as visible there as in a separate graph.
     #[test]
     fn deviations_have_a_graph_of_their_own_where_the_law_turns_far() {
         let turning = |off: f64| {
             let mut helix = courses(&[off]);
             for at in &mut helix.passes[0] {
-                (at.found, at.wanted) = (at.found + 4.0 * at.way, at.wanted + 4.0 * at.way);
+                (at.actual, at.nominal) =
+                    (at.actual + 4.0 * at.path_length, at.nominal + 4.0 * at.path_length);
             }
             helix.needs_deviations()
         };
@@ -203,18 +176,18 @@ mod tests {
     #[test]
     fn the_worst_place_of_the_worst_pass_has_a_sign() {
         let helix = courses(&[0.1, -0.4, 0.35]);
-        let sign = helix.sign(|at| at.found).unwrap();
-        assert_eq!((sign.at, sign.name.as_str()), ([6.0, 19.6], "pass 2, and 1 more"));
-        assert!(courses(&[0.1, -0.29]).sign(|at| at.found).is_none());
+        let sign = helix.sign(|at| at.actual).unwrap();
+        assert_eq!((sign.position, sign.name.as_str()), ([6.0, 19.6], "pass 2, and 1 more"));
+        assert!(courses(&[0.1, -0.29]).sign(|at| at.actual).is_none());
     }
 
     #[test]
     fn both_hands_are_told_apart() {
         let mut helix = courses(&[0.0]);
-        helix.passes[0].iter_mut().for_each(|at| at.found = -20.0);
+        helix.passes[0].iter_mut().for_each(|at| at.actual = -20.0);
         let graph = helix.angles();
         let ground = graph.curves.iter().find(|curve| curve.pen == Pen::Measured).unwrap();
         assert!(ground.points.iter().all(|point| point[1] == -20.0));
-        assert_eq!(graph.signs[0].at[1], -20.0);
+        assert_eq!(graph.markers[0].position[1], -20.0);
     }
 }

@@ -8,30 +8,32 @@ use super::purpose::PicturePurpose;
 use super::side::Side;
 use gcode_part::Hole;
 
-/// What a top view is made of. Everything but the holes may be unknown.
+/// Contents of a top view; everything but the holes may be unknown.
 #[derive(Clone, Debug, Default)]
 pub struct TopView {
-    /// Of the part or the programme.
+    /// Name of the part or the program.
     pub name: String,
-    /// From where it is looked at.
+    /// Viewing direction.
     pub side: Side,
     /// Radius of the part's outline seen along y, mm.
     pub outline: Option<f64>,
-    /// Of a part that is a cylinder about x.
+    /// Dimensions of a part that is a cylinder about x.
     pub cylinder: Option<Cylinder>,
     /// Diameter of the position tolerance zone, mm.
     pub tolerance: Option<f64>,
-    /// The letter of the axis that `DrawnHole::turn` is about.
+    /// Letter of the rotary axis of `DrawnHole::turn`.
     pub rotary: String,
-    /// That axis' angle grows while the azimuth it brings up (from z towards y) falls.
-    pub backwards: bool,
+    /// Whether the rotary axis increases as the presented azimuth (from z towards y) decreases.
+    pub is_rotary_reversed: bool,
+    /// The holes, nominal and actual.
     pub holes: Vec<DrawnHole>,
-    /// What the holes are held against.
-    pub question: PicturePurpose,
-    /// How many differences of two revisions no hole shows.
-    pub others: usize,
-    /// That they end differently.
-    pub ends: Option<String>,
+    /// Purpose of the comparison, which selects the wording.
+    pub purpose: PicturePurpose,
+    /// Number of differences between two revisions that no hole shows.
+    pub other_differences: usize,
+    /// Sentence on a different end of the two revisions.
+    pub ending: Option<String>,
+    /// Tool path.
     pub path: Vec<PathPiece>,
     /// Further lines of the title block.
     pub lines: Vec<String>,
@@ -40,48 +42,56 @@ pub struct TopView {
 /// A cylinder about x, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
-    /// Of its surface.
+    /// Radius of its surface.
     pub outer: f64,
-    /// On which distances count: it is unrolled there.
+    /// Radius on which distances are measured and at which it is unrolled.
     pub radius: f64,
-    /// Holes stand at 0 ≤ x ≤ length.
+    /// Length of the pattern: holes lie at 0 ≤ x ≤ length.
     pub length: f64,
-    /// Round it.
+    /// Number of rows round the circumference.
     pub rows: u32,
 }
 
-/// One hole: as wanted, as made, and what was said about it.
+/// One hole: nominal, actual and verdict.
 #[derive(Clone, Debug)]
 pub struct DrawnHole {
+    /// Number or name in the label.
     pub id: String,
+    /// Nominal hole; `None` for an extra one.
     pub nominal: Option<Hole>,
-    pub found: Option<Hole>,
-    pub standing: HoleStatus,
-    /// Position as ISO 1101 has it (diameter), mm.
-    pub phi: Option<f64>,
-    /// Where the rotary axis stands while the hole is made, degrees.
-    pub turn: Option<f64>,
-    /// What is wrong where it isn't the position: a few words each.
+    /// Actual hole; `None` for a missing one.
+    pub actual: Option<Hole>,
+    /// Result of the comparison.
+    pub status: HoleStatus,
+    /// Position deviation by ISO 1101 (a diameter), mm.
+    pub position_deviation: Option<f64>,
+    /// Angle of the rotary axis during drilling, degrees.
+    pub rotary_angle: Option<f64>,
+    /// Faults other than position, a few words each.
     pub remarks: Vec<String>,
 }
 
-/// A piece of the tool's path in the part's frame, mm.
+/// A piece of the tool path in the part's frame, mm.
 #[derive(Clone, Debug)]
 pub struct PathPiece {
+    /// Points of the polyline.
     pub points: Vec<[f64; 3]>,
+    /// Kind of motion.
     pub kind: PathKind,
 }
 
-/// Of one program a feed or a rapid; of two the cuts, in the order in which they are drawn.
+/// Kind of a path piece, in drawing order: feed or rapid of one program, or the cuts of two revisions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PathKind {
+    /// Feed move.
     Feed,
+    /// Rapid move.
     Rapid,
-    /// Made by both.
+    /// Cut that both programs make.
     Kept,
-    /// By the new program only, or otherwise.
+    /// Cut of the new program that differs from the old one or is added.
     New,
-    /// By the old program only, or otherwise.
+    /// Cut of the old program that differs from the new one or is removed.
     Gone,
 }
 
@@ -92,9 +102,9 @@ impl PathKind {
         match self {
             Self::Feed => Pen::Feed,
             Self::Rapid => Pen::Rapid,
-            Self::Kept => Pen::Kept,
-            Self::New => Pen::Now,
-            Self::Gone => Pen::Before,
+            Self::Kept => Pen::Unchanged,
+            Self::New => Pen::New,
+            Self::Gone => Pen::Old,
         }
     }
 
@@ -109,17 +119,18 @@ impl PathKind {
     }
 }
 
-/// Of more holes on a cylinder those that are as wanted have neither number nor dial: they would hide each other.
-pub(super) const NUMBERED: usize = 60;
+/// Largest number of numbered holes; beyond it good holes have neither number nor dial, which would hide each
+/// other.
+pub(super) const MAX_NUMBERED: usize = 60;
 
-/// More circles than this would hide the holes.
-const MOST_CIRCLES: usize = 12;
+/// Largest number of construction circles; more would hide the holes.
+const MAX_CIRCLES: usize = 12;
 
-/// The scene of a top view.
+/// Builds the scene of a top view.
 pub fn top_view(view: &TopView) -> Scene {
     let (near, far): (Vec<_>, Vec<_>) = view.holes.iter().partition(|hole| faces_reader(hole, view));
     let mut marks: Vec<Mark> = near.into_iter().filter_map(|hole| mark(hole, view)).collect();
-    if view.cylinder.is_some() || view.question == PicturePurpose::Change {
+    if view.cylinder.is_some() || view.purpose == PicturePurpose::Change {
         number_few(&mut marks);
     }
     let mut strokes: Vec<Stroke> = view.path.iter().filter_map(|piece| path(piece, view.side)).collect();
@@ -142,7 +153,7 @@ pub fn top_view(view: &TopView) -> Scene {
     let title = Title {
         name: view.name.clone(),
         view: format!("Top view, seen from {}", view.side.name()),
-        position: view.tolerance.filter(|_| view.question == PicturePurpose::Verdict),
+        position: view.tolerance.filter(|_| view.purpose == PicturePurpose::Verdict),
         verdict: headline(view),
         lines: worst(view).into_iter().chain(view.lines.iter().cloned()).chain(hidden).collect(),
         caution: "Predicted by simulation, not measured".to_owned(),
@@ -151,50 +162,53 @@ pub fn top_view(view: &TopView) -> Scene {
     Scene { title, axes: view.side.axes(), strokes, marks, zone: view.tolerance, legend, chart: None }
 }
 
-/// Leaves out the numbers and dials that would hide the holes of a dense pattern.
+/// Removes the numbers and dials that would hide the holes of a dense pattern.
 pub(super) fn number_few(marks: &mut [Mark]) {
-    if NUMBERED < marks.len() {
-        for mark in marks.iter_mut().filter(|mark| mark.standing.is_good()) {
+    if MAX_NUMBERED < marks.len() {
+        for mark in marks.iter_mut().filter(|mark| mark.status.is_good()) {
             mark.label.clear();
-            mark.misfit = None;
+            mark.deviation = None;
         }
     }
-    if NUMBERED < marks.iter().filter(|mark| !mark.label.is_empty()).count() {
+    if MAX_NUMBERED < marks.iter().filter(|mark| !mark.label.is_empty()).count() {
         marks.iter_mut().for_each(|mark| mark.label.clear());
     }
 }
 
-/// The azimuth as the rotary axis counts it.
+/// Returns the name of the azimuth axis, with a minus sign if the rotary axis runs the other way.
 pub(super) fn turn_name(view: &TopView) -> String {
-    if view.backwards { format!("−{}", view.rotary) } else { view.rotary.clone() }
+    if view.is_rotary_reversed { format!("−{}", view.rotary) } else { view.rotary.clone() }
 }
 
-/// Of a cylinder only the holes on this side are seen.
+/// Returns false for holes on the far side of a cylinder.
 fn faces_reader(hole: &DrawnHole, view: &TopView) -> bool {
-    let shown = hole.nominal.as_ref().or(hole.found.as_ref());
+    let shown = hole.nominal.as_ref().or(hole.actual.as_ref());
     let away = |hole: &Hole| Vector3::from(hole.axis).dot(&view.side.towards()) < -1e-6;
     view.cylinder.is_none() || !shown.is_some_and(away)
 }
 
-/// Nothing of a piece that runs straight towards the reader.
+/// Projects a path piece; `None` if it runs straight towards the reader.
 fn path(piece: &PathPiece, side: Side) -> Option<Stroke> {
-    let points: Vec<Point> = piece.points.iter().map(|p| side.seen(*p)).collect();
+    let points: Vec<Point> = piece.points.iter().map(|p| side.project(*p)).collect();
     let first = *points.first()?;
     let goes = points.iter().any(|p| 1e-3 < libm::hypot(p[0] - first[0], p[1] - first[1]));
     goes.then(|| Stroke { shape: Shape::Line(points), pen: piece.kind.pen(), caption: None })
 }
 
-/// A hole's number, and what is to be said of it.
+/// Returns the label of a hole: number, remarks, rotary angle and deviation.
 pub(super) fn label(hole: &DrawnHole, view: &TopView) -> Vec<String> {
     let mut label = vec![hole.id.clone()];
-    let turn = hole.turn.map(|turn| format!("{} {}°", view.rotary, signed(turn, 3)));
-    let phi = hole.phi.filter(|phi| view.question.tells(*phi, 3)).map(|phi| format!("Φ{phi:.3}"));
-    let words = match hole.standing {
-        HoleStatus::Missing | HoleStatus::Extra => vec![view.question.word(hole.standing).to_owned()],
+    let turn = hole.rotary_angle.map(|turn| format!("{} {}°", view.rotary, signed(turn, 3)));
+    let phi = hole
+        .position_deviation
+        .filter(|phi| view.purpose.shows_deviation(*phi, 3))
+        .map(|phi| format!("Φ{phi:.3}"));
+    let words = match hole.status {
+        HoleStatus::Missing | HoleStatus::Extra => vec![view.purpose.status_word(hole.status).to_owned()],
         HoleStatus::Good | HoleStatus::Bad | HoleStatus::Unjudged => hole.remarks.clone(),
     };
     label.extend(words);
-    if hole.standing == HoleStatus::Good {
+    if hole.status == HoleStatus::Good {
         label.extend([turn, phi].into_iter().flatten());
     } else {
         label.extend([phi, turn].into_iter().flatten());
@@ -204,29 +218,29 @@ pub(super) fn label(hole: &DrawnHole, view: &TopView) -> Vec<String> {
 }
 
 fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark> {
-    let shown = hole.nominal.as_ref().or(hole.found.as_ref())?;
-    let both = hole.nominal.as_ref().zip(hole.found.as_ref());
+    let shown = hole.nominal.as_ref().or(hole.actual.as_ref())?;
+    let both = hole.nominal.as_ref().zip(hole.actual.as_ref());
     Some(Mark {
-        at: view.side.seen(shown.entry),
+        position: view.side.project(shown.entry),
         radius: shown.diameter.unwrap_or(0.0) / 2.0,
-        standing: hole.standing,
+        status: hole.status,
         label: label(hole, view),
-        direction: Some(view.side.seen(shown.axis)),
-        misfit: both.and_then(|(nominal, found)| view.side.misfit(nominal, found)),
-        found: both.map(|(_, found)| view.side.seen(found.entry)),
+        direction: Some(view.side.project(shown.axis)),
+        deviation: both.and_then(|(nominal, found)| view.side.zone_deviation(nominal, found)),
+        actual: both.map(|(_, found)| view.side.project(found.entry)),
     })
 }
 
-/// The circles on which holes lie, each with its radius; holes less than 0.05 mm apart share one.
+/// Returns the circles on which holes lie, with their radii; radii less than 0.05 mm apart are merged.
 fn circles(holes: &[DrawnHole]) -> Vec<Stroke> {
     let any_nominal = holes.iter().any(|h| h.nominal.is_some());
-    let of = |h: &DrawnHole| if any_nominal { h.nominal.clone() } else { h.found.clone() };
+    let of = |h: &DrawnHole| if any_nominal { h.nominal.clone() } else { h.actual.clone() };
     let mut radii: Vec<f64> =
         holes.iter().filter_map(of).map(|h| libm::hypot(h.entry[0], h.entry[2])).collect();
     radii.sort_by(f64::total_cmp);
     radii.dedup_by(|a, b| (*a - *b).abs() < 0.05);
     radii.retain(|r| 1e-3 < *r);
-    if MOST_CIRCLES < radii.len() {
+    if MAX_CIRCLES < radii.len() {
         return Vec::new();
     }
     let circle = |radius: f64| Stroke {
@@ -237,7 +251,7 @@ fn circles(holes: &[DrawnHole]) -> Vec<Stroke> {
     radii.into_iter().map(circle).collect()
 }
 
-/// A number without needless zeros and with a true minus sign.
+/// Formats a number without trailing zeros and with a true minus sign.
 fn signed(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -245,33 +259,35 @@ fn signed(number: f64, places: usize) -> String {
 }
 
 fn count(holes: &[DrawnHole], standing: HoleStatus) -> usize {
-    holes.iter().filter(|h| h.standing == standing).count()
+    holes.iter().filter(|h| h.status == standing).count()
 }
 
 pub(super) fn headline(view: &TopView) -> Option<(HoleStatus, String)> {
     let of = |standing| count(&view.holes, standing);
     let counts = [HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra].map(of);
-    let (standing, words) = view.question.headline(counts, view.others)?;
-    Some((standing, view.ends.iter().cloned().chain([words]).collect::<Vec<_>>().join("; ")))
+    let (standing, words) = view.purpose.headline(counts, view.other_differences)?;
+    Some((standing, view.ending.iter().cloned().chain([words]).collect::<Vec<_>>().join("; ")))
 }
 
 pub(super) fn worst(view: &TopView) -> Option<String> {
-    let known = view.holes.iter().filter_map(|h| Some((h.phi?, &h.id)));
+    let known = view.holes.iter().filter_map(|h| Some((h.position_deviation?, &h.id)));
     let (phi, id) = known.fold(None, |worst: Option<(f64, &String)>, next| match worst {
         Some(worst) if next.0 <= worst.0 => Some(worst),
         _ => Some(next),
     })?;
-    view.question.tells(phi, 4).then(|| format!("{}: Φ{phi:.4} (hole\u{a0}{id})", view.question.worst()))
+    view.purpose
+        .shows_deviation(phi, 4)
+        .then(|| format!("{}: Φ{phi:.4} (hole\u{a0}{id})", view.purpose.worst_label()))
 }
 
-/// The signs that are drawn, for the legend.
+/// Returns the legend lines of the symbols that are drawn.
 pub(super) fn standings(view: &TopView) -> Vec<LegendItem> {
     let all =
         [HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra, HoleStatus::Unjudged];
     let drawn = all.into_iter().filter(|standing| 0 < count(&view.holes, *standing));
     let item = |standing: HoleStatus| LegendItem {
-        sample: Sample::Standing(standing),
-        text: view.question.legend(standing).to_owned(),
+        sample: Sample::Status(standing),
+        text: view.purpose.legend(standing).to_owned(),
     };
     drawn.map(item).collect()
 }
@@ -279,17 +295,17 @@ pub(super) fn standings(view: &TopView) -> Vec<LegendItem> {
 fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> {
     let mut items = standings(view);
     let mut add = |sample: Sample, text: &str| items.push(LegendItem { sample, text: text.to_owned() });
-    if marks.iter().any(|m| m.misfit.is_some())
+    if marks.iter().any(|m| m.deviation.is_some())
         && let Some(zone) = view.tolerance
     {
-        let text = format!("{} Φ{}, seen along the hole,", view.question.misfit(), plain(zone));
-        add(Sample::Misfit, &text);
+        let text = format!("{} Φ{}, axial view,", view.purpose.deviation_label(), plain(zone));
+        add(Sample::Deviation, &text);
     }
     if marks.iter().any(|m| m.direction.is_some_and(|d| 0.02 < libm::hypot(d[0], d[1]))) {
         add(Sample::Direction, "hole axis, outwards");
     }
-    if marks.iter().any(|m| m.found.is_some()) {
-        add(Sample::Astray, view.question.astray());
+    if marks.iter().any(|m| m.actual.is_some()) {
+        add(Sample::Displacement, view.purpose.displacement_label());
     }
     if view.outline.is_some() || view.cylinder.is_some() {
         add(Sample::Pen(Pen::Outline), "part outline");
@@ -319,10 +335,10 @@ mod tests {
         DrawnHole {
             id: "1".to_owned(),
             nominal: Some(nominal),
-            found: Some(found),
-            standing: HoleStatus::Good,
-            phi: Some(0.02),
-            turn: Some(-72.0),
+            actual: Some(found),
+            status: HoleStatus::Good,
+            position_deviation: Some(0.02),
+            rotary_angle: Some(-72.0),
             remarks: Vec::new(),
         }
     }
@@ -332,7 +348,7 @@ mod tests {
         let holes =
             vec![drawn(hole([0.0, 9.0, 5.0], [0.0, 1.0, 0.0]), hole([0.0, 9.0, 5.0], [0.0, 1.0, 0.0]))];
         let scene = top_view(&TopView { holes, rotary: "B".to_owned(), ..TopView::default() });
-        assert_eq!(scene.marks[0].at, [0.0, -5.0]);
+        assert_eq!(scene.marks[0].position, [0.0, -5.0]);
         assert_eq!(scene.marks[0].label, ["1", "B −72°", "Φ0.020"]);
         assert_eq!(scene.axes[1].direction, [0.0, -1.0]);
     }
@@ -341,19 +357,20 @@ mod tests {
     fn an_axial_hole_shows_its_misfit_as_it_is() {
         let up = [0.0, 1.0, 0.0];
         let misfit =
-            Side::Y.misfit(&hole([420.0, 675.0, 0.0], up), &hole([420.03, 677.0, 0.04], up)).unwrap();
+            Side::Y.zone_deviation(&hole([420.0, 675.0, 0.0], up), &hole([420.03, 677.0, 0.04], up)).unwrap();
         for end in [misfit.entry, misfit.bottom] {
             assert!((end[0] - 0.03).abs() < 1e-9 && (end[1] + 0.04).abs() < 1e-9, "{misfit:?}");
         }
     }
 
-    /// A hole leaning 60° out to +x: 0.05 mm along its own meridian looks like 0.025 from above, and is 0.05.
+    /// A hole tilted 60° outwards to +x: 0.05 mm along its own meridian projects to 0.025 mm and is drawn as
+    /// 0.05 mm.
     #[test]
     fn a_steep_hole_keeps_the_length_of_its_misfit() {
         let axis = [0.75f64.sqrt(), 0.5, 0.0];
         let down_the_meridian = [0.5 * 0.05, -(0.75f64.sqrt()) * 0.05, 0.0];
         let found = hole([1000.0 + down_the_meridian[0], 300.0 + down_the_meridian[1], 0.0], axis);
-        let misfit = Side::Y.misfit(&hole([1000.0, 300.0, 0.0], axis), &found).unwrap();
+        let misfit = Side::Y.zone_deviation(&hole([1000.0, 300.0, 0.0], axis), &found).unwrap();
         assert!((misfit.entry[0] - 0.05).abs() < 1e-9 && misfit.entry[1].abs() < 1e-9, "{misfit:?}");
     }
 
@@ -362,7 +379,7 @@ mod tests {
     fn a_tilted_hole_is_off_at_its_bottom() {
         let tilt = gcode_lang::units::Deg(0.3);
         let found = hole([420.0, 675.0, 0.0], [tilt.sin(), tilt.cos(), 0.0]);
-        let misfit = Side::Y.misfit(&hole([420.0, 675.0, 0.0], [0.0, 1.0, 0.0]), &found).unwrap();
+        let misfit = Side::Y.zone_deviation(&hole([420.0, 675.0, 0.0], [0.0, 1.0, 0.0]), &found).unwrap();
         assert!(libm::hypot(misfit.entry[0], misfit.entry[1]) < 1e-9);
         assert!((misfit.bottom[0] + 15.0 * tilt.tan()).abs() < 1e-9, "{misfit:?}");
     }

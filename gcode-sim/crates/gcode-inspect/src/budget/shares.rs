@@ -2,63 +2,64 @@
 //! kinematics that the samples go through.
 use nalgebra::Vector3;
 
-use super::planned::Planned;
-use super::{HoleBudget, Question};
+use super::hole_plan::HolePlan;
+use super::{BudgetRequest, HoleBudget};
 use crate::machine::Machine;
 use crate::machine::sources::{ErrorSource, Quantity};
 use gcode_lang::units::Deg;
 
 /// One source's part.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Share {
+pub struct ErrorShare {
     /// The key that names it in the error file.
     pub source: String,
     /// How far it moves the hole's axis, mm: the root of the mean square at the worse end.
-    pub moves: f64,
+    pub displacement: f64,
     /// Its square among the squares of all: 0 to 1.
     pub share: f64,
 }
 
 /// At that end of the hole where all sources together move its axis farther.
-pub(super) fn of_hole(question: &Question<'_>, hole: &Planned<'_>) -> Vec<Share> {
+pub(super) fn hole_shares(question: &BudgetRequest<'_>, hole: &HolePlan<'_>) -> Vec<ErrorShare> {
     let squares: Vec<[f64; 2]> =
         question.sources.iter().map(|source| mean_squares(question.machine, hole, source)).collect();
     let sums = [0, 1].map(|end| squares.iter().map(|ends| ends[end]).sum::<f64>());
     let end = usize::from(sums[1] > sums[0]);
-    let share = |(source, squares): (&ErrorSource, &[f64; 2])| Share {
+    let share = |(source, squares): (&ErrorSource, &[f64; 2])| ErrorShare {
         source: source.quantity.name(question.machine),
-        moves: squares[end].sqrt(),
+        displacement: squares[end].sqrt(),
         share: if sums[end] > 0.0 { squares[end] / sums[end] } else { 0.0 },
     };
     question.sources.iter().zip(&squares).map(share).collect()
 }
 
 /// Over all holes: the sums of their squares, each at its own worse end.
-pub(super) fn of_all(holes: &[HoleBudget]) -> Vec<Share> {
+pub(super) fn total_shares(holes: &[HoleBudget]) -> Vec<ErrorShare> {
     let Some(first) = holes.first() else { return Vec::new() };
     let square = |index: usize| -> f64 {
-        let squares = holes.iter().map(|hole| hole.shares[index].moves * hole.shares[index].moves);
+        let squares =
+            holes.iter().map(|hole| hole.shares[index].displacement * hole.shares[index].displacement);
         squares.sum::<f64>() / holes.len() as f64
     };
     let squares: Vec<f64> = (0..first.shares.len()).map(square).collect();
     let sum: f64 = squares.iter().sum();
-    let all = first.shares.iter().zip(&squares).map(|(share, square)| Share {
+    let all = first.shares.iter().zip(&squares).map(|(share, square)| ErrorShare {
         source: share.source.clone(),
-        moves: square.sqrt(),
+        displacement: square.sqrt(),
         share: if sum > 0.0 { square / sum } else { 0.0 },
     });
-    let mut all: Vec<Share> = all.collect();
+    let mut all: Vec<ErrorShare> = all.collect();
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
     all
 }
 
 /// The mean square of the way that one source moves the axis at entry and bottom, by central differences.
-fn mean_squares(machine: &Machine, hole: &Planned<'_>, source: &ErrorSource) -> [f64; 2] {
-    let size = source.spread.mean_square().sqrt();
+fn mean_squares(machine: &Machine, hole: &HolePlan<'_>, source: &ErrorSource) -> [f64; 2] {
+    let size = source.distribution.mean_square().sqrt();
     let moved = |direction: Deg| -> [f64; 2] {
         let ends = |value: f64| -> [Vector3<f64>; 2] {
             let mut machine = machine.clone();
-            machine.put(source.quantity, value, direction);
+            machine.add_error(source.quantity, value, direction);
             hole.deviation(&machine).map_or([Vector3::zeros(); 2], |d| [d.entry.coords, d.bottom.coords])
         };
         let (plus, minus) = (ends(size), ends(-size));

@@ -11,7 +11,7 @@ pub struct Statistics {
     pub p997: f64,
     pub max: f64,
     /// The share of the samples within the tolerance.
-    pub within: f64,
+    pub share_in_tolerance: f64,
 }
 
 impl Statistics {
@@ -27,7 +27,7 @@ impl Statistics {
             let rank = (samples.len() * thousandths).div_ceil(1000).max(1);
             *samples.select_nth_unstable_by(rank - 1, f64::total_cmp).1
         };
-        Self { mean, p50: at(500), p95: at(950), p997: at(997), max, within }
+        Self { mean, p50: at(500), p95: at(950), p997: at(997), max, share_in_tolerance: within }
     }
 }
 
@@ -39,8 +39,14 @@ mod tests {
     fn percentiles_of_1000_numbers_are_those_with_that_rank() {
         let mut numbers: Vec<f64> = (1..=1000).rev().map(f64::from).collect();
         let found = Statistics::of(&mut numbers, 250.0);
-        let expected =
-            Statistics { mean: 500.5, p50: 500.0, p95: 950.0, p997: 997.0, max: 1000.0, within: 0.25 };
+        let expected = Statistics {
+            mean: 500.5,
+            p50: 500.0,
+            p95: 950.0,
+            p997: 997.0,
+            max: 1000.0,
+            share_in_tolerance: 0.25,
+        };
         assert_eq!(found, expected);
     }
 
@@ -48,13 +54,13 @@ mod tests {
     fn one_sample_is_all_percentiles() {
         let found = Statistics::of(&mut [0.3], 0.3);
         assert_eq!([found.mean, found.p50, found.p95, found.p997, found.max], [0.3; 5]);
-        assert_eq!(found.within, 1.0);
+        assert_eq!(found.share_in_tolerance, 1.0);
     }
 
     /// Of 7 numbers half are 3.5, so four must not be larger; 95 % and more are all 7.
     #[test]
     fn ranks_are_rounded_up() {
         let found = Statistics::of(&mut [7.0, 1.0, 6.0, 2.0, 5.0, 3.0, 4.0], 0.5);
-        assert_eq!((found.p50, found.p95, found.p997, found.within), (4.0, 7.0, 7.0, 0.0));
+        assert_eq!((found.p50, found.p95, found.p997, found.share_in_tolerance), (4.0, 7.0, 7.0, 0.0));
     }
 }

@@ -18,7 +18,7 @@ fn hole(x: f64) -> Hole {
 
 fn found(holes: &[Hole], sources: &[ErrorSource], samples: usize, threads: usize) -> Budget {
     let machine = Machine::default();
-    let question = Question {
+    let question = BudgetRequest {
         machine: &machine,
         holes,
         clearance: 2.0,
@@ -32,7 +32,7 @@ fn found(holes: &[Hole], sources: &[ErrorSource], samples: usize, threads: usize
 }
 
 fn source(quantity: Quantity, spread: Distribution) -> ErrorSource {
-    ErrorSource { quantity, spread }
+    ErrorSource { quantity, distribution: spread }
 }
 
 const N: usize = 60_000;
@@ -62,10 +62,10 @@ fn one_gaussian_axis_gives_the_half_normal_distribution() {
             let density = 2.0 * libm::exp(-z * z / 2.0) / (2.0 * std::f64::consts::PI).sqrt() / (2.0 * sigma);
             percentile(found, 2.0 * sigma * z, q, density);
         }
-        assert!(statistics.p997 < statistics.max && statistics.within > 0.999);
+        assert!(statistics.p997 < statistics.max && statistics.share_in_tolerance > 0.999);
         assert!(found.holes[0].nominal < 1e-9);
         assert_eq!(found.shares[0].share, 1.0);
-        assert!((found.shares[0].moves - sigma).abs() < 1e-9);
+        assert!((found.shares[0].displacement - sigma).abs() < 1e-9);
     }
 }
 
@@ -90,7 +90,10 @@ fn two_gaussian_shifts_give_the_rayleigh_distribution() {
     // One part has one set-up: both its holes are off by the same, and so is the worst of them.
     assert!((found.parts.p95 - found.holes[0].statistics.p95).abs() < 1e-9);
     // Within Φ0.1 is within 2.5 σ: 1 − exp(−3.125).
-    assert!((found.parts.within - (1.0 - libm::exp(-3.125))).abs() < 4.0 * (0.042f64 / N as f64).sqrt());
+    assert!(
+        (found.parts.share_in_tolerance - (1.0 - libm::exp(-3.125))).abs()
+            < 4.0 * (0.042f64 / N as f64).sqrt()
+    );
 }
 
 /// A run-out from 0 to 0.15 evenly, in any direction, is an eccentricity of 0 to 0.075, so Φ is 0 to 0.15 evenly.
@@ -102,7 +105,7 @@ fn a_run_out_is_a_position_of_the_same_size() {
     percentile(statistics.p95, 0.1425, 0.95, 1.0 / 0.15);
     assert!(statistics.max <= 0.15 + 1e-9);
     // The mean square of the way is (0.15/2)²/3.
-    assert!((found.shares[0].moves - 0.075 / 3f64.sqrt()).abs() < 1e-9);
+    assert!((found.shares[0].displacement - 0.075 / 3f64.sqrt()).abs() < 1e-9);
 }
 
 /// A head that stands 0.1° beyond its angle, its tip where it was told (no pivot, no tool length): the tool lies across the
@@ -113,7 +116,7 @@ fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
         let found = found(&[hole(300.0)], &[source(Quantity::Head, Distribution::Fixed(angle))], 1, 1);
         let aside = 15.0 * Deg(0.1).tan();
         assert!((found.holes[0].statistics.max - 2.0 * aside).abs() < 1e-9, "{found:?}");
-        assert!((found.shares[0].moves - aside).abs() < 1e-6);
+        assert!((found.shares[0].displacement - aside).abs() < 1e-6);
     }
 }
 
@@ -127,7 +130,8 @@ fn the_shares_add_up_to_what_the_samples_show() {
         source(Quantity::Centre(0), Distribution::Normal(0.004)),
     ];
     let found = found(&[hole(-300.0)], &sources, N, 2);
-    let squares: f64 = found.holes[0].shares.iter().map(|share| share.moves * share.moves).sum();
+    let squares: f64 =
+        found.holes[0].shares.iter().map(|share| share.displacement * share.displacement).sum();
     assert!((found.holes[0].shares.iter().map(|share| share.share).sum::<f64>() - 1.0).abs() < 1e-12);
     // By hand: tilt about z at the height 320 and index at the radius 300, in rad, and B's centre twice at B = 180.
     let (tilt, index) = (320.0 * 0.002f64.to_radians(), 300.0 * 0.002f64.to_radians() / 3f64.sqrt());
@@ -149,7 +153,11 @@ fn the_same_seed_is_the_same_answer_on_any_number_of_threads() {
     for threads in [2, 3, 8] {
         assert_eq!(one, found(&holes, &sources, 10_007, threads));
     }
-    assert_eq!(found(&holes, &sources, 1, 4).holes[0].statistics.within, 1.0, "fewer samples than threads");
+    assert_eq!(
+        found(&holes, &sources, 1, 4).holes[0].statistics.share_in_tolerance,
+        1.0,
+        "fewer samples than threads"
+    );
 }
 
 #[test]
@@ -157,7 +165,7 @@ fn a_hole_that_the_machine_cannot_reach_is_named() {
     let machine = Machine::default();
     let mut sideways = hole(300.0);
     sideways.axis = [0.0, 0.6, 0.8];
-    let question = Question {
+    let question = BudgetRequest {
         machine: &Machine {
             head: crate::machine::Head::new(
                 crate::machine::HeadKind::Fixed(nalgebra::Vector3::z_axis()),

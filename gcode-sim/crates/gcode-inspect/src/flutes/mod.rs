@@ -123,7 +123,12 @@ impl<'m> FluteTracker<'m> {
         let wheel = machine.wheel.ok_or(GrinderError::NoWheel)?;
         let turns = machine.axes.find(b'A').filter(|axis| {
             let of_axis = |link: &&crate::machine::AxisLink| link.axis == *axis;
-            machine.table.0.iter().find(of_axis).is_some_and(|l| matches!(l.motion, LinkMotion::Turn { .. }))
+            machine
+                .table
+                .0
+                .iter()
+                .find(of_axis)
+                .is_some_and(|l| matches!(l.motion, LinkMotion::Rotary { .. }))
         });
         let most_kept = (KEPT_PASSES_PER_FLUTE * flutes.length() / POINT_SPACING)
             .clamp(KEPT_POINTS_RANGE.0, KEPT_POINTS_RANGE.1) as usize;
@@ -273,7 +278,7 @@ impl<'m> FluteTracker<'m> {
     fn step_count(&mut self, travel: &AxisMotion<'_>, apart: f64) -> Option<f64> {
         // The length is measured first: by points a twelfth of a turn apart, for after whole turns all are in one place.
         let sweep = travel.arc.map_or(Deg::ZERO, |arc| arc.sweep.abs());
-        let turn = self.machine.table.turned(travel.from, travel.to) + sweep;
+        let turn = self.machine.table.total_rotation(travel.from, travel.to) + sweep;
         let first = self.contact_points(travel, (turn.0 / 30.0).ceil().max(16.0))?;
         let length: f64 = first.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
         Some((length / apart).ceil().max(4.0))
@@ -297,21 +302,21 @@ fn c_axis_offset(machine: &Machine) -> Option<[f64; 2]> {
     let axis = machine.axes.find(b'C')?;
     let link = machine.table.0.iter().find(|link| link.axis == axis)?;
     match &link.motion {
-        LinkMotion::Turn { about, centre } if about.z.abs() == 1.0 => {
+        LinkMotion::Rotary { about, centre } if about.z.abs() == 1.0 => {
             let from = machine.part.origin - centre;
             Some([from.x, from.y])
         }
-        LinkMotion::Turn { .. } | LinkMotion::Slide { .. } => None,
+        LinkMotion::Rotary { .. } | LinkMotion::Linear { .. } => None,
     }
 }
 
 /// Of the axes that carry the burr, and of the one that swivels the wheel.
 fn axis_signs(machine: &Machine) -> Vec<(char, f64)> {
     let carry = machine.table.0.iter().map(|link| {
-        let (LinkMotion::Turn { about: along, .. } | LinkMotion::Slide { along }) = &link.motion;
+        let (LinkMotion::Rotary { about: along, .. } | LinkMotion::Linear { along }) = &link.motion;
         (machine.axes.letter(link.axis), link.sign * along.sum().signum())
     });
-    let swivels = machine.wheel.and_then(|wheel| wheel.swivels);
+    let swivels = machine.wheel.and_then(|wheel| wheel.swivel_axis);
     carry.chain(swivels.map(|(axis, sign)| (machine.axes.letter(axis), sign))).collect()
 }
 

@@ -79,9 +79,9 @@ impl HoleExtractor<'_> {
     /// The axis that the clamp holds: the reference's rotary, where it carries the part, else the first that turns it.
     fn clamped_axis(&self) -> Option<AxisIndex> {
         let named = self.process_limits.rotary.and_then(|rotary| self.machine.axes.find(rotary.letter as u8));
-        let mut turning = self.machine.table.turning();
+        let mut turning = self.machine.table.rotary_axes();
         named
-            .filter(|axis| self.machine.table.turning().any(|other| other == *axis))
+            .filter(|axis| self.machine.table.rotary_axes().any(|other| other == *axis))
             .or_else(|| turning.next())
     }
 }

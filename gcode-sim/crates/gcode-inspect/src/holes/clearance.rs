@@ -7,7 +7,7 @@ use crate::machine::path::AxisMotion;
 use crate::machine::{LinkMotion, Pose};
 use gcode_lang::motion::{Backtrace, Event};
 use gcode_lang::units::Deg;
-use gcode_part::Nearest;
+use gcode_part::NearestPoint;
 use gcode_part::Surface;
 
 /// So near to the part nobody sets a tool, mm: a tool length or a part is easily off by as much.
@@ -126,7 +126,7 @@ impl HoleExtractor<'_> {
         let turned = self.machine.axes.iter().find(|(axis, _)| {
             travel.from[*axis] != travel.to[*axis]
                 && self.machine.axes.is_rotary(*axis)
-                && self.machine.carries(*axis)
+                && self.machine.is_axis_used(*axis)
         });
         let Some((axis, letter)) = turned else { return };
         let by = Deg(travel.to[axis] - travel.from[axis]).abs();
@@ -135,7 +135,7 @@ impl HoleExtractor<'_> {
         let required_clearance = clearance.map_or(CONTACT_CLEARANCE, |clearance| {
             (clearance + ROUNDING_ALLOWANCE + reach).max(CONTACT_CLEARANCE)
         });
-        let retract = retract.filter(|_| self.machine.table.has(axis));
+        let retract = retract.filter(|_| self.machine.table.has_axis(axis));
         let limit = retract.map_or(required_clearance, |retract| retract.max(required_clearance));
         let Some((tip, pose)) = self.closest_approach(surface, travel, limit) else { return };
         let edge = self.edge_distance(surface, &pose);
@@ -175,7 +175,7 @@ impl HoleExtractor<'_> {
         if self.is_turn_about_part_axis(surface, travel) {
             return (best.nearest.distance < limit).then_some((best.nearest.distance, best.pose));
         }
-        let steps = self.machine.steps(travel, &self.setup, CHORD_TOLERANCE);
+        let steps = self.machine.chord_count(travel, &self.setup, CHORD_TOLERANCE);
         let ends: Vec<CurvePoint> = (0..=steps).map(|step| end(f64::from(step) / f64::from(steps))).collect();
         for one in &ends {
             best = best.nearer_of(*one);
@@ -204,7 +204,7 @@ impl HoleExtractor<'_> {
     /// it as it is.
     fn is_turn_about_part_axis(&self, surface: &Surface, travel: &AxisMotion<'_>) -> bool {
         let [link] = self.machine.table.0.as_slice() else { return false };
-        let LinkMotion::Turn { about, centre } = &link.motion else { return false };
+        let LinkMotion::Rotary { about, centre } = &link.motion else { return false };
         let moved = (0..travel.to.0.len()).filter(|axis| travel.from[*axis] != travel.to[*axis]);
         let part = self.machine.part.frame();
         let (about, centre) =
@@ -236,7 +236,7 @@ struct CurvePoint {
     /// The part of the way, 0 to 1.
     t: f64,
     pose: Pose,
-    nearest: Nearest,
+    nearest: NearestPoint,
 }
 
 impl CurvePoint {
@@ -275,7 +275,7 @@ mod tests {
             head: Head::new(HeadKind::Fixed(nalgebra::Vector3::z_axis()), 0.0),
             ..Machine::default()
         };
-        if let LinkMotion::Turn { about, .. } = &mut machine.table.0[0].motion {
+        if let LinkMotion::Rotary { about, .. } = &mut machine.table.0[0].motion {
             *about = link;
         }
         machine

@@ -1,9 +1,19 @@
 //! What is in force while a tool cuts: its direction of rotation, S, F and length offset, which the verdict holds against
 //! what the reference says of the tool.
-use super::line::PeckExtent;
 use super::per_block::PerBlock;
 use gcode_lang::motion::{Backtrace, LengthCompensation, SpindleDirection};
 use gcode_lang::units::{MmPerMin, Rpm};
+
+/// How much strokes cut beyond the ones before them, mm.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PeckExtent {
+    /// So many strokes cut.
+    pub strokes: u32,
+    /// The most that one of them was fed beyond the others, air included.
+    pub max_fed: f64,
+    /// The most that one of them cut of the part.
+    pub max_cut: f64,
+}
 
 /// How a block feeds a tool into the part.
 #[derive(Clone, Debug)]

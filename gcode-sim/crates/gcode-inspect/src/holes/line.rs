@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::DrillPass;
 use super::clamping::ClampState;
-use super::cutting::CuttingState;
+use super::cutting::{CuttingState, PeckExtent};
 use gcode_lang::motion::{Backtrace, Position};
 use gcode_lang::units::MmPerMin;
 
@@ -68,17 +68,6 @@ pub(super) enum SpindleInHole {
     Unchanged,
     Stopped,
     Reversed,
-}
-
-/// How much strokes cut beyond the ones before them, mm.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PeckExtent {
-    /// So many strokes cut.
-    pub strokes: u32,
-    /// The most that one of them was fed beyond the others, air included.
-    pub max_fed: f64,
-    /// The most that one of them cut of the part.
-    pub max_cut: f64,
 }
 
 /// Feeds inwards without a way back between them.

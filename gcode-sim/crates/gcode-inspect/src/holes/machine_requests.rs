@@ -9,7 +9,7 @@ impl HoleExtractor<'_> {
     /// An axis that the control has and the machine doesn't use was told to move.
     pub(super) fn check_idle_axes(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
         for (axis, letter) in self.machine.axes.iter() {
-            if from[axis] != to[axis] && !self.machine.carries(axis) {
+            if from[axis] != to[axis] && !self.machine.is_axis_used(axis) {
                 self.findings.add("axis-carries-nothing", &event.backtrace(), axis as u32, || {
                     Diagnostic::warning(
                         "axis-carries-nothing",
@@ -51,8 +51,8 @@ impl HoleExtractor<'_> {
         text: &str,
         named: &[(u32, f64)],
     ) -> Option<Deg> {
-        let message = HeadMessage::of(text, named);
-        if message == HeadMessage::Other {
+        let message = HeadMessage::parse(text, named);
+        if message == HeadMessage::Unrelated {
             return None;
         }
         if !self.machine.head.is_set_by_hand() {
@@ -67,7 +67,7 @@ impl HoleExtractor<'_> {
         }
         match message {
             HeadMessage::Angle(angle) => Some(angle),
-            HeadMessage::Other | HeadMessage::Unclear => {
+            HeadMessage::Unrelated | HeadMessage::Unclear => {
                 self.findings.add("head-message-unclear", &event.backtrace(), 0, || unclear_head(text));
                 None
             }

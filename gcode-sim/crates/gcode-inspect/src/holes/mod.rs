@@ -118,7 +118,7 @@ impl<'m> HoleExtractor<'m> {
     pub fn new(machine: &'m Machine) -> Self {
         let (at, setup) = (Position::default(), Setup::default());
         let frame = machine.part_frame(&at);
-        let pose = machine.tool(&at, &setup).on(&frame);
+        let pose = machine.tool_pose(&at, &setup).relative_to(&frame);
         Self {
             machine,
             surface: None,
@@ -197,11 +197,11 @@ impl<'m> HoleExtractor<'m> {
         self.check_idle_axes(event, &from, to);
         self.check_clamp_released(event, &from, to);
         let before = self.pose;
-        if self.machine.table.differs(&from, to) {
+        if self.machine.table.is_moved(&from, to) {
             self.frame = self.machine.part_frame(to);
         }
         self.axis_position = *to;
-        self.pose = self.machine.tool(to, &self.setup).on(&self.frame);
+        self.pose = self.machine.tool_pose(to, &self.setup).relative_to(&self.frame);
         let (was, is) = self.work_zero.advance();
         if was | is != 0 && kind != MotionKind::Feed {
             self.report_unknown_rapid(event, &before.tip, (was, is));
@@ -336,7 +336,7 @@ impl<'m> HoleExtractor<'m> {
             let after = line.curved_exit();
             self.report_line(line, after, false);
         }
-        self.pose = self.machine.tool(&self.axis_position, &self.setup).on(&self.frame);
+        self.pose = self.machine.tool_pose(&self.axis_position, &self.setup).relative_to(&self.frame);
     }
 }
 

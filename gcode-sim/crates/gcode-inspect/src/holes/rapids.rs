@@ -167,7 +167,7 @@ impl HoleExtractor<'_> {
         for tolerance in [40.0, 5.0, 0.5] {
             let mut last: Option<Point3<f64>> = None;
             let mut clear = true;
-            self.machine.follow(travel, &self.setup, tolerance, |pose| {
+            self.machine.for_each_pose(travel, &self.setup, tolerance, |pose| {
                 let from = last.replace(pose.tip).unwrap_or(pose.tip);
                 clear = clear && surface.clearance(&from, &pose.tip) > tolerance;
             });
@@ -177,7 +177,7 @@ impl HoleExtractor<'_> {
         }
         let mut last: Option<Point3<f64>> = None;
         let mut deepest = f64::NEG_INFINITY;
-        self.machine.follow(travel, &self.setup, TOUCH_DEPTH, |pose| {
+        self.machine.for_each_pose(travel, &self.setup, TOUCH_DEPTH, |pose| {
             let from = last.replace(pose.tip).unwrap_or(pose.tip);
             if surface.clearance(&from, &pose.tip) <= 0.0 {
                 deepest = deepest.max(surface.depth(&surface.deepest_between(&from, &pose.tip)));

@@ -40,7 +40,7 @@ impl WorkZeroTracker {
         self.upcoming = machine
             .axes
             .iter()
-            .filter(|(axis, _)| machine.carries(*axis))
+            .filter(|(axis, _)| machine.is_axis_used(*axis))
             .fold(0, |mask, (axis, _)| mask | axes & 1 << axis);
     }
 

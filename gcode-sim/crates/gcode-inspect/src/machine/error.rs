@@ -14,11 +14,11 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    pub fn draw(self, draw: RandomStream) -> f64 {
+    pub fn sample(self, draw: RandomStream) -> f64 {
         match self {
             Self::Fixed(value) => value,
             Self::Normal(deviation) => deviation * draw.normal(),
-            Self::Uniform(most) => most * (2.0 * draw.unit() - 1.0),
+            Self::Uniform(most) => most * (2.0 * draw.uniform() - 1.0),
         }
     }
 
@@ -35,20 +35,20 @@ impl Distribution {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodicError {
     pub level: f64,
-    pub swing: f64,
+    pub amplitude: f64,
     pub phase: Deg,
     /// How far the axis goes for one wave, in mm or degrees.
-    pub length: f64,
+    pub period: f64,
 }
 
 impl Default for PeriodicError {
     fn default() -> Self {
-        Self { level: 0.0, swing: 0.0, phase: Deg::ZERO, length: 360.0 }
+        Self { level: 0.0, amplitude: 0.0, phase: Deg::ZERO, period: 360.0 }
     }
 }
 
 impl PeriodicError {
-    pub fn level(level: f64) -> Self {
+    pub fn constant(level: f64) -> Self {
         Self { level, ..Self::default() }
     }
 
@@ -56,24 +56,24 @@ impl PeriodicError {
     ///
     /// A normal one: the two coordinates of a normally distributed point of the plane, turned by the place, stay
     /// normal. A uniform one: every coordinate of a point evenly on a sphere is uniform (Archimedes).
-    pub fn drawn(spread: Distribution, length: f64, draw: RandomStream) -> Self {
+    pub fn sample(spread: Distribution, length: f64, draw: RandomStream) -> Self {
         let (level, swing) = match spread {
             Distribution::Fixed(value) => (value, 0.0),
-            Distribution::Normal(deviation) => (0.0, deviation * draw.at(0).radius()),
+            Distribution::Normal(deviation) => (0.0, deviation * draw.branch(0).radius()),
             Distribution::Uniform(most) => {
-                let height = 2.0 * draw.at(0).unit() - 1.0;
+                let height = 2.0 * draw.branch(0).uniform() - 1.0;
                 (0.0, most * (1.0 - height * height).sqrt())
             }
         };
-        Self { level, swing, phase: draw.at(1).turn(), length }
+        Self { level, amplitude: swing, phase: draw.branch(1).angle(), period: length }
     }
 
     /// The error while the axis stands at `place`.
-    pub fn at(&self, place: f64) -> f64 {
-        if self.swing == 0.0 {
+    pub fn value_at(&self, place: f64) -> f64 {
+        if self.amplitude == 0.0 {
             return self.level;
         }
-        self.level + self.swing * (Deg(360.0 * place / self.length) - self.phase).cos()
+        self.level + self.amplitude * (Deg(360.0 * place / self.period) - self.phase).cos()
     }
 }
 
@@ -88,8 +88,8 @@ mod tests {
             for (spread, quartile) in
                 [(Distribution::Normal(0.01), 0.006_745), (Distribution::Uniform(0.01), 0.005)]
             {
-                let errors =
-                    (0..200_000).map(|n| PeriodicError::drawn(spread, 500.0, RandomStream::new(n)).at(place));
+                let errors = (0..200_000)
+                    .map(|n| PeriodicError::sample(spread, 500.0, RandomStream::new(n)).value_at(place));
                 let mut errors: Vec<f64> = errors.collect();
                 errors.sort_by(f64::total_cmp);
                 for (part, expected) in [(50_000, -quartile), (100_000, 0.0), (150_000, quartile)] {
@@ -106,10 +106,13 @@ mod tests {
 
     #[test]
     fn a_wave_repeats_after_its_length_and_a_fixed_error_is_the_same_everywhere() {
-        let wave = PeriodicError::drawn(Distribution::Normal(0.02), 500.0, RandomStream::new(3));
-        assert!((wave.at(17.0) - wave.at(517.0)).abs() < 1e-12);
-        assert!((wave.at(17.0) + wave.at(267.0)).abs() < 1e-12, "half a wave on it is the opposite");
-        let fixed = PeriodicError::drawn(Distribution::Fixed(-0.02), 500.0, RandomStream::new(3));
-        assert_eq!((fixed.at(0.0), fixed.at(123.0)), (-0.02, -0.02));
+        let wave = PeriodicError::sample(Distribution::Normal(0.02), 500.0, RandomStream::new(3));
+        assert!((wave.value_at(17.0) - wave.value_at(517.0)).abs() < 1e-12);
+        assert!(
+            (wave.value_at(17.0) + wave.value_at(267.0)).abs() < 1e-12,
+            "half a wave on it is the opposite"
+        );
+        let fixed = PeriodicError::sample(Distribution::Fixed(-0.02), 500.0, RandomStream::new(3));
+        assert_eq!((fixed.value_at(0.0), fixed.value_at(123.0)), (-0.02, -0.02));
     }
 }

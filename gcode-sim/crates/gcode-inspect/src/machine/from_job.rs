@@ -8,7 +8,7 @@ use gcode_part::job::{self, Job, Rotary};
 impl Machine {
     /// The arrangement that goes with the job's family; `None` where the control has no such axis, and for a burr, which needs
     /// the machine file that stands beside its programs.
-    pub fn of_job(job: &Job) -> Option<Self> {
+    pub fn from_job(job: &Job) -> Option<Self> {
         let nominal =
             Self { dialect: job.control().dialect, increment: job.control().increment, ..Self::default() };
         match job {
@@ -26,7 +26,7 @@ impl Machine {
                     diameter: Some(tool.diameter),
                 };
                 Some(Self {
-                    table: nominal.table_of(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
+                    table: nominal.rotary_table(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
                     head: Head::new(kind, job.machine.head.pivot),
                     tools: job.tools.iter().map(tool).collect(),
                     ..nominal
@@ -37,7 +37,7 @@ impl Machine {
                 let origin = Point3::new(0.0, 0.0, -job.cylinder.outer / 2.0);
                 let diameter = Some(job.drill.diameter);
                 Some(Self {
-                    table: nominal.table_of(job.machine.rotary, Vector3::x_axis(), origin)?,
+                    table: nominal.rotary_table(job.machine.rotary, Vector3::x_axis(), origin)?,
                     head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0),
                     tools: vec![Tool { number: job.drill.number, length: None, diameter }],
                     part: Placement { origin, ..Placement::default() },
@@ -47,15 +47,15 @@ impl Machine {
             Job::Burr(_) => None,
             // The programmed point is the centre of the ball; the head stays as it is.
             Job::Alignment(job) => Some(Self {
-                table: nominal.table_of(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
+                table: nominal.rotary_table(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
                 probe: Some(Probe::new(job.probe_radius)),
                 ..nominal
             }),
         }
     }
 
-    fn table_of(&self, rotary: Rotary, about: Unit<Vector3<f64>>, centre: Point3<f64>) -> Option<Chain> {
+    fn rotary_table(&self, rotary: Rotary, about: Unit<Vector3<f64>>, centre: Point3<f64>) -> Option<Chain> {
         let axis = self.axes.find(rotary.letter as u8)?;
-        Some(Chain(vec![AxisLink::turn(axis, about, centre, f64::from(rotary.sign))]))
+        Some(Chain(vec![AxisLink::rotary(axis, about, centre, f64::from(rotary.sign))]))
     }
 }

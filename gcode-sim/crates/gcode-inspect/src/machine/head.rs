@@ -31,7 +31,7 @@ pub enum HeadKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeadMessage {
     /// It is about something else.
-    Other,
+    Unrelated,
     /// `SET HEAD TO #140` with one variable that has a value.
     Angle(Deg),
     /// It is about the head, and no angle can be read from it.
@@ -40,9 +40,9 @@ pub enum HeadMessage {
 
 impl HeadMessage {
     /// `named` are the variables that the text names, with their values.
-    pub fn of(text: &str, named: &[(u32, f64)]) -> Self {
-        if !Head::is_meant(text) {
-            return Self::Other;
+    pub fn parse(text: &str, named: &[(u32, f64)]) -> Self {
+        if !Head::is_head_message(text) {
+            return Self::Unrelated;
         }
         match named {
             [(_, angle)] if angle.is_finite() => Self::Angle(Deg(*angle)),
@@ -59,20 +59,20 @@ impl Head {
     /// From the tip to the spindle. An angle h counts from +x towards +y: (cos h, sin h, 0).
     pub fn direction(&self, at: &Position, setup: &Setup) -> Option<Unit<Vector3<f64>>> {
         match &self.kind {
-            HeadKind::Free => setup.head_angle.map(|angle| self.in_plane(angle)),
+            HeadKind::Free => setup.head_angle.map(|angle| self.direction_at(angle)),
             HeadKind::Fixed(direction) => Some(*direction),
-            HeadKind::Manual { start } => setup.head_angle.or(*start).map(|angle| self.in_plane(angle)),
-            HeadKind::Axis { axis, sign, zero } => Some(self.in_plane(Deg(sign * at[*axis]) + *zero)),
+            HeadKind::Manual { start } => setup.head_angle.or(*start).map(|angle| self.direction_at(angle)),
+            HeadKind::Axis { axis, sign, zero } => Some(self.direction_at(Deg(sign * at[*axis]) + *zero)),
         }
     }
 
-    fn in_plane(&self, angle: Deg) -> Unit<Vector3<f64>> {
-        let angle = angle + Deg(self.error.at(angle.0));
+    fn direction_at(&self, angle: Deg) -> Unit<Vector3<f64>> {
+        let angle = angle + Deg(self.error.value_at(angle.0));
         Unit::new_unchecked(Vector3::new(angle.cos(), angle.sin(), 0.0))
     }
 
     /// Whether a message to the operator is about the head: it has the word HEAD.
-    pub fn is_meant(text: &str) -> bool {
+    pub fn is_head_message(text: &str) -> bool {
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
         words.any(|word| word.eq_ignore_ascii_case("HEAD"))
     }

@@ -15,7 +15,7 @@ impl Machine {
     /// answer then brings the tip itself into the plane z of the table's centre. Empty where there is none.
     pub fn inverse(&self, tip: Point3<f64>, axis: Unit<Vector3<f64>>, setup: &Setup) -> Vec<Position> {
         let [table] = self.table.0.as_slice() else { return Vec::new() };
-        let LinkMotion::Turn { about, centre } = &table.motion else { return Vec::new() };
+        let LinkMotion::Rotary { about, centre } = &table.motion else { return Vec::new() };
         let placed = self.part.frame();
         let (tip, axis) = (placed * tip, placed.rotation * axis.into_inner());
         let arm = tip - centre;
@@ -32,13 +32,13 @@ impl Machine {
         let positions = angles.into_iter().filter_map(|angle| {
             let mut at = Position::default();
             at[table.axis] = table.sign * angle.0;
-            self.reach(tip, axis, at, setup)
+            self.solve_slides(tip, axis, at, setup)
         });
         positions.collect()
     }
 
     /// The slides and the head for a table that stands at `at`.
-    fn reach(
+    fn solve_slides(
         &self,
         tip: Point3<f64>,
         axis: Vector3<f64>,
@@ -58,14 +58,14 @@ impl Machine {
                 }
             }
         }
-        let there = self.tool(&at, &setup).tip;
+        let there = self.tool_pose(&at, &setup).tip;
         let missing = tip - there;
         for link in &self.slides.0 {
-            if let LinkMotion::Slide { along } = &link.motion {
+            if let LinkMotion::Linear { along } = &link.motion {
                 at[link.axis] += link.sign * along.dot(&missing);
             }
         }
-        ((self.tool(&at, &setup).tip - tip).norm() < 1e-6).then_some(at)
+        ((self.tool_pose(&at, &setup).tip - tip).norm() < 1e-6).then_some(at)
     }
 }
 
@@ -111,7 +111,7 @@ mod tests {
             tilt in -2.0..2.0,
         ) {
             let mut machine = Machine::default();
-            machine.table.0 = vec![AxisLink::turn(4, Vector3::y_axis(), Point3::new(cx, 3.0, cz), sign)];
+            machine.table.0 = vec![AxisLink::rotary(4, Vector3::y_axis(), Point3::new(cx, 3.0, cz), sign)];
             machine.part = Placement {
                 origin: Point3::new(cx, 7.0, cz),
                 shift: Vector3::new(0.1, -0.2, 0.3),
@@ -167,7 +167,7 @@ mod tests {
     fn a_fixed_head_needs_the_table_alone_for_a_radial_hole() {
         let mut machine = Machine::default();
         machine.head.kind = HeadKind::Fixed(Vector3::z_axis());
-        machine.table.0 = vec![AxisLink::turn(3, Vector3::x_axis(), Point3::origin(), 1.0)];
+        machine.table.0 = vec![AxisLink::rotary(3, Vector3::x_axis(), Point3::origin(), 1.0)];
         let out = Unit::new_unchecked(Vector3::new(0.0, Deg(50.0).sin(), Deg(50.0).cos()));
         let tip = Point3::from(out.into_inner() * 250.0 + Vector3::x() * 20.0);
         let found = machine.inverse(tip, out, &Setup::default());

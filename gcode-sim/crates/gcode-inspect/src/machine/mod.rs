@@ -38,7 +38,7 @@ pub struct Machine {
     pub axes: Axes,
     pub dialect: Dialect,
     pub increment: Increment,
-    /// What carries the part, from the bed outwards.
+    /// The axes that carry the part, from the bed outwards.
     pub table: Chain,
     /// What carries the tool: the slides X Y Z that don't carry the part.
     pub slides: Chain,
@@ -102,8 +102,8 @@ impl Default for Machine {
     fn default() -> Self {
         let axes = Axes::default();
         Self {
-            slides: Chain::slides(&axes, &Chain::default()),
-            table: Chain::of_the_paper(&axes, Point3::origin()),
+            slides: Chain::default_slides(&axes, &Chain::default()),
+            table: Chain::default_table(&axes, Point3::origin()),
             axes,
             dialect: Dialect::default(),
             increment: Increment::default(),
@@ -127,9 +127,9 @@ impl Placement {
     /// From the part's frame to machine coordinates with all axes of the table at 0.
     pub fn frame(&self) -> Frame {
         let [x, y, z] = self.tilt;
-        let turn = chain::turn(&Vector3::z_axis(), z)
-            * chain::turn(&Vector3::y_axis(), y)
-            * chain::turn(&Vector3::x_axis(), x);
+        let turn = chain::rotation_about(&Vector3::z_axis(), z)
+            * chain::rotation_about(&Vector3::y_axis(), y)
+            * chain::rotation_about(&Vector3::x_axis(), x);
         Frame::from_parts(Translation3::from(self.origin.coords + self.shift), turn)
     }
 }
@@ -145,7 +145,7 @@ impl Machine {
     /// The axes' position is the head's pivot; the tip is the pivot's distance from the gauge line and the tool's
     /// length away from it, along the tool. While the tool's direction isn't known, the tip is where the control
     /// believes it to be: the position less the length offset.
-    pub fn tool(&self, at: &Position, setup: &Setup) -> Pose {
+    pub fn tool_pose(&self, at: &Position, setup: &Setup) -> Pose {
         let carried = self.slides.frame(at) * Point3::origin();
         match self.head.direction(at, setup) {
             Some(axis) => {
@@ -158,7 +158,7 @@ impl Machine {
 
     /// Where the tool stands on the part.
     pub fn forward(&self, at: &Position, setup: &Setup) -> Pose {
-        self.tool(at, setup).on(&self.part_frame(at))
+        self.tool_pose(at, setup).relative_to(&self.part_frame(at))
     }
 
     /// The tool's length: from the tool table, else what the length offset says (a tool measured right).
@@ -182,16 +182,17 @@ impl Machine {
     }
 
     /// Whether the axis moves the tool or the part.
-    pub fn carries(&self, axis: AxisIndex) -> bool {
+    pub fn is_axis_used(&self, axis: AxisIndex) -> bool {
         let head = matches!(self.head.kind, HeadKind::Axis { axis: head, .. } if head == axis);
-        let wheel = self.wheel.is_some_and(|wheel| wheel.swivels.is_some_and(|(swivel, _)| swivel == axis));
-        head || wheel || self.table.has(axis) || self.slides.has(axis)
+        let wheel =
+            self.wheel.is_some_and(|wheel| wheel.swivel_axis.is_some_and(|(swivel, _)| swivel == axis));
+        head || wheel || self.table.has_axis(axis) || self.slides.has_axis(axis)
     }
 }
 
 impl Pose {
     /// The same tool seen from a frame that stands at `frame`.
-    pub fn on(&self, frame: &Frame) -> Self {
+    pub fn relative_to(&self, frame: &Frame) -> Self {
         Self {
             tip: frame.inverse_transform_point(&self.tip),
             axis: self.axis.map(|axis| frame.rotation.inverse_transform_unit_vector(&axis)),
@@ -243,7 +244,7 @@ mod tests {
             ..Machine::default()
         };
         let setup = Setup { head_angle: Some(Deg(30.0)), tool: Some(2), ..Setup::default() };
-        let pose = machine.tool(&at(&machine, &[(b'X', 400.0), (b'Y', 300.0)]), &setup);
+        let pose = machine.tool_pose(&at(&machine, &[(b'X', 400.0), (b'Y', 300.0)]), &setup);
         // 250 mm along (cos 30°, sin 30°) = (216.506…, 125).
         assert!((pose.tip - Point3::new(400.0 - 216.506_350_946, 175.0, 0.0)).norm() < 1e-8, "{}", pose.tip);
     }

@@ -43,8 +43,14 @@ impl AxisMotion<'_> {
 impl Machine {
     /// Tells `each` the tool's poses on the part along a motion, the first at its start, so close together that
     /// the path strays from the chord between two of them by no more than `tolerance` mm.
-    pub fn follow(&self, travel: &AxisMotion<'_>, setup: &Setup, tolerance: f64, mut each: impl FnMut(Pose)) {
-        let steps = self.steps(travel, setup, tolerance);
+    pub fn for_each_pose(
+        &self,
+        travel: &AxisMotion<'_>,
+        setup: &Setup,
+        tolerance: f64,
+        mut each: impl FnMut(Pose),
+    ) {
+        let steps = self.chord_count(travel, setup, tolerance);
         for step in 0..=steps {
             let at = travel.position(f64::from(step) / f64::from(steps));
             each(self.forward(&at, setup));
@@ -53,46 +59,47 @@ impl Machine {
 
     /// Whether the tool goes straight on the part: neither the table nor the head turns, and no arc.
     pub fn is_straight(&self, travel: &AxisMotion<'_>) -> bool {
-        travel.arc.is_none() && self.turn(travel) == Deg::ZERO
+        travel.arc.is_none() && self.total_rotation(travel) == Deg::ZERO
     }
 
-    fn turn(&self, travel: &AxisMotion<'_>) -> Deg {
+    fn total_rotation(&self, travel: &AxisMotion<'_>) -> Deg {
         let head = match self.head.kind {
             HeadKind::Axis { axis, .. } => Deg(travel.to[axis] - travel.from[axis]).abs(),
             HeadKind::Free | HeadKind::Fixed(_) | HeadKind::Manual { .. } => Deg::ZERO,
         };
-        self.table.turned(travel.from, travel.to) + head
+        self.table.total_rotation(travel.from, travel.to) + head
     }
 
     /// A path p(t) strays from its chord by at most |p''|·Δt²/8. With the table and the head turning by γ in all,
     /// the slides going b, and levers no longer than ρ, |p''| is at most γ²·ρ + 2·γ·b; an arc of sweep s and
     /// radius R adds s²·R, and the error of an axis its own bend.
-    pub fn steps(&self, travel: &AxisMotion<'_>, setup: &Setup, tolerance: f64) -> u32 {
-        let turn = self.turn(travel).to_rad();
+    pub fn chord_count(&self, travel: &AxisMotion<'_>, setup: &Setup, tolerance: f64) -> u32 {
+        let turn = self.total_rotation(travel).to_rad();
         let sweep = travel.arc.map_or(0.0, |arc| arc.sweep.to_rad());
-        let waves = self.waves(travel, setup);
+        let waves = self.wave_bend(travel, setup);
         if turn == 0.0 && sweep == 0.0 && waves == 0.0 {
             return 1;
         }
-        let chord = self.slide(travel);
-        let go = if sweep == 0.0 { chord } else { chord + sweep.abs() * travel.radius() };
-        let lever = self.lever(travel.from, setup).max(self.lever(travel.to, setup)) + go;
-        let bend = turn * turn * lever + 2.0 * turn * go + sweep * sweep * travel.radius() + waves;
+        let chord = self.slide_length(travel);
+        let path_length = if sweep == 0.0 { chord } else { chord + sweep.abs() * travel.radius() };
+        let lever = self.max_lever(travel.from, setup).max(self.max_lever(travel.to, setup)) + path_length;
+        let bend = turn * turn * lever + 2.0 * turn * path_length + sweep * sweep * travel.radius() + waves;
         (bend / (8.0 * tolerance)).sqrt().ceil().clamp(1.0, 100_000.0) as u32
     }
 
     /// How much the errors of the axes bend the way: a wave of swing A over n waves has |p''| of A·(2·π·n)² at most.
-    fn waves(&self, travel: &AxisMotion<'_>, setup: &Setup) -> f64 {
-        let lever = self.lever(travel.from, setup).max(self.lever(travel.to, setup)) + self.slide(travel);
+    fn wave_bend(&self, travel: &AxisMotion<'_>, setup: &Setup) -> f64 {
+        let lever = self.max_lever(travel.from, setup).max(self.max_lever(travel.to, setup))
+            + self.slide_length(travel);
         let bend = |error: &PeriodicError, by: f64, lever: f64| {
-            let turn = Deg(360.0 * by / error.length).to_rad();
-            error.swing.abs() * turn * turn * lever
+            let turn = Deg(360.0 * by / error.period).to_rad();
+            error.amplitude.abs() * turn * turn * lever
         };
         let mut sum = 0.0;
         for link in self.table.0.iter().chain(&self.slides.0) {
             let lever = match link.motion {
-                LinkMotion::Turn { .. } => Deg(lever).to_rad(),
-                LinkMotion::Slide { .. } => 1.0,
+                LinkMotion::Rotary { .. } => Deg(lever).to_rad(),
+                LinkMotion::Linear { .. } => 1.0,
             };
             sum += bend(&link.error, travel.to[link.axis] - travel.from[link.axis], lever);
         }
@@ -103,7 +110,7 @@ impl Machine {
     }
 
     /// How far the slides go, on both sides, from end to end.
-    fn slide(&self, travel: &AxisMotion<'_>) -> f64 {
+    fn slide_length(&self, travel: &AxisMotion<'_>) -> f64 {
         let mut by = Position::default();
         for (axis, (from, to)) in travel.from.0.iter().zip(&travel.to.0).enumerate() {
             by[axis] = to - from;
@@ -112,10 +119,10 @@ impl Machine {
     }
 
     /// The tip's distance from the farthest centre of the table, and the head's own reach.
-    fn lever(&self, at: &Position, setup: &Setup) -> f64 {
-        let tip = self.tool(at, setup).tip;
+    fn max_lever(&self, at: &Position, setup: &Setup) -> f64 {
+        let tip = self.tool_pose(at, setup).tip;
         let arm = |centre: &Point3<f64>| (tip - centre).norm();
-        self.table.centres().map(arm).fold(self.head.pivot + self.tool_length(setup), f64::max)
+        self.table.rotation_centres().map(arm).fold(self.head.pivot + self.tool_length(setup), f64::max)
     }
 }
 
@@ -140,7 +147,7 @@ mod tests {
         to[4] = 75.0;
         let travel = AxisMotion { from: &from, to: &to, arc: None };
         let mut points = Vec::new();
-        machine.follow(&travel, &Setup::default(), 0.05, |pose| points.push(pose.tip));
+        machine.for_each_pose(&travel, &Setup::default(), 0.05, |pose| points.push(pose.tip));
         assert!(points.len() > 10 && points.len() < 200, "{}", points.len());
         for step in 0..=997 {
             // By hand: at B the tip (x, y, 0) stands on the part at azimuth B.
@@ -158,7 +165,7 @@ mod tests {
         let arc = PlanarArc { plane: (0, 1), centre: (0.0, 0.0), sweep: Deg(360.0) };
         let travel = AxisMotion { from: &from, to: &from, arc: Some(&arc) };
         let mut points = Vec::new();
-        machine.follow(&travel, &Setup::default(), 0.01, |pose| points.push(pose.tip));
+        machine.for_each_pose(&travel, &Setup::default(), 0.01, |pose| points.push(pose.tip));
         for pair in points.windows(2) {
             let middle = nalgebra::center(&pair[0], &pair[1]);
             assert!(middle.coords.norm() > 9.99, "{middle}");

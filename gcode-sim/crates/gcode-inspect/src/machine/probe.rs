@@ -12,8 +12,8 @@ pub struct Probe {
     /// From then until the axes stand still, at the commanded feed all the time.
     pub overrun: Seconds,
     /// How far the stylus can be pushed before it breaks, mm.
-    pub give: f64,
-    /// How far along its way each touch is noted beyond its place, mm.
+    pub overtravel_limit: f64,
+    /// Error of each touch along its direction, mm.
     pub noise: Distribution,
     pub seed: u64,
 }
@@ -22,6 +22,13 @@ impl Probe {
     /// A ball that notes its contact at once and exactly.
     pub fn new(radius: f64) -> Self {
         let (delay, overrun) = (Seconds::ZERO, Seconds::ZERO);
-        Self { radius, delay, overrun, give: f64::INFINITY, noise: Distribution::Fixed(0.0), seed: 0 }
+        Self {
+            radius,
+            delay,
+            overrun,
+            overtravel_limit: f64::INFINITY,
+            noise: Distribution::Fixed(0.0),
+            seed: 0,
+        }
     }
 }

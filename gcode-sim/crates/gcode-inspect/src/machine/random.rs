@@ -15,28 +15,28 @@ impl RandomStream {
     }
 
     /// Another place for every `index`.
-    pub fn at(self, index: u64) -> Self {
+    pub fn branch(self, index: u64) -> Self {
         Self(mix(self.0.wrapping_add(index.wrapping_add(1).wrapping_mul(STEP))))
     }
 
     /// Between 0 and 1, both excluded.
-    pub fn unit(self) -> f64 {
+    pub fn uniform(self) -> f64 {
         ((mix(self.0.wrapping_add(STEP)) >> 11) as f64 + 0.5) / (1u64 << 53) as f64
     }
 
     /// Evenly between 0 and a full turn.
-    pub fn turn(self) -> Deg {
-        Deg(360.0 * self.unit())
+    pub fn angle(self) -> Deg {
+        Deg(360.0 * self.uniform())
     }
 
     /// How far from the origin a point of the standard normal distribution of the plane lies (Rayleigh).
     pub fn radius(self) -> f64 {
-        (-2.0 * libm::log(self.unit())).sqrt()
+        (-2.0 * libm::log(self.uniform())).sqrt()
     }
 
     /// Standard normal: the x of such a point (Box and Muller).
     pub fn normal(self) -> f64 {
-        self.at(0).radius() * self.at(1).turn().cos()
+        self.branch(0).radius() * self.branch(1).angle().cos()
     }
 }
 
@@ -59,7 +59,7 @@ mod tests {
         let root = RandomStream::new(1);
         let mut sums = [0.0; 4];
         for index in 0..1_000_000 {
-            let value = root.at(index).normal();
+            let value = root.branch(index).normal();
             let mut power = 1.0;
             for sum in &mut sums {
                 power *= value;
@@ -78,11 +78,11 @@ mod tests {
             let mut boxes = vec![0u32; 1000];
             for index in 0..1_000_000 {
                 let draw = match branch {
-                    0 => RandomStream::new(7).at(index),
-                    1 => RandomStream::new(index).at(3),
-                    _ => RandomStream::new(7).at(index / 1000).at(index % 1000),
+                    0 => RandomStream::new(7).branch(index),
+                    1 => RandomStream::new(index).branch(3),
+                    _ => RandomStream::new(7).branch(index / 1000).branch(index % 1000),
                 };
-                boxes[(draw.unit() * 1000.0) as usize] += 1;
+                boxes[(draw.uniform() * 1000.0) as usize] += 1;
             }
             let chi = boxes.iter().map(|n| (f64::from(*n) - 1000.0).powi(2) / 1000.0).sum::<f64>();
             assert!((chi - 999.0).abs() < 4.0 * 1998f64.sqrt(), "branch {branch}: {chi}");
@@ -92,7 +92,7 @@ mod tests {
     /// Neighbouring places know nothing of one another: the correlation of 10⁶ pairs is 0 within four of 1/1000.
     #[test]
     fn neighbours_are_independent() {
-        let value = |sample: u64, source: u64| RandomStream::new(5).at(sample).at(source).normal();
+        let value = |sample: u64, source: u64| RandomStream::new(5).branch(sample).branch(source).normal();
         let (mut along, mut across) = (0.0, 0.0);
         for index in 0..1_000_000 {
             along += value(index, 0) * value(index + 1, 0) / 1e6;

@@ -32,7 +32,7 @@ pub enum Quantity {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorSource {
     pub quantity: Quantity,
-    pub spread: Distribution,
+    pub distribution: Distribution,
 }
 
 /// What a group of sources is drawn from.
@@ -60,12 +60,12 @@ impl Quantity {
     }
 
     /// Set up once for a part, or built into the machine; the others are off anew at each hole.
-    pub fn is_set_up(self) -> bool {
+    pub fn is_per_part(self) -> bool {
         !matches!(self, Self::Linear(_) | Self::Index | Self::Head)
     }
 
     /// The place of its random numbers in the tree of a seed.
-    fn place(self) -> u64 {
+    fn stream_index(self) -> u64 {
         match self {
             Self::Shift(direction) => direction as u64,
             Self::Tilt(direction) => 10 + direction as u64,
@@ -82,24 +82,24 @@ impl Quantity {
 impl ErrorSource {
     /// Draws its value, the same at every place of the axes, and puts it into the machine.
     pub fn draw_into(&self, machine: &mut Machine, draw: RandomStream) {
-        let draw = draw.at(self.quantity.place());
-        let direction = if self.quantity == Quantity::RunOut { draw.at(2).turn() } else { Deg::ZERO };
-        machine.put(self.quantity, self.spread.draw(draw), direction);
+        let draw = draw.branch(self.quantity.stream_index());
+        let direction = if self.quantity == Quantity::RunOut { draw.branch(2).angle() } else { Deg::ZERO };
+        machine.add_error(self.quantity, self.distribution.sample(draw), direction);
     }
 
     /// One machine with this error: of an axis as a function of its place.
-    pub(super) fn realize(&self, machine: &mut Machine, drawn: SampleParameters) {
-        let draw = RandomStream::new(drawn.seed).at(self.quantity.place());
+    pub(super) fn apply_by_position(&self, machine: &mut Machine, drawn: SampleParameters) {
+        let draw = RandomStream::new(drawn.seed).branch(self.quantity.stream_index());
         match self.quantity {
             Quantity::Linear(axis) => {
-                machine.link_error(axis, PeriodicError::drawn(self.spread, drawn.wave, draw));
+                machine.set_link_error(axis, PeriodicError::sample(self.distribution, drawn.wave, draw));
             }
             Quantity::Index => {
                 if let Some(axis) = machine.rotary_axis() {
-                    machine.link_error(axis, PeriodicError::drawn(self.spread, 360.0, draw));
+                    machine.set_link_error(axis, PeriodicError::sample(self.distribution, 360.0, draw));
                 }
             }
-            Quantity::Head => machine.head.error = PeriodicError::drawn(self.spread, 360.0, draw),
+            Quantity::Head => machine.head.error = PeriodicError::sample(self.distribution, 360.0, draw),
             Quantity::Shift(_)
             | Quantity::Tilt(_)
             | Quantity::RunOut
@@ -112,8 +112,12 @@ impl ErrorSource {
 impl Machine {
     /// The one axis that turns the part; `None` where none or several do.
     pub fn rotary_axis(&self) -> Option<AxisIndex> {
-        let mut turns =
-            self.table.0.iter().filter(|link| matches!(link.motion, LinkMotion::Turn { .. })).map(|l| l.axis);
+        let mut turns = self
+            .table
+            .0
+            .iter()
+            .filter(|link| matches!(link.motion, LinkMotion::Rotary { .. }))
+            .map(|l| l.axis);
         let first = turns.next()?;
         turns.next().is_none().then_some(first)
     }
@@ -128,61 +132,61 @@ impl Machine {
 
     /// Whether it does what it is told, to a part that stands where it should.
     pub fn is_exact(&self) -> bool {
-        let exact = |error: &PeriodicError| error.level == 0.0 && error.swing == 0.0;
+        let exact = |error: &PeriodicError| error.level == 0.0 && error.amplitude == 0.0;
         let part = self.part.shift == Vector3::zeros() && self.part.tilt == [Deg::ZERO; 3];
         part && exact(&self.head.error)
             && self.table.0.iter().chain(&self.slides.0).all(|link| exact(&link.error))
     }
 
     /// Puts one more error into the machine; `direction` is that of a run-out, about the rotary axis.
-    pub fn put(&mut self, quantity: Quantity, value: f64, direction: Deg) {
+    pub fn add_error(&mut self, quantity: Quantity, value: f64, direction: Deg) {
         match quantity {
             Quantity::Shift(along) => self.part.shift[along] += value,
             Quantity::Tilt(about) => self.part.tilt[about] = self.part.tilt[about] + Deg(value),
             Quantity::RunOut => {
-                let Some((about, _)) = self.rotary() else { return };
-                let across = across(about);
-                let aside = chain::turn(about, direction) * across;
+                let Some((about, _)) = self.rotary_axis_mut() else { return };
+                let across = perpendicular(about);
+                let aside = chain::rotation_about(about, direction) * across;
                 self.part.shift += aside * (value / 2.0);
             }
-            Quantity::Linear(axis) => self.link_error(axis, PeriodicError::level(value)),
+            Quantity::Linear(axis) => self.set_link_error(axis, PeriodicError::constant(value)),
             Quantity::Index => {
                 if let Some(axis) = self.rotary_axis() {
-                    self.link_error(axis, PeriodicError::level(value));
+                    self.set_link_error(axis, PeriodicError::constant(value));
                 }
             }
             Quantity::Centre(along) => {
-                if let Some((_, centre)) = self.rotary() {
+                if let Some((_, centre)) = self.rotary_axis_mut() {
                     centre[along] += value;
                 }
             }
             Quantity::AxisTilt(axis) => {
                 let line = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()][axis];
-                if let Some((about, _)) = self.rotary() {
-                    *about = chain::turn(&line, Deg(value)) * *about;
+                if let Some((about, _)) = self.rotary_axis_mut() {
+                    *about = chain::rotation_about(&line, Deg(value)) * *about;
                 }
             }
-            Quantity::Head => self.head.error = PeriodicError::level(value),
+            Quantity::Head => self.head.error = PeriodicError::constant(value),
         }
     }
 
-    fn rotary(&mut self) -> Option<(&mut Unit<Vector3<f64>>, &mut nalgebra::Point3<f64>)> {
+    fn rotary_axis_mut(&mut self) -> Option<(&mut Unit<Vector3<f64>>, &mut nalgebra::Point3<f64>)> {
         let axis = self.rotary_axis()?;
         let link = self.table.0.iter_mut().find(|link| link.axis == axis)?;
         match &mut link.motion {
-            LinkMotion::Turn { about, centre } => Some((about, centre)),
-            LinkMotion::Slide { .. } => None,
+            LinkMotion::Rotary { about, centre } => Some((about, centre)),
+            LinkMotion::Linear { .. } => None,
         }
     }
 
-    fn link_error(&mut self, axis: AxisIndex, error: PeriodicError) {
+    fn set_link_error(&mut self, axis: AxisIndex, error: PeriodicError) {
         let links = self.table.0.iter_mut().chain(&mut self.slides.0);
         links.filter(|link| link.axis == axis).for_each(|link| link.error = error);
     }
 }
 
 /// A unit vector across another.
-fn across(about: &Unit<Vector3<f64>>) -> Vector3<f64> {
+fn perpendicular(about: &Unit<Vector3<f64>>) -> Vector3<f64> {
     let other = if about.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() };
     (other - about.into_inner() * about.dot(&other)).normalize()
 }
@@ -197,7 +201,7 @@ mod tests {
 
     fn with(quantity: Quantity, value: f64) -> Machine {
         let mut machine = Machine::default();
-        machine.put(quantity, value, Deg::ZERO);
+        machine.add_error(quantity, value, Deg::ZERO);
         machine
     }
 
@@ -242,7 +246,7 @@ mod tests {
         let mut machine = with(Quantity::Head, 0.1);
         machine.head.pivot = 200.0;
         let setup = Setup { head_angle: Some(Deg(90.0)), ..Setup::default() };
-        let tip = machine.tool(&Position::default(), &setup).tip;
+        let tip = machine.tool_pose(&Position::default(), &setup).tip;
         // The tool points along 90.1°: its tip hangs 200 mm below, 200·sin 0.1° to +x.
         near(tip, [200.0 * Deg(0.1).sin(), -200.0 * Deg(0.1).cos(), 0.0]);
     }

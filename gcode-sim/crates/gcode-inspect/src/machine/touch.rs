@@ -8,7 +8,7 @@ use gcode_lang::motion::{SkipMove, SkipSignal};
 use gcode_part::{Surface, bisect};
 
 /// The ball's way is taken as chords that stray from it by no more than this, mm.
-const STRAY: f64 = 1e-5;
+const CHORD_TOLERANCE: f64 = 1e-5;
 
 impl Machine {
     /// What G31 with this probe finds. `touches` counts the touches of the run: each has noise of its own.
@@ -25,15 +25,19 @@ impl Machine {
             return SkipSignal::Missed;
         };
         let (seconds, length) = (feed.seconds.0, feed.rate.0 / 60.0 * feed.seconds.0);
-        let noise = probe.noise.draw(RandomStream::new(probe.seed).at(touches));
+        let noise = probe.noise.sample(RandomStream::new(probe.seed).branch(touches));
         let late = if seconds > 0.0 { probe.delay.0 / seconds + noise / length } else { 0.0 };
         let noted = (contact + late).max(0.0);
         let over = if seconds > 0.0 { probe.overrun.0 / seconds } else { 0.0 };
         let stopped = (noted + over).min(1.0);
         let tip = self.forward(&travel.position(stopped), setup).tip;
         let pushed = probe.radius - surface.nearest(&tip).distance;
-        if pushed > probe.give {
-            return SkipSignal::StylusBroken { stopped, deflection: pushed, overtravel_limit: probe.give };
+        if pushed > probe.overtravel_limit {
+            return SkipSignal::StylusBroken {
+                stopped,
+                deflection: pushed,
+                overtravel_limit: probe.overtravel_limit,
+            };
         }
         // A signal that comes when the block has ended already skips nothing.
         if noted > 1.0 {
@@ -62,10 +66,10 @@ impl Machine {
         if surface.nearest(&from).distance - radius < -self.increment.size() {
             return Some(0.0);
         }
-        let steps = self.steps(travel, setup, STRAY);
+        let steps = self.chord_count(travel, setup, CHORD_TOLERANCE);
         for step in 0..steps {
             let to = tip(f64::from(step + 1) / f64::from(steps));
-            if let Some(along) = closes(surface, radius, &from, &to) {
+            if let Some(along) = contact_on_chord(surface, radius, &from, &to) {
                 return Some((f64::from(step) + along) / f64::from(steps));
             }
             from = to;
@@ -75,7 +79,7 @@ impl Machine {
 }
 
 /// Where on a straight way, 0 to 1, the ball comes to touch.
-fn closes(surface: &Surface, radius: f64, from: &Point3<f64>, to: &Point3<f64>) -> Option<f64> {
+fn contact_on_chord(surface: &Surface, radius: f64, from: &Point3<f64>, to: &Point3<f64>) -> Option<f64> {
     let along = to - from;
     let nearest = |t: f64| surface.nearest(&(from + along * t));
     let open = |t: f64| nearest(t).distance > radius;
@@ -176,7 +180,7 @@ mod tests {
         let machine = Machine::parse(text).unwrap();
         let found = touch(&machine, at(600.0, 0.0, 0.0, 0.0), at(400.0, 0.0, 0.0, 0.0), 3.0).unwrap();
         let x = 600.0 - 200.0 * found;
-        let error = machine.slides.0[0].error.at(x);
+        let error = machine.slides.0[0].error.value_at(x);
         assert!(error.abs() > 1e-3 && (x + error - 503.0).abs() < 2e-5, "{x} and {error}");
     }
 
@@ -196,14 +200,14 @@ mod tests {
         };
         // 0.2 and 0.5 mm on from the contact after 47 mm.
         assert!((noted - 0.472).abs() < 1e-9 && (stopped - 0.477).abs() < 1e-9, "{noted} {stopped}");
-        probe.give = 0.6;
+        probe.overtravel_limit = 0.6;
         let SkipSignal::StylusBroken { deflection: pushed, overtravel_limit: give, .. } = probed(&probe, 0)
         else {
             panic!("0.7 is more than 0.6")
         };
         assert!((pushed - 0.7).abs() < 1e-9 && give == 0.6);
         // A delay beyond the end of the way: no signal while the block lasts.
-        (probe.delay, probe.give) = (Seconds(6.0), f64::INFINITY);
+        (probe.delay, probe.overtravel_limit) = (Seconds(6.0), f64::INFINITY);
         assert_eq!(probed(&probe, 0), SkipSignal::Missed);
     }
 

@@ -12,13 +12,13 @@ pub struct Wheel {
     /// Where it touches, machine coordinates.
     pub contact: Point3<f64>,
     /// The axis that swivels it about this point, and 1 or −1: which way a positive command goes.
-    pub swivels: Option<(AxisIndex, f64)>,
+    pub swivel_axis: Option<(AxisIndex, f64)>,
 }
 
 impl Wheel {
     /// The angle it is swivelled to; `None` where no axis does that.
     pub fn angle(&self, at: &Position) -> Option<Deg> {
-        self.swivels.map(|(axis, sign)| Deg(sign * at[axis]))
+        self.swivel_axis.map(|(axis, sign)| Deg(sign * at[axis]))
     }
 }
 

@@ -5,7 +5,7 @@ use gcode_lang::motion::{Event, EventKind, PlanarArc, Position, StopKind};
 /// Follows a run from machine zero on.
 #[derive(Debug, Default)]
 pub(super) struct Ball {
-    pub at: Position,
+    pub axis_position: Position,
     pub setup: Setup,
 }
 
@@ -13,7 +13,7 @@ pub(super) struct Ball {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BallUpdate<'e> {
     /// It has gone.
-    Gone {
+    Moved {
         from: Position,
         to: &'e Position,
         arc: Option<&'e PlanarArc>,
@@ -23,7 +23,7 @@ pub(super) enum BallUpdate<'e> {
     Changed,
     /// A message about the head from which no angle can be read: the head stays as it is.
     Unclear(&'e str),
-    Still,
+    Unchanged,
 }
 
 /// How it has gone.
@@ -31,26 +31,32 @@ pub(super) enum BallUpdate<'e> {
 pub(super) enum BallMove {
     Rapid,
     /// A move that a probe ends.
-    Touch,
+    Probe,
     Feed,
 }
 
 impl Ball {
     pub(super) fn apply_event<'e>(&mut self, machine: &Machine, event: &Event<'e>) -> BallUpdate<'e> {
         match event.kind {
-            EventKind::Rapid { to } => self.go(to, None, BallMove::Rapid),
-            EventKind::Skip { to, .. } => self.go(to, None, BallMove::Touch),
-            EventKind::Feed { to, .. } => self.go(to, None, BallMove::Feed),
-            EventKind::Arc { to, arc, .. } => self.go(to, Some(arc), BallMove::Feed),
-            EventKind::ToolChange { number } => self.change(Setup { tool: Some(*number), ..self.setup }),
-            EventKind::ToolLength { offset, .. } => self.change(Setup { offset: *offset, ..self.setup }),
+            EventKind::Rapid { to } => self.move_to(to, None, BallMove::Rapid),
+            EventKind::Skip { to, .. } => self.move_to(to, None, BallMove::Probe),
+            EventKind::Feed { to, .. } => self.move_to(to, None, BallMove::Feed),
+            EventKind::Arc { to, arc, .. } => self.move_to(to, Some(arc), BallMove::Feed),
+            EventKind::ToolChange { number } => {
+                self.update_setup(Setup { tool: Some(*number), ..self.setup })
+            }
+            EventKind::ToolLength { offset, .. } => {
+                self.update_setup(Setup { offset: *offset, ..self.setup })
+            }
             EventKind::Stop { kind: StopKind::Message, text, variables: named }
                 if machine.head.is_set_by_hand() =>
             {
-                match HeadMessage::of(text, named) {
-                    HeadMessage::Angle(angle) => self.change(Setup { head_angle: Some(angle), ..self.setup }),
+                match HeadMessage::parse(text, named) {
+                    HeadMessage::Angle(angle) => {
+                        self.update_setup(Setup { head_angle: Some(angle), ..self.setup })
+                    }
                     HeadMessage::Unclear => BallUpdate::Unclear(text),
-                    HeadMessage::Other => BallUpdate::Still,
+                    HeadMessage::Unrelated => BallUpdate::Unchanged,
                 }
             }
             EventKind::WorkZeroUnknown { .. }
@@ -58,16 +64,16 @@ impl Ball {
             | EventKind::Dwell { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. } => BallUpdate::Still,
+            | EventKind::Auxiliary { .. } => BallUpdate::Unchanged,
         }
     }
 
-    fn go<'e>(&mut self, to: &'e Position, arc: Option<&'e PlanarArc>, by: BallMove) -> BallUpdate<'e> {
-        let from = std::mem::replace(&mut self.at, *to);
-        BallUpdate::Gone { from, to, arc, by }
+    fn move_to<'e>(&mut self, to: &'e Position, arc: Option<&'e PlanarArc>, by: BallMove) -> BallUpdate<'e> {
+        let from = std::mem::replace(&mut self.axis_position, *to);
+        BallUpdate::Moved { from, to, arc, by }
     }
 
-    fn change<'e>(&mut self, setup: Setup) -> BallUpdate<'e> {
+    fn update_setup<'e>(&mut self, setup: Setup) -> BallUpdate<'e> {
         self.setup = setup;
         BallUpdate::Changed
     }

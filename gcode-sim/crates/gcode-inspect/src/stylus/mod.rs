@@ -18,46 +18,46 @@ use gcode_lang::motion::{Backtrace, Event, EventSink};
 use gcode_part::Surface;
 
 use self::ball::{Ball, BallMove, BallUpdate};
-use self::unread::{Unread, UnreadFeeds, UnreadReason};
+use self::unread::{UnreadFeed, UnreadFeeds, UnreadReason};
 
-pub use self::rapids::Rapids;
+pub use self::rapids::RapidChecker;
 pub use self::unread::Gap;
 
 /// From how far the ball may stand off the surface, mm: more than any part is misplaced after a coarse alignment.
-pub const REACH: f64 = 5.0;
+pub const MAX_READING_DISTANCE: f64 = 5.0;
 /// A curved way is taken as chords that stray from it by no more than this, mm.
-const STRAY: f64 = 1e-5;
+const CHORD_TOLERANCE: f64 = 1e-5;
 /// The same where nothing is read, and the way's length and depth are told.
-const ROUGH: f64 = 0.01;
+const COARSE_CHORD_TOLERANCE: f64 = 0.01;
 /// So many points of each chord are kept, besides the nearest.
-const PARTS: u32 = 4;
+const POINTS_PER_CHORD: u32 = 4;
 /// More points than this aren't kept: no path has so many, but a loop that never ends makes them.
-const KEPT: usize = 500_000;
+const MAX_READINGS: usize = 500_000;
 /// More points than this aren't looked at on feeds that have no reading, which takes some seconds.
-const LOOKED_AT: usize = 2_000_000;
+const MAX_UNREAD_POINTS: usize = 2_000_000;
 /// The sine of the angle to the surface up to which a feed goes along it: 30°.
-const ALONG: f64 = 0.5;
+const MAX_RISE: f64 = 0.5;
 
 /// How a feed goes.
 enum FeedCourse {
     /// Along the surface, near to it: it is read.
-    Along,
+    AlongSurface,
     /// The ball doesn't move against the part.
-    Still,
-    Off(UnreadReason),
+    Stationary,
+    Unread(UnreadReason),
 }
 
 /// One point of a pass; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// The way from where the pass begins.
-    pub along: f64,
+    pub path_length: f64,
     /// The ball's centre, in the frame of the part as the program believes it to stand.
-    pub at: Point3<f64>,
+    pub ball_centre: Point3<f64>,
     /// From the ball to the surface: above 0 there is a gap, below 0 the ball is pushed in.
     pub value: f64,
     /// Which of [`ReadingPass::places`] moved here.
-    pub place: usize,
+    pub move_index: usize,
 }
 
 /// A way along the surface.
@@ -65,7 +65,7 @@ pub struct Reading {
 pub struct ReadingPass {
     pub readings: Vec<Reading>,
     /// The blocks that moved, one for each move.
-    pub places: Vec<Backtrace>,
+    pub backtraces: Vec<Backtrace>,
 }
 
 impl ReadingPass {
@@ -77,7 +77,7 @@ impl ReadingPass {
 
     /// How long the way is.
     pub fn length(&self) -> f64 {
-        self.readings.last().map_or(0.0, |last| last.along)
+        self.readings.last().map_or(0.0, |last| last.path_length)
     }
 }
 
@@ -97,17 +97,17 @@ pub struct StylusReadings {
 pub struct Stylus<'m> {
     machine: &'m Machine,
     /// The same machine with the part where the program believes it to stand.
-    believed: Machine,
+    nominal_machine: Machine,
     surface: Surface,
     /// Of the ball, mm.
     radius: f64,
     ball: Ball,
-    open: Option<ReadingPass>,
-    missed: UnreadFeeds,
-    followed: StylusReadings,
+    current_pass: Option<ReadingPass>,
+    unread_feeds: UnreadFeeds,
+    result: StylusReadings,
     /// Points of passes, and of feeds that have no reading.
-    kept: usize,
-    looked_at: usize,
+    reading_count: usize,
+    unread_points: usize,
 }
 
 impl<'m> Stylus<'m> {
@@ -116,28 +116,28 @@ impl<'m> Stylus<'m> {
         let part = Placement { origin: machine.part.origin, ..Placement::default() };
         Self {
             machine,
-            believed: Machine { part, ..machine.clone() },
+            nominal_machine: Machine { part, ..machine.clone() },
             surface,
             radius,
             ball: Ball::default(),
-            open: None,
-            missed: UnreadFeeds::default(),
-            followed: StylusReadings::default(),
-            kept: 0,
-            looked_at: 0,
+            current_pass: None,
+            unread_feeds: UnreadFeeds::default(),
+            result: StylusReadings::default(),
+            reading_count: 0,
+            unread_points: 0,
         }
     }
 
     pub fn finish(mut self) -> StylusReadings {
-        self.close();
-        self.missed.end(self.followed.passes.len());
-        let UnreadFeeds { gaps, ways, mut findings, .. } = self.missed;
-        findings.extend(self.followed.findings);
-        StylusReadings { gaps, approach_retract_counts: ways, findings, ..self.followed }
+        self.end_pass();
+        self.unread_feeds.finish(self.result.passes.len());
+        let UnreadFeeds { gaps, approach_retract_counts: ways, mut findings, .. } = self.unread_feeds;
+        findings.extend(self.result.findings);
+        StylusReadings { gaps, approach_retract_counts: ways, findings, ..self.result }
     }
 
-    fn close(&mut self) {
-        self.followed.passes.extend(self.open.take());
+    fn end_pass(&mut self) {
+        self.result.passes.extend(self.current_pass.take());
     }
 
     fn motion(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, by: BallMove) {
@@ -145,84 +145,89 @@ impl<'m> Stylus<'m> {
             return;
         }
         if by != BallMove::Feed {
-            self.close();
-            return self.missed.leave(self.followed.passes.len());
+            self.end_pass();
+            return self.unread_feeds.end_path(self.result.passes.len());
         }
-        match self.course(travel) {
-            FeedCourse::Along => {}
-            FeedCourse::Still => return,
-            FeedCourse::Off(way) => {
-                self.close();
-                let unread = self.unread(event, travel, way);
-                self.missed.feed(unread);
-                return self.stop_where_full(event);
+        match self.feed_course(travel) {
+            FeedCourse::AlongSurface => {}
+            FeedCourse::Stationary => return,
+            FeedCourse::Unread(way) => {
+                self.end_pass();
+                let unread = self.measure_unread(event, travel, way);
+                self.unread_feeds.push(unread);
+                return self.report_limit(event);
             }
         }
-        if self.open.is_none() {
-            self.missed.read(self.followed.passes.len());
+        if self.current_pass.is_none() {
+            self.unread_feeds.begin_reading(self.result.passes.len());
         }
-        let mut pass = self.open.take().unwrap_or_default();
+        let mut pass = self.current_pass.take().unwrap_or_default();
         let before = pass.readings.len();
-        pass.places.push(event.backtrace());
+        pass.backtraces.push(event.backtrace());
         let first = pass.readings.is_empty().then_some(0.0);
         for t in first.into_iter().chain(self.stations(travel)) {
-            let reading = self.read(travel, t, &pass);
+            let reading = self.reading_at(travel, t, &pass);
             pass.readings.push(reading);
         }
         let added = pass.readings.len() - before;
-        self.kept += added;
-        self.open = Some(pass);
-        self.stop_where_full(event);
+        self.reading_count += added;
+        self.current_pass = Some(pass);
+        self.report_limit(event);
     }
 
     fn is_full(&self) -> bool {
-        self.kept > KEPT || self.looked_at > LOOKED_AT
+        self.reading_count > MAX_READINGS || self.unread_points > MAX_UNREAD_POINTS
     }
 
     /// Tells it where nothing more is read.
-    fn stop_where_full(&mut self, event: &Event<'_>) {
-        let message = if self.kept > KEPT {
-            format!("more than {KEPT} points along the surface: no readings after this")
-        } else if self.looked_at > LOOKED_AT {
-            format!("more than {LOOKED_AT} points of feeds without a reading: no readings after this")
+    fn report_limit(&mut self, event: &Event<'_>) {
+        let message = if self.reading_count > MAX_READINGS {
+            format!("more than {MAX_READINGS} points along the surface: no readings after this")
+        } else if self.unread_points > MAX_UNREAD_POINTS {
+            format!("more than {MAX_UNREAD_POINTS} points of feeds without a reading: no readings after this")
         } else {
             return;
         };
         let finding = Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(event.backtrace());
         let finding = finding.help("check for a loop that never ends; otherwise split the program");
-        self.followed.findings.push(finding);
+        self.result.findings.push(finding);
     }
 
     /// How the ball goes, all the way.
-    fn course(&self, travel: &AxisMotion<'_>) -> FeedCourse {
+    fn feed_course(&self, travel: &AxisMotion<'_>) -> FeedCourse {
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         // The distance from the surface where it is looked at, and the sine of the angle at which the way leaves it.
-        let looks = [0.0, 0.5, 1.0].map(|t| {
+        let samples = [0.0, 0.5, 1.0].map(|t| {
             let (near, here) = (1e-3, tip(t));
             let back = if t < 1.0 { tip(t + near) - here } else { here - tip(t - near) };
             let nearest = self.surface.nearest(&here);
             let rise = Unit::try_new(back, 1e-12).map(|direction| direction.dot(&nearest.normal));
-            ((nearest.distance - self.radius).abs() <= REACH, rise)
+            ((nearest.distance - self.radius).abs() <= MAX_READING_DISTANCE, rise)
         });
-        let all = |holds: fn(f64) -> bool| looks.iter().all(|(_, rise)| rise.is_some_and(holds));
-        if looks.iter().all(|(_, rise)| rise.is_none()) {
-            FeedCourse::Still
-        } else if looks.iter().all(|(near, _)| *near) && all(|rise| rise.abs() <= ALONG) {
-            FeedCourse::Along
-        } else if all(|rise| rise < -ALONG) {
-            FeedCourse::Off(UnreadReason::Nearer)
-        } else if all(|rise| rise > ALONG) {
-            FeedCourse::Off(UnreadReason::Farther)
+        let all = |holds: fn(f64) -> bool| samples.iter().all(|(_, rise)| rise.is_some_and(holds));
+        if samples.iter().all(|(_, rise)| rise.is_none()) {
+            FeedCourse::Stationary
+        } else if samples.iter().all(|(near, _)| *near) && all(|rise| rise.abs() <= MAX_RISE) {
+            FeedCourse::AlongSurface
+        } else if all(|rise| rise < -MAX_RISE) {
+            FeedCourse::Unread(UnreadReason::Approach)
+        } else if all(|rise| rise > MAX_RISE) {
+            FeedCourse::Unread(UnreadReason::Retract)
         } else {
-            FeedCourse::Off(UnreadReason::Astray)
+            FeedCourse::Unread(UnreadReason::Stray)
         }
     }
 
     /// A feed on which the dial isn't read.
-    fn unread(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, way: UnreadReason) -> Unread {
+    fn measure_unread(
+        &mut self,
+        event: &Event<'_>,
+        travel: &AxisMotion<'_>,
+        reason: UnreadReason,
+    ) -> UnreadFeed {
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let far = |tip: &Point3<f64>| self.surface.nearest(tip).distance - self.radius;
-        let steps = self.machine.steps(travel, &self.ball.setup, ROUGH);
+        let steps = self.machine.chord_count(travel, &self.ball.setup, COARSE_CHORD_TOLERANCE);
         let (mut length, mut last) = (0.0, tip(0.0));
         let (mut least, mut greatest) = (far(&last), far(&last));
         for step in 1..=steps {
@@ -232,19 +237,26 @@ impl<'m> Stylus<'m> {
             (least, greatest) = (least.min(far(&between)).min(far(&here)), greatest.max(far(&here)));
             last = here;
         }
-        self.looked_at += steps as usize;
-        Unread { place: event.backtrace(), way, length, least, greatest }
+        self.unread_points += steps as usize;
+        UnreadFeed {
+            backtrace: event.backtrace(),
+            reason,
+            length,
+            min_distance: least,
+            max_distance: greatest,
+        }
     }
 
     /// Where along a motion the ball is read: beyond 0, up to 1.
     fn stations(&self, travel: &AxisMotion<'_>) -> Vec<f64> {
-        let steps = self.machine.steps(travel, &self.ball.setup, STRAY);
+        let steps = self.machine.chord_count(travel, &self.ball.setup, CHORD_TOLERANCE);
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let mut stations = Vec::new();
         for step in 0..steps {
             let part = |t: f64| (f64::from(step) + t) / f64::from(steps);
             let nearest = self.surface.nearest_between(&tip(part(0.0)), &tip(part(1.0)));
-            let mut inside: Vec<f64> = (1..=PARTS).map(|n| f64::from(n) / f64::from(PARTS)).collect();
+            let mut inside: Vec<f64> =
+                (1..=POINTS_PER_CHORD).map(|n| f64::from(n) / f64::from(POINTS_PER_CHORD)).collect();
             inside.extend((0.0 < nearest && nearest < 1.0).then_some(nearest));
             inside.sort_by(f64::total_cmp);
             stations.extend(inside.into_iter().map(part));
@@ -252,27 +264,28 @@ impl<'m> Stylus<'m> {
         stations
     }
 
-    fn read(&self, travel: &AxisMotion<'_>, t: f64, pass: &ReadingPass) -> Reading {
+    fn reading_at(&self, travel: &AxisMotion<'_>, t: f64, pass: &ReadingPass) -> Reading {
         let position = travel.position(t);
         let tip = self.machine.forward(&position, &self.ball.setup).tip;
-        let at = self.believed.forward(&position, &self.ball.setup).tip;
-        let along = pass.readings.last().map_or(0.0, |last| last.along + (at - last.at).norm());
+        let at = self.nominal_machine.forward(&position, &self.ball.setup).tip;
+        let along =
+            pass.readings.last().map_or(0.0, |last| last.path_length + (at - last.ball_centre).norm());
         let value = self.surface.nearest(&tip).distance - self.radius;
-        Reading { along, at, value, place: pass.places.len() - 1 }
+        Reading { path_length: along, ball_centre: at, value, move_index: pass.backtraces.len() - 1 }
     }
 }
 
 impl EventSink for Stylus<'_> {
     fn event(&mut self, event: &Event<'_>) {
         match self.ball.apply_event(self.machine, event) {
-            BallUpdate::Gone { from, to, arc, by } => {
+            BallUpdate::Moved { from, to, arc, by } => {
                 self.motion(event, &AxisMotion { from: &from, to, arc }, by);
             }
-            BallUpdate::Changed => self.close(),
+            BallUpdate::Changed => self.end_pass(),
             BallUpdate::Unclear(text) => {
-                self.followed.findings.push(unclear_head(text).with_backtrace(event.backtrace()));
+                self.result.findings.push(unclear_head(text).with_backtrace(event.backtrace()));
             }
-            BallUpdate::Still => {}
+            BallUpdate::Unchanged => {}
         }
     }
 }

@@ -27,8 +27,8 @@ fn a_chord_is_read_where_it_is_nearest() {
     let [pass] = found.passes.as_slice() else { panic!("{found:?}") };
     let (least, greatest) = pass.extremes().unwrap();
     assert!((least.value - (103.0 * Deg(10.0).cos() - 103.0)).abs() < 1e-9, "{least:?}");
-    assert!(least.at.x.abs() < 1e-9 && greatest.value.abs() < 1e-9, "{greatest:?}");
-    assert!((pass.length() - 206.0 * Deg(10.0).sin()).abs() < 1e-9 && pass.places.len() == 1);
+    assert!(least.ball_centre.x.abs() < 1e-9 && greatest.value.abs() < 1e-9, "{greatest:?}");
+    assert!((pass.length() - 206.0 * Deg(10.0).sin()).abs() < 1e-9 && pass.backtraces.len() == 1);
 }
 
 /// The part stands 0.05 farther in x and 0.02 lower than the program believes: on the right its surface comes nearer. At the
@@ -43,7 +43,10 @@ fn a_misplaced_part_is_read_as_it_stands() {
     for (reading, x) in [(readings[0], -x), (readings[readings.len() - 1], x)] {
         let expected = libm::hypot(x - 0.05, y + 0.02) - 103.0;
         assert!((reading.value - expected).abs() < 1e-9, "{reading:?} is not {expected}");
-        assert!((reading.at.x - x).abs() < 1e-9, "it stands where the program believes: {reading:?}");
+        assert!(
+            (reading.ball_centre.x - x).abs() < 1e-9,
+            "it stands where the program believes: {reading:?}"
+        );
     }
     assert!(readings[0].value > 0.028 && readings[readings.len() - 1].value < 0.012);
 }
@@ -74,7 +77,7 @@ fn a_turning_table_is_read_as_well() {
         (least.value + 0.3).abs() < 1e-4 && (greatest.value - 0.3).abs() < 1e-4,
         "{least:?} {greatest:?}"
     );
-    assert_eq!(least.along, 0.0);
+    assert_eq!(least.path_length, 0.0);
 }
 
 /// What is told of a way in feeds from a rapid place above the sphere, and how many feeds have a reading.
@@ -83,7 +86,7 @@ fn told(feeds: &[&str]) -> (Vec<String>, usize) {
     let script = feeds.iter().fold(begin, |script, words| script.feed(words)).rapid("Y200");
     let found = followed(&Machine::default(), SPHERE, &script);
     let codes = found.findings.iter().map(|finding| finding.code.clone());
-    (codes.collect(), found.passes.iter().map(|pass| pass.places.len()).sum())
+    (codes.collect(), found.passes.iter().map(|pass| pass.backtraces.len()).sum())
 }
 
 /// The path of the ball is a sphere of 103; these points lie on it, but for what a name says.
@@ -132,7 +135,7 @@ fn what_is_fed_past_the_part_is_told_wherever_a_path_is_read() {
         let found = followed(&Machine::default(), SPHERE, &script);
         let [finding] = found.findings.as_slice() else { panic!("{:?}", found.findings) };
         assert_eq!(finding.code, "path-not-read");
-        assert_eq!((found.gaps.len(), found.gaps[0].behind, found.passes.len()), (1, behind, passes));
+        assert_eq!((found.gaps.len(), found.gaps[0].passes_before, found.passes.len()), (1, behind, passes));
     }
 }
 
@@ -148,7 +151,7 @@ fn a_rapid_with_the_ball_into_the_part_is_told() {
         (&Machine::default(), vec!["X-30 Y101", "X30"], Some("2.000")),
         (&Machine::default(), vec!["X-30 Y103", "X30"], None),
     ] {
-        let mut rapids = Rapids::new(machine, SPHERE, 3.0);
+        let mut rapids = RapidChecker::new(machine, SPHERE, 3.0);
         let script = ways.iter().fold(EventScript::new(), |script, way| script.rapid(way));
         script.emit_to(&mut rapids);
         let found = rapids.finish();
@@ -167,7 +170,7 @@ fn a_rapid_into_the_part_is_told_for_a_head_that_is_set_by_hand() {
     let machine = Machine { head: crate::machine::Head::new(kind, 100.0), ..Machine::default() };
     for (angle, told) in [(0.0, Some("3.000")), (90.0, None)] {
         let script = EventScript::new().rapid("X400 Y100").head(angle).rapid("X400 Y0").rapid("X200");
-        let mut rapids = Rapids::new(&machine, SPHERE, 3.0);
+        let mut rapids = RapidChecker::new(&machine, SPHERE, 3.0);
         script.emit_to(&mut rapids);
         let found: Vec<_> = rapids.finish().into_iter().map(|finding| finding.message).collect();
         assert_eq!(found.len(), usize::from(told.is_some()), "{angle}: {found:?}");
@@ -188,7 +191,7 @@ fn feeds_without_a_reading_are_looked_at_so_long_and_no_longer() {
     let few = followed(&machine, SPHERE, &turns(10));
     assert!(few.findings.iter().all(|finding| finding.code != "limit"), "{:?}", few.findings);
     let mut stylus = Stylus::new(&machine, SPHERE, 3.0);
-    stylus.looked_at = LOOKED_AT - 1000;
+    stylus.unread_points = MAX_UNREAD_POINTS - 1000;
     turns(20).emit_to(&mut stylus);
     let many = stylus.finish();
     let told: Vec<_> = many.findings.iter().filter(|finding| finding.code == "limit").collect();

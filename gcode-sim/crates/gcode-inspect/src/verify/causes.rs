@@ -55,9 +55,12 @@ fn known_causes(pattern: &Pattern, is_angle: bool) -> Vec<Cause> {
                 "the distance on the developed surface (arc) used instead of the straight distance (chord)",
             ),
         };
-        all.push(Cause { factor: pattern.pitch_in(other) / pattern.pitch, description: words.to_owned() });
+        all.push(Cause {
+            factor: pattern.pitch_in_metric(other) / pattern.pitch,
+            description: words.to_owned(),
+        });
     }
-    if let Some(pitch) = pattern.asked.filter(|_| is_angle) {
+    if let Some(pitch) = pattern.specified_pitch.filter(|_| is_angle) {
         let words =
             format!("the specified pitch {pitch} used instead of the closing pitch {:.4}", pattern.pitch);
         all.push(Cause { factor: pattern.pitch / pitch, description: words });

@@ -10,6 +10,8 @@ pub struct HoleFinding {
     /// The drilled hole that nobody asked for, counted from 0.
     pub extra: Option<usize>,
     pub finding: Diagnostic,
+    /// It is about how the tool moved, not about the holes that came of it.
+    pub is_motion: bool,
     /// Another finding says it of many holes at once: people read that one, the data has both.
     pub is_folded: bool,
 }
@@ -17,7 +19,7 @@ pub struct HoleFinding {
 impl HoleFinding {
     /// About many holes, or about none that is known.
     pub fn unlocated(finding: Diagnostic) -> Self {
-        Self { nominal: None, extra: None, finding, is_folded: false }
+        Self { nominal: None, extra: None, finding, is_motion: false, is_folded: false }
     }
 
     pub fn of_nominal(wanted: usize, finding: Diagnostic) -> Self {
@@ -26,6 +28,11 @@ impl HoleFinding {
 
     pub fn of_extra(extra: usize, finding: Diagnostic) -> Self {
         Self { extra: Some(extra), ..Self::unlocated(finding) }
+    }
+
+    /// About how the tool moved.
+    pub fn of_motion(finding: Diagnostic) -> Self {
+        Self { is_motion: true, ..Self::unlocated(finding) }
     }
 
     fn is_one_of(&self, codes: &[&str]) -> bool {

@@ -15,16 +15,17 @@ const MAX_NEIGHBOURS: usize = 6;
 /// The neighbours of all holes, lengths in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Neighbours {
-    /// How distances count: `arc` or `chord`.
+    /// The metric of distances: `arc` or `chord`.
     pub metric: &'static str,
-    /// The distance wanted of all neighbours: the pitch with which the pattern closes.
+    /// The nominal distance of all neighbours: the pitch with which the pattern closes.
     #[serde(rename = "wanted")]
     pub nominal: f64,
-    /// Of the holes wanted inside the pattern, those that are drilled and have all six; how many are wanted there.
+    /// Number of inner holes that are drilled and have all six neighbours; `with_six_wanted`: their nominal
+    /// number.
     pub with_six: usize,
     #[serde(rename = "with_six_wanted")]
     pub with_six_nominal: usize,
-    /// The two neighbours that are nearest to one another, and those that are farthest apart.
+    /// The two nearest neighbours; `max`: the two farthest.
     pub min: Option<Distance>,
     pub max: Option<Distance>,
 }
@@ -33,7 +34,7 @@ pub struct Neighbours {
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Distance {
     pub distance: f64,
-    /// The holes by their ids; one nobody asked for by its place.
+    /// The holes by their ids; an extra hole by its position.
     pub between: [String; 2],
 }
 
@@ -100,7 +101,7 @@ fn neighbours_of(
     let here = thin_crowded_spots(on_cylinder, lines, &places, &mut near);
     let tree = PointTree::new(here.iter().map(|index| places[*index]));
     // Halfway to those that are no neighbours any more.
-    let reach = (pattern.pitch + pattern.abreast()) / 2.0;
+    let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
     // No way on the surface is shorter than the straight one: all neighbours are told.
     tree.pairs(reach, &mut |one, other| {
         let (one, other) = (here[one], here[other]);
@@ -194,7 +195,7 @@ mod tests {
         diameter: 100.0,
         rows: 30,
         pitch: 12.0,
-        asked: None,
+        specified_pitch: None,
         length: 90.0,
         outer: 100.0,
         bore: 0.0,
@@ -208,7 +209,7 @@ mod tests {
 
     /// All distances, sorted: count, the least and the sixth, and whose they are.
     fn by_looking_at_all(places: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<HoleNeighbours>> {
-        let reach = (pattern.pitch + pattern.abreast()) / 2.0;
+        let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
         let round = |index: usize| {
             let others = (0..places.len()).filter(|other| *other != index);
             let mut all: Vec<_> =

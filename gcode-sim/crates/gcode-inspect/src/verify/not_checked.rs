@@ -86,7 +86,7 @@ fn lengths(extracted: &HoleExtraction, machine: &Machine) -> Vec<String> {
 
 /// What the reference doesn't say of how the part is to be worked.
 fn conduct(extracted: &HoleExtraction, reference: &Reference, machine: &Machine) -> Option<String> {
-    let conduct = &reference.conduct;
+    let conduct = &reference.process_limits;
     if extracted.process_limits != *conduct {
         return Some("cutting conditions: the run was simulated without those of the reference".to_owned());
     }
@@ -94,7 +94,7 @@ fn conduct(extracted: &HoleExtraction, reference: &Reference, machine: &Machine)
     let unsaid = |of: &dyn Fn(&ToolProcess) -> Option<f64>| {
         tools.iter().any(|tool| conduct.tool_process(*tool).and_then(of).is_none())
     };
-    let turns = machine.table.turning().next().is_some();
+    let turns = machine.table.rotary_axes().next().is_some();
     let missing = [
         (unsaid(&|duty| duty.speed), "S"),
         (unsaid(&|duty| duty.feed), "F"),

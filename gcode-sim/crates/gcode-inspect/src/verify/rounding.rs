@@ -71,7 +71,7 @@ impl<'a> RoundingDeviation<'a> {
     fn axis_effects(&self, pair: &HolePair, table: &mut Option<TableFrames>, moved: &mut Vec<AxisEffect>) {
         let (wanted, found) = (&self.comparison.nominal[pair.nominal], &self.comparison.actual[pair.actual]);
         let machine = self.machine;
-        if table.as_ref().is_none_or(|table| machine.table.differs(&table.position, &found.axis_position)) {
+        if table.as_ref().is_none_or(|table| machine.table.is_moved(&table.position, &found.axis_position)) {
             *table = Some(TableFrames::at(machine, &self.axes, found.axis_position));
         }
         let Some(table) = table else { return };
@@ -105,7 +105,7 @@ struct TableFrames {
 impl TableFrames {
     fn at(machine: &Machine, axes: &[AxisIndex], at: Position) -> Self {
         let beside = |axis: &AxisIndex| {
-            machine.table.has(*axis).then(|| {
+            machine.table.has_axis(*axis).then(|| {
                 let mut next = at;
                 next[*axis] += machine.increment.size() / 2.0;
                 machine.part_frame(&next)
@@ -126,7 +126,7 @@ fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<AxisIndex
             .pairs
             .iter()
             .any(|pair| comparison.actual[pair.actual].axis_position[axis] != first[axis]);
-        machine.carries(axis) && (varies || first[axis].fract() != 0.0)
+        machine.is_axis_used(axis) && (varies || first[axis].fract() != 0.0)
     };
     machine.axes.iter().map(|(axis, _)| axis).filter(|axis| moves(*axis)).collect()
 }
@@ -151,8 +151,8 @@ fn half_increment_shift(
         return frame.rotation.inverse_transform_vector(&across);
     }
     let along = machine.slides.0.iter().find(|link| link.axis == axis).map(|link| match &link.motion {
-        LinkMotion::Slide { along } => along.into_inner(),
-        LinkMotion::Turn { .. } => Vector3::zeros(),
+        LinkMotion::Linear { along } => along.into_inner(),
+        LinkMotion::Rotary { .. } => Vector3::zeros(),
     });
     frame.rotation.inverse_transform_vector(&(along.unwrap_or_default() * half))
 }

@@ -44,7 +44,7 @@ impl PatternRows {
         }
         places.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
         // What is drilled at one angle lies at one angle; a row drilled twice may lie near by.
-        let same = pattern.step().0 / 100.0;
+        let same = pattern.row_angle().0 / 100.0;
         let mut rows: Vec<PatternRow> = Vec::new();
         let mut along: Vec<Vec<f64>> = Vec::new();
         let mut last = Deg(f64::NEG_INFINITY);
@@ -110,12 +110,12 @@ impl PatternRows {
 
     /// Whether the rows are those of one group: none begins late, and they stand too far apart for both.
     pub(super) fn is_single_group(&self, pattern: &Pattern) -> bool {
-        self.is_aligned(pattern) && self.typical_gap.0 > 1.25 * pattern.step().0
+        self.is_aligned(pattern) && self.typical_gap.0 > 1.25 * pattern.row_angle().0
     }
 
     /// From row to row as the pattern wants it, of rows that stand as these do: both groups in turn, or one alone.
     pub(super) fn nominal_gap(&self, pattern: &Pattern) -> Deg {
-        if self.is_single_group(pattern) { pattern.step() * 2.0 } else { pattern.step() }
+        if self.is_single_group(pattern) { pattern.row_angle() * 2.0 } else { pattern.row_angle() }
     }
 }
 

@@ -55,7 +55,7 @@ impl Section {
                 place.azimuth
             );
         }
-        NominalPart::of_job(&Job::parse(&text).unwrap()).unwrap().into_holes().unwrap()
+        NominalPart::from_job(&Job::parse(&text).unwrap()).unwrap().into_holes().unwrap()
     }
 }
 

@@ -18,38 +18,38 @@ pub enum Answer {
     Fail,
 }
 
-/// As `verify --format json` writes it. Nothing is rounded.
+/// The result of `verify --format json`. Nothing is rounded.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Verdict {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
     /// Diameter of the zone of position, mm.
     pub tolerance: f64,
     /// Either way, mm.
     pub depth_tolerance: f64,
     pub verdict: Answer,
-    /// The largest phi; null where no hole was found.
+    /// The largest phi; null without a hole.
     pub worst: Option<f64>,
-    /// Where the worst comes from, in words.
+    /// The cause of the worst, in words.
     pub worst_from: Option<String>,
-    /// The most that rounding to the least increment alone can make of phi at any hole.
+    /// The largest phi that rounding to the least increment alone can cause at any hole.
     pub rounding: Option<f64>,
     pub holes: Vec<HoleVerdict>,
-    /// The ids of wanted holes that aren't there.
+    /// The ids of missing holes.
     pub missing: Vec<String>,
     pub extra: Vec<ExtraHole>,
     pub findings: Vec<Finding>,
-    /// Of a part where it matters how far neighbours stand.
+    /// The distances of neighbours, for a part where they matter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub neighbours: Option<Neighbours>,
-    /// What the verdict says nothing about, in words.
+    /// What the verdict does not cover, in words.
     pub not_checked: Vec<String>,
     /// The findings with their places, for people.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// One wanted hole that was found.
+/// A nominal hole that was drilled.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct HoleVerdict {
     pub id: String,
@@ -61,18 +61,18 @@ pub struct HoleVerdict {
     pub ok: bool,
     /// Between the axes, degrees.
     pub tilt: f64,
-    /// Of phi beyond the tolerance; 0 inside.
+    /// The excess of phi over the tolerance; 0 inside.
     pub out_of_tolerance: f64,
-    /// What rounding alone can make of phi here.
+    /// The phi that rounding alone can cause here.
     pub rounding: f64,
     pub nominal: HoleGeometry,
     pub actual: HoleGeometry,
     pub from: Origin,
     /// The calls that led to that block, innermost first.
     pub calls: Vec<Origin>,
-    /// The codes of the findings against it.
+    /// The codes of its findings.
     pub objections: Vec<String>,
-    /// What stands round it, of a part where that matters.
+    /// Its neighbours, for a part where they matter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub neighbours: Option<HoleNeighbours>,
     /// Which of the holes that the program makes it is, counted from 0.
@@ -80,7 +80,8 @@ pub struct HoleVerdict {
     pub drilled_index: usize,
 }
 
-/// A hole as an inspector writes it down; the actual one where its axis crosses the plane of the nominal entry.
+/// A hole in inspection terms; the entry of the actual hole is where its axis crosses the plane of the nominal
+/// entry.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct HoleGeometry {
     pub entry: [f64; 3],
@@ -89,7 +90,7 @@ pub struct HoleGeometry {
     pub depth: f64,
 }
 
-/// A hole nobody asked for.
+/// An extra hole.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ExtraHole {
     #[serde(flatten)]
@@ -108,20 +109,20 @@ pub struct Finding {
     pub message: String,
     pub help: Option<String>,
     pub notes: Vec<String>,
-    /// About how the tool moved, not about the holes that came of it.
+    /// The finding is about motion, not about the resulting holes.
     pub from_motion: bool,
-    /// The wanted hole it is about.
+    /// The id of the nominal hole.
     pub hole: Option<String>,
     pub from: Option<Origin>,
-    /// Of a finding on flutes: where on the part, the worst first.
+    /// For a finding on flutes: positions on the part, the worst first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sites: Vec<PartPoint>,
 }
 
-/// A place on the part, mm.
+/// A position on the part, mm.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct PartPoint {
-    /// Counted from 1; null where no pass is: a missing flute, a rapid between two of them.
+    /// Counted from 1; null without a pass: a missing flute, a rapid between two of them.
     pub pass: Option<usize>,
     pub at: [f64; 3],
 }
@@ -135,15 +136,15 @@ impl From<&Site> for PartPoint {
 pub(super) fn verdict(
     comparison: &Comparison<'_>,
     rounding: &RoundingDeviation<'_>,
-    objections: Vec<HoleFinding>,
-    findings: &[Diagnostic],
+    mut findings: Vec<HoleFinding>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
+    findings.sort_by_key(|finding| finding.is_motion);
     let mut codes_by_hole: Vec<Vec<String>> = vec![Vec::new(); comparison.nominal.len()];
     let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
-    for objection in objections.iter().filter(|objection| failed(&objection.finding)) {
-        if let Some(wanted) = objection.nominal {
-            codes_by_hole[wanted].push(objection.finding.code.clone());
+    for HoleFinding { nominal, finding, .. } in findings.iter().filter(|one| failed(&one.finding)) {
+        if let Some(nominal) = *nominal {
+            codes_by_hole[nominal].push(finding.code.clone());
         }
     }
     let holes: Vec<HoleVerdict> = comparison
@@ -155,11 +156,9 @@ pub(super) fn verdict(
             hole_verdict(comparison, pair, *rounding, objections, locate)
         })
         .collect();
-    let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
+    let fails = findings.iter().any(|one| failed(&one.finding));
     let worst = (0..holes.len())
         .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
-    let about_holes = objections.iter().map(|o| (o.nominal, &o.finding, false));
-    let reported = about_holes.chain(findings.iter().map(|f| (None, f, true)));
     Verdict {
         basis: "predicted by simulation, not measured",
         tolerance: comparison.tolerances.position,
@@ -170,21 +169,17 @@ pub(super) fn verdict(
         rounding: rounding.position_deviations.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
         extra: comparison.extra.iter().map(|index| extra_hole(comparison, *index, locate)).collect(),
-        findings: reported
-            .map(|(wanted, finding, from_motion)| {
-                finding_of(finding, wanted.map(|index| comparison.id(index)), from_motion, locate)
+        findings: findings
+            .iter()
+            .map(|one| {
+                let hole = one.nominal.map(|index| comparison.id(index));
+                finding_of(&one.finding, hole, one.is_motion, locate)
             })
             .collect(),
         neighbours: None,
         not_checked: Vec::new(),
         holes,
-        diagnostics: limit_per_kind(
-            objections
-                .into_iter()
-                .filter(|o| !o.is_folded)
-                .map(|o| o.finding)
-                .chain(findings.iter().cloned()),
-        ),
+        diagnostics: limit_per_kind(findings.into_iter().filter(|one| !one.is_folded).map(|one| one.finding)),
     }
 }
 

@@ -1,4 +1,4 @@
-//! A G code's row: what a run does by it, and what others have to know of it.
+//! Row of a G code: its effect and the facts that others read.
 use super::code_facts::CodeFacts;
 use super::cycles::Cycle;
 use super::modes::{
@@ -7,47 +7,63 @@ use super::modes::{
 };
 use crate::control::CodeSet;
 
-/// What a G code does.
+/// Effect of a G code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Effect {
+    /// Group 01: motion mode.
     Motion(Motion),
+    /// Group 02: plane.
     Plane(Plane),
+    /// Group 03: absolute or incremental.
     Distance(Distance),
+    /// Group 04: stored stroke check.
     StrokeCheck(StrokeCheck),
+    /// Group 05: feed mode.
     FeedMode(FeedMode),
+    /// Group 06: inch or metric.
     Unit(Unit),
+    /// Group 07: cutter compensation.
     Cutter(CutterSide),
+    /// Group 08: tool length compensation.
     Length(Length),
-    /// `None` is G80.
+    /// Group 09: drilling cycle; `None` is G80.
     Cycle(Option<&'static Cycle>),
+    /// Group 10: return level of cycles.
     ReturnTo(ReturnTo),
+    /// Group 11: scaling.
     Scaling(Scaling),
+    /// Group 13: spindle speed mode.
     SpindleMode(SpindleMode),
-    /// G54 to G59 as 1 to 6.
+    /// Group 14: G54 to G59 as 1 to 6.
     Work(u8),
-    /// G54.1 and G154 with their P.
+    /// Group 14: G54.1 and G154 with their P.
     AdditionalWork,
-    /// G110 to G129 of a Haas: G154 P1 to P20.
+    /// Group 14: G110 to G129 of a Haas, which are G154 P1 to P20.
     NumberedWork(u16),
+    /// Group 15: cutting mode.
     Cutting(CuttingMode),
+    /// Group 16: rotation or tilted plane.
     Rotation(Rotation),
+    /// Group 17: polar coordinates.
     Polar(Polar),
+    /// Group 22: mirror image.
     Mirror(Mirror),
+    /// Group 00: effect in its own block only.
     OneShot(OneShot),
-    /// Feed and look-ahead control that moves nothing elsewhere.
+    /// Feed and lookahead control without an effect on the path.
     NoEffect,
-    /// G08: as [`Effect::NoEffect`], with a P.
+    /// G08: [`Effect::NoEffect`] with a P.
     LookAhead,
     /// G187 of a Haas, with P and E.
     Smoothness,
-    /// Calls, which lowering has taken out of the words where the code is a literal.
+    /// Call; lowering has separated it unless the code is computed.
     Call,
-    /// A control may have it; this one does not execute it.
+    /// A control may have the code; the simulator does not execute it.
     NotSimulated,
 }
 
 impl Effect {
-    /// The group of a code that stays in force.
+    /// Returns the modal group of a code that stays in force; `None` for any other.
     pub fn group(self) -> Option<u32> {
         Some(match self {
             Self::Motion(_) => 1,
@@ -77,22 +93,36 @@ impl Effect {
     }
 }
 
-/// Group 00: acts in its own block only.
+/// Group 00: code that acts in its own block only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OneShot {
+    /// G04: dwell.
     Dwell,
+    /// G10: data input.
     DataInput,
+    /// G11: end of data input.
     DataInputEnd,
+    /// G27: reference position check.
     CheckReference,
+    /// G28: move to the reference position.
     Reference,
+    /// G29: move from the reference position.
     FromReference,
+    /// G30: move to the second, third or fourth reference position.
     SecondReference,
+    /// G31: skip.
     Skip,
+    /// G52: local coordinate system.
     LocalSystem,
+    /// G53: machine coordinates.
     MachineSystem,
+    /// G92: set the coordinate system.
     SetSystem,
+    /// G39: corner arc in cutter compensation.
     CornerArc,
+    /// G92.1: preset the coordinate system.
     PresetSystem,
+    /// G60: positioning from one side.
     OneSide,
     /// G12 and G13 of a Haas.
     CirclePocket(Motion),
@@ -100,42 +130,43 @@ pub enum OneShot {
     BoltHoles(HolePattern),
 }
 
-/// How a pattern places its holes.
+/// Arrangement of a pattern's holes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HolePattern {
-    /// All round.
+    /// Evenly spaced on the full circle.
     Circle,
-    /// By a given angle from hole to hole.
+    /// Spaced by a specified angle.
     Arc,
 }
 
-/// A row of the table.
+/// Row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct GCodeRow {
     /// G code × 10: 541 is G54.1.
     pub code: u32,
-    /// What a run does by it.
+    /// Effect in a run.
     pub effect: Effect,
-    /// What others have to know of it.
+    /// Facts for readers of the code that do not execute it.
     pub facts: CodeFacts,
+    /// Description in a few words.
     pub help: &'static str,
-    /// The controls that have it so.
+    /// Controls with this meaning of the code.
     pub code_sets: &'static [CodeSet],
 }
 
 impl GCodeRow {
-    /// The group of a code that stays in force.
+    /// Returns the modal group of a code that stays in force; `None` for any other.
     pub fn group(&self) -> Option<u32> {
         self.effect.group()
     }
 }
 
-/// A code × 10 as it is written: `54.1`.
+/// Returns the number of a code × 10 as written, `54.1`.
 pub fn spelled(code: u32) -> String {
     if code.is_multiple_of(10) { format!("{}", code / 10) } else { format!("{}.{}", code / 10, code % 10) }
 }
 
-/// A code × 10 as programs write it: `G28`, `G00`, `G05.1`.
+/// Returns a code × 10 as programs write it: `G28`, `G00`, `G05.1`.
 pub fn name(code: u32) -> String {
     if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
 }

@@ -4,5 +4,5 @@ mod sine;
 mod stack;
 
 pub use sets::{GaugeSet, Series, Thickness};
-pub use sine::{SineSetting, height, setting};
+pub use sine::{SineSetting, height, sine_setting};
 pub use stack::Stack;

@@ -50,7 +50,7 @@ pub struct GaugeSet {
 }
 
 /// One block of so many half micrometres.
-const fn one(block: u32) -> Series {
+const fn single(block: u32) -> Series {
     series(block, block, 1)
 }
 
@@ -59,11 +59,11 @@ const fn series(first: u32, step: u32, count: u32) -> Series {
 }
 
 /// 1.0005
-const HALF_MICRON: Series = one(2001);
+const HALF_MICRON: Series = single(2001);
 /// 1.001 … 1.009
 const MICRONS: Series = series(2002, 2, 9);
 /// 1.005
-const FIVE_MICRONS: Series = one(2010);
+const FIVE_MICRONS: Series = single(2010);
 /// 1.01 … 1.09
 const HUNDREDTHS: Series = series(2020, 20, 9);
 /// 1.01 … 1.49
@@ -93,7 +93,7 @@ impl GaugeSet {
     pub const ALL: [Self; 11] = [
         Self {
             name: "metric-32",
-            series: &[FIVE_MICRONS, HUNDREDTHS, TENTHS, ONES, series(20_000, 20_000, 3), one(120_000)],
+            series: &[FIVE_MICRONS, HUNDREDTHS, TENTHS, ONES, series(20_000, 20_000, 3), single(120_000)],
         },
         Self { name: "metric-38", series: &[FIVE_MICRONS, HUNDREDTHS, TENTHS, ONES, TENS] },
         Self { name: "metric-46", series: &[MICRONS, HUNDREDTHS, TENTHS, ONES, TENS] },

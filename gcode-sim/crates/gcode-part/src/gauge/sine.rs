@@ -10,7 +10,7 @@ pub struct SineSetting {
     /// What they are.
     pub stack: Stack,
     /// The angle that the stack makes less the wanted one, in seconds of arc.
-    pub left: f64,
+    pub remainder: f64,
 }
 
 /// The height under one roller that inclines a table with rollers `length` apart by `angle`.
@@ -19,11 +19,11 @@ pub fn height(length: Mm, angle: Deg) -> Mm {
 }
 
 /// The nearest stack for an angle of 0° to 45°, on a table of 10 mm or more, as jobs have them.
-pub fn setting(length: Mm, angle: Deg, set: &GaugeSet) -> SineSetting {
+pub fn sine_setting(length: Mm, angle: Deg, set: &GaugeSet) -> SineSetting {
     let height = height(length, angle);
-    let stack = set.nearest(height);
+    let stack = set.nearest_stack(height);
     let left = (Deg::asin(stack.thickness().mm() / length.0).0 - angle.0) * 3600.0;
-    SineSetting { height, stack, left }
+    SineSetting { height, stack, remainder: left }
 }
 
 #[cfg(test)]
@@ -41,17 +41,17 @@ mod tests {
     /// there is no block, so that the whole 36 seconds are left.
     #[test]
     fn angles_worked_out_by_hand() {
-        let at = |angle: f64| setting(Mm(200.0), Deg(angle), &metric_87());
+        let at = |angle: f64| sine_setting(Mm(200.0), Deg(angle), &metric_87());
         let upright = at(30.0);
         assert_eq!(upright.stack.thickness().to_string(), "100");
-        assert!(upright.left.abs() < 1e-9);
+        assert!(upright.remainder.abs() < 1e-9);
         let odd = at(38.5);
         assert_eq!(odd.stack.thickness().to_string(), "124.503");
         assert!((odd.height.0 - 124.502_93).abs() < 5e-6, "{}", odd.height);
-        assert!((odd.left - 0.09).abs() < 0.01, "{}", odd.left);
+        assert!((odd.remainder - 0.09).abs() < 0.01, "{}", odd.remainder);
         let flat = at(0.01);
-        assert!(flat.stack.blocks.is_empty() && (flat.left + 36.0).abs() < 1e-9);
-        assert_eq!(at(0.0).left, 0.0);
+        assert!(flat.stack.blocks.is_empty() && (flat.remainder + 36.0).abs() < 1e-9);
+        assert_eq!(at(0.0).remainder, 0.0);
     }
 
     proptest! {
@@ -61,11 +61,11 @@ mod tests {
         /// micron is at most 0.73 seconds, towards 45°.
         #[test]
         fn the_angle_made_is_the_wanted_one_and_what_is_left(angle in 1.0..45.0) {
-            let found = setting(Mm(200.0), Deg(angle), &metric_87());
-            let made = Deg(angle + found.left / 3600.0);
+            let found = sine_setting(Mm(200.0), Deg(angle), &metric_87());
+            let made = Deg(angle + found.remainder / 3600.0);
             let stack: f64 = found.stack.blocks.iter().map(|block| block.mm()).sum();
             prop_assert!((made.sin() * 200.0 - stack).abs() < 1e-9);
-            prop_assert!(found.left.abs() < 0.73, "{}", found.left);
+            prop_assert!(found.remainder.abs() < 0.73, "{}", found.remainder);
         }
     }
 }

@@ -21,21 +21,21 @@ impl GaugeSet {
     /// First counts how near it is; then how few blocks it has; of two equally near ones with equally many blocks the lower
     /// is taken; of two that are equally high, the one with the thickest block, then the thickest second one. Nothing is
     /// nearest to a height below half the thinnest block. A height above all blocks together gets all of them.
-    pub fn nearest(&self, height: Mm) -> Stack {
+    pub fn nearest_stack(&self, height: Mm) -> Stack {
         let blocks = self.blocks();
         let grid = self.step().0;
         let steps: Vec<usize> = blocks.iter().map(|block| (block.0 / grid) as usize).collect();
         let wanted = (height.0 * 2000.0 / f64::from(grid)).max(0.0);
         // Nothing at all is nearer than what is twice too high.
         let most = steps.iter().sum::<usize>().min((2.0 * wanted) as usize);
-        let reached = Sums::of_all(&steps, most);
+        let reached = HeightSet::all_heights(&steps, most);
         let below = (0..=(wanted as usize).min(most)).rev().find(|sum| reached.contains(*sum));
         let above = (wanted as usize + 1..=most).find(|sum| reached.contains(*sum));
         let error = |sum: usize| (sum as f64 - wanted).abs();
         let least = [below, above].into_iter().flatten().map(error).fold(f64::INFINITY, f64::min);
         let nearest: Vec<_> =
             [below, above].into_iter().flatten().filter(|sum| error(*sum) <= least).collect();
-        let indices = fewest(&steps, most, &nearest);
+        let indices = fewest_blocks(&steps, most, &nearest);
         Stack { blocks: indices.into_iter().map(|index| blocks[index]).collect() }
     }
 
@@ -44,19 +44,19 @@ impl GaugeSet {
         let grid = self.step().0;
         let steps: Vec<usize> = self.blocks().iter().map(|block| (block.0 / grid) as usize).collect();
         let [from, to] = [from, to].map(|height| (height.0 * 2000.0 / f64::from(grid)).round() as usize);
-        let reached = Sums::of_all(&steps, to);
+        let reached = HeightSet::all_heights(&steps, to);
         (from..=to).find(|sum| !reached.contains(*sum)).map(|sum| Thickness(sum as u32 * grid))
     }
 }
 
 /// Which blocks make one of some heights that can be made, with as few of them as do; the thickest first.
-fn fewest(steps: &[usize], most: usize, heights: &[usize]) -> Vec<usize> {
+fn fewest_blocks(steps: &[usize], most: usize, heights: &[usize]) -> Vec<usize> {
     let mut counts = std::iter::successors(Some(4), |count| (*count < steps.len()).then_some(count * 2));
     let stack = counts.find_map(|count| {
-        let layers = Sums::by_count(steps, most, count);
+        let layers = HeightSet::by_count(steps, most, count);
         let least = |sum: usize| layers.iter().position(|layer| layer.contains(sum));
         let (count, sum) = heights.iter().filter_map(|sum| Some((least(*sum)?, *sum))).min()?;
-        pick(steps, &layers[..count], sum)
+        pick_blocks(steps, &layers[..count], sum)
     });
     stack.unwrap_or_default()
 }
@@ -64,11 +64,11 @@ fn fewest(steps: &[usize], most: usize, heights: &[usize]) -> Vec<usize> {
 /// A stack as high as `sum`, of as many blocks as there are layers, the thickest first.
 ///
 /// The layers tell whether the rest can be made at all, be it with a block that is used already: then the next is tried.
-fn pick(steps: &[usize], layers: &[Sums], sum: usize) -> Option<Vec<usize>> {
+fn pick_blocks(steps: &[usize], layers: &[HeightSet], sum: usize) -> Option<Vec<usize>> {
     let Some((rest, fewer)) = layers.split_last() else { return (sum == 0).then(Vec::new) };
     (0..steps.len()).rev().filter(|index| steps[*index] <= sum).find_map(|index| {
         let left = sum - steps[index];
-        let mut stack = rest.contains(left).then(|| pick(&steps[..index], fewer, left))??;
+        let mut stack = rest.contains(left).then(|| pick_blocks(&steps[..index], fewer, left))??;
         stack.insert(0, index);
         Some(stack)
     })
@@ -76,49 +76,49 @@ fn pick(steps: &[usize], layers: &[Sums], sum: usize) -> Option<Vec<usize>> {
 
 /// A set of thicknesses up to some most, in steps of the set's grid: a bit for each.
 #[derive(Clone)]
-struct Sums {
+struct HeightSet {
     words: Vec<u64>,
-    most: usize,
+    max: usize,
 }
 
-impl Sums {
-    fn nothing(most: usize) -> Self {
-        Self { words: vec![0; most / 64 + 1], most }
+impl HeightSet {
+    fn empty(most: usize) -> Self {
+        Self { words: vec![0; most / 64 + 1], max: most }
     }
 
     /// The stack without blocks.
     fn empty_stack(most: usize) -> Self {
-        let mut sums = Self::nothing(most);
+        let mut sums = Self::empty(most);
         sums.words[0] = 1;
         sums
     }
 
     /// What can be made at all.
-    fn of_all(steps: &[usize], most: usize) -> Self {
+    fn all_heights(steps: &[usize], most: usize) -> Self {
         let mut sums = Self::empty_stack(most);
         for block in steps {
             let without = sums.clone();
-            sums.add_on_top(&without, *block);
+            sums.add_block(&without, *block);
         }
         sums
     }
 
     /// What can be made of no, one, two … `count` blocks.
     fn by_count(steps: &[usize], most: usize, count: usize) -> Vec<Self> {
-        let mut layers = vec![Self::nothing(most); count + 1];
+        let mut layers = vec![Self::empty(most); count + 1];
         layers[0] = Self::empty_stack(most);
         for block in steps {
             // From the top, so that what a block is put on doesn't contain it.
             for fewer in (0..count).rev() {
                 let (low, high) = layers.split_at_mut(fewer + 1);
-                high[0].add_on_top(&low[fewer], *block);
+                high[0].add_block(&low[fewer], *block);
             }
         }
         layers
     }
 
     /// Adds every one of `below` with a block on top of it.
-    fn add_on_top(&mut self, below: &Self, block: usize) {
+    fn add_block(&mut self, below: &Self, block: usize) {
         let (whole, bits) = (block / 64, block % 64);
         for (at, word) in below.words.iter().enumerate() {
             if *word == 0 {
@@ -134,7 +134,7 @@ impl Sums {
     }
 
     fn contains(&self, sum: usize) -> bool {
-        sum <= self.most && self.words[sum / 64] >> (sum % 64) & 1 == 1
+        sum <= self.max && self.words[sum / 64] >> (sum % 64) & 1 == 1
     }
 }
 
@@ -150,7 +150,7 @@ mod tests {
     }
 
     fn stack(name: &str, height: f64) -> String {
-        let blocks = set(name).nearest(Mm(height)).blocks;
+        let blocks = set(name).nearest_stack(Mm(height)).blocks;
         blocks.iter().map(Thickness::to_string).collect::<Vec<_>>().join(" + ")
     }
 
@@ -200,9 +200,9 @@ mod tests {
             name: "pair",
             series: &[Series { first: Thickness(2000), step: Thickness(2000), count: 2 }],
         };
-        assert_eq!(PAIR.nearest(Mm(1.5)).blocks, [Thickness(2000)], "1 or 2");
-        assert_eq!(PAIR.nearest(Mm(2.5)).blocks, [Thickness(4000)], "2 or 1 + 2: fewer blocks");
-        assert_eq!(PAIR.nearest(Mm(0.5)).blocks, [], "nothing or 1");
+        assert_eq!(PAIR.nearest_stack(Mm(1.5)).blocks, [Thickness(2000)], "1 or 2");
+        assert_eq!(PAIR.nearest_stack(Mm(2.5)).blocks, [Thickness(4000)], "2 or 1 + 2: fewer blocks");
+        assert_eq!(PAIR.nearest_stack(Mm(0.5)).blocks, [], "nothing or 1");
     }
 
     /// Twelve blocks: 4096 stacks, all of which are tried.
@@ -241,7 +241,7 @@ mod tests {
         #[test]
         fn no_stack_is_nearer_or_has_fewer_blocks(quarter_microns in 0..120_000_u32) {
             let height = f64::from(quarter_microns) / 4000.0;
-            prop_assert_eq!(DOZEN.nearest(Mm(height)).blocks, by_trying(height), "{}", height);
+            prop_assert_eq!(DOZEN.nearest_stack(Mm(height)).blocks, by_trying(height), "{}", height);
         }
 
         /// Of the largest set: the stack is as high as its blocks, none is used twice, and what can't be made to half a
@@ -249,7 +249,7 @@ mod tests {
         #[test]
         fn a_set_of_112_makes_every_height_to_half_a_micron(height in 5.0..60.0) {
             let set = set("metric-112");
-            let mut blocks = set.nearest(Mm(height)).blocks;
+            let mut blocks = set.nearest_stack(Mm(height)).blocks;
             let sum: f64 = blocks.iter().map(|block| block.mm()).sum();
             prop_assert!((sum - height).abs() <= 0.000_25 + 1e-9, "{} for {}", sum, height);
             prop_assert!(blocks.len() <= 6, "{:?}", blocks);

@@ -66,7 +66,7 @@ impl JsonSchema for JobFile {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "What to make, on which machine and control.",
+            "description": "The part, its machine and its control.",
             "oneOf": [
                 generator.subschema_for::<pin_holes::File>(),
                 generator.subschema_for::<honeycomb::File>(),

@@ -2,8 +2,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::sections::within;
-use crate::reader::{FileError, Reader, Spanned};
+use crate::reader::bounds::{Bounded, DurationMinutes, HourlyRate};
+use crate::reader::{FileError, Reader};
 
 /// What only people know of a job. Whatever is left out stands empty on the sheet, to be filled in by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,21 +28,21 @@ pub struct Minutes {
     pub tool_change: Option<f64>,
 }
 
-/// What an hour of the machine costs, and of others that could do the same.
+/// Machine-hour rates of the job's machine and of alternative machines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rates {
-    /// Printed as it stands.
+    /// Printed unchanged.
     pub currency: String,
     /// A machine hour.
     pub rate: f64,
-    pub beside: Vec<AlternativeMachine>,
+    pub alternatives: Vec<AlternativeMachine>,
 }
 
-/// The same part on another machine. Times that are left out are taken to be the same.
+/// The same part on another machine. Omitted times are equal to those of the job's machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativeMachine {
     pub machine: String,
-    /// A machine hour, in the same currency.
+    /// Price of a machine hour, in the same currency.
     pub rate: f64,
     /// Of the program, in minutes.
     pub run: Option<f64>,
@@ -57,7 +57,7 @@ impl Rates {
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let reader = Reader { text };
         let file: FileRates = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
-        file.check(&reader, "")
+        Ok(file.rates())
     }
 }
 
@@ -76,121 +76,90 @@ pub(super) struct FileSheet {
     /// The machine's name in the shop.
     machine: Option<String>,
     /// Set-up and alignment of one part, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    setup_minutes: Option<Spanned<f64>>,
+    setup_minutes: Option<Bounded<DurationMinutes>>,
     /// An operator stop, from standstill to start, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    stop_minutes: Option<Spanned<f64>>,
+    stop_minutes: Option<Bounded<DurationMinutes>>,
     /// A tool change, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    tool_change_minutes: Option<Spanned<f64>>,
-    /// What machine hours cost.
+    tool_change_minutes: Option<Bounded<DurationMinutes>>,
+    /// Machine-hour rates.
     rates: Option<FileRates>,
 }
 
-/// What an hour of the machine costs, and of others that could do the same.
+/// Machine-hour rates of the job's machine and of alternative machines.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FileRates {
-    /// Printed as it stands.
+    /// Printed unchanged.
     currency: String,
-    /// A machine hour, in that currency.
-    #[schemars(range(min = 0.01, max = 1e9))]
-    rate: Spanned<f64>,
-    /// Other machines that the part could be made on.
+    /// Price of a machine hour, in that currency.
+    rate: Bounded<HourlyRate>,
+    /// Alternative machines for the part.
     beside: Option<Vec<FileBeside>>,
 }
 
-/// The same part on another machine. Times that are left out are taken to be the same.
+/// The same part on another machine. Omitted times are equal to those of the job's machine.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileBeside {
     /// Its name in the shop.
     machine: String,
-    /// A machine hour, in the same currency.
-    #[schemars(range(min = 0.01, max = 1e9))]
-    rate: Spanned<f64>,
+    /// Price of a machine hour, in the same currency.
+    rate: Bounded<HourlyRate>,
     /// The program, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    run_minutes: Option<Spanned<f64>>,
+    run_minutes: Option<Bounded<DurationMinutes>>,
     /// Set-up and alignment of one part, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    setup_minutes: Option<Spanned<f64>>,
+    setup_minutes: Option<Bounded<DurationMinutes>>,
     /// An operator stop, from standstill to start, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    stop_minutes: Option<Spanned<f64>>,
+    stop_minutes: Option<Bounded<DurationMinutes>>,
     /// A tool change, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    tool_change_minutes: Option<Spanned<f64>>,
+    tool_change_minutes: Option<Bounded<DurationMinutes>>,
 }
 
 impl FileSheet {
-    /// The section of a job; a job without it has nothing to say.
-    pub(super) fn of(section: Option<Self>, reader: &Reader<'_>) -> Result<SheetInfo, FileError> {
-        section.map_or_else(|| Ok(SheetInfo::default()), |sheet| sheet.check(reader))
-    }
-
-    fn check(self, reader: &Reader<'_>) -> Result<SheetInfo, FileError> {
-        let minutes = |key: &str, value: &Option<_>| minutes(reader, "sheet.", key, value.as_ref());
-        Ok(SheetInfo {
+    pub(super) fn info(self) -> SheetInfo {
+        SheetInfo {
             minutes: Minutes {
-                setup: minutes("setup_minutes", &self.setup_minutes)?,
-                stop: minutes("stop_minutes", &self.stop_minutes)?,
-                tool_change: minutes("tool_change_minutes", &self.tool_change_minutes)?,
+                setup: minutes(self.setup_minutes),
+                stop: minutes(self.stop_minutes),
+                tool_change: minutes(self.tool_change_minutes),
             },
-            rates: self.rates.map(|rates| rates.check(reader, "sheet.rates.")).transpose()?,
+            rates: self.rates.map(FileRates::rates),
             part: self.part,
             drawing: self.drawing,
             revision: self.revision,
             material: self.material,
             machine: self.machine,
-        })
+        }
     }
 }
 
 impl FileRates {
-    /// `prefix` is what stands before the keys' names in messages.
-    fn check(self, reader: &Reader<'_>, prefix: &str) -> Result<Rates, FileError> {
-        let beside = self.beside.unwrap_or_default().into_iter();
-        Ok(Rates {
-            rate: rate(reader, prefix, &self.rate)?,
-            beside: beside
-                .map(|beside| beside.check(reader, &format!("{prefix}beside.")))
-                .collect::<Result<_, _>>()?,
+    fn rates(self) -> Rates {
+        Rates {
+            rate: self.rate.get(),
+            alternatives: self.beside.unwrap_or_default().into_iter().map(FileBeside::machine).collect(),
             currency: self.currency,
-        })
+        }
     }
 }
 
 impl FileBeside {
-    fn check(self, reader: &Reader<'_>, prefix: &str) -> Result<AlternativeMachine, FileError> {
-        let minutes = |key: &str, value: &Option<_>| minutes(reader, prefix, key, value.as_ref());
-        Ok(AlternativeMachine {
-            rate: rate(reader, prefix, &self.rate)?,
-            run: minutes("run_minutes", &self.run_minutes)?,
+    fn machine(self) -> AlternativeMachine {
+        AlternativeMachine {
+            rate: self.rate.get(),
+            run: minutes(self.run_minutes),
             minutes: Minutes {
-                setup: minutes("setup_minutes", &self.setup_minutes)?,
-                stop: minutes("stop_minutes", &self.stop_minutes)?,
-                tool_change: minutes("tool_change_minutes", &self.tool_change_minutes)?,
+                setup: minutes(self.setup_minutes),
+                stop: minutes(self.stop_minutes),
+                tool_change: minutes(self.tool_change_minutes),
             },
             machine: self.machine,
-        })
+        }
     }
 }
 
-fn rate(reader: &Reader<'_>, prefix: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
-    reader.number(&format!("{prefix}rate"), value, "0.01 to 1000000000", within(0.01, 1e9))
-}
-
-fn minutes(
-    reader: &Reader<'_>,
-    prefix: &str,
-    key: &str,
-    value: Option<&Spanned<f64>>,
-) -> Result<Option<f64>, FileError> {
-    let read =
-        |value| reader.number(&format!("{prefix}{key}"), value, "0 to 1000000 minutes", within(0.0, 1e6));
-    value.map(read).transpose()
+fn minutes(value: Option<Bounded<DurationMinutes>>) -> Option<f64> {
+    value.as_ref().map(Bounded::get)
 }
 
 #[cfg(test)]
@@ -228,7 +197,7 @@ mod tests {
             run: Some(4.5),
             minutes: Minutes::default(),
         };
-        assert_eq!(rates.beside, [other]);
+        assert_eq!(rates.alternatives, [other]);
     }
 
     #[test]
@@ -259,6 +228,6 @@ mod tests {
         let text = "currency = \"EUR\"\nrate = 80\n[[beside]]\nmachine = \"5-axis\"\nrate = inf\n";
         let told = Rates::parse(text).unwrap_err().to_string();
         assert_eq!(told, "line 5: key 'beside.rate' is inf: 0.01 to 1000000000");
-        assert_eq!(Rates::parse(&text.replace("inf", "200")).unwrap().beside[0].rate, 200.0);
+        assert_eq!(Rates::parse(&text.replace("inf", "200")).unwrap().alternatives[0].rate, 200.0);
     }
 }

@@ -1,4 +1,5 @@
 //! Reads keys of a TOML file: every error names the key, its line, and what is allowed.
+pub mod bounds;
 mod wording;
 
 use std::borrow::Cow;
@@ -100,7 +101,7 @@ impl Reader<'_> {
         FileError { line: Some(self.line(at.span().start)), message: message.into() }
     }
 
-    /// A finite number within bounds, or an error that names the key and what is allowed.
+    /// A finite number within bounds that another key sets, or an error that names the key and what is allowed.
     pub fn number(
         &self,
         key: &str,
@@ -113,18 +114,6 @@ impl Reader<'_> {
             return Ok(number);
         }
         Err(self.error(value, format!("key '{key}' is {number}: {allowed}")))
-    }
-
-    /// As [`Reader::number`], of a key that may be left out.
-    pub fn number_or(
-        &self,
-        key: &str,
-        value: Option<&Spanned<f64>>,
-        allowed: &str,
-        within: impl Fn(f64) -> bool,
-        default: f64,
-    ) -> Result<f64, FileError> {
-        value.map_or(Ok(default), |value| self.number(key, value, allowed, within))
     }
 
     /// One of a fixed list of words.

@@ -1,12 +1,17 @@
 //! What the TOML reader complains of, in the words of a job file: the full name of the key, and what is allowed.
 use std::ops::Range;
 
+use toml::de::{DeTable, DeValue};
+
+use super::bounds::OUT_OF_RANGE;
+
 /// Rewords `message`, which is about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
     // What the root lacks is reported at no byte at all.
-    let place = span.filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
+    let place =
+        span.clone().filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
     if let Some(field) = quoted(message, "missing field ") {
-        let name = place.inside(field);
+        let name = place.child_name(field);
         // The one list of tables that a job can't do without.
         return if name == "hole" {
             "no table [[hole]]: one for each hole".to_owned()
@@ -17,12 +22,15 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     if let Some(field) = quoted(message, "unknown field ") {
         let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);
         let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
-        return format!("key '{}' is unknown; allowed: {allowed}", place.beside(field));
+        return format!("key '{}' is unknown; allowed: {allowed}", place.sibling_name(field));
     }
     if let Some((found, wanted)) =
         message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
     {
         return format!("key '{}' has {found} values: {wanted} are required", place.name());
+    }
+    if let Some(wrong) = message.strip_prefix(OUT_OF_RANGE) {
+        return format!("key '{}' is {wrong}", key_of_value(text, span.map_or(0, |s| s.start)));
     }
     let Some(mismatch) = message.strip_prefix("invalid type: ") else { return message.to_owned() };
     let Some((found, expected)) = mismatch.split_once(", expected ") else { return message.to_owned() };
@@ -35,6 +43,25 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         other => other,
     };
     format!("key '{}' is {}: {expected} is required", place.name(), found.replace('`', ""))
+}
+
+/// The full name of the key whose value begins at this byte.
+fn key_of_value(text: &str, start: usize) -> String {
+    fn find<'t>(table: &'t DeTable<'_>, start: usize) -> Option<Vec<&'t str>> {
+        table.iter().find_map(|(key, value)| {
+            let tables: Vec<&DeTable<'_>> = match value.get_ref() {
+                DeValue::Table(inner) => vec![inner],
+                DeValue::Array(all) => all.iter().filter_map(|item| item.get_ref().as_table()).collect(),
+                _ => Vec::new(),
+            };
+            let below = tables.into_iter().find_map(|table| find(table, start));
+            let mut path = below.or_else(|| (value.span().start == start).then(Vec::new))?;
+            path.insert(0, key.get_ref().as_ref());
+            Some(path)
+        })
+    }
+    let table = DeTable::parse(text);
+    table.ok().and_then(|table| Some(find(table.get_ref(), start)?.join("."))).unwrap_or_default()
 }
 
 /// The first word in backquotes behind `before`.
@@ -76,7 +103,7 @@ impl KeyPath {
     }
 
     /// A key of the table that the line opens: by a header, or by an inline table as the key's value.
-    fn inside(&self, field: &str) -> String {
+    fn child_name(&self, field: &str) -> String {
         match &self.key {
             Some(key) if !self.table.is_empty() => join(&[&self.table, key, field]),
             _ => join(&[&self.table, field]),
@@ -84,7 +111,7 @@ impl KeyPath {
     }
 
     /// A key that the line or its table's header sets, dotted or not, or that an inline table on it holds.
-    fn beside(&self, field: &str) -> String {
+    fn sibling_name(&self, field: &str) -> String {
         let path = self.name();
         let names: Vec<_> = path.split('.').map(str::trim).collect();
         match names.iter().rposition(|name| *name == field) {

@@ -8,16 +8,17 @@ use super::spread::{FileSpread, LENGTH};
 use crate::machine::Machine;
 use crate::machine::sources::{ErrorSource, SampleParameters};
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::Bounded;
 use gcode_part::reader::{Reader, Spanned};
 
 /// Of a touch probe.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProbe {
-    /// How far along its way each touch is noted beyond its place, mm.
+    /// Error of each touch along its direction, mm.
     #[schemars(transform = LENGTH.bounds())]
     noise: Option<Spanned<FileSpread>>,
-    /// Another seed draws other numbers [default: 0].
+    /// Seed of the random numbers [default: 0].
     seed: Option<Spanned<u64>>,
 }
 
@@ -25,9 +26,9 @@ struct FileProbe {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileErrors {
-    /// Of the axes that slide.
+    /// Of the linear axes.
     linear: Option<FileLinear>,
-    /// Of the axis that turns the part.
+    /// Of the axis that rotates the part.
     rotary: Option<FileRotary>,
     /// Of a head of kind manual or axis.
     head: Option<FileHead>,
@@ -35,16 +36,16 @@ pub(super) struct FileErrors {
     probe: Option<FileProbe>,
 }
 
-/// What set-up and machine are off by: a budget draws each of many parts anew from it.
+/// Set-up and machine errors, from which a budget draws each simulated part.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// Of the set-up of the part.
     part: Option<FilePart>,
-    /// Of the axes that slide.
+    /// Of the linear axes.
     #[schemars(transform = without_draws)]
     linear: Option<FileLinear>,
-    /// Of the axis that turns the part.
+    /// Of the axis that rotates the part.
     #[schemars(transform = without_draws)]
     rotary: Option<FileRotary>,
     /// Of a head of kind manual or axis.
@@ -66,7 +67,7 @@ impl FileErrors {
     /// Draws the errors and puts them into the machine.
     pub(super) fn apply(&self, reader: &Reader<'_>, machine: &mut Machine) -> Result<(), FileError> {
         let nominal = machine.clone();
-        let collect = || Collector { reader, machine: &nominal, before: "errors.", found: Vec::new() };
+        let collect = || Collector { reader, machine: &nominal, prefix: "errors.", sources: Vec::new() };
         let mut all: Vec<(ErrorSource, SampleParameters)> = Vec::new();
         let mut keep = |found: Vec<ErrorSource>, seed: u64, wave: f64| {
             all.extend(found.into_iter().map(|source| (source, SampleParameters { seed, wave })));
@@ -74,26 +75,21 @@ impl FileErrors {
         if let Some(linear) = &self.linear {
             let mut collector = collect();
             collector.linear(linear)?;
-            let wave = match &linear.wave {
-                Some(wave) => reader.number("errors.linear.wave", wave, "mm, 1 to 100000", |v| {
-                    (1.0..=100_000.0).contains(&v)
-                })?,
-                None => 500.0,
-            };
-            keep(collector.found, seed(&linear.seed), wave);
+            let wave = linear.wave.as_ref().map_or(500.0, Bounded::get);
+            keep(collector.sources, seed(&linear.seed), wave);
         }
         if let Some(rotary) = &self.rotary {
             let mut collector = collect();
             collector.rotary(rotary)?;
-            keep(collector.found, seed(&rotary.seed), 360.0);
+            keep(collector.sources, seed(&rotary.seed), 360.0);
         }
         if let Some(head) = &self.head {
             let mut collector = collect();
             collector.head(head)?;
-            keep(collector.found, seed(&head.seed), 360.0);
+            keep(collector.sources, seed(&head.seed), 360.0);
         }
         for (source, drawn) in all {
-            source.realize(machine, drawn);
+            source.apply_by_position(machine, drawn);
         }
         self.probe(reader, machine)
     }
@@ -114,7 +110,7 @@ impl FileErrors {
 pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<ErrorSource>, FileError> {
     let reader = Reader { text };
     let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
-    let mut collector = Collector { reader: &reader, machine, before: "", found: Vec::new() };
+    let mut collector = Collector { reader: &reader, machine, prefix: "", sources: Vec::new() };
     if let Some(part) = &file.part {
         collector.part(part)?;
     }
@@ -137,7 +133,7 @@ pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<ErrorSource>, Fil
     if let Some(seed) = linear.or(rotary).or(head) {
         return Err(reader.error(seed, "key 'seed' is for a machine file: a budget has --seed"));
     }
-    Ok(collector.found)
+    Ok(collector.sources)
 }
 
 #[cfg(test)]
@@ -171,10 +167,10 @@ seed = 2
 "#;
         let machine = Machine::parse(text).unwrap();
         assert_eq!(machine, Machine::parse(text).unwrap(), "the same file is the same machine");
-        assert_eq!(machine.slides.0[0].error.at(77.0), 0.02);
-        assert_eq!(machine.slides.0[1].error.length, 400.0);
-        assert_eq!(machine.slides.0[2].error.at(1.0), 0.0);
-        assert_eq!(machine.table.0[0].error.at(12.0), -0.001);
+        assert_eq!(machine.slides.0[0].error.value_at(77.0), 0.02);
+        assert_eq!(machine.slides.0[1].error.period, 400.0);
+        assert_eq!(machine.slides.0[2].error.value_at(1.0), 0.0);
+        assert_eq!(machine.table.0[0].error.value_at(12.0), -0.001);
         let mut at = Position::default();
         at[4] = 90.001;
         let origin = machine.part_frame(&at) * nalgebra::Point3::origin();
@@ -185,7 +181,7 @@ seed = 2
             (origin - nalgebra::Point3::new(0.3 - along * s, along * c, 0.3 * c)).norm() < 1e-12,
             "{origin}"
         );
-        assert!(machine.head.error.swing > 0.0);
+        assert!(machine.head.error.amplitude > 0.0);
         let probe = machine.probe.unwrap();
         assert_eq!((probe.noise, probe.seed), (Distribution::Normal(0.001), 2));
         let other = Machine::parse(&text.replace("seed = 9", "seed = 10")).unwrap();
@@ -238,6 +234,6 @@ seed = 2
         let found = error_file(text, &Machine::default()).unwrap();
         let names: Vec<_> = found.iter().map(|source| source.quantity.name(&Machine::default())).collect();
         assert_eq!(names, ["part.shift.z", "part.runout", "rotary.index"]);
-        assert_eq!(found[0].spread, Distribution::Normal(0.03));
+        assert_eq!(found[0].distribution, Distribution::Normal(0.03));
     }
 }

@@ -4,11 +4,12 @@ use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::{ROTARY_LETTERS, letter, sign};
+use super::{ROTARY_LETTERS, letter};
 use crate::machine::{Chain, Head, HeadKind};
 use gcode_lang::motion::Axes;
 use gcode_lang::units::Deg;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Angle, Bounded, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
 /// How the tool is inclined.
@@ -16,7 +17,7 @@ use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 #[serde(deny_unknown_fields)]
 #[schemars(transform = by_kind)]
 pub(super) struct FileHead {
-    /// free: not known; fixed: never changes; manual: set by hand; axis: by an axis of the control.
+    /// free: unknown; fixed: constant; manual: set by hand; axis: by an axis of the control.
     #[schemars(extend("enum" = names(&KINDS)))]
     kind: Spanned<String>,
     /// From the head's pivot to the spindle's gauge line, mm [default: 0].
@@ -27,53 +28,54 @@ pub(super) struct FileHead {
     /// The axis, A, B or C.
     #[schemars(extend("enum" = ROTARY_LETTERS))]
     letter: Option<Spanned<String>>,
-    /// 1, or -1 where the axis turns the other way [default: 1].
-    #[schemars(extend("enum" = [1, -1]))]
-    sign: Option<Spanned<i64>>,
-    /// The head's angle where the axis stands at 0, degrees [default: 0].
-    #[schemars(range(min = -360.0, max = 360.0))]
-    zero: Option<Spanned<f64>>,
-    /// How it stands before the first stop, degrees.
-    #[schemars(range(min = -360.0, max = 360.0))]
-    angle: Option<Spanned<f64>>,
+    /// 1, or -1 if the axis is reversed [default: 1].
+    sign: Option<Sign>,
+    /// The head's angle with the axis at 0, degrees [default: 0].
+    zero: Option<Bounded<Angle>>,
+    /// Its angle before the first stop, degrees.
+    angle: Option<Bounded<Angle>>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum FileHeadKind {
     Free,
     Fixed,
     Manual,
     Axis,
 }
 
-const KINDS: [(&str, Kind); 4] =
-    [("free", Kind::Free), ("fixed", Kind::Fixed), ("manual", Kind::Manual), ("axis", Kind::Axis)];
+const KINDS: [(&str, FileHeadKind); 4] = [
+    ("free", FileHeadKind::Free),
+    ("fixed", FileHeadKind::Fixed),
+    ("manual", FileHeadKind::Manual),
+    ("axis", FileHeadKind::Axis),
+];
 
 /// Which kinds the keys go with, in the order of [`FileHead`].
-const KEYS: [(&str, &[Kind]); 6] = [
-    ("pivot", &[Kind::Fixed, Kind::Manual, Kind::Axis]),
-    ("direction", &[Kind::Fixed]),
-    ("letter", &[Kind::Axis]),
-    ("sign", &[Kind::Axis]),
-    ("zero", &[Kind::Axis]),
-    ("angle", &[Kind::Manual]),
+const KEYS: [(&str, &[FileHeadKind]); 6] = [
+    ("pivot", &[FileHeadKind::Fixed, FileHeadKind::Manual, FileHeadKind::Axis]),
+    ("direction", &[FileHeadKind::Fixed]),
+    ("letter", &[FileHeadKind::Axis]),
+    ("sign", &[FileHeadKind::Axis]),
+    ("zero", &[FileHeadKind::Axis]),
+    ("angle", &[FileHeadKind::Manual]),
 ];
 
 /// The key that a kind can't do without.
-fn needed(kind: Kind) -> Option<&'static str> {
+fn required_key(kind: FileHeadKind) -> Option<&'static str> {
     match kind {
-        Kind::Free | Kind::Manual => None,
-        Kind::Fixed => Some("direction"),
-        Kind::Axis => Some("letter"),
+        FileHeadKind::Free | FileHeadKind::Manual => None,
+        FileHeadKind::Fixed => Some("direction"),
+        FileHeadKind::Axis => Some("letter"),
     }
 }
 
 /// Each kind with the keys that it needs, and without those that mean nothing for it.
 fn by_kind(schema: &mut Schema) {
-    let case = |(name, kind): &(&str, Kind)| {
+    let case = |(name, kind): &(&str, FileHeadKind)| {
         let others = KEYS.iter().filter(|(_, kinds)| !kinds.contains(kind));
         let others: Vec<_> = others.map(|(key, _)| json!({ "required": [key] })).collect();
-        let needed: Vec<_> = std::iter::once("kind").chain(needed(*kind)).collect();
+        let needed: Vec<_> = std::iter::once("kind").chain(required_key(*kind)).collect();
         json!({ "properties": { "kind": { "enum": [name] } }, "required": needed, "not": { "anyOf": others } })
     };
     schema.insert("oneOf".to_owned(), KINDS.iter().map(case).collect());
@@ -82,44 +84,41 @@ fn by_kind(schema: &mut Schema) {
 impl FileHead {
     pub(super) fn check(&self, reader: &Reader<'_>, axes: &Axes, table: &Chain) -> Result<Head, FileError> {
         let kind = reader.choice("head.kind", &self.kind, &KINDS)?;
-        self.only_for(reader, kind)?;
+        self.check_keys(reader, kind)?;
         let pivot = match &self.pivot {
             Some(pivot) => reader.number("head.pivot", pivot, "mm, 0 or more", |v| v >= 0.0)?,
             None => 0.0,
-        };
-        let angle = |key: &str, value: &Spanned<f64>| {
-            reader.number(key, value, "degrees from -360 to 360", |v| v.abs() <= 360.0).map(Deg)
         };
         let needs = |key: &str| {
             reader.error(&self.kind, format!("kind = \"{}\" needs the key 'head.{key}'", self.kind.as_ref()))
         };
         let kind = match kind {
-            Kind::Free => HeadKind::Free,
-            Kind::Fixed => {
+            FileHeadKind::Free => HeadKind::Free,
+            FileHeadKind::Fixed => {
                 let direction = self.direction.as_ref().ok_or_else(|| needs("direction"))?;
                 let unit =
                     Unit::try_new(Vector3::from(direction.as_ref().0), 1e-9).filter(|u| u.norm().is_finite());
                 let allowed = "key 'head.direction' is [x, y, z] from the tip to the spindle, not all 0";
                 HeadKind::Fixed(unit.ok_or_else(|| reader.error(direction, allowed))?)
             }
-            Kind::Manual => {
-                HeadKind::Manual { start: self.angle.as_ref().map(|a| angle("head.angle", a)).transpose()? }
+            FileHeadKind::Manual => {
+                HeadKind::Manual { start: self.angle.as_ref().map(|angle| Deg(angle.get())) }
             }
-            Kind::Axis => {
+            FileHeadKind::Axis => {
                 let value = self.letter.as_ref().ok_or_else(|| needs("letter"))?;
                 let axis = letter(reader, "head.letter", value, axes)?;
                 if !axes.is_rotary(axis) {
                     return Err(reader.error(value, "key 'head.letter': the head rotates by A, B or C"));
                 }
-                if table.has(axis) {
+                if table.has_axis(axis) {
                     let message =
                         format!("key 'head.letter' is {}, the letter of the table", axes.letter(axis));
                     return Err(reader.error(value, message));
                 }
                 HeadKind::Axis {
                     axis,
-                    sign: self.sign.as_ref().map_or(Ok(1.0), |s| sign(reader, "head.sign", s))?,
-                    zero: self.zero.as_ref().map_or(Ok(Deg::ZERO), |z| angle("head.zero", z))?,
+                    sign: self.sign.as_ref().map_or(1.0, |sign| f64::from(sign.get())),
+                    zero: Deg(self.zero.as_ref().map_or(0.0, Bounded::get)),
                 }
             }
         };
@@ -127,14 +126,14 @@ impl FileHead {
     }
 
     /// A key that means nothing for this kind of head is a mistake, not an extra.
-    fn only_for(&self, reader: &Reader<'_>, kind: Kind) -> Result<(), FileError> {
+    fn check_keys(&self, reader: &Reader<'_>, kind: FileHeadKind) -> Result<(), FileError> {
         let given = [
             self.pivot.as_ref().map(start),
             self.direction.as_ref().map(start),
             self.letter.as_ref().map(start),
-            self.sign.as_ref().map(start),
-            self.zero.as_ref().map(start),
-            self.angle.as_ref().map(start),
+            self.sign.as_ref().map(|sign| start(sign)),
+            self.zero.as_ref().map(|zero| start(zero)),
+            self.angle.as_ref().map(|angle| start(angle)),
         ];
         for (place, (key, kinds)) in given.into_iter().zip(KEYS) {
             if let (Some(place), false) = (place, kinds.contains(&kind)) {

@@ -29,30 +29,30 @@ use wheel::FileWheel;
 use super::{Chain, Head, HeadKind, Machine, Tool};
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex};
-use gcode_part::reader::FileError;
-use gcode_part::reader::{FixedArray, Reader, Spanned, names};
+use gcode_part::reader::bounds::{Bounded, KeyRange};
+use gcode_part::reader::{FileError, FixedArray, Reader, Spanned, names};
 
-/// The machine that a program runs on. Every section may be left out: without any it is that of the paper.
+/// The machine of a program. Every section is optional; without any it is the machine of the paper.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// The control.
     control: Option<FileControl>,
-    /// What carries the part, from the bed outwards.
+    /// The axes that carry the part, from the bed outwards.
     table: Option<Vec<FileLink>>,
     /// How the tool is inclined.
     head: Option<FileHead>,
-    /// A grinder's wheel, which stays where it is while the table moves the part.
+    /// A grinder's wheel, stationary while the table moves the part.
     wheel: Option<FileWheel>,
     /// The tools.
     tool: Option<Vec<FileTool>>,
-    /// What the work offsets G54 to G59 hold when the run begins, by axis.
+    /// The work offsets G54 to G59 at the start of the run, by axis.
     offsets: Option<Spanned<FileOffsets>>,
-    /// Where the part lies on the machine, and how far off.
+    /// Nominal position of the part on the machine, and its misalignment.
     part: Option<FilePart>,
     /// A touch probe.
     probe: Option<FileProbe>,
-    /// What the machine is off by.
+    /// The errors of the machine.
     errors: Option<FileErrors>,
 }
 
@@ -75,7 +75,6 @@ struct FileControl {
 const AXES: [&str; 9] = ["X", "Y", "Z", "A", "B", "C", "U", "V", "W"];
 const ROTARY_LETTERS: [&str; 3] = ["A", "B", "C"];
 
-const LENGTH: &str = "mm, from -100000 to 100000";
 impl Machine {
     /// Reads a machine file's text.
     pub fn parse(text: &str) -> Result<Self, FileError> {
@@ -83,7 +82,7 @@ impl Machine {
         let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
         let control = file.control.unwrap_or_default();
         let axes = control.axes(&reader)?;
-        let part = file.part.unwrap_or_default().check(&reader)?;
+        let part = file.part.unwrap_or_default().placement();
         let table = match &file.table {
             Some(links) => {
                 let mut table = Chain::default();
@@ -93,7 +92,7 @@ impl Machine {
                 }
                 table
             }
-            None => Chain::of_the_paper(&axes, part.origin),
+            None => Chain::default_table(&axes, part.origin),
         };
         let head = match &file.head {
             Some(head) => head.check(&reader, &axes, &table)?,
@@ -117,7 +116,7 @@ impl Machine {
                 Some(increment) => reader.choice("control.increment", increment, &Increment::ALL)?,
                 None => Increment::default(),
             },
-            slides: Chain::slides(&axes, &table),
+            slides: Chain::default_slides(&axes, &table),
             wheel: file.wheel.map(|wheel| wheel.check(&reader, &axes, &table, &head)).transpose()?,
             offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, &offsets))?,
             axes,
@@ -125,7 +124,7 @@ impl Machine {
             head,
             tools,
             part,
-            probe: file.probe.map(|probe| probe.check(&reader)).transpose()?,
+            probe: file.probe.as_ref().map(FileProbe::probe),
         };
         if let Some(errors) = &file.errors {
             errors.apply(&reader, &mut machine)?;
@@ -134,25 +133,8 @@ impl Machine {
     }
 }
 
-fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
-    reader.number(key, value, LENGTH, |v| v.abs() <= 100_000.0)
-}
-
-fn lengths(
-    reader: &Reader<'_>,
-    key: &str,
-    values: &FixedArray<Spanned<f64>, 3>,
-) -> Result<Vector3<f64>, FileError> {
-    let FixedArray([x, y, z]) = values;
-    Ok(Vector3::new(length(reader, key, x)?, length(reader, key, y)?, length(reader, key, z)?))
-}
-
-fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Result<f64, FileError> {
-    match *value.as_ref() {
-        1 => Ok(1.0),
-        -1 => Ok(-1.0),
-        other => Err(reader.error(value, format!("key '{key}' is {other}: 1 or -1"))),
-    }
+fn vector<R: KeyRange<Number = f64>>(FixedArray([x, y, z]): &FixedArray<Bounded<R>, 3>) -> Vector3<f64> {
+    Vector3::new(x.get(), y.get(), z.get())
 }
 
 fn letter(
@@ -229,7 +211,7 @@ tilt = [0.0, 0.0, 1.0]
         let machine = Machine::parse(text).unwrap();
         assert_eq!(machine.axes.len(), 5);
         let centre = Point3::new(1.0, 2.5, 3.0);
-        assert_eq!(machine.table.0, [AxisLink::turn(3, Vector3::x_axis(), centre, -1.0)]);
+        assert_eq!(machine.table.0, [AxisLink::rotary(3, Vector3::x_axis(), centre, -1.0)]);
         assert_eq!(machine.head.kind, HeadKind::Axis { axis: 4, sign: -1.0, zero: Deg(90.0) });
         assert_eq!(machine.head.pivot, 120.0);
         assert_eq!(machine.tools, [Tool { number: 12, length: Some(80.5), diameter: Some(6.0) }]);
@@ -241,7 +223,7 @@ tilt = [0.0, 0.0, 1.0]
     #[test]
     fn a_table_turns_about_the_parts_origin_unless_told_otherwise() {
         let machine = Machine::parse(&format!("{PAPER}[part]\norigin = [5.0, 6.0, 7.0]\n")).unwrap();
-        let LinkMotion::Turn { centre, .. } = &machine.table.0[0].motion else { panic!("it turns") };
+        let LinkMotion::Rotary { centre, .. } = &machine.table.0[0].motion else { panic!("it turns") };
         assert_eq!(*centre, Point3::new(5.0, 6.0, 7.0));
     }
 
@@ -296,7 +278,10 @@ tilt = [0.0, 0.0, 1.0]
                 "table = []\n[offsets]\nG53 = { X = 1.0 }\n",
                 "line 2: key 'offsets.G53' is unknown: G54 to G59",
             ),
-            ("table = []\n[part]\ntilt = [0.0, nan, 0.0]\n", "line 3: key 'part.tilt' is NaN: degrees"),
+            (
+                "table = []\n[part]\ntilt = [0.0, nan, 0.0]\n",
+                "line 3: key 'part.tilt' is NaN: -360 to 360 degrees",
+            ),
             (
                 "table = []\n[[tool]]\nnumber = 1\nlength = 5.0\n",
                 "line 4: key 'tool.length' acts along the tool",

@@ -21,12 +21,12 @@ impl JsonSchema for FileOffsets {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let length = json_schema!({ "type": "number", "minimum": -MOST, "maximum": MOST });
+        let length = json_schema!({ "type": "number", "minimum": -MAX_OFFSET, "maximum": MAX_OFFSET });
         json_schema!({
             "type": "object",
             "patternProperties": {
                 "^G5[4-9]$": {
-                    "description": "Axes that aren't named stay at 0; mm and degrees.",
+                    "description": "Axes that are not named are 0; mm and degrees.",
                     "type": "object",
                     "patternProperties": { "^[XYZABCUVW]$": length },
                     "additionalProperties": false
@@ -38,7 +38,7 @@ impl JsonSchema for FileOffsets {
 }
 
 /// The most that an offset may be, either way: mm or degrees.
-const MOST: f64 = 100_000.0;
+const MAX_OFFSET: f64 = 100_000.0;
 
 /// `G54 = { X = 500.0, B = 12.0 }`: axes that aren't named stay at 0.
 pub(super) fn work_offsets(
@@ -66,7 +66,7 @@ pub(super) fn work_offsets(
                 fail(format!("key 'offsets.{name}.{letter}': the control has no axis {letter}"))
             })?;
             let number = value.as_float().or_else(|| value.as_integer().map(|v| v as f64));
-            let number = number.filter(|v| v.abs() <= MOST).ok_or_else(|| {
+            let number = number.filter(|v| v.abs() <= MAX_OFFSET).ok_or_else(|| {
                 fail(format!("key 'offsets.{name}.{letter}' is {value}: a number, -100000 to 100000"))
             })?;
             offset.values.push((axis, number));

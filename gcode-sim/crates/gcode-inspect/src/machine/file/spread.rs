@@ -13,11 +13,11 @@ use gcode_part::reader::{Reader, Spanned};
 #[serde(deny_unknown_fields)]
 #[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
 pub(super) struct FileSpread {
-    /// Always this.
+    /// A constant error.
     fixed: Option<Spanned<f64>>,
     /// Gaussian round 0 with this standard deviation.
     normal: Option<Spanned<f64>>,
-    /// Anything from minus to plus this, all alike.
+    /// Uniform between minus and plus this value.
     uniform: Option<Spanned<f64>>,
 }
 
@@ -35,15 +35,15 @@ pub(super) struct FileVector {
 
 /// What an error is measured in, and the most that can be meant.
 #[derive(Clone, Copy)]
-pub(super) struct Kind {
+pub(super) struct QuantityLimits {
     allowed: &'static str,
-    most: f64,
+    max: f64,
 }
 
-pub(super) const LENGTH: Kind = Kind { allowed: "mm, 100 at most", most: 100.0 };
-pub(super) const ANGLE: Kind = Kind { allowed: "degrees, 45 at most", most: 45.0 };
+pub(super) const LENGTH: QuantityLimits = QuantityLimits { allowed: "mm, 100 at most", max: 100.0 };
+pub(super) const ANGLE: QuantityLimits = QuantityLimits { allowed: "degrees, 45 at most", max: 45.0 };
 
-impl Kind {
+impl QuantityLimits {
     /// Puts the bounds into the schema of a spread, or of each spread of a vector.
     pub(super) fn bounds(self) -> impl Transform {
         move |schema: &mut Schema| self.bound(schema)
@@ -56,9 +56,9 @@ impl Kind {
             if matches!(key.as_str(), "x" | "y" | "z") {
                 self.bound(inner);
             } else {
-                let least = if key == "fixed" { -self.most } else { 0.0 };
+                let least = if key == "fixed" { -self.max } else { 0.0 };
                 inner.insert("minimum".to_owned(), least.into());
-                inner.insert("maximum".to_owned(), self.most.into());
+                inner.insert("maximum".to_owned(), self.max.into());
             }
         }
     }
@@ -70,9 +70,9 @@ impl FileSpread {
         reader: &Reader<'_>,
         key: &str,
         at: usize,
-        kind: Kind,
+        kind: QuantityLimits,
     ) -> Result<Distribution, FileError> {
-        let Kind { allowed, most } = kind;
+        let QuantityLimits { allowed, max: most } = kind;
         let number = |name: &str, value: &Spanned<f64>, least: f64| {
             reader.number(&format!("{key}.{name}"), value, allowed, |v| least <= v && v <= most)
         };

@@ -3,26 +3,25 @@ use nalgebra::Point3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{ROTARY_LETTERS, lengths, letter, sign};
+use super::{ROTARY_LETTERS, letter, vector};
 use crate::machine::{Chain, Head, HeadKind, Wheel};
 use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned};
 
-/// A grinder's wheel, which stays where it is while the table moves the part.
+/// A grinder's wheel, stationary while the table moves the part.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("anyOf" = [{ "required": ["letter"] }, { "not": { "required": ["sign"] } }]))]
 pub(super) struct FileWheel {
-    /// Where it touches, machine coordinates, mm.
-    #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
-    contact: FixedArray<Spanned<f64>, 3>,
+    /// Its contact point, machine coordinates, mm.
+    contact: FixedArray<Bounded<MachinePoint>, 3>,
     /// The axis that swivels it about that point, A, B or C [default: none].
     #[schemars(extend("enum" = ROTARY_LETTERS))]
     letter: Option<Spanned<String>>,
-    /// 1, or -1 where the axis turns the other way [default: 1].
-    #[schemars(extend("enum" = [1, -1]))]
-    sign: Option<Spanned<i64>>,
+    /// 1, or -1 if the axis is reversed [default: 1].
+    sign: Option<Sign>,
 }
 
 impl FileWheel {
@@ -33,7 +32,7 @@ impl FileWheel {
         table: &Chain,
         head: &Head,
     ) -> Result<Wheel, FileError> {
-        let contact = Point3::from(lengths(reader, "wheel.contact", &self.contact)?);
+        let contact = Point3::from(vector(&self.contact));
         let swivels = match (&self.letter, &self.sign) {
             (None, None) => None,
             (None, Some(given)) => {
@@ -45,17 +44,16 @@ impl FileWheel {
                     return Err(reader.error(name, "key 'wheel.letter': the wheel swivels by A, B or C"));
                 }
                 let of_head = matches!(head.kind, HeadKind::Axis { axis: other, .. } if other == axis);
-                if table.has(axis) || of_head {
+                if table.has_axis(axis) || of_head {
                     let message = format!(
                         "key 'wheel.letter' is {}, the letter of the table or the head",
                         axes.letter(axis)
                     );
                     return Err(reader.error(name, message));
                 }
-                let sign = given.as_ref().map_or(Ok(1.0), |s| sign(reader, "wheel.sign", s))?;
-                Some((axis, sign))
+                Some((axis, given.as_ref().map_or(1.0, |sign| f64::from(sign.get()))))
             }
         };
-        Ok(Wheel { contact, swivels })
+        Ok(Wheel { contact, swivel_axis: swivels })
     }
 }

@@ -2,18 +2,14 @@
 //! above.
 use nalgebra::Point3;
 
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::PointTree;
-use gcode_part::Surface;
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    surface: Option<Surface>,
-    objections: &mut Vec<HoleFinding>,
-) {
-    let Some(surface) = surface else { return };
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
+    let Some(surface) = inspection.reference.surface else { return };
     if comparison.missing.is_empty() {
         return;
     }

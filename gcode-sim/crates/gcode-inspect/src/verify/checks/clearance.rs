@@ -1,15 +1,17 @@
 //! While an axis turns, and where a rapid goes past the part, the tool must be clear of it: no nearer than the job lets
 //! feeds begin, and never so near that a length set a little wrong would touch.
+use super::{HoleFinding, HoleInspection};
 use crate::holes::per_block::with_repeat_note;
 use crate::holes::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::ProcessLimits;
 
-pub(in crate::verify) fn findings(close_motions: &[CloseMotion], conduct: &ProcessLimits) -> Vec<Diagnostic> {
-    let told = close_motions.iter().map(|passing| {
-        with_repeat_note(finding(passing, conduct), passing.count).with_backtrace(passing.backtrace.clone())
-    });
-    told.collect()
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut Vec<HoleFinding>) {
+    findings.extend(inspection.extraction.close_motions.iter().map(|motion| {
+        let finding = finding(motion, &inspection.reference.process_limits);
+        let finding = with_repeat_note(finding, motion.count).with_backtrace(motion.backtrace.clone());
+        HoleFinding::of_motion(finding)
+    }));
 }
 
 fn finding(close_motion: &CloseMotion, conduct: &ProcessLimits) -> Diagnostic {

@@ -2,7 +2,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::mirrored::MirrorImage;
-use super::{Comparison, HoleFinding, explained_by_rows};
+use super::{Comparison, HoleFinding, HoleInspection, explained_by_rows};
 use crate::machine::Machine;
 use crate::verify::displacement::displacements;
 use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
@@ -23,11 +23,8 @@ const POSITION_CODES: [&str; 4] = ["hole-position", "hole-tilted", "hole-missing
 /// More different ways to be wrong aren't one fault.
 const MAX_GROUPS: usize = 64;
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, .. } = inspection;
     // What a whole pattern of rows has wrong is explained by its own checks.
     let whole = ["row-angle", "row-pitch", "row-group", "row-seam", "rotary-sign", "mirror-image"];
     let explained = objections.iter().position(|objection| whole.contains(&objection.finding.code.as_str()));

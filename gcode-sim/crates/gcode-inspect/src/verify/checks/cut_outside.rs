@@ -1,9 +1,10 @@
 //! What is cut before a hole is finished must lie inside the finished hole: the finishing tool doesn't put it back.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use crate::verify::position::Deviation;
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for pair in &comparison.pairs {
         let (wanted, found) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
         for cut in &found.earlier_passes {
@@ -19,7 +20,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             }
             let tool = cut.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
             let message = format!(
-                "hole {}: a pass before the finishing one{tool} is out of position by {aside:.4} mm, limit \
+                "hole {}: an earlier pass{tool} is out of position by {aside:.4} mm, limit \
                  {allowed:.4}",
                 comparison.id(pair.nominal)
             );

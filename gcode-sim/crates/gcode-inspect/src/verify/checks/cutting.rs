@@ -1,6 +1,7 @@
 //! While a tool cuts it turns and is fed as the reference says of it, and the right length offset is in force.
 use std::collections::BTreeMap;
 
+use super::{HoleFinding, HoleInspection};
 use crate::holes::CutConditions;
 use crate::machine::Machine;
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -13,11 +14,9 @@ const ROUNDING_ALLOWANCE: f64 = 0.005;
 /// … and beyond this part it is no other choice but a slip: an error. Tables of cutting data leave so much open.
 const ERROR_RATIO: f64 = 0.25;
 
-pub(in crate::verify) fn findings(
-    cuttings: &[CutConditions],
-    conduct: &ProcessLimits,
-    machine: &Machine,
-) -> Vec<Diagnostic> {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut Vec<HoleFinding>) {
+    let HoleInspection { machine, extraction, reference, .. } = inspection;
+    let (cuttings, conduct) = (&extraction.cut_conditions, &reference.process_limits);
     let checks = [reversed, speed, feed, peck, length, tool];
     let found = checks.iter().flat_map(|check| cuttings.iter().map(move |cutting| (check, cutting)));
     let mut told: Vec<(Diagnostic, u64)> = Vec::new();
@@ -36,7 +35,7 @@ pub(in crate::verify) fn findings(
         1 => finding,
         more => finding.note(format!("in {more} cuts; this is the first")),
     };
-    told.into_iter().map(counted).collect()
+    findings.extend(told.into_iter().map(counted).map(HoleFinding::of_motion));
 }
 
 fn reversed(cutting: &CutConditions, _: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {

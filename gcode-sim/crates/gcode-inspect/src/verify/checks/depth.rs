@@ -1,8 +1,9 @@
 //! Every hole must be as deep as wanted.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for pair in &comparison.pairs {
         let error = pair.deviation.depth_error;
         if error.abs() <= comparison.tolerances.depth {

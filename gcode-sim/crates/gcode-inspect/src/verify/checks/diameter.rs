@@ -1,8 +1,9 @@
 //! The tool that finishes a hole must have the hole's diameter, where both are known.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for pair in &comparison.pairs {
         let found = &comparison.actual[pair.actual];
         let (Some(wanted), Some(actual)) = (comparison.nominal[pair.nominal].diameter, found.diameter) else {

@@ -46,7 +46,7 @@ pub(super) fn explains<'c>(
             (None, Some(wanted)) => {
                 let entry = Point3::from(comparison.nominal[wanted].entry);
                 let number = pattern.row_of(&entry);
-                let meant = pattern.step() * (number as f64 * scale);
+                let meant = pattern.row_angle() * (number as f64 * scale);
                 let begins = entry.x % pattern.pitch;
                 let along = ((entry.x - begins) / pattern.pitch).round();
                 let Some(row) = rows.rows.iter().find(|row| near_row(row, meant, rows.typical_gap.0 / 4.0))

@@ -1,10 +1,11 @@
 //! Nothing may be drilled that nobody asked for.
 use nalgebra::Point3;
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for index in &comparison.extra {
         let twice = comparison.nominal_on_line_of(*index).is_some();
         let (code, help) = match twice {

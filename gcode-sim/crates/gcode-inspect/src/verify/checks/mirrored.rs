@@ -2,7 +2,7 @@
 //! once, instead of hole by hole only.
 use nalgebra::Unit;
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
 use crate::holes::DrilledHole;
 use crate::machine::{LinkMotion, Machine};
 use crate::verify::HolePair;
@@ -53,11 +53,8 @@ impl MirrorImage {
     }
 }
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, .. } = inspection;
     let Some(MirrorImage { axis, agreeing: agree, .. }) = MirrorImage::of(comparison) else { return };
     let name = ["x", "y", "z"][axis];
     let lie = format!(
@@ -83,7 +80,7 @@ pub(in crate::verify) fn check(
 fn is_wrong_rotation_sign(comparison: &Comparison<'_>, machine: &Machine, axis: usize) -> bool {
     let part = machine.part.frame();
     machine.table.0.iter().any(|link| {
-        let LinkMotion::Turn { about, .. } = &link.motion else { return false };
+        let LinkMotion::Rotary { about, .. } = &link.motion else { return false };
         let own = part.rotation.inverse_transform_unit_vector(about);
         let turned = comparison.actual.iter().any(|found| found.axis_position[link.axis] != 0.0);
         turned && own[axis].abs() < std::f64::consts::FRAC_1_SQRT_2

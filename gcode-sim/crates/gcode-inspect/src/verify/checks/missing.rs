@@ -1,11 +1,12 @@
 //! Every wanted hole must be there.
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::PointTree;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     // A hole drilled twice is known; it isn't the missing one in a wrong place.
     let extra = comparison.extra.iter().copied();
     let extra = extra.filter(|index| comparison.nominal_on_line_of(*index).is_none());

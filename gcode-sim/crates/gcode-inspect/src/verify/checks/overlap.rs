@@ -1,9 +1,10 @@
 //! Wanted holes that cut into each other, which the drawing may mean: told, not failed. A pattern sees to its own.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_part::overlaps;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     if comparison.pattern.is_some() {
         return;
     }

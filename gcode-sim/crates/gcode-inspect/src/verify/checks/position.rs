@@ -1,9 +1,10 @@
 //! The axis of every hole must lie in its zone: judged unrounded, told apart by whether it leans or stands aside.
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
 use crate::verify::HolePair;
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for pair in &comparison.pairs {
         if pair.deviation.zone_diameter() > comparison.tolerances.position {
             objections.push(HoleFinding::of_nominal(pair.nominal, finding(comparison, pair)));

@@ -2,7 +2,7 @@
 //! the depth of the holes, and nothing it drilled is right.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
 use crate::holes::LengthMismatch;
 use crate::machine::Machine;
 use crate::verify::hole_finding::{fold, folded_note};
@@ -19,14 +19,10 @@ const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
 /// What is found of holes that are cut at a wrong depth.
 const DEPTH_CODES: [&str; 5] = ["hole-missing", "hole-extra", "hole-depth", "holes-alike", "hole-in-air"];
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    mismatches: &[LengthMismatch],
-    conduct: &ProcessLimits,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
-    let wrong: Vec<&LengthMismatch> = mismatches.iter().filter(|reach| explains(comparison, reach)).collect();
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, extraction, reference } = inspection;
+    let mismatches = extraction.length_mismatches.iter();
+    let wrong: Vec<&LengthMismatch> = mismatches.filter(|reach| explains(comparison, reach)).collect();
     if wrong.is_empty() {
         return;
     }
@@ -44,8 +40,10 @@ pub(in crate::verify) fn check(
     });
     // With those behind a finding that is folded itself.
     let folded = objections.iter().filter(|objection| objection.is_folded).count();
-    let mut told: Vec<HoleFinding> =
-        wrong.into_iter().map(|reach| HoleFinding::unlocated(finding(reach, conduct, machine))).collect();
+    let mut told: Vec<HoleFinding> = wrong
+        .into_iter()
+        .map(|reach| HoleFinding::unlocated(finding(reach, &reference.process_limits, machine)))
+        .collect();
     told[0].finding.notes.extend(folded_note(folded));
     objections.splice(0..0, told);
 }

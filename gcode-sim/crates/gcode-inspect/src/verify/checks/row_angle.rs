@@ -1,6 +1,6 @@
 //! The rows of a honeycomb stand at the angle with which the pattern closes: another one is told with the distance it
 //! makes round the circumference and the diameter it would be right for.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use crate::verify::causes::describe_causes;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
@@ -11,20 +11,21 @@ use gcode_part::Pattern;
 /// What rounding to the rotary's increment, 0.01° at the coarsest, may make of a turn.
 const ROUNDING_ALLOWANCE: Deg = Deg(0.03);
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let (usual, wanted) = (rows.typical_gap, rows.nominal_gap(pattern));
     // After a whole turn the error has added up.
     let turn = (usual - wanted).abs() * (360.0 / wanted.0);
-    if turn < ROUNDING_ALLOWANCE || pattern.arc(turn) <= comparison.tolerances.position / 2.0 {
+    if turn < ROUNDING_ALLOWANCE || pattern.arc_length(turn) <= comparison.tolerances.position / 2.0 {
         return;
     }
     let tolerance = Deg::atan2(comparison.tolerances.position, pattern.diameter / 2.0);
     if !rows.is_evenly_spaced(tolerance + ROUNDING_ALLOWANCE) {
         return;
     }
-    let (found, right) = (pattern.arc(usual), pattern.arc(wanted));
+    let (found, right) = (pattern.arc_length(usual), pattern.arc_length(wanted));
     let fits = pattern.diameter * wanted.0 / usual.0;
     let message = format!(
         "the rows are {}° apart, nominal {:.4}°: neighbours round the circumference are {found:.2} mm \
@@ -63,7 +64,7 @@ fn explain_closure(pattern: &Pattern, rows: &PatternRows, usual: Deg) -> Option<
             "this is the angle of {} rows in each group, for a pitch of about {:.3}: check divisions, \
              pitch and diameter in the call",
             count / 2,
-            pattern.pitch_of(count)
+            pattern.closing_pitch(count)
         )
     })
 }

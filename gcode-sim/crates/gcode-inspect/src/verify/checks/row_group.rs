@@ -1,6 +1,6 @@
 //! A honeycomb has two groups of rows, one half a pitch later in x than the other: where all rows begin alike, one is
 //! missing, or stands where the other does.
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
@@ -9,7 +9,8 @@ use gcode_part::Pattern;
 /// Rows that begin nearer to one another than this, in mm, begin alike.
 const SAME_SHIFT: f64 = 0.02;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern.filter(|_| !comparison.missing.is_empty()) else { return };
     let late = |x: f64| (0.25..0.75).contains(&(x / pattern.pitch).fract());
     let second = comparison.nominal.iter().filter(|hole| late(hole.entry[0])).count();
@@ -40,7 +41,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             ),
             format!(
                 "drill the second group: rotated by {:.4}° from the first and half a pitch ({half:.3} mm) later in x",
-                pattern.step().0
+                pattern.row_angle().0
             ),
         ),
         false => (
@@ -63,7 +64,7 @@ fn shifted_group(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternR
     let mut begins = [f64::NAN; 2];
     let mut first = [rows.rows[0]; 2];
     for row in &rows.rows {
-        let group = (row.azimuth.0 / pattern.step().0).round() as usize % 2;
+        let group = (row.azimuth.0 / pattern.row_angle().0).round() as usize % 2;
         if begins[group].is_nan() {
             (begins[group], first[group]) = (row.start, *row);
         } else if SAME_SHIFT < (row.start - begins[group]).abs() {

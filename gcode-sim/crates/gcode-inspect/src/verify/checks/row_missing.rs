@@ -1,13 +1,14 @@
 //! Whole rows of a honeycomb that nobody drilled are named as rows.
 use nalgebra::Point3;
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
 use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::units::Deg;
 use gcode_part::Pattern;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(last) = comparison.pairs.last() else { return };
     // Half of the pattern is told as that, and rows at other angles as those.

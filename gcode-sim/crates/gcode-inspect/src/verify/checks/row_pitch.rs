@@ -1,5 +1,5 @@
 //! In a row the holes stand at the pitch with which the pattern closes: another one is told with what it adds up to.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use crate::verify::causes::describe_causes;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
@@ -8,12 +8,13 @@ use gcode_lang::diag::Diagnostic;
 /// Pitches nearer than this, in mm, are the same: holes are rounded to the increment.
 const PITCH_TOLERANCE: f64 = 0.002;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let Some((spacing, row)) = rows.spacing else { return };
     // The pitch that follows from another number of rows is told with their angle.
-    let follows = (spacing - pattern.pitch_of(rows.rows.len() as u32)).abs() < PITCH_TOLERANCE;
+    let follows = (spacing - pattern.closing_pitch(rows.rows.len() as u32)).abs() < PITCH_TOLERANCE;
     if follows && objections.iter().any(|objection| objection.finding.code == "row-angle") {
         return;
     }
@@ -29,7 +30,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     );
     let mut finding =
         locate_at_call(Diagnostic::error("row-pitch", message), &comparison.actual[row.first].backtrace);
-    if let Some(asked) = pattern.asked
+    if let Some(asked) = pattern.specified_pitch
         && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
     {
         finding = finding.note(format!(

@@ -1,10 +1,11 @@
 //! Where a honeycomb ends too early, as with a length that is too small, that is told instead of what it looks
 //! like.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let (Some(_), Some(_)) = (comparison.pattern, comparison.missing.first()) else { return };
     let x = |wanted: usize| comparison.nominal[wanted].entry[0];
     let Some(last) = comparison.pairs.iter().max_by(|a, b| x(a.nominal).total_cmp(&x(b.nominal))) else {

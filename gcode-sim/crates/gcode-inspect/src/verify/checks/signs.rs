@@ -1,6 +1,7 @@
 //! The rotary turns the same way in the job and in the machine file.
 use nalgebra::{Unit, Vector3};
 
+use super::{HoleFinding, HoleInspection};
 use crate::machine::{LinkMotion, Machine};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Reference;
@@ -9,8 +10,12 @@ use gcode_part::Surface;
 /// Of an axis that stands more askew than this to the part's nobody can say which way it turns.
 const MIN_ALIGNMENT: f64 = 0.5;
 
-pub(in crate::verify) fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
-    let rotary = reference.conduct.rotary?;
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut Vec<HoleFinding>) {
+    findings.extend(finding(inspection.reference, inspection.machine).map(HoleFinding::of_motion));
+}
+
+fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
+    let rotary = reference.process_limits.rotary?;
     let about = match reference.surface? {
         Surface::Ellipsoid { .. } => Vector3::y_axis(),
         Surface::Cylinder { .. } => Vector3::x_axis(),
@@ -31,7 +36,7 @@ pub(in crate::verify) fn finding(reference: &Reference, machine: &Machine) -> Op
 fn sign_about(machine: &Machine, letter: char, own: &Unit<Vector3<f64>>) -> Option<f64> {
     let axis = machine.axes.find(letter as u8)?;
     let link = machine.table.0.iter().find(|link| link.axis == axis)?;
-    let LinkMotion::Turn { about, .. } = &link.motion else { return None };
+    let LinkMotion::Rotary { about, .. } = &link.motion else { return None };
     let along = machine.part.frame().rotation.inverse_transform_unit_vector(about).dot(own);
     (MIN_ALIGNMENT < along.abs()).then(|| link.sign * along.signum())
 }

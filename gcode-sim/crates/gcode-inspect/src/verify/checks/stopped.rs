@@ -1,14 +1,12 @@
 //! Where the run stopped before its end, what it left out says nothing more: one sentence, and nothing of rows.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
 use crate::verify::hole_finding::{fold, folded_note};
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    stopped: bool,
-    objections: &mut Vec<HoleFinding>,
-) {
-    if !stopped || comparison.missing.is_empty() {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
+    let is_alarm = |finding: &Diagnostic| finding.severity == Severity::Alarm;
+    if comparison.missing.is_empty() || !inspection.extraction.findings.iter().any(is_alarm) {
         return;
     }
     // Rows that were not reached look like a seam or a missing group.

@@ -3,8 +3,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, HoleFinding};
-use crate::machine::Machine;
+use super::{HoleFinding, HoleInspection};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 
@@ -17,11 +16,8 @@ struct Deepest<'a> {
     holes: usize,
 }
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, .. } = inspection;
     // A length of 0 is that of a tool whose tip is programmed.
     let length = |tool: u32| machine.find_tool(tool)?.length.filter(|length| 0.0 < *length);
     let mut short: BTreeMap<u32, (f64, Deepest<'_>)> = BTreeMap::new();

@@ -248,7 +248,7 @@ fn repeated_passes(flutes: &[(usize, Deg)], over: &[(usize, usize)]) -> Vec<Repe
 
 /// Halfway along the flutes, by x.
 fn middle_x(wanted: &Flutes) -> f64 {
-    (wanted.start + wanted.profile.at_polar(wanted.tip_angle).x) / 2.0
+    (wanted.start + wanted.profile.point_at_polar(wanted.tip_angle).x) / 2.0
 }
 
 /// Which of two flutes stands farther from its place between all others, and how far; places are those with which most

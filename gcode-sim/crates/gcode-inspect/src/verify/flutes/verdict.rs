@@ -12,50 +12,50 @@ use gcode_lang::units::Deg;
 use gcode_part::Flutes;
 use gcode_part::job::FluteLaw;
 
-/// As `verify --format json` writes it. Lengths in mm, angles in degrees; nothing is rounded.
+/// The result of `verify --format json`. Lengths in mm, angles in degrees; nothing is rounded.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FluteVerdict {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
     pub verdict: Answer,
     pub law: &'static str,
-    /// That are ground; passes over one that is there already don't count.
+    /// Number of flutes ground; repeated passes over a flute do not count.
     pub flutes: usize,
     #[serde(rename = "wanted_flutes")]
     pub nominal_flutes: usize,
     /// The largest distance of the contact from the tooth bottom, between the points too; null without a flute.
     pub surface_deviation: Option<f64>,
-    /// What that may be: the job's chord error, or what was asked for.
+    /// Its tolerance: the job's chord error, or that of the command line.
     pub tolerance: f64,
     pub helix_min: Option<f64>,
     pub helix_max: Option<f64>,
-    /// Of the law asked for, on the cylinder.
+    /// Nominal angle on the cylinder, by the job's law.
     pub helix: f64,
-    /// The largest difference from the law asked for.
+    /// The largest deviation from the job's law.
     pub helix_error: Option<f64>,
     pub helix_tolerance: f64,
     /// The length over which a helix angle is measured.
     pub gauge: f64,
-    /// The largest difference of a gap between neighbours from an even one.
+    /// The largest deviation of a gap between neighbours from the nominal one.
     pub index_error: Option<f64>,
     pub index_tolerance: f64,
     /// Of the contact along the flutes, mm/min, over a gauge length.
     pub speed_min: Option<f64>,
     pub speed_max: Option<f64>,
-    /// What the job asks for, where it does.
+    /// The speed that the job specifies, if it does.
     pub speed: Option<f64>,
-    /// How far it may be off, either way, as a part of it.
+    /// Tolerance of the speed, either way, as a fraction.
     pub speed_tolerance: f64,
     /// The least distance between the paths of neighbours, in a straight line.
     pub nearest: Option<f64>,
     pub passes: usize,
     /// Grinding moves of all passes.
     pub moves: usize,
-    /// A burr has none.
+    /// Always empty for a burr.
     pub holes: [(); 0],
     pub laws: Vec<LawAngles>,
     pub findings: Vec<Finding>,
-    /// What the verdict says nothing about, in words.
+    /// What the verdict does not cover, in words.
     pub not_checked: Vec<String>,
     /// For plots: the helix angle along the flute that is farthest from the law, and which pass that is, counted from 1.
     #[serde(skip)]
@@ -72,24 +72,25 @@ pub struct FluteVerdict {
 
 /// The helix angle at one polar angle: measured, and by both laws.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Law")]
 pub struct LawAngles {
     #[serde(rename = "theta")]
     pub polar: f64,
-    /// On the flute that is farthest from the law; null where it isn't measured.
+    /// On the flute with the largest deviation from the law; null where it is not measured.
     pub measured: Option<f64>,
     pub constant_helix: f64,
     pub published: f64,
 }
 
-/// What `reference` writes of a burr: what is wanted, without a program.
+/// The result of `reference` for a burr: the nominal flutes, without a program.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct NominalFlutes {
     pub unit: &'static str,
-    /// A burr has none.
+    /// Always empty for a burr.
     pub holes: [(); 0],
     pub flutes: u32,
     pub law: &'static str,
-    /// Where they begin behind the end of the cylinder, and where the pole is, along the axis.
+    /// Start of the flutes from the end of the cylinder; `pole`: position of the pole along the axis.
     pub start: f64,
     pub pole: f64,
     pub tip_angle: f64,
@@ -272,8 +273,8 @@ fn law_table(wanted: &Flutes, along: &[HelixSample]) -> Vec<LawAngles> {
         LawAngles {
             polar: theta,
             measured: nearest.map(|angles| angles.helix.0),
-            constant_helix: wanted.angle(FluteLaw::ConstantHelix, Deg(theta)).0,
-            published: wanted.angle(FluteLaw::Published, Deg(theta)).0,
+            constant_helix: wanted.helix_angle(FluteLaw::ConstantHelix, Deg(theta)).0,
+            published: wanted.helix_angle(FluteLaw::Published, Deg(theta)).0,
         }
     };
     all.map(at).collect()

@@ -3,50 +3,35 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{AlignmentLimits, EllipsePath};
-use crate::job::sections::within;
-use crate::job::{FileError, Reader, Surface};
-use crate::reader::Spanned;
+use crate::job::Surface;
+use crate::reader::bounds::{Bounded, ShiftLimit, TiltLimit};
 use gcode_lang::units::Deg;
 
-/// What a part that is set up may be off by.
+/// Tolerances of the set-up of a part.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileLimits {
-    /// Shift in x and in z that the last run-out may leave, mm [default: 0.025].
-    #[schemars(range(min = 0.001, max = 10.0))]
-    shift: Option<Spanned<f64>>,
-    /// Tilt about x and about z that the last run-out may leave, degrees [default: what shows as `dial` on the ellipse, 0.001 to 0.1].
-    #[schemars(range(min = 0.001, max = 1.0))]
-    tilt: Option<Spanned<f64>>,
-    /// What the dial along the ellipse may show, mm [default: 0.03].
-    #[schemars(range(min = 0.001, max = 10.0))]
-    dial: Option<Spanned<f64>>,
+    /// Tolerance of the shift in x and in z after the last run-out, mm [default: 0.025].
+    shift: Option<Bounded<ShiftLimit>>,
+    /// Tolerance of the tilt about x and about z after the last run-out, degrees [default: the tilt that alone
+    /// gives `dial` on the ellipse, 0.001 to 0.1].
+    tilt: Option<Bounded<TiltLimit>>,
+    /// Tolerance of the dial reading along the ellipse, mm [default: 0.03].
+    dial: Option<Bounded<ShiftLimit>>,
 }
 
 impl FileLimits {
     /// The defaults are those of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*: 0.03 along the ellipse, and a
     /// run-out of 0.05, twice the shift.
-    pub(super) fn check(
-        &self,
-        reader: &Reader<'_>,
-        surface: Surface,
-        path: EllipsePath,
-    ) -> Result<AlignmentLimits, FileError> {
-        let limit = |key: &str, value: &Option<Spanned<f64>>, (most, unit): (f64, &str), default: f64| {
-            let allowed = format!("0.001 to {most} {unit}");
-            reader.number_or(key, value.as_ref(), &allowed, within(0.001, most), default)
-        };
-        let dial = limit("limits.dial", &self.dial, (10.0, "mm"), 0.03)?;
-        Ok(AlignmentLimits {
-            shift: limit("limits.shift", &self.shift, (10.0, "mm"), 0.025)?,
-            tilt: limit("limits.tilt", &self.tilt, (1.0, "degrees"), shown_as(dial, surface, path))?,
-            dial,
-        })
+    pub(super) fn limits(&self, surface: Surface, path: EllipsePath) -> AlignmentLimits {
+        let dial = self.dial.as_ref().map_or(0.03, Bounded::get);
+        let tilt = self.tilt.as_ref().map_or_else(|| dial_reading(dial, surface, path), Bounded::get);
+        AlignmentLimits { shift: self.shift.as_ref().map_or(0.025, Bounded::get), tilt, dial }
     }
 }
 
 /// The tilt about z, degrees, in full thousandths, that alone makes the dial show so much where it shows most: it reads δ·(x·n_y − y·n_x).
-fn shown_as(dial: f64, Surface { a, b }: Surface, path: EllipsePath) -> f64 {
+fn dial_reading(dial: f64, Surface { a, b }: Surface, path: EllipsePath) -> f64 {
     let arm = |x: f64| {
         let y = b * (1.0 - (x / a) * (x / a)).sqrt();
         let (across, up) = (x / (a * a), y / (b * b));

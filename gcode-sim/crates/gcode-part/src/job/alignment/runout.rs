@@ -3,11 +3,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Runout;
-use crate::job::sections::within;
 use crate::job::{FileError, Reader, Surface};
+use crate::reader::bounds::{Bounded, PartShift};
 use crate::reader::{FixedArray, Spanned};
 
-/// An indicator against the part while the table turns.
+/// An indicator on the part while the table rotates.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileRunout {
@@ -17,9 +17,8 @@ pub(super) struct FileRunout {
     /// From, to, and the number of readings (3 to 100): degrees.
     #[schemars(inner(range(min = -360.0, max = 360.0)))]
     angles: Spanned<FixedArray<f64, 3>>,
-    /// The largest shift of the part in y that the fit is believed to find, mm [default: 0.4].
-    #[schemars(range(min = 0.01, max = 100.0))]
-    y_shift: Option<Spanned<f64>>,
+    /// The largest shift of the part in y that the fit accepts, mm [default: 0.4].
+    y_shift: Option<Bounded<PartShift>>,
 }
 
 impl FileRunout {
@@ -62,9 +61,7 @@ impl FileRunout {
             );
             return Err(reader.error(&self.angles, message));
         }
-        let shift = self.y_shift.as_ref();
-        let y_shift =
-            reader.number_or("runout.y_shift", shift, "0.01 to 100 mm", within(0.01, 100.0), 0.4)?;
+        let y_shift = self.y_shift.as_ref().map_or(0.4, Bounded::get);
         Ok(Runout { heights, from, to, readings: readings as u32, y_shift })
     }
 }

@@ -82,11 +82,11 @@ pub struct Grinder {
     pub c_offset: [f64; 2],
     pub signs: AxisSigns,
     /// Whether the job says them: where it doesn't, the default is no demand on other programs.
-    pub signs_said: bool,
+    pub are_signs_specified: bool,
     /// How far from the blank rapid becomes feed, and the burr stands off while it is turned.
     pub clearance: f64,
     /// Whether the job says that.
-    pub clearance_said: bool,
+    pub is_clearance_specified: bool,
 }
 
 /// 1 where an axis obeys the formulas, −1 where it runs the other way.
@@ -105,15 +105,15 @@ pub struct BurrProgram {
     /// Of the contact along the flute, mm/min.
     pub speed: f64,
     /// Whether the job says that speed: where it doesn't, the default is no demand on other programs.
-    pub speed_said: bool,
+    pub is_speed_specified: bool,
     /// Into the blank, mm/min.
     pub plunge: f64,
     /// Whether the job says it.
-    pub plunge_said: bool,
+    pub is_plunge_specified: bool,
     /// Of the wheel, r/min.
     pub wheel: f64,
     /// Whether the job says it.
-    pub wheel_said: bool,
+    pub is_wheel_specified: bool,
 }
 
 /// How the moves of a flute are written.

@@ -3,32 +3,36 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing, SpecifiedFields};
-use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, length, within};
+use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, in_range};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader};
+use crate::reader::bounds::{
+    Bounded, Depth, Divisions, DrillNumber, FeedRate, KeyRange, Length, OuterDiameter, Radius, Retract,
+    SpindleSpeed,
+};
 use crate::reader::{Spanned, names};
 
 /// A hexagonal pattern of radial holes on a cylinder about x.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct File {
-    /// What kind of part it is: decides which keys there are.
+    /// The kind of part, which decides the other keys.
     #[serde(rename = "family")]
     #[schemars(extend("enum" = ["honeycomb"]))]
     _family: String,
-    /// The control the programs are for.
+    /// The control of the programs.
     control: FileControl,
     /// The machine.
     machine: FileMachine,
-    /// How far holes may be off.
+    /// Tolerances of the holes.
     tolerance: FileTolerance,
     /// The part.
     cylinder: FileCylinder,
-    /// How the holes stand to one another.
+    /// The pattern of the holes.
     pattern: Spanned<FilePattern>,
     /// The tool and the holes it makes.
     drill: FileDrill,
-    /// What the set-up sheet says of people, time and money.
+    /// Additional data for the set-up sheet.
     sheet: Option<FileSheet>,
 }
 
@@ -36,15 +40,13 @@ pub(in crate::job) struct File {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileMachine {
-    /// The axis that turns the part.
+    /// The axis that rotates the part.
     rotary: FileRotary,
-    /// How far above the surface rapid becomes feed, mm [default: 2].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    clearance: Option<Spanned<f64>>,
-    /// How far above the surface the tool goes between holes, mm, no less than the clearance [default: 50].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    retract: Option<Spanned<f64>>,
-    /// The M codes that hold the rotary and let it go [default: none].
+    /// Distance from the surface where the feed begins, mm [default: 2].
+    clearance: Option<Bounded<Depth>>,
+    /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
+    retract: Option<Bounded<Retract>>,
+    /// The M codes that clamp and release the rotary [default: none].
     clamp: Option<FileClamp>,
 }
 
@@ -52,11 +54,11 @@ struct FileMachine {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileClamp {
-    /// Holds the rotary.
-    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": TAKEN }))]
+    /// Clamps the rotary.
+    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": RESERVED_M_CODES }))]
     on: Spanned<i64>,
-    /// Lets it go.
-    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": TAKEN }))]
+    /// Releases the rotary.
+    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": RESERVED_M_CODES }))]
     off: Spanned<i64>,
 }
 
@@ -64,18 +66,14 @@ struct FileClamp {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileCylinder {
-    /// On which the pitch is to hold, mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    diameter: Spanned<f64>,
+    /// Diameter of the pitch, mm.
+    diameter: Bounded<Length>,
     /// mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    length: Spanned<f64>,
+    length: Bounded<Length>,
     /// Where the holes begin, mm, no less than diameter [default: diameter].
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    outer: Option<Spanned<f64>>,
+    outer: Option<Bounded<OuterDiameter>>,
     /// Of a tube, mm, no more than diameter [default: 0, solid].
-    #[schemars(range(min = 0.0, max = 99_999.0))]
-    bore: Option<Spanned<f64>>,
+    bore: Option<Bounded<Radius>>,
 }
 
 /// How the holes stand to one another: by pitch or by divisions, the other one follows.
@@ -83,13 +81,11 @@ struct FileCylinder {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["pitch"] }, { "required": ["divisions"] }]))]
 struct FilePattern {
-    /// Between neighbours, mm, above the drill's diameter; made to fit, so that the pattern closes.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    pitch: Option<Spanned<f64>>,
+    /// Between neighbours, mm, above the drill diameter; adjusted so that the pattern closes.
+    pitch: Option<Bounded<Length>>,
     /// Rows of one group round the circumference.
-    #[schemars(range(min = 2, max = 100_000))]
-    divisions: Option<Spanned<i64>>,
-    /// How the distance of neighbours counts: arc on the surface, or chord.
+    divisions: Option<Bounded<Divisions>>,
+    /// Metric of the distance between neighbours: arc on the surface, or chord.
     #[schemars(extend("enum" = names(&Metric::ALL)))]
     metric: Spanned<String>,
 }
@@ -99,31 +95,25 @@ struct FilePattern {
 #[serde(deny_unknown_fields)]
 struct FileDrill {
     /// mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    diameter: Spanned<f64>,
+    diameter: Bounded<Length>,
     /// mm, below the radius of the part.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    depth: Spanned<f64>,
+    depth: Bounded<Length>,
     /// Of the tool and of its length offset [default: 1].
-    #[schemars(range(min = 1, max = 400))]
-    number: Option<Spanned<i64>>,
+    number: Option<Bounded<DrillNumber>>,
     /// A whole number of r/min [default: 1000].
-    #[schemars(range(min = 1.0, max = 99_999.0), extend("multipleOf" = 1))]
-    speed: Option<Spanned<f64>>,
+    speed: Option<Bounded<SpindleSpeed>>,
     /// mm/min [default: 60].
-    #[schemars(range(min = 0.01, max = 240_000.0))]
-    feed: Option<Spanned<f64>>,
+    feed: Option<Bounded<FeedRate>>,
     /// Of G83, mm, which a hole deeper than three diameters gets [default: the diameter].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    peck: Option<Spanned<f64>>,
+    peck: Option<Bounded<Depth>>,
 }
 
 /// M codes that end, call or rigid-tap.
-const TAKEN: [i64; 5] = [19, 29, 30, 98, 99];
+const RESERVED_M_CODES: [i64; 5] = [19, 29, 30, 98, 99];
 /// mm/min, in the paper.
-const FEED: f64 = 60.0;
+const DEFAULT_FEED: f64 = 60.0;
 /// r/min; the paper names none.
-const SPEED: f64 = 1000.0;
+const DEFAULT_SPEED: f64 = 1000.0;
 
 /// Reads the text of a job of this family.
 pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Honeycomb, FileError> {
@@ -135,11 +125,11 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Honeycomb, FileError>
         machine: file.machine.check(reader)?,
         spacing: spacing(reader, &file.pattern, &cylinder, &drill)?,
         metric: reader.choice("pattern.metric", &file.pattern.as_ref().metric, &Metric::ALL)?,
-        position_tolerance: file.tolerance.position(reader)?,
-        depth_tolerance: file.tolerance.depth(reader)?,
+        position_tolerance: file.tolerance.position(),
+        depth_tolerance: file.tolerance.depth(),
         cylinder,
         drill,
-        sheet: FileSheet::of(file.sheet, reader)?,
+        sheet: file.sheet.map(FileSheet::info).unwrap_or_default(),
     })
 }
 
@@ -149,7 +139,14 @@ impl FileMachine {
         let clamp = self.clamp.as_ref().map(|clamp| clamp.check(reader)).transpose()?;
         let retract_said = self.retract.is_some();
         let (clearance_said, rotary) = (self.clearance.is_some(), self.rotary.check(reader)?);
-        Ok(CombMachine { rotary, clearance, clearance_said, retract, retract_said, clamp })
+        Ok(CombMachine {
+            rotary,
+            clearance,
+            is_clearance_specified: clearance_said,
+            retract,
+            is_retract_specified: retract_said,
+            clamp,
+        })
     }
 }
 
@@ -157,7 +154,7 @@ impl FileClamp {
     fn check(&self, reader: &Reader<'_>) -> Result<Clamp, FileError> {
         let own = |key: &str, value: &Spanned<i64>| {
             let code = *value.as_ref();
-            if (10..=999).contains(&code) && !TAKEN.contains(&code) {
+            if (10..=999).contains(&code) && !RESERVED_M_CODES.contains(&code) {
                 return Ok(code as u32);
             }
             let allowed = "an M code of the machine's own, 10 to 999 without 19, 29, 30, 98, 99";
@@ -174,18 +171,19 @@ impl FileClamp {
 
 impl FileCylinder {
     fn check(&self, reader: &Reader<'_>) -> Result<Cylinder, FileError> {
-        let diameter = length(reader, "cylinder.diameter", &self.diameter)?;
+        let diameter = self.diameter.get();
         let outer = match &self.outer {
             Some(outer) => {
-                let allowed = format!("from the diameter of {diameter} mm to 99999 mm");
-                reader.number("cylinder.outer", outer, &allowed, within(diameter, 99_999.0))?
+                let most = OuterDiameter::MAX;
+                let allowed = format!("from the diameter of {diameter} mm to {most} mm");
+                reader.number("cylinder.outer", outer, &allowed, in_range(diameter, most))?
             }
             None => diameter,
         };
         let bore = match &self.bore {
             Some(bore) => {
                 let allowed = format!("0 to the diameter of {diameter} mm");
-                let wide = reader.number("cylinder.bore", bore, &allowed, within(0.0, diameter))?;
+                let wide = reader.number("cylinder.bore", bore, &allowed, in_range(0.0, diameter))?;
                 if wide >= outer {
                     let message = format!(
                         "key 'cylinder.bore' is {wide}: below the outer diameter of {outer} mm, because \
@@ -197,52 +195,31 @@ impl FileCylinder {
             }
             None => 0.0,
         };
-        Ok(Cylinder { diameter, length: length(reader, "cylinder.length", &self.length)?, outer, bore })
+        Ok(Cylinder { diameter, length: self.length.get(), outer, bore })
     }
 }
 
 impl FileDrill {
     fn check(&self, reader: &Reader<'_>, cylinder: &Cylinder) -> Result<Drill, FileError> {
-        let diameter = length(reader, "drill.diameter", &self.diameter)?;
-        let radius = cylinder.outer / 2.0;
-        let depth = length(reader, "drill.depth", &self.depth)?;
+        let (diameter, depth, radius) = (self.diameter.get(), self.depth.get(), cylinder.outer / 2.0);
         if depth >= radius {
             let message = format!(
                 "key 'drill.depth' is {depth}: below the radius of {radius} mm, because the holes meet on the axis"
             );
             return Err(reader.error(&self.depth, message));
         }
-        let number = match &self.number {
-            Some(number) if !(1..=400).contains(number.as_ref()) => {
-                let message = format!("key 'drill.number' is {}: 1 to 400", number.as_ref());
-                return Err(reader.error(number, message));
-            }
-            Some(number) => *number.as_ref() as u32,
-            None => 1,
-        };
-        let or = |key: &str, value: &Option<Spanned<f64>>, allowed: &str, least: f64, most: f64, or: f64| {
-            value.as_ref().map_or(Ok(or), |value| reader.number(key, value, allowed, within(least, most)))
-        };
-        let speed = match &self.speed {
-            Some(speed) => {
-                let allowed = "a whole number from 1 to 99999 r/min";
-                reader
-                    .number("drill.speed", speed, allowed, |v| within(1.0, 99_999.0)(v) && v.fract() == 0.0)?
-            }
-            None => SPEED,
-        };
         Ok(Drill {
-            number,
+            number: self.number.as_ref().map_or(1, |number| number.get() as u32),
             diameter,
             depth,
-            speed,
-            feed: or("drill.feed", &self.feed, "0.01 to 240000 mm/min", 0.01, 240_000.0, FEED)?,
-            peck: or("drill.peck", &self.peck, "0.01 to 9999 mm", 0.01, 9_999.0, diameter)?,
-            said: SpecifiedFields {
-                number: self.number.is_some(),
-                speed: self.speed.is_some(),
-                feed: self.feed.is_some(),
-                peck: self.peck.is_some(),
+            speed: self.speed.as_ref().map_or(DEFAULT_SPEED, Bounded::get),
+            feed: self.feed.as_ref().map_or(DEFAULT_FEED, Bounded::get),
+            peck: self.peck.as_ref().map_or(diameter, Bounded::get),
+            specified: SpecifiedFields {
+                has_number: self.number.is_some(),
+                has_speed: self.speed.is_some(),
+                has_feed: self.feed.is_some(),
+                has_peck: self.peck.is_some(),
             },
         })
     }
@@ -264,16 +241,9 @@ fn spacing(
         (None, None) => {
             Err(reader.error(pattern, "key 'pattern.pitch' is missing: give it, or 'divisions' instead"))
         }
-        (None, Some(divisions)) => {
-            let number = *divisions.as_ref();
-            if (2..=100_000).contains(&number) {
-                return Ok(Spacing::Divisions(number as u32));
-            }
-            let allowed = "a whole number from 2 to 100000";
-            Err(reader.error(divisions, format!("key 'pattern.divisions' is {number}: {allowed}")))
-        }
+        (None, Some(divisions)) => Ok(Spacing::Divisions(divisions.get() as u32)),
         (Some(key), None) => {
-            let pitch = length(reader, "pattern.pitch", key)?;
+            let pitch = key.get();
             let told = |allowed: String| {
                 Err(reader.error(key, format!("key 'pattern.pitch' is {pitch}: {allowed}")))
             };

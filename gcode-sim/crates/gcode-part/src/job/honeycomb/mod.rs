@@ -27,11 +27,11 @@ pub struct CombMachine {
     /// How far above the surface rapid becomes feed.
     pub clearance: f64,
     /// Whether the job says that.
-    pub clearance_said: bool,
+    pub is_clearance_specified: bool,
     /// How far above the surface the tool is while the rotary turns.
     pub retract: f64,
     /// Whether the job says that: where it doesn't, the default is no demand on other programs.
-    pub retract_said: bool,
+    pub is_retract_specified: bool,
     pub clamp: Option<Clamp>,
 }
 
@@ -95,16 +95,16 @@ pub struct Drill {
     pub feed: f64,
     /// Of G83, which a hole deeper than three diameters gets.
     pub peck: f64,
-    pub said: SpecifiedFields,
+    pub specified: SpecifiedFields,
 }
 
 /// Which of its numbers the job says: where it doesn't, the default is no demand on other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SpecifiedFields {
-    pub number: bool,
-    pub speed: bool,
-    pub feed: bool,
-    pub peck: bool,
+    pub has_number: bool,
+    pub has_speed: bool,
+    pub has_feed: bool,
+    pub has_peck: bool,
 }
 
 #[cfg(test)]
@@ -175,11 +175,7 @@ depth = 12.0
                 "pitch = 10.0\ndivisions = 91",
                 "line 14: key 'pattern.divisions' excludes 'pitch': each follows from the other",
             ),
-            (
-                "pitch = 10.0",
-                "divisions = 1",
-                "line 13: key 'pattern.divisions' is 1: a whole number from 2 to 100000",
-            ),
+            ("pitch = 10.0", "divisions = 1", "line 13: key 'pattern.divisions' is 1: 2 to 100000"),
             (
                 "pitch = 10.0",
                 "pitch = 4.9",

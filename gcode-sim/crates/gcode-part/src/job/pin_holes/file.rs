@@ -7,26 +7,27 @@ use serde_json::json;
 
 use super::tools::{FileTool, HoleToolSpec, assign, default_tools};
 use super::{AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool};
-use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, length, within};
+use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, in_range};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader};
+use crate::reader::bounds::{Azimuth, Bounded, Depth, Length, Radius, Retract, ToolLength};
 use crate::reader::{Spanned, names};
 
 /// Pin holes in a surface of revolution: drilled along its axis or its normals.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct File {
-    /// What kind of part it is: decides which keys there are.
+    /// The kind of part, which decides the other keys.
     #[serde(rename = "family")]
     #[schemars(extend("enum" = ["pin-holes"]))]
     _family: String,
-    /// The control the programs are for.
+    /// The control of the programs.
     control: FileControl,
     /// The machine.
     machine: FileMachine,
     /// The surface that the holes begin in.
     surface: FileSurface,
-    /// How far holes may be off.
+    /// Tolerances of the holes.
     tolerance: FileTolerance,
     /// The holes, in the order in which they are drilled.
     #[schemars(length(min = 1))]
@@ -34,10 +35,10 @@ pub(in crate::job) struct File {
     /// The tools in the order of use [default: a drill and an end mill for each diameter].
     #[schemars(length(min = 1))]
     tool: Option<Vec<FileTool>>,
-    /// Which common variables the macros use.
+    /// The common variables of the macros.
     #[serde(rename = "macro")]
     macros: Option<FileMacro>,
-    /// What the set-up sheet says of people, time and money.
+    /// Additional data for the set-up sheet.
     sheet: Option<FileSheet>,
 }
 
@@ -45,16 +46,14 @@ pub(in crate::job) struct File {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct FileMachine {
-    /// The axis that turns the part.
+    /// The axis that rotates the part.
     rotary: FileRotary,
     /// How the tool is inclined [default: by hand].
     head: Option<FileHead>,
-    /// How far above the surface rapid becomes feed, mm [default: 2].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    clearance: Option<Spanned<f64>>,
-    /// How far above the surface the tool goes between holes, mm, no less than the clearance [default: 50].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    retract: Option<Spanned<f64>>,
+    /// Distance from the surface where the feed begins, mm [default: 2].
+    clearance: Option<Bounded<Depth>>,
+    /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
+    retract: Option<Bounded<Retract>>,
 }
 
 /// How the tool is inclined.
@@ -69,8 +68,7 @@ struct FileHead {
     #[schemars(extend("enum" = names(&ROTARY_LETTERS)))]
     letter: Option<Spanned<String>>,
     /// From the head's pivot to the spindle's gauge line, mm [default: 0].
-    #[schemars(range(min = 0.0, max = 9_999.0))]
-    pivot: Option<Spanned<f64>>,
+    pivot: Option<Bounded<ToolLength>>,
 }
 
 /// The surface that the holes begin in.
@@ -81,35 +79,29 @@ pub(in crate::job) struct FileSurface {
     #[schemars(extend("enum" = ["ellipsoid"]))]
     kind: Spanned<String>,
     /// Equatorial radius, mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    a: Spanned<f64>,
+    a: Bounded<Length>,
     /// Polar radius, mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    b: Spanned<f64>,
+    b: Bounded<Length>,
 }
 
 /// One hole.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileHole {
-    /// Its name; each has its own.
+    /// Its name, unique.
     id: Spanned<String>,
     /// Distance of its entry from the axis of revolution, mm: at most the equatorial radius.
-    #[schemars(range(min = 0.0, max = 99_999.0))]
-    radius: Spanned<f64>,
-    /// Where it stands round that axis, degrees.
-    #[schemars(range(min = -3600.0, max = 3600.0))]
-    azimuth: Spanned<f64>,
+    radius: Bounded<Radius>,
+    /// Azimuth about that axis, degrees.
+    azimuth: Bounded<Azimuth>,
     /// axial: along the axis of revolution; normal: along the surface's normal.
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
     axis: Spanned<String>,
     /// mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    diameter: Spanned<f64>,
+    diameter: Bounded<Length>,
     /// From the surface along the axis, mm.
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    depth: Spanned<f64>,
-    /// The numbers of the tools that make it [default: every tool that isn't larger than it].
+    depth: Bounded<Depth>,
+    /// The numbers of the tools that make it [default: every tool that is not larger than it].
     tools: Option<Spanned<Vec<i64>>>,
 }
 
@@ -154,13 +146,13 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, FileError> 
         control: file.control.check(reader)?,
         machine: file.machine.check(reader)?,
         surface,
-        position_tolerance: file.tolerance.position(reader)?,
-        depth_tolerance: file.tolerance.depth(reader)?,
+        position_tolerance: file.tolerance.position(),
+        depth_tolerance: file.tolerance.depth(),
         tools,
-        tools_said: file.tool.is_some(),
+        are_tools_specified: file.tool.is_some(),
         macros: MacroSettings { common },
         holes,
-        sheet: FileSheet::of(file.sheet, reader)?,
+        sheet: file.sheet.map(FileSheet::info).unwrap_or_default(),
     })
 }
 
@@ -176,9 +168,8 @@ impl File {
                 let message = format!("key 'hole.id': '{}' is used twice", hole.id.as_ref());
                 return Err(reader.error(&hole.id, message));
             }
-            length(reader, "hole.diameter", &hole.diameter)?;
         }
-        let wanted: Vec<_> = self.hole.iter().map(FileHole::tools_wanted).collect();
+        let wanted: Vec<_> = self.hole.iter().map(FileHole::tool_spec).collect();
         let Some(tools) = &self.tool else { return default_tools(reader, &wanted) };
         if tools.is_empty() {
             return Err(reader.error(&first.id, "'tool' is empty: remove it, or add a [[tool]]"));
@@ -190,7 +181,7 @@ impl File {
                 return Err(reader.error(tool.number(), message));
             }
         }
-        let tools = tools.iter().map(|tool| tool.check(reader)).collect::<Result<Vec<_>, _>>()?;
+        let tools: Vec<Tool> = tools.iter().map(FileTool::tool).collect();
         let of_holes = assign(reader, &tools, &wanted)?;
         Ok((tools, of_holes))
     }
@@ -199,7 +190,7 @@ impl File {
 impl FileSurface {
     pub(in crate::job) fn check(&self, reader: &Reader<'_>) -> Result<Surface, FileError> {
         reader.choice("surface.kind", &self.kind, &[("ellipsoid", ())])?;
-        Ok(Surface { a: length(reader, "surface.a", &self.a)?, b: length(reader, "surface.b", &self.b)? })
+        Ok(Surface { a: self.a.get(), b: self.b.get() })
     }
 }
 
@@ -216,20 +207,15 @@ impl FileMachine {
             head,
             clearance,
             retract,
-            retract_said: self.retract.is_some(),
-            clearance_said: self.clearance.is_some(),
+            is_retract_specified: self.retract.is_some(),
+            is_clearance_specified: self.clearance.is_some(),
         })
     }
 }
 
 impl FileHead {
     fn check(&self, reader: &Reader<'_>, rotary: char) -> Result<Head, FileError> {
-        let pivot = match &self.pivot {
-            Some(pivot) => {
-                reader.number("machine.head.pivot", pivot, "0 to 9999 mm", within(0.0, 9_999.0))?
-            }
-            None => 0.0,
-        };
+        let pivot = self.pivot.as_ref().map_or(0.0, Bounded::get);
         let by_axis = reader.choice("machine.head.kind", &self.kind, &HEADS)?;
         let kind = match (&self.letter, by_axis) {
             (None, false) => HeadKind::Manual,
@@ -256,7 +242,7 @@ impl FileHead {
 }
 
 impl FileHole {
-    fn tools_wanted(&self) -> HoleToolSpec<'_> {
+    fn tool_spec(&self) -> HoleToolSpec<'_> {
         HoleToolSpec { id: self.id.as_ref(), diameter: &self.diameter, tools: self.tools.as_ref() }
     }
 
@@ -265,16 +251,11 @@ impl FileHole {
         let radii = format!("0 to the equatorial radius a = {a} mm");
         Ok(HoleSpec {
             id: self.id.as_ref().clone(),
-            radius: reader.number("hole.radius", &self.radius, &radii, within(0.0, a))?,
-            azimuth: reader.number(
-                "hole.azimuth",
-                &self.azimuth,
-                "-3600 to 3600 degrees",
-                within(-3600.0, 3600.0),
-            )?,
+            radius: reader.number("hole.radius", &self.radius, &radii, in_range(0.0, a))?,
+            azimuth: self.azimuth.get(),
             axis: reader.choice("hole.axis", &self.axis, &DIRECTIONS)?,
-            diameter: *self.diameter.as_ref(),
-            depth: reader.number("hole.depth", &self.depth, "0.01 to 9999 mm", within(0.01, 9_999.0))?,
+            diameter: self.diameter.get(),
+            depth: self.depth.get(),
             tools,
         })
     }

@@ -18,7 +18,7 @@ pub struct PinHoles {
     pub depth_tolerance: f64,
     pub tools: Vec<Tool>,
     /// Whether the job says them: where it doesn't, those of the paper are no demand on other programs.
-    pub tools_said: bool,
+    pub are_tools_specified: bool,
     pub macros: MacroSettings,
     pub holes: Vec<HoleSpec>,
     pub sheet: SheetInfo,
@@ -42,8 +42,8 @@ pub struct PinMachine {
     /// How far from the surface, along the hole, the tool retracts before the rotary table turns.
     pub retract: f64,
     /// Whether the job says that: where it doesn't, the default is no demand on other programs.
-    pub retract_said: bool,
-    pub clearance_said: bool,
+    pub is_retract_specified: bool,
+    pub is_clearance_specified: bool,
 }
 
 /// The head that tilts the tool in the xy plane.

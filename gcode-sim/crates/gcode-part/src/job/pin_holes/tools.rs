@@ -3,80 +3,59 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Tool;
-use crate::job::sections::{length, within};
 use crate::job::{FileError, Reader};
 use crate::reader::Spanned;
+use crate::reader::bounds::{Bounded, FeedRate, Length, SpindleSpeed, ToolLength, ToolNumber};
 
 /// A tool.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTool {
-    /// Its number, and that of its length offset; each has its own.
-    #[schemars(range(min = 1, max = 9999))]
-    number: Spanned<i64>,
+    /// Its number, and that of its length offset; unique.
+    number: Bounded<ToolNumber>,
     /// mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    diameter: Spanned<f64>,
+    diameter: Bounded<Length>,
     /// From the gauge line to the tip, mm [default: 0].
-    #[schemars(range(min = 0.0, max = 9_999.0))]
-    length: Option<Spanned<f64>>,
+    length: Option<Bounded<ToolLength>>,
     /// A whole number of r/min.
-    #[schemars(range(min = 1.0, max = 99_999.0), extend("multipleOf" = 1))]
-    speed: Spanned<f64>,
+    speed: Bounded<SpindleSpeed>,
     /// Into the hole, mm/min.
-    #[schemars(range(min = 0.01, max = 240_000.0))]
-    feed: Spanned<f64>,
+    feed: Bounded<FeedRate>,
     /// Out of the hole, mm/min [default: 200, or feed if that is more].
-    #[schemars(range(min = 0.01, max = 240_000.0))]
-    retract_feed: Option<Spanned<f64>>,
-    /// What messages and the sheet call it [default: TOOL and its number].
+    retract_feed: Option<Bounded<FeedRate>>,
+    /// Its name in messages and on the sheet [default: TOOL and its number].
     name: Option<String>,
 }
 
 /// What a hole says about its tools.
 pub(super) struct HoleToolSpec<'f> {
     pub(super) id: &'f str,
-    pub(super) diameter: &'f Spanned<f64>,
+    pub(super) diameter: &'f Bounded<Length>,
     pub(super) tools: Option<&'f Spanned<Vec<i64>>>,
 }
 
 /// mm/min into the hole, in the paper.
-const FEED: f64 = 10.0;
+const DEFAULT_FEED: f64 = 10.0;
 /// mm/min out of the hole: nothing is cut there.
-const RETRACT_FEED: f64 = 200.0;
+const DEFAULT_RETRACT_FEED: f64 = 200.0;
 /// r/min, in the paper.
-const SPEED: f64 = 1500.0;
+const DEFAULT_SPEED: f64 = 1500.0;
 
 impl FileTool {
-    pub(super) fn check(&self, reader: &Reader<'_>) -> Result<Tool, FileError> {
-        let number = *self.number.as_ref();
-        if !(1..=9999).contains(&number) {
-            return Err(reader.error(&self.number, format!("key 'tool.number' is {number}: 1 to 9999")));
-        }
-        let feed_range = "0.01 to 240000 mm/min";
-        let feed = reader.number("tool.feed", &self.feed, feed_range, within(0.01, 240_000.0))?;
-        Ok(Tool {
+    pub(super) fn tool(&self) -> Tool {
+        let (number, feed) = (self.number.get(), self.feed.get());
+        Tool {
             number: number as u32,
-            diameter: length(reader, "tool.diameter", &self.diameter)?,
-            length: match &self.length {
-                Some(length) => reader.number("tool.length", length, "0 to 9999 mm", within(0.0, 9_999.0))?,
-                None => 0.0,
-            },
-            speed: reader.number("tool.speed", &self.speed, "a whole number from 1 to 99999 r/min", |v| {
-                within(1.0, 99_999.0)(v) && v.fract() == 0.0
-            })?,
+            diameter: self.diameter.get(),
+            length: self.length.as_ref().map_or(0.0, Bounded::get),
+            speed: self.speed.get(),
             feed,
-            retract_feed: match &self.retract_feed {
-                Some(value) => {
-                    reader.number("tool.retract_feed", value, feed_range, within(0.01, 240_000.0))?
-                }
-                None => feed.max(RETRACT_FEED),
-            },
+            retract_feed: self.retract_feed.as_ref().map_or(feed.max(DEFAULT_RETRACT_FEED), Bounded::get),
             name: self.name.clone().unwrap_or_else(|| format!("TOOL {number}")),
-        })
+        }
     }
 
-    pub(super) fn number(&self) -> &Spanned<i64> {
+    pub(super) fn number(&self) -> &Bounded<ToolNumber> {
         &self.number
     }
 }
@@ -93,7 +72,7 @@ pub(super) fn default_tools(
         if let Some(tools) = hole.tools {
             return Err(reader.error(tools, "key 'hole.tools' names tools of [[tool]], but there are none"));
         }
-        let diameter = *hole.diameter.as_ref();
+        let diameter = hole.diameter.get();
         let index = diameters.iter().position(|d| *d == diameter).unwrap_or_else(|| {
             diameters.push(diameter);
             diameters.len() - 1
@@ -115,9 +94,9 @@ fn tool(number: u32, diameter: f64, name: &str) -> Tool {
         number,
         diameter,
         length: 0.0,
-        speed: SPEED,
-        feed: FEED,
-        retract_feed: RETRACT_FEED,
+        speed: DEFAULT_SPEED,
+        feed: DEFAULT_FEED,
+        retract_feed: DEFAULT_RETRACT_FEED,
         name: name.to_owned(),
     }
 }
@@ -133,7 +112,7 @@ pub(super) fn assign(
 }
 
 fn assign_one(reader: &Reader<'_>, tools: &[Tool], hole: &HoleToolSpec<'_>) -> Result<Vec<u32>, FileError> {
-    let diameter = *hole.diameter.as_ref();
+    let diameter = hole.diameter.get();
     let numbers: Vec<u32> = match hole.tools {
         Some(named) => {
             for number in named.as_ref() {

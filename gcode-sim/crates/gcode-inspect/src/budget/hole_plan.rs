@@ -10,14 +10,14 @@ use gcode_part::Hole;
 
 /// Where the axes stand where the feed begins and where it ends, rounded to the increment as the control does.
 #[derive(Clone, Debug)]
-pub(super) struct Planned<'h> {
-    wanted: &'h Hole,
+pub(super) struct HolePlan<'h> {
+    nominal: &'h Hole,
     start: Position,
     end: Position,
     setup: Setup,
 }
 
-impl<'h> Planned<'h> {
+impl<'h> HolePlan<'h> {
     pub(super) fn new(machine: &Machine, wanted: &'h Hole, clearance: f64) -> Result<Self, BudgetError> {
         let out_of_reach = || BudgetError::OutOfReach { id: id(wanted) };
         let (entry, out) = (Point3::from(wanted.entry), Unit::new_normalize(Vector3::from(wanted.axis)));
@@ -28,30 +28,36 @@ impl<'h> Planned<'h> {
         // Where the table can turn the hole to the head in two ways, the program takes that on the side of +x.
         let end = bottom.into_iter().reduce(|best, other| if other[0] > best[0] { other } else { best });
         let end = end.ok_or_else(out_of_reach)?;
-        let here = machine.part_frame(&end).rotation * out.into_inner();
+        let direction = machine.part_frame(&end).rotation * out.into_inner();
         if machine.head.is_set_by_hand() {
-            setup.head_angle = Some(Deg::atan2(here.y, here.x));
+            setup.head_angle = Some(Deg::atan2(direction.y, direction.x));
         }
         let starts = reach(entry + out.into_inner() * clearance, &setup);
-        let same = |start: &Position| !machine.table.differs(start, &end);
+        let same = |start: &Position| !machine.table.is_moved(start, &end);
         let start = starts.into_iter().find(same).ok_or_else(out_of_reach)?;
-        Ok(Self { wanted, start: rounded(machine, &setup, start), end: rounded(machine, &setup, end), setup })
+        Ok(Self {
+            nominal: wanted,
+            start: round_position(machine, &setup, start),
+            end: round_position(machine, &setup, end),
+            setup,
+        })
     }
 
     pub(super) fn id(&self) -> String {
-        id(self.wanted)
+        id(self.nominal)
     }
 
     /// The hole that this machine makes; `None` where its axis runs across the wanted one. Its axis is the tool's where that is
     /// known, else the feed's, as in [`crate::holes`].
     pub(super) fn deviation(&self, machine: &Machine) -> Option<Deviation> {
         let frame = machine.part_frame(&self.end);
-        let [start, end] = [&self.start, &self.end].map(|at| machine.tool(at, &self.setup).on(&frame));
+        let [start, end] =
+            [&self.start, &self.end].map(|at| machine.tool_pose(at, &self.setup).relative_to(&frame));
         let axis = end.axis.or_else(|| Unit::try_new(start.tip - end.tip, 1e-9))?;
-        Deviation::new(self.wanted, &end.tip, &axis)
+        Deviation::new(self.nominal, &end.tip, &axis)
     }
 
-    pub(super) fn phi(&self, machine: &Machine) -> f64 {
+    pub(super) fn position_deviation(&self, machine: &Machine) -> f64 {
         self.deviation(machine).map_or(f64::INFINITY, |deviation| deviation.zone_diameter())
     }
 }
@@ -61,16 +67,16 @@ fn id(hole: &Hole) -> String {
 }
 
 /// As the control rounds. A head that is an axis stands at a rounded angle before the program computes where the tip is.
-fn rounded(machine: &Machine, setup: &Setup, mut at: Position) -> Position {
+fn round_position(machine: &Machine, setup: &Setup, mut at: Position) -> Position {
     let increment = machine.increment.size();
     // What is left of the arithmetic mustn't decide a half increment.
     let round = |value: f64| ((value / increment * 1e6).round() / 1e6).round() * increment;
     if let HeadKind::Axis { axis, .. } = machine.head.kind {
-        let tip = machine.tool(&at, setup).tip;
+        let tip = machine.tool_pose(&at, setup).tip;
         at[axis] = round(at[axis]);
-        let missing = tip - machine.tool(&at, setup).tip;
+        let missing = tip - machine.tool_pose(&at, setup).tip;
         for link in &machine.slides.0 {
-            if let LinkMotion::Slide { along } = &link.motion {
+            if let LinkMotion::Linear { along } = &link.motion {
                 at[link.axis] += link.sign * along.dot(&missing);
             }
         }
