@@ -53,7 +53,7 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// Whether Q is a length of the cycle: the depth of a peck, or the shift off the wall.
+    /// Returns true if Q is a length of the cycle: the depth of a peck, or the shift off the wall.
     pub fn uses_q(&self) -> bool {
         self.steps.iter().any(|step| matches!(step, PeckFull | PeckShort | Shift))
     }

@@ -1,4 +1,4 @@
-//! The row of a G code: its effect in a run, and the facts that other modules read.
+//! Row of a G code: its effect and the facts that others read.
 use super::code_facts::CodeFacts;
 use super::cycles::Cycle;
 use super::modes::{
@@ -139,18 +139,18 @@ pub enum HolePattern {
     Arc,
 }
 
-/// One row of the table.
+/// Row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct GCodeRow {
     /// G code × 10: 541 is G54.1.
     pub code: u32,
     /// Effect in a run.
     pub effect: Effect,
-    /// Facts for the rules, lookahead, transforms and records.
+    /// Facts for readers of the code that do not execute it.
     pub facts: CodeFacts,
-    /// One line of help.
+    /// Description in a few words.
     pub help: &'static str,
-    /// Controls that have the code with this effect.
+    /// Controls with this meaning of the code.
     pub code_sets: &'static [CodeSet],
 }
 
@@ -161,7 +161,7 @@ impl GCodeRow {
     }
 }
 
-/// Returns a code × 10 without its G: `54.1`.
+/// Returns the number of a code × 10 as written, `54.1`.
 pub fn spelled(code: u32) -> String {
     if code.is_multiple_of(10) { format!("{}", code / 10) } else { format!("{}.{}", code / 10, code % 10) }
 }
