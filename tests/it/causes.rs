@@ -179,7 +179,7 @@ fn another_length_that_all_moves_make_up_for_is_told_once_with_them() {
     assert!(found[1].ends_with(" rapids, 12 feeds)"), "two holes of six pecks: {found:#?}");
     let back = texts(&found_by(&machine, &new, &old));
     assert_eq!(back.len(), 2, "{back:#?}");
-    assert!(back[1].contains("by Z -5.0000 as programmed"), "{back:#?}");
+    assert!(back[1].contains(": Z -5.0000 as programmed"), "{back:#?}");
 }
 
 /// T2 has taken over the length that T3 puts in force again: T3's G43 does what it did.
