@@ -1,7 +1,6 @@
-//! What a G code is to those that don't execute it: its words, what it makes of axis words, how it stands to lookahead and to
-//! transforms of the coordinates.
+//! Facts of G codes for readers that do not execute them: words, use of axis words, lookahead, transforms, timing.
 
-/// Letters of addresses as bits, A the lowest.
+/// Set of address letters, one bit each, A the lowest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Letters(u32);
 
@@ -9,7 +8,7 @@ impl Letters {
     /// No letter.
     pub const NONE: Self = Self(0);
 
-    /// These letters, A to Z.
+    /// Returns the set of some letters A to Z.
     pub const fn of(letters: &[u8]) -> Self {
         let (mut bits, mut place) = (0, 0);
         while place < letters.len() {
@@ -19,55 +18,55 @@ impl Letters {
         Self(bits)
     }
 
-    /// The letters as bits, A the lowest.
+    /// Returns the bits of the set, A the lowest.
     pub const fn bits(self) -> u32 {
         self.0
     }
 
-    /// Whether a letter is one of them.
+    /// Returns true if the letter is in the set.
     pub const fn has(self, letter: u8) -> bool {
         letter.is_ascii_uppercase() && self.0 >> (letter - b'A') & 1 == 1
     }
 }
 
-/// What a code makes of the axis words of its block.
+/// Use that a code makes of the axis words of its block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisWords {
-    /// They are a move by the modal codes.
+    /// Move by the modal codes.
     Move,
-    /// A drilling cycle: they are a hole.
+    /// Hole of a drilling cycle.
     Hole,
-    /// The axes end at a place that doesn't depend on where they stood.
+    /// End position that does not depend on the start position.
     Position,
-    /// In G90 they end where the words say; in G91 that depends on where they stood.
+    /// End position in G90; in G91 the end depends on the start position.
     PositionInAbsolute,
-    /// Offsets or parameters: nothing moves, and coordinates stay what they are.
+    /// Offsets or parameters; no axis moves.
     Tables,
-    /// Coordinates, times, an intermediate point: where the axes end, the words alone don't say.
+    /// Coordinates, times or an intermediate point; the words alone do not determine the end position.
     Other,
 }
 
-/// What a control does with a code in a block that names no axis.
+/// Behaviour of a code in a block that names no axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WithoutAxes {
-    /// What it does with others: the code needs no axis.
+    /// Normal: the code needs no axis.
     Same,
-    /// Nothing, and a programmer hardly means that.
+    /// No effect, which is rarely intended.
     Nothing,
-    /// It takes the point where the program stands for the centre.
+    /// The current position is the centre.
     CentreDefaulted,
-    /// Some controls take all axes, others none.
+    /// All axes on some controls, no effect on others.
     AllOrNothing,
 }
 
-/// Which words of a code's block are lengths, angles or seconds.
+/// Words of a block that are lengths, angles or seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Measured {
     /// Axes, centres and radii, as in a move.
     AsInMove,
-    /// Axes only: the other words are factors.
+    /// Axes only; the other words are factors.
     Axes,
-    /// What the table has that L names: axes of work offsets, R of tool offsets.
+    /// Values of the table that L selects: axes of work offsets, R of tool offsets.
     ByTable,
     /// X and U, in seconds.
     Seconds,
@@ -75,18 +74,18 @@ pub enum Measured {
     Nothing,
 }
 
-/// The words that belong to a code.
+/// Words that belong to a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CodeWords {
-    /// Letters that are refused in a block without such a code.
+    /// Letters that a control refuses in a block without such a code.
     pub own: Letters,
-    /// Letters that may stand beside it and change nothing in a run.
+    /// Letters permitted beside the code and without effect in a run.
     pub without_effect: Letters,
-    /// Letters that are angles here and lengths elsewhere.
+    /// Letters that are angles beside the code and lengths elsewhere.
     pub angles: Letters,
-    /// T must not stand beside it.
+    /// True if a control refuses T in the same block.
     pub refuses_tool: bool,
-    /// Measured words.
+    /// Words that are lengths, angles or seconds.
     pub measured: Measured,
 }
 
@@ -101,85 +100,76 @@ impl CodeWords {
     };
 }
 
-/// Use of a code under cutter compensation and corner words.
+/// Effect of a code on cutter compensation and corner words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LookaheadUse {
-    /// Its block is one of the path, with a move or without.
+    /// The block is part of the path, with or without a move.
     Path,
-    /// Its block moves without compensation, and nothing is read before it is done.
+    /// The block moves without compensation and ends lookahead.
     Suspends,
-    /// It can't stand in cutter compensation here.
+    /// The simulator does not execute the code in cutter compensation.
     Refused,
-    /// It can't stand in cutter compensation on any control.
+    /// A control raises an alarm for the code in cutter compensation.
     Alarms,
-    /// The one block that may stand between a corner word and the next move.
+    /// Dwell: one such block may stand between a corner word and the next move.
     Dwell,
-    /// An arc at the corner before the next move.
+    /// Arc at the corner before the next move.
     CornerArc,
 }
 
-/// Coordinate transforms under which a code is allowed.
+/// Transforms of coordinates under which a code is permitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoordinateUse {
-    /// All.
+    /// Any transform.
     Free,
-    /// Not while G51 is on (operator's manual, scaling).
+    /// Any but G51 (operator's manual, scaling).
     NotScaled,
-    /// Nor while G68 or G51.1 is on: reference returns and what changes the coordinate system (operator's manual, coordinate
-    /// system rotation and programmable mirror image).
+    /// None of G51, G68 and G51.1, as for reference returns and changes of the coordinate system (operator's
+    /// manual, coordinate system rotation and programmable mirror image).
     NotTransformed,
 }
 
-/// Order of a block with the code relative to the moves before it.
+/// Order of a block relative to the preceding moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timing {
-    /// It is read while they are under way.
+    /// The block is read while they are in progress.
     ReadAhead,
-    /// It is read once they are done.
+    /// The block waits for their end.
     Waits,
-    /// Like [`Timing::ReadAhead`]; the axis words move nothing.
+    /// As [`Timing::ReadAhead`]; its axis words move no axis.
     MovesNothing,
 }
 
-/// Effect of a code on a machine that the events of a run do not show.
+/// Effect on a machine that the events of a run do not show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsimulated {
-    /// Nothing: the events say it all.
+    /// None.
     No,
-    /// How exactly corners are cut or how far is read ahead, with the values of these letters.
+    /// Corner accuracy or lookahead, with the values of these letters.
     Path(Letters),
-    /// The code itself, with the values of these letters.
+    /// Effect of the code itself, with the values of these letters.
     Code(Letters),
-    /// It may change offsets or parameters.
+    /// Possible change of offsets or parameters.
     Writes,
 }
 
-/// All facts of one code.
+/// Facts of one code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CodeFacts {
-    /// Use of the axis words.
+    /// Use of axis words.
     pub axis_words: AxisWords,
-    /// Meaning of a block without axis words.
+    /// Behaviour without axis words.
     pub without_axes: WithoutAxes,
-    /// Words that belong to the code.
+    /// Other words.
     pub words: CodeWords,
-    /// Use in lookahead.
+    /// Effect on lookahead.
     pub lookahead: LookaheadUse,
-    /// Coordinate transforms under which the code is allowed.
+    /// Permitted transforms.
     pub coordinates: CoordinateUse,
-    /// Order relative to the moves before it.
+    /// Order relative to preceding moves.
     pub timing: Timing,
-    /// Effect on a machine that the events of a run do not show.
+    /// Effect on a machine that the events do not show.
     pub unsimulated: Unsimulated,
-}
-
-impl CodeFacts {
-    /// Whether a block with the code says something beside its events that shows in its moves as well.
-    pub const fn shows_in_moves(&self) -> bool {
-        let moves =
-            matches!(self.axis_words, AxisWords::Position | AxisWords::PositionInAbsolute | AxisWords::Other);
-        moves && matches!(self.unsimulated, Unsimulated::Path(_) | Unsimulated::Code(_))
-    }
 }
 
 use AxisWords::{Hole, Move, Other, Position, PositionInAbsolute, Tables};
@@ -191,7 +181,7 @@ use WithoutAxes::{AllOrNothing, CentreDefaulted, Nothing, Same};
 const VALUES: Letters = Letters::of(b"EIPQR");
 const NO_LETTERS: Letters = Letters::NONE;
 
-/// A modal code that changes what moves by other codes are.
+/// Modal code.
 pub(super) const MODAL: CodeFacts = CodeFacts {
     axis_words: Move,
     without_axes: Same,
@@ -220,7 +210,7 @@ pub(super) const ROTATION: CodeFacts = CodeFacts {
 pub(super) const TILT: CodeFacts =
     CodeFacts { words: CodeWords { angles: Letters::of(b"IJK"), ..CodeWords::NONE }, ..MODAL };
 
-/// A code that a run reads and that changes nothing in it.
+/// Code without effect in a run.
 pub(super) const WITHOUT_EFFECT: CodeFacts = CodeFacts {
     words: CodeWords { without_effect: Letters::of(b"IPQR"), ..CodeWords::NONE },
     unsimulated: Unsimulated::Code(VALUES),

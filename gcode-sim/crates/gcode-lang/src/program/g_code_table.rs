@@ -1,4 +1,4 @@
-//! Every G code, a row each.
+//! Table of G codes, one row per code and meaning.
 use super::code_facts as facts;
 use super::cycles::{self, Cycle};
 use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot};
@@ -9,28 +9,28 @@ use super::modes::{
 use crate::control::CodeSet;
 
 impl GCodeRow {
-    /// The row with other facts than those of a modal code.
+    /// Returns the row with the given facts in place of those of a modal code.
     const fn with(self, facts: facts::CodeFacts) -> Self {
         Self { facts, ..self }
     }
 }
 
-/// A code that all controls have.
+/// Returns a row that applies to all controls.
 const fn row(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
     GCodeRow { code, effect, help, facts: facts::MODAL, code_sets: CodeSet::ALL_CONTROLS }
 }
 
-/// A code that a Haas hasn't, or has as something else.
+/// Returns a row that does not apply to a Haas.
 const fn fanuc(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
     GCodeRow { code_sets: CodeSet::FANUC, ..row(code, effect, help) }
 }
 
-/// A code of controls that move five axes at once: the 0i-F moves four.
+/// Returns a row for controls with five simultaneous axes; the 0i-F has four.
 const fn five_axis(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
     GCodeRow { code_sets: CodeSet::FIVE_AXES, ..row(code, effect, help) }
 }
 
-/// A code of a Haas alone.
+/// Returns a row for a Haas alone.
 const fn haas(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
     GCodeRow { code_sets: CodeSet::HAAS, ..row(code, effect, help) }
 }
@@ -43,7 +43,7 @@ const fn fanuc_cycle(cycle_row: &'static Cycle) -> GCodeRow {
     GCodeRow { code_sets: CodeSet::FANUC, ..cycle(cycle_row) }
 }
 
-/// All codes in ascending order; a code that is another thing on another control has a row for each.
+/// All codes in ascending order; a code with several meanings has one row per meaning.
 #[rustfmt::skip]
 pub(super) const CODES: &[GCodeRow] = &[
     row(0, Effect::Motion(Motion::Rapid), "rapid"),

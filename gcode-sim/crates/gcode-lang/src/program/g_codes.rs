@@ -1,10 +1,10 @@
-//! The table of G codes by number: a code without a row is an alarm, never skipped.
+//! Lookup of G codes. A code without a row raises an alarm and is never skipped.
 use super::code_facts::AxisWords;
 pub use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot, name, spelled};
 use super::g_code_table::CODES;
 use crate::control::CodeSet;
 
-/// What a code × 10 is on each group of controls: the place of its row; 255 where they don't have it.
+/// Rows of a code × 10 by code set, as indices; 255 for a code that the controls lack.
 #[derive(Clone, Copy, Debug)]
 pub struct RowLookup([u8; CodeSet::ALL_CONTROLS.len()]);
 
@@ -12,25 +12,25 @@ impl RowLookup {
     const NONE: u8 = u8::MAX;
     const NOT_FOUND: Self = Self([Self::NONE; CodeSet::ALL_CONTROLS.len()]);
 
-    /// What the code is on a control.
+    /// Returns the row of the code on a control.
     #[inline]
     pub fn row_for(&self, set: CodeSet) -> Option<&'static GCodeRow> {
         CODES.get(usize::from(self.0[set as usize]))
     }
 
-    /// What it is on the first control that has it.
+    /// Returns the row of the code on the first control that has it.
     pub fn row_for_any(&self) -> Option<&'static GCodeRow> {
-        self.0.iter().find_map(|place| CODES.get(usize::from(*place)))
+        self.0.iter().find_map(|index| CODES.get(usize::from(*index)))
     }
 }
 
-/// What is known of a code × 10.
+/// Returns the rows of a code × 10.
 #[inline]
 pub fn find(code: u32) -> RowLookup {
     LOOKUP.get(code as usize).copied().unwrap_or(RowLookup::NOT_FOUND)
 }
 
-/// The same of each code × 10 up to the last one.
+/// Rows of every code × 10 up to the last one.
 const LOOKUP: [RowLookup; LAST_CODE + 1] = {
     assert!(CODES.len() <= RowLookup::NONE as usize);
     let mut all = [RowLookup::NOT_FOUND; LAST_CODE + 1];
@@ -53,11 +53,6 @@ const LOOKUP: [RowLookup; LAST_CODE + 1] = {
 };
 
 const LAST_CODE: usize = CODES[CODES.len() - 1].code as usize;
-
-/// Whether a code, as [`name`] writes it, says something beside the moves of its block that shows in them as well.
-pub fn shows_in_moves(code: &str) -> bool {
-    CODES.iter().any(|row| row.facts.shows_in_moves() && name(row.code) == code)
-}
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,7 @@
-//! A missing decimal point: on a control without calculator-type input `Z-3` is 0.003 mm.
+//! Rule: a missing decimal point. Without calculator-type input `Z-3` is 0.003 mm.
 //!
-//! Programs that count in increments throughout (`X45000`) are left alone: they have no points, and numbers of 1 mm
-//! and more.
+//! Programs that count in increments throughout (`X45000`) are exempt: they have no decimal point, and a
+//! number of 1 mm or more.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal::without_point;
 use crate::parameters;
@@ -14,7 +14,7 @@ use gcode_lang::syntax::ast::Decimal;
 
 pub(super) const NAME: &str = "missing-point";
 
-/// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
+/// Number of increments from which a peck or a dwell may be intended: many programs write `G4 X500`.
 const MIN_INTENDED_INCREMENTS: u64 = 100;
 
 pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
@@ -70,13 +70,13 @@ fn measured(words: &Words) -> Measured {
     g_codes(words).map(|row| row.facts.words.measured).max().unwrap_or(Measured::AsInMove)
 }
 
-/// The words of a block that are lengths, angles or seconds.
+/// Iterates over the words of a block that are lengths, angles or seconds.
 fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a LoweredWord> {
     let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
-    // The letters of a macro call that a control scales: all but D E F H M S T.
+    // The arguments of a macro call that a control scales: all but D E F H M S T.
     let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
     let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
-    // K of a drilling cycle counts repetitions, and arcs have it with I or J or alone: a small K is left alone.
+    // K of a drilling cycle counts repeats; it is a length only in an arc or with I or J.
     plain.filter(move |word| word.letter != b'K' || !is_drilling(words)).chain(scaled)
 }
 
@@ -109,7 +109,9 @@ fn is_drilling(words: &Words) -> bool {
     !arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'))
 }
 
-/// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
+/// Returns true for a program that counts in increments on purpose.
+///
+/// Such a program has no decimal point and at least one number of 1 mm or more.
 fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
     let mut large = false;
     for words in unit.program.ops().iter().filter_map(|op| block_words(op.kind())) {
@@ -131,7 +133,7 @@ fn spelled(letter: u8, number: Decimal) -> String {
     format!("{}{sign}{}", char::from(letter), number.digits)
 }
 
-/// `0.003 mm`.
+/// Returns the value of a number with its unit, `0.003 mm`.
 fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
     let is_angle = match letter {
         b'A' | b'B' | b'C' => true,
