@@ -38,7 +38,7 @@ impl Control {
         library: &mut impl Library,
         sink: &mut S,
     ) -> ExecResult<()> {
-        let Self { memory, executor, plan, block_words: given, loop_detector: watch, .. } = self;
+        let Self { memory, executor, plan, block_words, loop_detector, .. } = self;
         let Some(program) = memory.get_mut(executor.flow.frame.program) else {
             return executor.end_of_program(memory);
         };
@@ -53,7 +53,7 @@ impl Control {
             match op.body() {
                 OpBody::Plain(OpKind::AssignFree(compute)) => executor.assign(compute)?,
                 OpBody::Plain(OpKind::Statement(statement)) => {
-                    executor.statement(program, statement, watch, sink)?;
+                    executor.statement(program, statement, loop_detector, sink)?;
                 }
                 _ => break (program, op),
             }
@@ -80,7 +80,7 @@ impl Control {
         match kind {
             OpKind::AssignFree(compute) => return executor.assign_out_of_line(compute),
             OpKind::Statement(statement) => {
-                return executor.any_statement(program, statement, watch, sink);
+                return executor.any_statement(program, statement, loop_detector, sink);
             }
             OpKind::Empty if executor.registers.state.is_in_parameter_input && op.number.is_some() => {
                 return Err(
@@ -93,7 +93,12 @@ impl Control {
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
             OpKind::Words(words) if executor.registers.state.is_in_parameter_input => {
-                executor.planner().plan_parameter((words, op.number), given, plan, executor.flow.block)?;
+                executor.planner().plan_parameter(
+                    (words, op.number),
+                    block_words,
+                    plan,
+                    executor.flow.block,
+                )?;
                 return self.execute_plan(library, sink);
             }
             OpKind::Words(words) => {
@@ -101,7 +106,7 @@ impl Control {
                     executor.registers.state.codes.o = memory.get(executor.flow.frame.program).shown_number();
                     return Ok(());
                 }
-                executor.planner().plan_words(words, given, plan)?;
+                executor.planner().plan_words(words, block_words, plan)?;
                 if let Some(number) = op.number {
                     plan.state.codes.n = number;
                 }
@@ -162,11 +167,11 @@ impl Planner<'_> {
         }
         let has_new_length = self.plan_length(block_words, plan, span)?;
         match axis_use {
-            Some(act) => {
+            Some(axis_use) => {
                 if has_new_length {
                     self.data.recompute_position(&mut plan.state);
                 }
-                self.execute_axis_use(act, block_words, plan, span)?;
+                self.execute_axis_use(axis_use, block_words, plan, span)?;
             }
             None => self.plan_motion(block_words, plan, has_new_length, span)?,
         }
@@ -289,8 +294,8 @@ impl Planner<'_> {
             self.data.check_ready_moves(&plan.lookahead)?;
         }
         let mut result = Ok(());
-        if let Some(drill) = &plan.cycle_plan {
-            self.data.expand_cycle(drill, &mut |kind, _| {
+        if let Some(cycle_plan) = &plan.cycle_plan {
+            cycle_plan.expand(self.data, &mut |kind, _| {
                 if result.is_ok() {
                     result = self.data.check_event(stroke, &kind);
                 }

@@ -58,7 +58,7 @@ impl Control {
 }
 
 impl Registers {
-    fn collect_commands(&self, words: &Words, commanded: &mut BlockCommands) {
+    fn collect_commands(&self, words: &Words, commands: &mut BlockCommands) {
         // Behind G65 and M98 letters are arguments.
         if words.call().is_some() {
             return;
@@ -82,23 +82,23 @@ impl Registers {
                 | AxisWords::Tables
                 | AxisWords::Other) => axis_words = own,
             }
-            commanded.modes.extend(row.group().map(|group| (group, row.code)));
+            commands.modes.extend(row.group().map(|group| (group, row.code)));
         }
         let values = words.list.iter().filter(|word| b"FST".contains(&word.letter) && !word.comma);
         let values = values.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
-        commanded.valued_letters.extend(values.map(|word| char::from(word.letter)));
+        commands.valued_letters.extend(values.map(|word| char::from(word.letter)));
         if axis_words == AxisWords::Tables {
-            self.collect_written_offsets(words, commanded);
+            self.collect_written_offsets(words, commands);
         } else if is_axis_positioned(axis_words, distance) {
             let letters = words.list.iter().filter(|word| !word.comma && word.axis.is_none());
             let valued = letters.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
             let axes = valued.filter(|word| self.data.settings.axes.find(word.letter).is_some());
-            commanded.axes.extend(axes.map(|word| char::from(word.letter)));
+            commands.axes.extend(axes.map(|word| char::from(word.letter)));
         }
     }
 
     /// `G10 L2 P1 X`, for every value that the block gives.
-    fn collect_written_offsets(&self, words: &Words, commanded: &mut BlockCommands) {
+    fn collect_written_offsets(&self, words: &Words, commands: &mut BlockCommands) {
         let mut table = "G10".to_owned();
         for letter in *b"LP" {
             let word = words.list.iter().find(|word| word.letter == letter && !word.comma);
@@ -108,7 +108,7 @@ impl Registers {
             }
         }
         let values = words.list.iter().filter(|word| !b"GLPN".contains(&word.letter) && !word.comma);
-        commanded.offsets.extend(values.map(|word| format!("{table} {}", char::from(word.letter))));
+        commands.offsets.extend(values.map(|word| format!("{table} {}", char::from(word.letter))));
     }
 }
 

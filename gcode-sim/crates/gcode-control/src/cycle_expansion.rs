@@ -1,5 +1,6 @@
 //! A drilling block, checked: where its holes are, and its moves one by one, the steps of the cycle at every hole.
 use super::data::ControlData;
+use super::pecks::for_each_peck;
 use super::state::{PolarPoint, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
@@ -37,6 +38,118 @@ pub(super) struct PolarRepeats {
 }
 
 impl CyclePlan {
+    /// Emits the moves of the block one by one.
+    pub(super) fn expand(&self, data: &ControlData, emit: &mut impl FnMut(EventKind, f64)) {
+        let state = &self.start_state;
+        let mut motion = CycleMotion {
+            data,
+            at: state.machine,
+            unknown_axes: state.work_zero_unknown,
+            rate: self.rate,
+            emit,
+        };
+        let cycle = &state.cycle;
+        let (r, z) = (cycle.r_level(), cycle.z_level());
+        let mut hole = self.first_hole;
+        for repeat in 0..self.repeats {
+            self.move_to_hole(data, repeat, &mut hole);
+            let level = |value: f64| {
+                let mut point = hole;
+                point[self.axis] = value;
+                data.to_machine(state, &point)
+            };
+            let mut over = level(r);
+            over[self.axis] = motion.at[self.axis];
+            motion.rapid(over);
+            if self.cycle.starts_at_r {
+                motion.set_work_zero(self.axis, cycle.is_r_unknown());
+                motion.rapid(level(r));
+            }
+            for step in self.cycle.steps {
+                self.drill_step(*step, data, &level, (r, z), &mut motion);
+            }
+        }
+    }
+
+    fn drill_step<T: FnMut(EventKind, f64)>(
+        &self,
+        step: CycleStep,
+        data: &ControlData,
+        level: &impl Fn(f64) -> Position,
+        (r, z): (f64, f64),
+        motion: &mut CycleMotion<'_, T>,
+    ) {
+        let state = &self.start_state;
+        let initial = state.cycle.initial;
+        let to_initial = state.modal.return_to == ReturnTo::Initial;
+        let turning = |turning| EventKind::Spindle { direction: turning, speed: Rpm(state.codes.s) };
+        let goes_back = match step {
+            CycleStep::RapidBack | CycleStep::RapidToInitial => to_initial,
+            CycleStep::RapidToInitialAlways => true,
+            _ => false,
+        };
+        if goes_back {
+            motion.set_work_zero(self.axis, state.cycle.is_initial_unknown);
+        }
+        match step {
+            CycleStep::FeedToBottom => motion.feed(level(z)),
+            CycleStep::PeckFull => {
+                for_each_peck((r, z), &state.cycle.unscaled(self.stretch), |last, next, done| {
+                    if last != r {
+                        let clearance = (data.settings.g83_clearance / self.stretch).min((r - last).abs());
+                        motion.rapid(level(last + clearance.copysign(r - z)));
+                    }
+                    motion.feed(level(next));
+                    if !done {
+                        motion.rapid(level(r + data.settings.g83_above_r.copysign(r - z)));
+                    }
+                });
+            }
+            CycleStep::PeckShort => {
+                let retract = (data.settings.g73_retract / self.stretch).copysign(r - z);
+                for_each_peck((r, z), &state.cycle.unscaled(self.stretch), |_, next, done| {
+                    motion.feed(level(next));
+                    if !done {
+                        motion.rapid(level(next + retract));
+                    }
+                });
+            }
+            CycleStep::Dwell => motion.dwell(self.dwell),
+            CycleStep::DwellAtR if data.settings.undocumented.tap_dwells_at_r => motion.dwell(self.dwell),
+            CycleStep::DwellAtR => {}
+            CycleStep::FeedToR => motion.feed(level(r)),
+            CycleStep::RapidBack => {
+                motion.rapid_along_axis(level(if to_initial { initial } else { r }), self.axis)
+            }
+            CycleStep::RapidToInitial if to_initial => motion.rapid(level(initial)),
+            CycleStep::RapidToInitial => {}
+            CycleStep::RapidToInitialAlways => motion.rapid_along_axis(level(initial), self.axis),
+            CycleStep::RapidToR => motion.rapid_along_axis(level(r), self.axis),
+            CycleStep::Shift => {
+                let mut to = motion.at;
+                to[self.shift.0] = data.remove_residue(to[self.shift.0] + self.shift.1);
+                motion.rapid(to);
+            }
+            CycleStep::ShiftBack => {
+                let mut to = motion.at;
+                to[self.shift.0] = data.remove_residue(to[self.shift.0] - self.shift.1);
+                motion.rapid(to);
+            }
+            CycleStep::SpindleStop => (motion.emit)(turning(SpindleDirection::Off), 0.0),
+            CycleStep::SpindleForward => (motion.emit)(turning(SpindleDirection::Clockwise), 0.0),
+            CycleStep::SpindleReverse => (motion.emit)(turning(SpindleDirection::Counterclockwise), 0.0),
+            CycleStep::ManualRetract => {
+                let stop = EventKind::Stop {
+                    kind: StopKind::M00,
+                    text: "retract by hand to R".into(),
+                    variables: Vec::new(),
+                };
+                (motion.emit)(stop, 0.0);
+                motion.rapid(level(r));
+            }
+        }
+    }
+
     /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
     fn move_to_hole(&self, data: &ControlData, turn: u32, hole: &mut Position) {
         if let Some(BoltHolePattern { radius, start, angle_step: angle, .. }) = self.pattern {
@@ -128,120 +241,6 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
     }
 }
 
-impl ControlData {
-    /// Tells a drilling block move by move.
-    pub(super) fn expand_cycle(&self, drill: &CyclePlan, tell: &mut impl FnMut(EventKind, f64)) {
-        let state = &drill.start_state;
-        let mut way = CycleMotion {
-            data: self,
-            at: state.machine,
-            unknown_axes: state.work_zero_unknown,
-            rate: drill.rate,
-            emit: tell,
-        };
-        let data = &state.cycle;
-        let (r, z) = (data.r_level(), data.z_level());
-        let mut hole = drill.first_hole;
-        for turn in 0..drill.repeats {
-            drill.move_to_hole(self, turn, &mut hole);
-            let level = |value: f64| {
-                let mut point = hole;
-                point[drill.axis] = value;
-                self.to_machine(state, &point)
-            };
-            let mut over = level(r);
-            over[drill.axis] = way.at[drill.axis];
-            way.rapid(over);
-            if drill.cycle.starts_at_r {
-                way.set_work_zero(drill.axis, data.is_r_unknown());
-                way.rapid(level(r));
-            }
-            for step in drill.cycle.steps {
-                self.drill_step(*step, drill, &level, (r, z), &mut way);
-            }
-        }
-    }
-
-    fn drill_step<T: FnMut(EventKind, f64)>(
-        &self,
-        step: CycleStep,
-        drill: &CyclePlan,
-        level: &impl Fn(f64) -> Position,
-        (r, z): (f64, f64),
-        way: &mut CycleMotion<'_, T>,
-    ) {
-        let state = &drill.start_state;
-        let initial = state.cycle.initial;
-        let to_initial = state.modal.return_to == ReturnTo::Initial;
-        let turning = |turning| EventKind::Spindle { direction: turning, speed: Rpm(state.codes.s) };
-        let goes_back = match step {
-            CycleStep::RapidBack | CycleStep::RapidToInitial => to_initial,
-            CycleStep::RapidToInitialAlways => true,
-            _ => false,
-        };
-        if goes_back {
-            way.set_work_zero(drill.axis, state.cycle.is_initial_unknown);
-        }
-        match step {
-            CycleStep::FeedToBottom => way.feed(level(z)),
-            CycleStep::PeckFull => {
-                self.for_each_peck((r, z), &state.cycle.unscaled(drill.stretch), |last, next, done| {
-                    if last != r {
-                        let clearance = (self.settings.g83_clearance / drill.stretch).min((r - last).abs());
-                        way.rapid(level(last + clearance.copysign(r - z)));
-                    }
-                    way.feed(level(next));
-                    if !done {
-                        way.rapid(level(r + self.settings.g83_above_r.copysign(r - z)));
-                    }
-                });
-            }
-            CycleStep::PeckShort => {
-                let retract = (self.settings.g73_retract / drill.stretch).copysign(r - z);
-                self.for_each_peck((r, z), &state.cycle.unscaled(drill.stretch), |_, next, done| {
-                    way.feed(level(next));
-                    if !done {
-                        way.rapid(level(next + retract));
-                    }
-                });
-            }
-            CycleStep::Dwell => way.dwell(drill.dwell),
-            CycleStep::DwellAtR if self.settings.undocumented.tap_dwells_at_r => way.dwell(drill.dwell),
-            CycleStep::DwellAtR => {}
-            CycleStep::FeedToR => way.feed(level(r)),
-            CycleStep::RapidBack => {
-                way.rapid_along_axis(level(if to_initial { initial } else { r }), drill.axis)
-            }
-            CycleStep::RapidToInitial if to_initial => way.rapid(level(initial)),
-            CycleStep::RapidToInitial => {}
-            CycleStep::RapidToInitialAlways => way.rapid_along_axis(level(initial), drill.axis),
-            CycleStep::RapidToR => way.rapid_along_axis(level(r), drill.axis),
-            CycleStep::Shift => {
-                let mut to = way.at;
-                to[drill.shift.0] = self.remove_residue(to[drill.shift.0] + drill.shift.1);
-                way.rapid(to);
-            }
-            CycleStep::ShiftBack => {
-                let mut to = way.at;
-                to[drill.shift.0] = self.remove_residue(to[drill.shift.0] - drill.shift.1);
-                way.rapid(to);
-            }
-            CycleStep::SpindleStop => (way.emit)(turning(SpindleDirection::Off), 0.0),
-            CycleStep::SpindleForward => (way.emit)(turning(SpindleDirection::Clockwise), 0.0),
-            CycleStep::SpindleReverse => (way.emit)(turning(SpindleDirection::Counterclockwise), 0.0),
-            CycleStep::ManualRetract => {
-                let stop = EventKind::Stop {
-                    kind: StopKind::M00,
-                    text: "retract by hand to R".into(),
-                    variables: Vec::new(),
-                };
-                (way.emit)(stop, 0.0);
-                way.rapid(level(r));
-            }
-        }
-    }
-}
-
 /// Holes round the point where the block stands.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoltHolePattern {
@@ -296,7 +295,7 @@ mod tests {
             stretch: 1.0,
         };
         let mut moves = Vec::new();
-        ControlData::new(Settings::default()).expand_cycle(&plan, &mut |kind, _| match kind {
+        plan.expand(&ControlData::new(Settings::default()), &mut |kind, _| match kind {
             EventKind::Rapid { to } => moves.push(("rapid", to[2])),
             EventKind::Feed { to, .. } => moves.push(("feed", to[2])),
             _ => {}

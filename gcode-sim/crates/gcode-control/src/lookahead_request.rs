@@ -26,7 +26,7 @@ impl Planner<'_> {
     /// Lets a block's plan go by way of what is read ahead, where compensation or a corner word is in use.
     pub(crate) fn plan_lookahead(
         &self,
-        act: Option<AxisWordUse>,
+        axis_use: Option<AxisWordUse>,
         block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
@@ -49,7 +49,7 @@ impl Planner<'_> {
         let motion = plan.state.modal.motion;
         let uses =
             |lookahead: LookaheadUse| block_words.g_codes().find(|row| row.facts.lookahead == lookahead);
-        let threads = act.is_none() && motion == Motion::Thread && plan.commands_axes;
+        let threads = axis_use.is_none() && motion == Motion::Thread && plan.commands_axes;
         let thread = threads.then(|| g_codes::name(motion.code()));
         let refused_code = uses(LookaheadUse::Refused).map(|row| g_codes::name(row.code)).or(thread);
         if let Some(code) = refused_code
@@ -79,8 +79,8 @@ impl Planner<'_> {
                 || plan.commands_axes && plan.state.modal.cycle.is_some(),
             blocks_lookahead: !plan.stops.is_empty() || matches!(plan.flow, BlockFlow::End),
             counts_as_block: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
-            has_zero_length: act.is_none() && (names_plane_axis(plane.0) || names_plane_axis(plane.1)),
-            is_cut: act.is_none()
+            has_zero_length: axis_use.is_none() && (names_plane_axis(plane.0) || names_plane_axis(plane.1)),
+            is_cut: axis_use.is_none()
                 && matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise),
             is_dwell: uses(LookaheadUse::Dwell).is_some(),
             blend: plan.corner,

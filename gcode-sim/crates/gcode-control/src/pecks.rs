@@ -1,28 +1,20 @@
 //! The pecks of G73 and G83: all of Q, or becoming shorter by I, J and K.
-use super::data::ControlData;
 use super::state::{CycleState, PeckSchedule};
 
 /// A block with more pecks than this alarms: nobody drills so, and a run must end.
 const MAX_PECKS: f64 = 1e6;
 
-impl ControlData {
-    /// From R peck by peck until Z; the last peck is what is left.
-    pub(super) fn for_each_peck(
-        &self,
-        (r, z): (f64, f64),
-        data: &CycleState,
-        mut emit: impl FnMut(f64, f64, bool),
-    ) {
-        let pecks = peck_count(r, z, data);
-        let mut last = r;
-        let mut count = 1.0;
-        while count <= pecks {
-            let is_last = count == pecks;
-            let next = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
-            emit(last, next, is_last);
-            last = next;
-            count += 1.0;
-        }
+/// From R peck by peck until Z; the last peck is what is left.
+pub(super) fn for_each_peck((r, z): (f64, f64), data: &CycleState, mut emit: impl FnMut(f64, f64, bool)) {
+    let pecks = peck_count(r, z, data);
+    let mut last = r;
+    let mut count = 1.0;
+    while count <= pecks {
+        let is_last = count == pecks;
+        let next = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
+        emit(last, next, is_last);
+        last = next;
+        count += 1.0;
     }
 }
 

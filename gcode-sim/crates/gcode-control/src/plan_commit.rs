@@ -32,8 +32,8 @@ impl Executor {
         for (kind, seconds) in &plan.events {
             self.emit(kind, *seconds, sink);
         }
-        if let Some(drill) = plan.cycle_plan.take() {
-            self.emit_cycle(&drill, sink);
+        if let Some(cycle_plan) = plan.cycle_plan.take() {
+            self.emit_cycle(&cycle_plan, sink);
         }
         for (kind, seconds) in &plan.events_after_motion {
             self.emit(kind, *seconds, sink);
@@ -70,11 +70,11 @@ impl Executor {
         self.registers.update_is_plain();
     }
 
-    fn emit_cycle<S: EventSink>(&mut self, drill: &CyclePlan, sink: &mut S) {
+    fn emit_cycle<S: EventSink>(&mut self, cycle_plan: &CyclePlan, sink: &mut S) {
         let (mut seconds, mut moves) = (0.0, 0);
         let block = self.flow.block;
         let calls = self.flow.frame.calls.clone();
-        self.registers.data.expand_cycle(drill, &mut |kind, time| {
+        cycle_plan.expand(&self.registers.data, &mut |kind, time| {
             seconds += time;
             moves += u64::from(kind.end().is_some());
             sink.event(&Event { kind: &kind, seconds: Seconds(time), block, calls: &calls });

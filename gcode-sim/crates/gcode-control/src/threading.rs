@@ -15,17 +15,17 @@ impl Planner<'_> {
         &self,
         plan: &mut BlockPlan,
         to: Position,
-        given: &BlockWords,
+        block_words: &BlockWords,
         span: Span,
     ) -> ExecResult<()> {
-        given.mark_read(b"Q");
+        block_words.mark_read(b"Q");
         let refused = |what: &str, span| Err(Alarm::NotSimulated { what: what.into() }.located_at(span));
-        if let Some((WordNumber::Literal(lead), _)) = given.get(b'F')
+        if let Some((WordNumber::Literal(lead), _)) = block_words.get(b'F')
             && lead.places.is_none()
         {
             return refused(
                 "F without a decimal point (its unit differs between controls) in G33",
-                given.span(b'F'),
+                block_words.span(b'F'),
             );
         }
         let turning = plan.state.spindle != SpindleDirection::Off && plan.state.codes.s > 0.0;

@@ -51,12 +51,12 @@ fn skip_text(switch: u8) -> String {
 }
 
 impl Registers {
-    fn collect_unsimulated(&self, words: &Words, silent: &mut UnsimulatedCodes) {
-        silent.writes |= self.state.is_in_parameter_input;
+    fn collect_unsimulated(&self, words: &Words, unsimulated: &mut UnsimulatedCodes) {
+        unsimulated.writes |= self.state.is_in_parameter_input;
         let words = match words.skipped_form() {
             Some((switch, short)) if self.data.is_skip_on(*switch) => short,
             Some((switch, _)) => {
-                silent.block_skips.push(skip_text(*switch));
+                unsimulated.block_skips.push(skip_text(*switch));
                 words
             }
             None => words,
@@ -66,15 +66,15 @@ impl Registers {
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
                 match m_codes::find(code, self.data.settings.codes) {
-                    Some(MCodeEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
+                    Some(MCodeEffect::NoEffect) => unsimulated.m_codes.push(format!("M{code:02}")),
                     Some(MCodeEffect::Orient) => {
-                        silent.m_codes.push(self.with_words(
+                        unsimulated.m_codes.push(self.with_words(
                             words,
                             format!("M{code:02}"),
                             Letters::of(b"PR"),
                         ));
                     }
-                    Some(MCodeEffect::End) => silent.end_code = Some(code),
+                    Some(MCodeEffect::End) => unsimulated.end_code = Some(code),
                     Some(
                         MCodeEffect::Stop
                         | MCodeEffect::OptionalStop
@@ -97,9 +97,9 @@ impl Registers {
             let text = |letters| self.with_words(words, g_codes::name(row.code), letters);
             match row.facts.unsimulated {
                 Unsimulated::No => {}
-                Unsimulated::Path(letters) => silent.path_codes.push(text(letters)),
-                Unsimulated::Code(letters) => silent.g_codes.push(text(letters)),
-                Unsimulated::Writes => silent.writes = true,
+                Unsimulated::Path(letters) => unsimulated.path_codes.push(text(letters)),
+                Unsimulated::Code(letters) => unsimulated.g_codes.push(text(letters)),
+                Unsimulated::Writes => unsimulated.writes = true,
             }
         }
     }
