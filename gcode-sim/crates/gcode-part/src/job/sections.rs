@@ -1,4 +1,5 @@
-//! Sections that job files of several families have: `[control]`, `[tolerance]`, the rotary table, heights above the part.
+//! Sections shared by job files of several families: `[control]`, `[tolerance]`, the rotary table and heights
+//! above the part.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -7,15 +8,16 @@ use crate::reader::bounds::{Bounded, Depth, KeyRange, PositionTolerance, Retract
 use crate::reader::{FileError, Reader, Spanned, names};
 use gcode_lang::control::{Dialect, Increment};
 
-/// Letters a rotary axis may have.
+/// Letters of rotary axes.
 pub(super) const ROTARY_LETTERS: [(&str, char); 3] = [("A", 'A'), ("B", 'B'), ("C", 'C')];
 
-/// Whether a number is within bounds, the bounds included.
+/// Returns a predicate that is true from `low` to `high`, both included.
 pub(super) fn in_range(low: f64, high: f64) -> impl Fn(f64) -> bool {
     move |value| (low..=high).contains(&value)
 }
 
-/// `machine.clearance` and `machine.retract`: how far above the surface the tool feeds from, and how far it goes away. mm.
+/// Returns `machine.clearance` and `machine.retract`, mm: the height at which the feed begins, and the
+/// retract height.
 pub(super) fn heights(
     reader: &Reader<'_>,
     clearance: Option<&Bounded<Depth>>,
@@ -83,12 +85,12 @@ pub(super) struct FileTolerance {
 }
 
 impl FileTolerance {
-    /// Diameter of the zone, mm.
+    /// Returns the diameter of the tolerance zone, mm.
     pub(super) fn position(&self) -> f64 {
         self.position.get()
     }
 
-    /// Either way, mm.
+    /// Returns the tolerance of a depth, either way, mm.
     pub(super) fn depth(&self) -> f64 {
         self.depth.as_ref().map_or(0.1, Bounded::get)
     }

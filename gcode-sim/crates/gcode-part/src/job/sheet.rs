@@ -1,30 +1,37 @@
-//! The section `[sheet]` that a job of any family may have: what its set-up sheet says of people, time and money.
+//! The section `[sheet]` of a job of any family: additional data for the set-up sheet.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::reader::bounds::{Bounded, DurationMinutes, HourlyRate};
 use crate::reader::{FileError, Reader};
 
-/// What only people know of a job. Whatever is left out stands empty on the sheet, to be filled in by hand.
+/// Additional data for the set-up sheet. Omitted fields are printed empty, for entry by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SheetInfo {
+    /// Name of the part.
     pub part: Option<String>,
+    /// Number of the drawing.
     pub drawing: Option<String>,
+    /// Revision of the drawing.
     pub revision: Option<String>,
+    /// Material.
     pub material: Option<String>,
     /// The machine's name in the shop.
     pub machine: Option<String>,
+    /// Times that the simulation cannot determine.
     pub minutes: Minutes,
+    /// Machine-hour rates.
     pub rates: Option<Rates>,
 }
 
-/// What the simulation can't know of the time a part takes, in minutes.
+/// Times that the simulation cannot determine, in minutes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Minutes {
     /// Set-up and alignment of one part.
     pub setup: Option<f64>,
-    /// An operator stop, from the machine's standstill to its start.
+    /// Time of an operator stop, from standstill to start.
     pub stop: Option<f64>,
+    /// Time of a tool change.
     pub tool_change: Option<f64>,
 }
 
@@ -33,27 +40,30 @@ pub struct Minutes {
 pub struct Rates {
     /// Printed unchanged.
     pub currency: String,
-    /// A machine hour.
+    /// Price of a machine hour.
     pub rate: f64,
+    /// Alternative machines for the part.
     pub alternatives: Vec<AlternativeMachine>,
 }
 
 /// The same part on another machine. Omitted times are equal to those of the job's machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativeMachine {
+    /// Name of the machine in the shop.
     pub machine: String,
     /// Price of a machine hour, in the same currency.
     pub rate: f64,
-    /// Of the program, in minutes.
+    /// Time of the program, in minutes.
     pub run: Option<f64>,
+    /// Manual times on this machine.
     pub minutes: Minutes,
 }
 
 impl Rates {
-    /// Reads the text of a file of rates: the keys of a job's `[sheet.rates]`.
+    /// Parses a file of rates, which has the keys of a job's `[sheet.rates]`.
     ///
     /// # Errors
-    /// A key that is unknown, missing or out of range, with its line and what is allowed.
+    /// A key that is unknown, missing or out of range, with its line and the allowed values.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let reader = Reader { text };
         let file: FileRates = toml::from_str(text).map_err(|e| reader.syntax(&e))?;

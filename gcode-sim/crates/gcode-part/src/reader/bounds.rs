@@ -1,5 +1,7 @@
-//! Ranges of the numbers in files that users write. Each is one row, and a field's type names its row: the schema, the
-//! check and the message come from it.
+//! Ranges of the numbers in files that users write.
+//!
+//! Each range is one row, and the type of a field names its row: the schema, the check and the message come
+//! from it.
 use std::borrow::Cow;
 use std::fmt::Display;
 use std::marker::PhantomData;
@@ -12,9 +14,9 @@ use serde_json::Value;
 
 use super::Spanned;
 
-/// A number of a file.
+/// A type of number in a file.
 pub trait FileNumber: Copy + Display + PartialOrd + DeserializeOwned + Into<Value> {
-    /// Its type in a schema.
+    /// Type in a schema.
     const TYPE: &'static str;
 
     /// Returns false for infinity and NaN, and for fractions where only whole numbers are allowed.
@@ -37,28 +39,31 @@ impl FileNumber for i64 {
     }
 }
 
-/// How a range is checked.
+/// Check of a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RangeKind {
     /// Any number between the ends, the ends included.
     Any,
-    /// Whole numbers, with a decimal point or without one.
+    /// Whole numbers, with or without a decimal point.
     Whole,
-    /// The schema's range alone: another key narrows it, and the reader compares the two.
+    /// The schema's range alone: another key narrows it, and the reader checks that narrower range.
     Outer,
 }
 
-/// The range of a key.
+/// A range for a key.
 pub trait KeyRange {
-    /// `f64`, or `i64` where the file must have a number without a decimal point.
+    /// `f64`, or `i64` if the file must have a number without a decimal point.
     type Number: FileNumber;
+    /// Check of the range.
     const KIND: RangeKind;
+    /// Least value.
     const MIN: Self::Number;
+    /// Greatest value.
     const MAX: Self::Number;
-    /// The unit, and the reason for the range where the message gives one.
+    /// The unit, and the reason for the range if the message gives one.
     const UNIT: &'static str;
 
-    /// The range as a message states it: `0.01 to 99999 mm`.
+    /// Returns the range as messages state it: `0.01 to 99999 mm`.
     fn allowed() -> String {
         let whole = if Self::KIND == RangeKind::Whole { "a whole number from " } else { "" };
         let gap = if Self::UNIT.is_empty() { "" } else { " " };
@@ -150,13 +155,14 @@ ranges! {
     Wavelength: Any f64, 1.0, 100_000.0, "mm";
 }
 
-/// Opens the message about a number out of range; the reader puts the key in its place.
+/// Start of the message for a number out of range; the reader replaces it by the key.
 pub(super) const OUT_OF_RANGE: &str = "out of range: ";
 
-/// A number in the range `R`, and where it stands in the text.
+/// A number in the range `R`, with its location in the text.
 pub struct Bounded<R: KeyRange>(Spanned<R::Number>, PhantomData<R>);
 
 impl<R: KeyRange> Bounded<R> {
+    /// Returns the number.
     pub fn get(&self) -> R::Number {
         *self.0.as_ref()
     }
@@ -201,10 +207,11 @@ impl<R: KeyRange> JsonSchema for Bounded<R> {
     }
 }
 
-/// 1 or -1: which way an axis goes.
+/// 1 or −1: the direction of an axis.
 pub struct Sign(Spanned<i64>);
 
 impl Sign {
+    /// Returns 1 or −1.
     pub fn get(&self) -> i8 {
         if *self.0.as_ref() == 1 { 1 } else { -1 }
     }

@@ -1,4 +1,5 @@
-//! `[ellipse]` of an alignment job: the outline that an edge finder follows. It may be left out, and so may each key.
+//! `[ellipse]` of an alignment job: the outline that an edge finder follows. The section and each of its keys
+//! are optional.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -65,7 +66,7 @@ impl FileEllipse {
 mod tests {
     use crate::job::Job;
 
-    /// A job with these lines in its section `[ellipse]`.
+    /// Parses a job whose section `[ellipse]` has these lines.
     fn job(increment: &str, section: &str) -> Result<Job, String> {
         let text = format!(
             "family = \"alignment\"\n\

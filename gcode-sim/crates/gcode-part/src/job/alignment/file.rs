@@ -1,4 +1,4 @@
-//! Reads the job file of the family `alignment`: every key checked, its line named.
+//! Reads the job file of the family `alignment`. Errors name the key and its line.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -18,7 +18,7 @@ use crate::reader::bounds::{
 };
 use gcode_lang::units::{Deg, Mm};
 
-/// The part along y that the surface's normal must have where O8202 touches it along y.
+/// Least y component of the surface's normal at a point that O8202 touches along y.
 const STEEP: f64 = 0.3;
 
 /// Measurements of the position of a part on its machine.
@@ -117,7 +117,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, FileError>
         probe_feed: probe.feed.as_ref().map_or(100.0, Bounded::get),
         probe_search,
         probe_noise: match &probe.noise {
-            // The control notes a touch no finer than its increment.
+            // The control records a touch no finer than its least increment.
             Some(noise) => {
                 let allowed = format!("{increment} (the least increment) to {most} mm");
                 reader.number("probe.noise", noise, &allowed, in_range(increment, most))?
@@ -188,8 +188,11 @@ impl FileChord {
     }
 }
 
-/// How much higher over one of E and F than over the other a part stands, mm, that is off by what the run-out may leave: 0.004°
-/// about z and 0.01 mm in x. At x it stands higher by δ·x·(1 − b²/a²) and by dx·(b²/a²)·x/y.
+/// Returns the difference of the part's height over the model between E and F, mm, after a run-out with its
+/// usual remainder.
+///
+/// The remainder is a tilt of 0.004° about z and a shift of 0.01 mm in x. At x they raise the part by δ·x·(1
+/// − b²/a²) and by dx·(b²/a²)·x/y.
 fn chord_unevenness(surface: Surface, e: f64, f: f64) -> f64 {
     let Surface { a, b } = surface;
     let squares = (b * b) / (a * a);
@@ -199,7 +202,8 @@ fn chord_unevenness(surface: Surface, e: f64, f: f64) -> f64 {
 }
 
 impl FileChord {
-    /// Whether O8202 can touch the candidates: along y, each in its own circle, within the probe's search.
+    /// Checks that O8202 can touch the candidates: along y, each in its own circle, within the probe's
+    /// search.
     fn touchable(
         &self,
         reader: &Reader<'_>,
@@ -283,8 +287,9 @@ angles = [-25.0, 25.0, 11]
         assert_eq!((job.runout.from, job.runout.to), (-25.0, 25.0));
     }
 
-    /// A slender part, a 700 and b 1500: E at 512.4 and F at 318 are 0.004° in rad·194.4·3.592 = 0.048 75 uneven by the tilt, and
-    /// 0.01·4.592·(512.4/1021.93 − 318/1336.25) = 0.012 10 by the shift: 1.5 times both is 0.0913.
+    /// A slender part, a 700 and b 1500: for E at 512.4 and F at 318 the tilt gives 0.004° in rad·194.4·3.592
+    /// = 0.048 75, and the shift 0.01·4.592·(512.4/1021.93 − 318/1336.25) = 0.012 10: 1.5 times both is
+    /// 0.0913.
     #[test]
     fn a_slender_part_may_be_as_uneven_as_the_run_out_leaves_it() {
         let text = JOB

@@ -1,4 +1,4 @@
-//! `[runout]` of an alignment job: where the part is touched while the table turns.
+//! `[runout]` of an alignment job: the touches of the part while the table rotates.
 use schemars::JsonSchema;
 use serde::Deserialize;
 

@@ -1,4 +1,4 @@
-//! Reads the job file of the family `burr`: every key checked, its line named.
+//! Reads the job file of the family `burr`. Errors name the key and its line.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -133,7 +133,7 @@ struct FileTolerance {
     index: Option<Bounded<AngleTolerance>>,
 }
 
-/// The job of a burr, whose control is the default one unless the file says more.
+/// Returns the job of a burr; the control defaults to fanuc-31i with IS-B.
 pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, FileError> {
     let file: File = toml::from_str(reader.text).map_err(|e| reader.syntax(&e))?;
     let control = match &file.control {
@@ -186,7 +186,7 @@ impl FileBurr {
         let long = nose_length(radius, nose);
         let most = BurrLength::MAX;
         let allowed = format!("{long:.3} (the nose alone) to {most} mm");
-        // As long as the nose is to the digit that a job would say it with.
+        // The nose length is compared with the precision that a job would specify.
         let length =
             reader.number("burr.length", &self.length, &allowed, in_range(long - 0.000_5, most))?.max(long);
         let tooth_depth = match &self.tooth_depth {
@@ -199,7 +199,8 @@ impl FileBurr {
         Ok(BurrShape { radius, length, nose, tip_angle: self.tip_angle.get(), tooth_depth })
     }
 
-    /// As many as have room beside each other at the tip, were they as wide as twice the chord error.
+    /// Returns the number of flutes, limited by the room at the tip: each takes up to four chord errors of
+    /// circumference.
     fn count(&self, reader: &Reader<'_>, shape: &BurrShape, chord_error: f64) -> Result<u32, FileError> {
         let end = match shape.nose {
             Nose::Ball => shape.radius,
@@ -224,7 +225,7 @@ impl FileBurr {
     }
 }
 
-/// How far the nose reaches beyond the end of the cylinder.
+/// Returns the length of the nose beyond the end of the cylinder.
 fn nose_length(radius: f64, nose: Nose) -> f64 {
     match nose {
         Nose::Ball => radius,
@@ -285,7 +286,7 @@ const FORMS: [(&str, ProgramForm); 2] = [("loop", ProgramForm::Loop), ("moves", 
 
 impl FileProgram {
     fn check(&self, reader: &Reader<'_>, dialect: Dialect) -> Result<BurrProgram, FileError> {
-        // The function LN isn't in that control's manual.
+        // The manual of that control has no function LN.
         let without_loop = dialect == Dialect::HaasNgc;
         let form = match &self.form {
             Some(form) => match reader.choice("program.form", form, &FORMS)? {

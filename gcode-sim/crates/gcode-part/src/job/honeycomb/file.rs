@@ -1,4 +1,4 @@
-//! Reads the job file of the family `honeycomb`: every key checked, its line named.
+//! Reads the job file of the family `honeycomb`. Errors name the key and its line.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -108,11 +108,11 @@ struct FileDrill {
     peck: Option<Bounded<Depth>>,
 }
 
-/// M codes that end, call or rigid-tap.
+/// M codes that end a program, call one or select rigid tapping.
 const RESERVED_M_CODES: [i64; 5] = [19, 29, 30, 98, 99];
-/// mm/min, in the paper.
+/// Feed in the paper, mm/min.
 const DEFAULT_FEED: f64 = 60.0;
-/// r/min; the paper names none.
+/// Default speed, r/min; the paper gives none.
 const DEFAULT_SPEED: f64 = 1000.0;
 
 /// Reads the text of a job of this family.
@@ -225,7 +225,8 @@ impl FileDrill {
     }
 }
 
-/// The pitch or the divisions; whether the pattern that follows is possible, the part's geometry tells.
+/// Returns the pitch or the divisions. The geometry of the part decides later whether the pattern is
+/// possible.
 fn spacing(
     reader: &Reader<'_>,
     pattern: &Spanned<FilePattern>,
@@ -264,7 +265,9 @@ fn spacing(
     }
 }
 
-/// Rows of one group are √3 pitches apart; one and a half of them fill the circumference. In whole micrometres.
+/// Returns the largest pitch with two rows of each group, in whole micrometres.
+///
+/// Rows of one group are √3 pitches apart; one and a half of them fill the circumference.
 fn largest_pitch(diameter: f64) -> f64 {
     let most = std::f64::consts::PI * diameter / (1.5 * 3.0f64.sqrt());
     (most * 1e3).floor() / 1e3

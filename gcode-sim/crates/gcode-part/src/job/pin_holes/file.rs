@@ -1,4 +1,4 @@
-//! Reads the job file of the family `pin-holes`: every key checked, its line named.
+//! Reads the job file of the family `pin-holes`. Errors name the key and its line.
 use std::collections::BTreeSet;
 
 use schemars::{JsonSchema, Schema};
@@ -119,7 +119,7 @@ const HEADS: [(&str, bool); 2] = [("manual", false), ("axis", true)];
 const DIRECTIONS: [(&str, AxisDirection); 2] =
     [("axial", AxisDirection::Axial), ("normal", AxisDirection::Normal)];
 
-/// Of a head of kind axis, and of no other.
+/// Adds the rule that `letter` belongs to a head of kind axis and to no other.
 fn letter_goes_with_axis(schema: &mut Schema) {
     let of = |kind: &str| json!({ "kind": { "enum": [kind] } });
     let cases = json!([
@@ -157,7 +157,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, FileError> 
 }
 
 impl File {
-    /// The tools in the order of use, and for each hole the numbers of those that make it.
+    /// Returns the tools in the order of use, and for each hole the numbers of its tools.
     fn tools(&self, reader: &Reader<'_>) -> Result<(Vec<Tool>, Vec<Vec<u32>>), FileError> {
         let Some(first) = self.hole.first() else {
             return Err(FileError { line: None, message: "no holes: add a [[hole]]".into() });

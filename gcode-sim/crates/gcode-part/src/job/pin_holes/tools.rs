@@ -1,4 +1,4 @@
-//! The tools of a pin-hole job, and which of them make which hole.
+//! The tools of a pin-hole job and their assignment to holes.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -27,18 +27,18 @@ pub(super) struct FileTool {
     name: Option<String>,
 }
 
-/// What a hole says about its tools.
+/// The keys of a hole that select its tools.
 pub(super) struct HoleToolSpec<'f> {
     pub(super) id: &'f str,
     pub(super) diameter: &'f Bounded<Length>,
     pub(super) tools: Option<&'f Spanned<Vec<i64>>>,
 }
 
-/// mm/min into the hole, in the paper.
+/// Feed into the hole in the paper, mm/min.
 const DEFAULT_FEED: f64 = 10.0;
-/// mm/min out of the hole: nothing is cut there.
+/// Feed out of the hole, mm/min; the tool does not cut there.
 const DEFAULT_RETRACT_FEED: f64 = 200.0;
-/// r/min, in the paper.
+/// Speed in the paper, r/min.
 const DEFAULT_SPEED: f64 = 1500.0;
 
 impl FileTool {
@@ -60,8 +60,9 @@ impl FileTool {
     }
 }
 
-/// The tools of the paper (drill Φ5.9, then a three-flute end mill Φ6; 1500 r/min, 10 mm/min along the axis), a pair
-/// for each diameter of the job, and the tools of each hole.
+/// Returns the tools of the paper, a pair for each diameter of the job, and the tool numbers of each hole.
+///
+/// The paper uses a drill Φ5.9, then a three-flute end mill Φ6, at 1500 r/min and 10 mm/min along the axis.
 pub(super) fn default_tools(
     reader: &Reader<'_>,
     holes: &[HoleToolSpec<'_>],
@@ -82,7 +83,7 @@ pub(super) fn default_tools(
     }
     let tools = diameters.iter().enumerate().flat_map(|(index, diameter)| {
         let first = 2 * index as u32 + 1;
-        // Both differences in tenths of a millimetre, so that 6 becomes 5.9 and not 5.8999….
+        // Rounded to tenths of a micrometre, so that 6 gives 5.9 and not 5.8999….
         let drill = if *diameter > 1.0 { (diameter * 1e4 - 1e3).round() / 1e4 } else { diameter * 0.9 };
         [tool(first, drill, "DRILL"), tool(first + 1, *diameter, "END MILL")]
     });
@@ -101,8 +102,10 @@ fn tool(number: u32, diameter: f64, name: &str) -> Tool {
     }
 }
 
-/// The tools of each hole: those it names, else every tool that isn't larger than it. The last one must have its
-/// diameter, or the hole would be left too small or cut too large.
+/// Returns the tool numbers of each hole: those it names, else every tool that is not larger than it.
+///
+/// # Errors
+/// The last tool of a hole has another diameter, which would leave the hole too small or cut it too large.
 pub(super) fn assign(
     reader: &Reader<'_>,
     tools: &[Tool],
