@@ -172,7 +172,7 @@ mod tests {
             from: Origin { program: "O8101".into(), line: 31, tool: Some(2) },
             calls: vec![Origin { program: "O8100".into(), line: 20, tool: None }],
             neighbours: None,
-            objections: objections.iter().map(|o| (*o).to_owned()).collect(),
+            objections: objections.to_vec(),
         }
     }
 

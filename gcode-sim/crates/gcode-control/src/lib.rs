@@ -10,7 +10,7 @@ mod block_effects;
 mod checked;
 mod functions;
 mod modal_state;
-mod notes;
+pub mod notes;
 mod offsets;
 mod operand_stack;
 mod outcome;

@@ -1,5 +1,5 @@
 //! What a check has against the holes, and which of it stands behind one sentence about many.
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::{Backtrace, Call};
 
 /// Something a check has against the holes.
@@ -35,19 +35,19 @@ impl HoleFinding {
         Self { is_motion: true, ..Self::unlocated(finding) }
     }
 
-    fn is_one_of(&self, codes: &[&str]) -> bool {
-        codes.contains(&self.finding.code.as_str())
+    pub(super) fn is_one_of(&self, kinds: &[&FindingKind]) -> bool {
+        kinds.contains(&self.finding.kind)
     }
 }
 
 /// Puts those of these codes that `about` speaks of behind another finding; the answer is how many they are.
 pub(super) fn fold(
     findings: &mut [HoleFinding],
-    codes: &[&str],
+    kinds: &[&FindingKind],
     is_concerned: impl Fn(&HoleFinding) -> bool,
 ) -> usize {
     let mut folded = 0;
-    for objection in findings.iter_mut().filter(|o| !o.is_folded && o.is_one_of(codes) && is_concerned(o)) {
+    for objection in findings.iter_mut().filter(|o| !o.is_folded && o.is_one_of(kinds) && is_concerned(o)) {
         objection.is_folded = true;
         folded += 1;
     }

@@ -5,19 +5,26 @@
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal::without_point;
 use crate::parameters;
+use crate::rule::Rule;
 use gcode_lang::control::Settings;
+use gcode_lang::diag::Severity;
 use gcode_lang::program::code_facts::Measured;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::{Motion, Unit};
 use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
 use gcode_lang::syntax::ast::Decimal;
 
-pub(super) const NAME: &str = "missing-point";
+pub(super) static RULE: Rule = Rule::new(
+    "missing-point",
+    Severity::Warning,
+    "a number without a decimal point that counts thousandths",
+    find,
+);
 
 /// Number of increments from which a peck or a dwell may be intended: many programs write `G4 X500`.
 const MIN_INTENDED_INCREMENTS: u64 = 100;
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let settings = context.settings;
     if settings.uses_calculator_input || counts_in_increments(unit, settings) {
         return Vec::new();
@@ -40,7 +47,9 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             let written = spelled(word.letter, number);
             let message = format!("{written} is {}", meaning(word.letter, number, words, settings, is_inch));
             found.push(
-                unit.warning(NAME, block, message).with_span(word.span).help(format!("write {written}.")),
+                unit.finding(&RULE.kind, block, message)
+                    .with_span(word.span)
+                    .help(format!("write {written}.")),
             );
         }
     }
@@ -155,11 +164,12 @@ fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn a_point_is_missing() {
-        let found = messages(NAME, "O1\nG0 X10. Y20.\nG1 Z-3 F100\nG4 X2\nG0 B90\nG65 P2 A5\nM30\nO2\nM99\n");
+        let found =
+            messages(&RULE, "O1\nG0 X10. Y20.\nG1 Z-3 F100\nG4 X2\nG0 B90\nG65 P2 A5\nM30\nO2\nM99\n");
         assert_eq!(
             found,
             ["Z-3 is -0.003 mm", "X2 is 0.002 seconds", "B90 is 0.09 degrees", "A5 is 0.005 for the macro"]
@@ -170,9 +180,9 @@ mod tests {
     fn offsets_and_angles_of_codes_are_measures_too() {
         let text =
             "O1\nG0 X1.\nG10 L2 P1 X-100 Y0\nG10 L10 P1 R50\nG68 X0 Y0 R45\nG69\nG51 X10 Y0 P2000\nM30\n";
-        let found = messages(NAME, text);
+        let found = messages(&RULE, text);
         assert_eq!(found, ["X-100 is -0.1 mm", "R50 is 0.05 mm", "R45 is 0.045 degrees", "X10 is 0.01 mm"]);
-        let tilted = messages(NAME, "O1\nG68.2 X0 Y0 Z0 I0 J90 K0\nG0 Z5.\nM30\n");
+        let tilted = messages(&RULE, "O1\nG68.2 X0 Y0 Z0 I0 J90 K0\nG0 Z5.\nM30\n");
         assert_eq!(tilted, ["J90 is 0.09 degrees"]);
     }
 
@@ -187,7 +197,7 @@ mod tests {
             "O1\nG0 X1.\nG10 L52\nN6004 Q0 R1\nN1241 P1 R5.\nG11\nM30\n",
             "O1\nG0 X1.\nG10 L3\nP1 L10\nG11\nM30\n",
         ] {
-            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+            assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The tool that finishes a hole must have the hole's diameter, where both are known.
 use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_DIAMETER;
 use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
@@ -17,7 +18,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
             "hole {}: the finishing tool{tool} is Φ{actual}, nominal Φ{wanted}",
             comparison.id(pair.nominal)
         );
-        let finding = Diagnostic::error("hole-diameter", message)
+        let finding = Diagnostic::new(&HOLE_DIAMETER, message)
             .help("finish the hole with the right tool, or correct the tool table")
             .with_backtrace(found.backtrace.clone());
         objections.push(HoleFinding::of_nominal(pair.nominal, finding));

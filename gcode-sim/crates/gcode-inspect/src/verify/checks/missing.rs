@@ -2,6 +2,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_MISSING;
 use gcode_lang::diag::Diagnostic;
 use gcode_part::PointTree;
 
@@ -16,7 +17,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
         let hole = &comparison.nominal[*wanted];
         let end = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
         let message = format!("hole {} is missing", comparison.id(*wanted));
-        let finding = Diagnostic::error("hole-missing", message);
+        let finding = Diagnostic::new(&HOLE_MISSING, message);
         let finding = match tree.nearest(&end) {
             Some((near, distance)) => {
                 let found = &comparison.actual[extra[near]];

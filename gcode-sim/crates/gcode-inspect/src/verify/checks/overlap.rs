@@ -1,6 +1,7 @@
 //! Wanted holes that cut into each other, which the drawing may mean: told, not failed. A pattern sees to its own.
 use super::{HoleFinding, HoleInspection};
-use gcode_lang::diag::{Diagnostic, Severity};
+use crate::findings::HOLE_OVERLAP;
+use gcode_lang::diag::Diagnostic;
 use gcode_part::overlaps;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
@@ -10,7 +11,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
     }
     for overlap in overlaps(comparison.nominal) {
         let message = overlap.sentence(comparison.nominal);
-        let finding = Diagnostic::new(Severity::Note, "hole-overlap", message)
+        let finding = Diagnostic::new(&HOLE_OVERLAP, message)
             .help("check radius, azimuth and depth of both holes, unless the drawing specifies this");
         objections.push(HoleFinding::of_nominal(overlap.holes[0], finding));
     }

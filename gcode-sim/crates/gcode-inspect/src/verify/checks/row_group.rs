@@ -1,6 +1,7 @@
 //! A honeycomb has two groups of rows, one half a pitch later in x than the other: where all rows begin alike, one is
 //! missing, or stands where the other does.
 use super::{Comparison, HoleFinding, HoleInspection};
+use crate::findings::ROW_GROUP;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
@@ -50,7 +51,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
         ),
     };
     let finding = locate_at_call(
-        Diagnostic::error("row-group", message).help(help),
+        Diagnostic::new(&ROW_GROUP, message).help(help),
         &comparison.actual[first.first].backtrace,
     );
     objections.push(HoleFinding::unlocated(finding));
@@ -90,7 +91,7 @@ fn shifted_group(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternR
     let help = "begin the first group at x 0 and the second half a pitch later; the first hole of a row \
                 positions the others";
     Some(locate_at_call(
-        Diagnostic::error("row-group", message).help(help),
+        Diagnostic::new(&ROW_GROUP, message).help(help),
         &comparison.actual[first[group].first].backtrace,
     ))
 }

@@ -1,5 +1,6 @@
 //! Round the cylinder the last row stands as far from the first as all others from their next: else there is a seam.
 use super::{HoleFinding, HoleInspection};
+use crate::findings::ROW_SEAM;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
@@ -31,7 +32,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
         rows.typical_gap.0,
         pattern.arc_length(rows.typical_gap)
     );
-    let finding = Diagnostic::error("row-seam", message).help(
+    let finding = Diagnostic::new(&ROW_SEAM, message).help(
         "make the angle from row to row divide 360: choose a whole number of rows, then compute the angle, \
          then the pitch",
     );

@@ -2,6 +2,7 @@
 use nalgebra::{Unit, Vector3};
 
 use super::{HoleFinding, HoleInspection};
+use crate::findings::AXIS_SIGNS;
 use crate::machine::{LinkMotion, Machine};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Reference;
@@ -26,7 +27,7 @@ fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
         let letter = rotary.letter;
         let message =
             format!("{letter} has sign {sign} in the machine file and {job} in the job: the directions are opposite");
-        Diagnostic::warning("axis-signs", message)
+        Diagnostic::new(&AXIS_SIGNS, message)
             .note("the results are for the machine file's direction; programs emitted from the job assume the job's")
             .help("rotate the part by hand, observe its direction and correct the wrong sign")
     })

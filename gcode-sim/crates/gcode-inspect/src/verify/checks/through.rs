@@ -3,6 +3,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_THROUGH;
 use crate::verify::hole_finding::folded_note;
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Hole;
@@ -27,7 +28,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
         let depth = comparison.nominal[wanted].depth;
         let message =
             format!("{which} through: {depth} mm deep, the part is {thick:.1} mm thick along its axis");
-        Diagnostic::warning("hole-through", message)
+        Diagnostic::new(&HOLE_THROUGH, message)
             .help("check depth, radius and direction, unless the drawing specifies a through hole")
     };
     let many = MIN_HOLES <= through.len();

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Vector3};
 
 use super::{HoleFinding, HoleInspection};
+use crate::findings::TOOL_SHORT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 
@@ -57,7 +58,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
              enter the part",
             comparison.id(wanted)
         );
-        let finding = Diagnostic::warning("tool-short", message)
+        let finding = Diagnostic::new(&TOOL_SHORT, message)
             .help(
                 "check that the length in the machine file runs from the spindle gauge line to the tip; \
                  otherwise use a longer tool",

@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 
 use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_TOOLS;
 use crate::holes::DrilledHole;
 use gcode_lang::diag::Diagnostic;
 
@@ -37,7 +38,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
                 lacks.join(", "),
                 f64::from_bits(diameter)
             );
-            let finding = Diagnostic::warning("hole-tools", message)
+            let finding = Diagnostic::new(&HOLE_TOOLS, message)
                 .help("check for a missing call")
                 .with_backtrace(comparison.actual[pair.actual].backtrace.clone());
             objections.push(HoleFinding::of_nominal(pair.nominal, finding));
