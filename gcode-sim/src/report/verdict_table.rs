@@ -149,7 +149,7 @@ mod tests {
     use gcode_inspect::verify::Answer;
     use gcode_part::Origin;
 
-    fn hole(id: &str, phi: f64, objections: &[&str]) -> HoleVerdict {
+    fn hole(id: &str, phi: f64, objections: &[&'static str]) -> HoleVerdict {
         let placed = |x: f64| HoleGeometry {
             entry: [x, 674.93, 0.0],
             axis: [0.0, 1.0, 0.0],
