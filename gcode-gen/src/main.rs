@@ -1,4 +1,4 @@
-//! Arguments to the command line, its exit status to the shell.
+//! Passes the arguments to the command line and its exit status to the shell.
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

@@ -13,11 +13,11 @@ pub struct ToolPass<'j> {
 pub struct HeadSetting<'j> {
     pub radius: f64,
     pub axis: AxisDirection,
-    /// In the order of their azimuths.
+    /// Holes in the order of their azimuths.
     pub holes: Vec<&'j HoleSpec>,
 }
 
-/// Every tool that makes a hole, in the order of the tool list.
+/// Returns every tool that makes a hole, in the order of the tool list.
 pub fn passes(job: &PinHoles) -> Vec<ToolPass<'_>> {
     let mut holes: Vec<&HoleSpec> = job.holes.iter().collect();
     holes.sort_by(|one, other| {

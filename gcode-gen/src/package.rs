@@ -1,4 +1,4 @@
-//! What an emitted job consists of, before anything is written: programs and files by name.
+//! An emitted job in memory: programs and files by name.
 
 /// The programs and the machine file of one job.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,18 +13,18 @@ pub struct Package {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     pub number: u32,
-    /// In ASCII, lines ended by LF.
+    /// ASCII text, lines ended by LF.
     pub text: String,
 }
 
 impl Package {
-    /// What is written where: `O8100.nc`, `O8101.nc`, …, `machine.toml`.
+    /// Returns the files by name: `O8100.nc`, `O8101.nc`, …, `machine.toml`.
     pub fn files(&self) -> Vec<(String, &str)> {
         let programs = self.programs.iter().map(|program| (file_name(program.number), program.text.as_str()));
         programs.chain([("machine.toml".to_owned(), self.machine.as_str())]).collect()
     }
 
-    /// The main program, of a job that has just one.
+    /// Returns the main program of a job with exactly one.
     pub fn main(&self) -> Option<&Program> {
         match self.mains.as_slice() {
             [main] => self.program(*main),
@@ -41,7 +41,7 @@ pub fn file_name(number: u32) -> String {
     format!("{}.nc", stem(number))
 }
 
-/// What the names of a program's files begin with.
+/// Returns the beginning of the names of a program's files.
 pub fn stem(number: u32) -> String {
     format!("O{number:04}")
 }

@@ -1,4 +1,4 @@
-//! What `emit` and `sheet` answer, as text and as data, and the schemas of that.
+//! The results of `emit` and `sheet`, as text and as data, and their schemas.
 use std::fmt::Write;
 
 use gcode_sim::report::figures::{count, rounded, signed_to};
@@ -24,7 +24,7 @@ pub struct EmitReport<'c> {
     pub basis: &'static str,
     /// Why nothing is written, in words; null if the programs pass verification.
     pub refused: Option<String>,
-    /// The files.
+    /// The files that were written.
     pub written: Vec<String>,
     /// Macros of an earlier job in the folder that these programs do not call.
     pub left_over: Vec<String>,
@@ -37,12 +37,12 @@ pub struct EmitReport<'c> {
 }
 
 impl<'c> EmitReport<'c> {
-    /// Of programs that hold.
+    /// Builds the report of programs that pass.
     pub fn new(checked: &'c CheckedPackage, written: Vec<String>, left_over: Vec<String>) -> Self {
         Self { written, left_over, ..Self::of(Some(checked), None) }
     }
 
-    /// Of programs that aren't written; `checked` where they could be run.
+    /// Builds the report of programs that are not written; `checked` is given if they could be run.
     pub fn refused(checked: Option<&'c CheckedPackage>, why: String) -> Self {
         Self::of(checked, Some(why))
     }
@@ -61,7 +61,7 @@ impl<'c> EmitReport<'c> {
         }
     }
 
-    /// The same for people.
+    /// Formats the result for a terminal.
     pub fn text(&self) -> String {
         let mut text = self.table.to_owned();
         let minutes = self.seconds.unwrap_or_default() / 60.0;
@@ -80,7 +80,7 @@ pub struct SheetReport {
     pub basis: &'static str,
     /// Why nothing is written, in words; null if the programs pass verification.
     pub refused: Option<String>,
-    /// The file.
+    /// The file that was written.
     pub written: Option<String>,
     /// Time of a part; null if the programs fail verification.
     pub time: Option<TimeReport>,
@@ -91,7 +91,7 @@ pub struct SheetReport {
 /// Time of a part on the job's machine.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct TimeReport {
-    /// The program, minutes.
+    /// Running time of the program, minutes.
     pub run: f64,
     pub stops: usize,
     pub tool_changes: usize,
@@ -104,7 +104,7 @@ pub struct TimeReport {
 /// Cost of a part on one machine.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CostReport {
-    /// Null for the job's own.
+    /// Name of the machine; null for the job's own.
     pub machine: Option<String>,
     pub currency: String,
     pub cost: f64,
@@ -113,7 +113,7 @@ pub struct CostReport {
 }
 
 impl SheetReport {
-    /// Of a sheet that is written to a file; costs in one currency, the job's own machine first.
+    /// Builds the report of a sheet written to a file; costs in one currency, the job's own machine first.
     pub fn new(written: String, taken: &MachineTime, currency: &str, costs: &[Cost]) -> Self {
         let cost = |cost: &Cost| CostReport {
             machine: cost.machine.clone(),
@@ -132,12 +132,12 @@ impl SheetReport {
         Self { basis: BASIS, refused: None, written: Some(written), time: Some(time), costs }
     }
 
-    /// Of programs that don't hold.
+    /// Builds the report of programs that fail.
     pub fn refused(why: String) -> Self {
         Self { basis: BASIS, refused: Some(why), written: None, time: None, costs: Vec::new() }
     }
 
-    /// The same for people: time and money in two or three lines.
+    /// Formats time and money in two or three lines for a terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
         if let Some(TimeReport { run, stops, tool_changes, all, .. }) = &self.time {

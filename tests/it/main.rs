@@ -38,6 +38,7 @@ mod misplaced;
 mod mutations;
 mod order;
 mod packaging;
+#[cfg(feature = "browser")]
 mod page;
 mod pin_holes;
 mod real_files;

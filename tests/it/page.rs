@@ -90,7 +90,7 @@ fn is_quiet(browser: &Browser) {
 #[test]
 fn a_person_sorts_the_holes_and_goes_to_a_block() {
     let (_place, page) = one_digit_wrong("--reference JOB");
-    let Some(browser) = Browser::start(1400, 1000) else { return };
+    let browser = Browser::start(1400, 1000);
     browser.open(&page);
     assert_eq!(column(&browser, 1), ["1", "2", "3", "4", "5"]);
 
@@ -127,7 +127,7 @@ fn a_person_sorts_the_holes_and_goes_to_a_block() {
 #[test]
 fn all_can_be_done_with_keys() {
     let (_place, page) = one_digit_wrong("");
-    let Some(browser) = Browser::start(1400, 1000) else { return };
+    let browser = Browser::start(1400, 1000);
     browser.open(&page);
 
     // A column head sorts, the arrows go from row to row, Enter goes to the block.
@@ -174,7 +174,7 @@ fn the_mouse_turns_zooms_and_picks() {
     // One hole, in the middle of all that is fitted into the canvas.
     let program = "O1\nT1 M6\nG0 X0 Y0 Z10.\nM3 S500\nG1 Z-8. F50\nG0 Z10.\nX90. Y40.\nM30\n";
     let (_place, page) = of_texts(program.as_bytes(), program.replace("Z-8.", "Z-9.").as_bytes());
-    let Some(browser) = Browser::start(1200, 1000) else { return };
+    let browser = Browser::start(1200, 1000);
     browser.open(&page);
     browser.run("document.getElementById('viewer').scrollIntoView()");
     let (x, y) =
@@ -198,7 +198,7 @@ fn the_mouse_turns_zooms_and_picks() {
 #[test]
 fn a_telephone_the_dark_and_paper_are_served() {
     let (_place, page) = one_digit_wrong("--reference JOB");
-    let Some(browser) = Browser::start(1400, 1000) else { return };
+    let browser = Browser::start(1400, 1000);
     browser.open(&page);
     let paper = || browser.run("return getComputedStyle(document.body).backgroundColor");
     assert_eq!(paper(), "rgb(255, 255, 255)");
@@ -236,7 +236,7 @@ fn what_a_program_says_is_text_and_nothing_else() {
     new.extend(b"G1 X5. F'100\nM30\n");
     let (_place, page) = of_texts(&old, &new);
     assert!(std::str::from_utf8(&std::fs::read(&page).unwrap()).is_ok(), "the page is UTF-8");
-    let Some(browser) = Browser::start(1200, 900) else { return };
+    let browser = Browser::start(1200, 900);
     browser.open(&page);
     assert_eq!(browser.run("return document.querySelectorAll('img, #broken').length"), 0);
     assert_eq!(browser.run("return document.title"), "Review of NEW.nc against OLD.nc");
@@ -254,7 +254,7 @@ fn what_a_program_says_is_text_and_nothing_else() {
 fn a_lost_stop_is_marked_where_it_was() {
     let old = b"O1\nG21\nG0 X1.\nM00\nG0 X2.\n#3006=1(TURN)\nM30\n";
     let (_place, page) = of_texts(old, b"O1\nG21\nG0 X1.\nG0 X2.\n#3006=1(CLAMP)\nM30\n");
-    let Some(browser) = Browser::start(1200, 900) else { return };
+    let browser = Browser::start(1200, 900);
     browser.open(&page);
     let marks = browser.run(
         "return [...document.querySelectorAll('.half .mark')].map((mark) => \
@@ -298,7 +298,7 @@ fn a_row_says_what_is_different_and_names_all_tools() {
     let drill = "T2 M6\nS500 M3\nX10. Z0\nG1 Y-20. F100\nG0 Y50.\nX30.\nG1 Y-20.\nG0 Y50.\nM30\n";
     let old = format!("O1\nG90\n{spot}{drill}");
     let (place, page_of_both) = of_texts(old.as_bytes(), format!("O1\nG90\n{drill}").as_bytes());
-    let Some(browser) = Browser::start(1200, 900) else { return };
+    let browser = Browser::start(1200, 900);
     browser.open(&page_of_both);
     assert_eq!(column(&browser, 2), ["T2, was T1 T2", "same"]);
     assert_eq!(column(&browser, 8), ["T1 T2 → T2", "T2"]);
@@ -322,7 +322,7 @@ fn a_long_table_is_printed_in_part_and_says_so() {
         format!("O1\nS500 M3\n#1=0\nG0 Z5.\n{drilled}G80\nM30\n")
     };
     let (_place, page) = of_texts(row("-5.").as_bytes(), row("-6.").as_bytes());
-    let Some(browser) = Browser::start(1200, 900) else { return };
+    let browser = Browser::start(1200, 900);
     browser.open(&page);
     let rows = "const shown = (element) => getComputedStyle(element).display !== 'none'; \
          const rows = [...document.querySelectorAll('.holes tbody tr')].filter(shown); \
@@ -344,7 +344,7 @@ fn what_is_worst_and_what_nobody_executed_stands_first() {
     let old = format!("O1\n#1=2\nIF[#1 GT 3]GOTO 9\n{cut}N9 M30\n");
     let new = format!("O1\n#1=2\nIF[#1 GT 3]THEN #3000=1(FAR)\n{cut}X[1/0]\nN9 M30\n");
     let (_place, page) = of_texts(old.as_bytes(), new.as_bytes());
-    let Some(browser) = Browser::start(1200, 900) else { return };
+    let browser = Browser::start(1200, 900);
     browser.open(&page);
     let found = browser.run(
         "return [...document.querySelectorAll('#told .sides > div')].map((side) => \
@@ -398,7 +398,7 @@ fn a_program_that_stops_shows_where_and_why() {
     let (_place, page) = of_texts(old, b"O1\n#1=4.\nG0 X[#1/0]\nM30\n");
     let text = std::fs::read_to_string(&page).unwrap();
     assert!(text.contains("New: stopped, alarm PS0112"), "the answer names the alarm");
-    let Some(browser) = Browser::start(1200, 900) else { return };
+    let browser = Browser::start(1200, 900);
     browser.open(&page);
     // From the alarm to its line; nothing is there to be drawn on the new side.
     browser.click("#told .alarm .place a");
@@ -421,7 +421,7 @@ fn a_long_program_is_cut_and_says_so() {
     assert!(text.len() < 5_000_000, "{} bytes", text.len());
     assert!(text.contains("the first 40\u{a0}000 of 45\u{a0}002 moves are drawn"));
     assert!(text.contains("#1 0 … 44999 (45000×)"), "the variable's first and last value before the block");
-    let Some(browser) = Browser::start(1200, 900) else { return };
+    let browser = Browser::start(1200, 900);
     browser.open(&page);
     browser.run("document.getElementById('canvas-new').focus()");
     let turned = browser.run(
@@ -448,7 +448,7 @@ fn a_program_alone_has_a_page_too() {
     let digest = std::fs::read(format!("{example}/job.toml")).map(sha256).unwrap();
     assert!(text.contains(&digest), "{digest}");
 
-    let Some(browser) = Browser::start(1200, 900) else { return };
+    let browser = Browser::start(1200, 900);
     page(place.path(), &format!("holes {program}"));
     browser.open(&judged);
     assert_eq!(column(&browser, 1), ["1", "2", "3", "4", "5"]);

@@ -2,10 +2,8 @@
 use std::path::Path;
 
 use gcode_sim::report::encode::sha256;
-use gcode_tests::browser::Browser;
+use gcode_tests::programs;
 use gcode_tests::sheet::html;
-use gcode_tests::{programs, workspace};
-use serde_json::json;
 
 const JOB: &str = "family = \"pin-holes\"\n[control]\ndialect = \"fanuc-31i\"\nincrement = \"IS-B\"\n[machine]\n\
                    rotary = { letter = \"B\", sign = 1 }\n[surface]\nkind = \"ellipsoid\"\na = 500.0\nb = 300.0\n\
@@ -82,29 +80,40 @@ fn what_does_not_hold_has_no_sheet() {
     assert!(!Path::new(&place.path().join("sheet.html")).exists());
 }
 
-/// At 375 px, with the dark mode that a browser forces: nothing is wider than the screen, and the paper stays white.
-#[test]
-fn a_telephone_shows_every_table_whole() {
-    let Some(browser) = Browser::start(800, 900) else { return };
-    let metrics = json!({"width": 375, "height": 800, "deviceScaleFactor": 1, "mobile": true});
-    browser.command("Emulation.setDeviceMetricsOverride", &metrics);
-    browser.command("Emulation.setAutoDarkModeOverride", &json!({"enabled": true}));
-    let place = tempfile::tempdir().unwrap();
-    let setting_up = std::fs::read_to_string(workspace().join("examples/alignment/job.toml")).unwrap();
-    for (name, job) in [("alignment", setting_up.as_str()), ("pin-holes", JOB)] {
-        let page = place.path().join(format!("{name}.html"));
-        std::fs::write(&page, html(job, None)).unwrap();
-        browser.open(&page);
-        let wide = browser.run(
-            "return [document.documentElement, ...document.querySelectorAll('.wide, .wide *')] \
-             .filter((one) => one.scrollWidth > 375 || one.getBoundingClientRect().right > 376) \
-             .map((one) => one.outerHTML.slice(0, 200))",
-        );
-        assert_eq!(wide, json!([]), "{name}");
-        let scheme = browser.run("return getComputedStyle(document.documentElement).colorScheme");
-        assert!(scheme.as_str().unwrap().contains("only"), "{scheme}");
-        let paper =
-            browser.run("return getComputedStyle(document.querySelector('figure svg')).backgroundColor");
-        assert_eq!(paper, json!("rgb(255, 255, 255)"));
+/// The sheet in a browser.
+#[cfg(feature = "browser")]
+mod screen {
+    use gcode_tests::browser::Browser;
+    use gcode_tests::sheet::html;
+    use gcode_tests::workspace;
+    use serde_json::json;
+
+    use super::JOB;
+
+    /// At 375 px, with the dark mode that a browser forces: nothing is wider than the screen, and the paper stays white.
+    #[test]
+    fn a_telephone_shows_every_table_whole() {
+        let browser = Browser::start(800, 900);
+        let metrics = json!({"width": 375, "height": 800, "deviceScaleFactor": 1, "mobile": true});
+        browser.command("Emulation.setDeviceMetricsOverride", &metrics);
+        browser.command("Emulation.setAutoDarkModeOverride", &json!({"enabled": true}));
+        let place = tempfile::tempdir().unwrap();
+        let setting_up = std::fs::read_to_string(workspace().join("examples/alignment/job.toml")).unwrap();
+        for (name, job) in [("alignment", setting_up.as_str()), ("pin-holes", JOB)] {
+            let page = place.path().join(format!("{name}.html"));
+            std::fs::write(&page, html(job, None)).unwrap();
+            browser.open(&page);
+            let wide = browser.run(
+                "return [document.documentElement, ...document.querySelectorAll('.wide, .wide *')] \
+                 .filter((one) => one.scrollWidth > 375 || one.getBoundingClientRect().right > 376) \
+                 .map((one) => one.outerHTML.slice(0, 200))",
+            );
+            assert_eq!(wide, json!([]), "{name}");
+            let scheme = browser.run("return getComputedStyle(document.documentElement).colorScheme");
+            assert!(scheme.as_str().unwrap().contains("only"), "{scheme}");
+            let paper =
+                browser.run("return getComputedStyle(document.querySelector('figure svg')).backgroundColor");
+            assert_eq!(paper, json!("rgb(255, 255, 255)"));
+        }
     }
 }

@@ -5,6 +5,7 @@
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
 pub mod alignment;
+#[cfg(feature = "browser")]
 pub mod browser;
 mod burr_picture;
 pub mod changes;

@@ -4,7 +4,7 @@ use gcode_lang::syntax::ast::{
     BinaryOp, Block, CallForm, CommentMark, Condition, Expr, ExprKind, Item, OperatorSpelling, PrintPart,
     Program, ProgramName, Statement, Word, WordValue,
 };
-use gcode_lang::syntax::{parse, print::decimal};
+use gcode_lang::syntax::{parse, print_decimal};
 
 use crate::Case;
 
@@ -77,7 +77,7 @@ fn word(word: &Word) -> String {
         None => char::from(word.address.letter).to_string(),
     };
     match &word.value {
-        WordValue::Literal(number) => format!("{comma}{letter}{}", decimal(*number)),
+        WordValue::Literal(number) => format!("{comma}{letter}{}", print_decimal(*number)),
         WordValue::Expr(value) => format!("{comma}{letter}={}", expr(value)),
         WordValue::Name(name) => format!("{comma}{letter}=program <{name}>"),
     }
@@ -118,7 +118,7 @@ fn statement(found: &Statement) -> String {
 
 fn expr(value: &Expr) -> String {
     match &value.kind {
-        ExprKind::Literal(number) => decimal(*number),
+        ExprKind::Literal(number) => print_decimal(*number),
         ExprKind::Variable(index) => format!("#{}", expr(index)),
         ExprKind::Named(name) => match &name.index {
             Some(index) => format!("variable {}[{}]", name.text, expr(index)),

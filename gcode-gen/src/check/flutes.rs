@@ -1,4 +1,4 @@
-//! Runs the programs of a burr and holds the flutes against the job's geometry.
+//! Runs the programs of a burr and verifies the flutes against the job's geometry.
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Severity;

@@ -1,4 +1,4 @@
-//! Runs the programs of a part with holes and holds the holes against the job's geometry.
+//! Runs the programs of a part with holes and verifies the holes against the job's geometry.
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::Severity;
@@ -36,12 +36,12 @@ pub(super) fn check(
     })
 }
 
-/// Every reason with its block; then what rounding has to do with it.
+/// Returns every error with its block, then the share of rounding in position errors.
 fn refusals(job: &Job, reference: &Reference, simulation: &Simulation, verdict: &Verdict) -> Vec<String> {
     let sources = simulation.run.control.memory().sources();
     let failed = verdict.diagnostics.iter().filter(|finding| Severity::Error <= finding.severity);
     let mut refusals: Vec<_> = failed.map(|finding| diagnostic::render(finding, sources)).collect();
-    // A pattern sees to its own before it has any holes.
+    // A pattern checks for overlaps before it computes any holes.
     if reference.pattern.is_none() {
         let cut = overlaps(&reference.holes);
         refusals.extend(cut.iter().map(|overlap| format!("error: {}\n", overlap.sentence(&reference.holes))));

@@ -1,5 +1,5 @@
-//! Runs an emitted package as the control would and holds what it does against the job's geometry. What doesn't pass
-//! here is not written.
+//! Runs an emitted package as the control would and verifies its effect against the job's geometry. Only a
+//! package that passes is written.
 mod alignment;
 mod flutes;
 mod holes;
@@ -18,10 +18,10 @@ use serde::Serialize;
 
 use crate::package::{Package, Program, file_name};
 
-/// Why nothing can be said of the programs.
+/// Reasons why a package cannot be verified.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
-    /// No part can be what the job asks for.
+    /// No part can have the job's geometry.
     #[error("{0}")]
     Impossible(String),
     /// The package contradicts itself.
@@ -29,34 +29,34 @@ pub enum CheckError {
     Broken(String),
 }
 
-/// A package that was run.
+/// A package with the results of its run.
 #[derive(Debug)]
 pub struct CheckedPackage {
-    /// Why it may not be written: findings with their lines, as text for a terminal. Empty where all is well.
+    /// Errors that forbid writing it, as text for a terminal; empty if it passes.
     pub refusals: Vec<String>,
-    /// What to look at before it is used: the verdict's warnings, as text for a terminal.
+    /// Warnings of the verdict, as text for a terminal.
     pub warnings: Vec<String>,
-    /// Predicted running time, operator stops left out.
+    /// Predicted running time without operator stops, seconds.
     pub seconds: f64,
-    /// What `verify` prints.
+    /// Report as printed by `verify`.
     pub report: String,
-    /// What is drawn of it, each with its file's name without `.png`.
+    /// Pictures, each with its file name without `.png`.
     pub pictures: Vec<(String, Scene)>,
     pub verdict: PackageVerdict,
 }
 
-/// The verdict, by kind of part.
+/// The verdict, by the kind of part.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PackageVerdict {
     Holes(Verdict),
     Flutes(FluteVerdict),
-    /// For a part that is measured and not machined.
+    /// The part is only measured, so that nothing is verified.
     Measured,
 }
 
 impl PackageVerdict {
-    /// Of a part that gets holes.
+    /// Returns the verdict on holes, if it is one.
     pub fn into_holes(self) -> Option<Verdict> {
         match self {
             Self::Holes(verdict) => Some(verdict),
@@ -64,7 +64,7 @@ impl PackageVerdict {
         }
     }
 
-    /// Of a burr.
+    /// Returns the verdict on flutes, if it is one.
     pub fn into_flutes(self) -> Option<FluteVerdict> {
         match self {
             Self::Flutes(verdict) => Some(verdict),

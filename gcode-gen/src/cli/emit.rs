@@ -1,4 +1,4 @@
-//! `gcode-gen emit`: programs into a folder, after they have been run and held against the job.
+//! `gcode-gen emit`: verifies the programs of a job and writes them into a folder.
 use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
@@ -12,27 +12,27 @@ use crate::families;
 use crate::package::{Package, file_name};
 use crate::report::EmitReport;
 
-/// A job, its programs, and the run in which they hold.
+/// A job with its programs and the run in which they pass.
 pub(super) struct VerifiedPackage {
     pub job: Job,
     pub package: Package,
     pub checked: CheckedPackage,
 }
 
-/// Why programs aren't written, as a terminal shows it, and the run in which they don't hold.
+/// Reasons why programs are not written, as terminal text, and the run in which they fail.
 pub(super) struct EmitFailure {
     pub reason: String,
     pub checked: Option<CheckedPackage>,
 }
 
 impl EmitFailure {
-    /// Without colours.
+    /// Returns the reasons without colours.
     pub(super) fn plain(&self) -> String {
         strip_str(self.reason.trim_end()).to_string()
     }
 }
 
-/// Reads a job, emits its programs and runs them; where they don't hold, why is told.
+/// Reads a job, emits its programs and verifies them; the reasons of a failure are printed.
 pub(super) fn emit_verified(path: &Path) -> Result<Result<VerifiedPackage, EmitFailure>, UsageError> {
     let text = input::text(path)?;
     let job = Job::parse(&text).map_err(|error| UsageError::new(format!("{}, {error}", path.display())))?;
@@ -96,14 +96,14 @@ pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitSta
     Ok(ExitStatus::Passed)
 }
 
-/// Resident macros of the job's family that stand in the folder and aren't of this package.
+/// Returns files of the family's resident macros in the folder that are not part of this package.
 fn stale_files(job: &Job, package: &Package, out: &Path) -> Vec<PathBuf> {
     let resident = (families::of(job).resident)();
     let others = resident.iter().filter(|(_, macros)| package.program(macros.number).is_none());
     others.map(|(_, macros)| out.join(file_name(macros.number))).filter(|path| path.exists()).collect()
 }
 
-/// What was drawn of it, as PNG by file name: `O8100.png`, and where there are more views `O8400-tip.png`.
+/// Encodes the pictures as PNG by file name: `O8100.png`, and `O8400-tip.png` for a further view.
 pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)>, UsageError> {
     let refused = |error: PictureError| UsageError::new(error.to_string());
     let size = Size::new(1600, 1200).map_err(refused)?;
@@ -113,7 +113,7 @@ pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)
     checked.pictures.iter().map(drawn).collect()
 }
 
-/// The folder, and those it stands in.
+/// Creates the folder and its parents.
 fn make_folder(out: &Path) -> Result<(), UsageError> {
     let told = |error: &dyn std::fmt::Display| {
         UsageError::new(format!("{} cannot be written: {error}", out.display()))

@@ -1,4 +1,5 @@
-//! The only place of the generator that prints and opens files: arguments in, exit status out.
+//! The generator's command line: arguments in, exit status out. All printing and file access is in this
+//! module.
 mod emit;
 mod new;
 mod sheet;
@@ -124,7 +125,7 @@ fn families() -> clap::builder::PossibleValuesParser {
     crate::families::ALL.iter().map(|family| family.name).collect::<Vec<_>>().into()
 }
 
-/// Does what the command line asks for.
+/// Parses the arguments and executes the command; messages go to standard error.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     let arguments: Arguments = match common::parse(arguments) {
         Ok(arguments) => arguments,

@@ -1,4 +1,4 @@
-//! `gcode-gen new`: a job file to start from.
+//! `gcode-gen new`: writes a job file to start from.
 use std::path::Path;
 
 use gcode_sim::cli::{ExitStatus, UsageError, input, output};
@@ -10,7 +10,7 @@ pub(super) fn run(family: &str, path: Option<&Path>) -> Result<ExitStatus, Usage
     };
     match path {
         None => output::print(known.new_job)?,
-        // A job that somebody has filled in is worth more than a new one.
+        // A job file with the user's values must not be overwritten.
         Some(path) if path.is_file() && !replaceable(path, known.new_job)? => {
             let name = path.display();
             return Err(UsageError::new(format!("{name} already exists: remove it, or name another file")));
@@ -20,7 +20,7 @@ pub(super) fn run(family: &str, path: Option<&Path>) -> Result<ExitStatus, Usage
     Ok(ExitStatus::Passed)
 }
 
-/// An empty file, or the same job as it came from here.
+/// Returns true for an empty file and for an unchanged job file of this family.
 fn replaceable(path: &Path, new_job: &str) -> Result<bool, UsageError> {
     let bytes = input::bytes(path)?;
     Ok(bytes.is_empty() || bytes == new_job.as_bytes())

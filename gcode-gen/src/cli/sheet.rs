@@ -1,4 +1,4 @@
-//! `gcode-gen sheet`: the set-up sheet of a job's programs, after they have been run and held against the job.
+//! `gcode-gen sheet`: verifies the programs of a job and writes their set-up sheet.
 use std::path::Path;
 
 use gcode_part::job::Rates;

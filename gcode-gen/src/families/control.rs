@@ -1,13 +1,13 @@
-//! What the programs and machine files of all families say of the control.
+//! Texts about the control in the programs and machine files of all families.
 use gcode_lang::control::Dialect;
 use gcode_part::job::{JobControl, Rotary};
 
-/// `FANUC-31I, INCREMENT IS-B`, for a comment.
+/// Returns `FANUC-31I, INCREMENT IS-B`, for a comment.
 pub(super) fn remark(control: JobControl) -> String {
     format!("{}, INCREMENT {}", control.dialect.name(), control.increment.name())
 }
 
-/// What the control adds to n of `#3000=n`, in thousands: a Fanuc shows 3000 + n, a Haas 1000 + n.
+/// Returns the thousands that the control adds to n of `#3000=n`: a Fanuc shows 3000 + n, a Haas 1000 + n.
 pub(crate) fn alarm_thousands(dialect: Dialect) -> &'static str {
     match dialect {
         Dialect::HaasNgc => "1",
@@ -15,7 +15,7 @@ pub(crate) fn alarm_thousands(dialect: Dialect) -> &'static str {
     }
 }
 
-/// How every machine file begins.
+/// Returns the beginning of every machine file.
 pub(super) fn machine_file(control: JobControl) -> String {
     let (dialect, increment) = (control.dialect.name(), control.increment.name());
     format!(
@@ -26,7 +26,7 @@ pub(super) fn machine_file(control: JobControl) -> String {
     )
 }
 
-/// The rotary table of a machine file: it carries the part about `about`, x or y.
+/// Returns the rotary table of a machine file: it rotates the part about `about`, x or y.
 pub(super) fn rotary_table(rotary: Rotary, about: char, axis: &str) -> String {
     format!(
         "\n\

@@ -11,19 +11,19 @@ use gcode_part::job::Job;
 
 use crate::package::{Package, Program};
 
-/// One family by the name that job files and the command line use.
+/// One part family, by its name in job files and on the command line.
 pub struct Family {
     pub name: &'static str,
-    /// A commented job file that works as it is.
+    /// A commented job file that works unchanged.
     pub new_job: &'static str,
-    /// The resident macros as the default settings have them, each with its file's name in `macros/`.
+    /// Resident macros with default settings, each with its file name in `macros/`.
     pub resident: fn() -> Vec<(&'static str, Program)>,
 }
 
-/// Every family there is.
+/// All families.
 pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY, alignment::FAMILY];
 
-/// The family of a job.
+/// Returns the family of a job.
 pub fn of(job: &Job) -> &'static Family {
     match job {
         Job::PinHoles(_) => &pin_holes::FAMILY,
@@ -33,7 +33,7 @@ pub fn of(job: &Job) -> &'static Family {
     }
 }
 
-/// The programs of a job.
+/// Emits the programs of a job.
 pub fn emit(job: &Job) -> Package {
     match job {
         Job::PinHoles(job) => pin_holes::emit(job),

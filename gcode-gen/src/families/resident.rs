@@ -1,4 +1,4 @@
-//! What all resident macros share: marks filled in, and what has to be true of the text for any control.
+//! Shared parts of all resident macros: filling in marks, and checks of the text for any control.
 use gcode_lang::control::Dialect;
 
 use super::control::alarm_thousands;
@@ -6,14 +6,14 @@ use super::start::changed_condition;
 #[cfg(test)]
 use crate::nc::program::REMARK;
 
-/// A macro's text with every `{mark}` replaced by what it stands for; `{k}` and `{changed}` are known of the control.
+/// Replaces every `{mark}` in a macro's text; `{k}` and `{changed}` follow from the control.
 pub(super) fn fill(text: &str, dialect: Dialect, marks: &[(&str, String)]) -> String {
     let text = text.replace("{k}", alarm_thousands(dialect)).replace("{changed}", changed_condition(dialect));
     marks.iter().fold(text, |text, (mark, value)| text.replace(mark, value))
 }
 
-/// Fails where a mark is left, a control can't show a character, a remark is longer than those of main programs, or a message
-/// longer than the 26 characters that an old control shows.
+/// Fails if a mark is left, if a control cannot show a character, if a remark is longer than those of main
+/// programs, or if a message is longer than the 26 characters of an old control.
 #[cfg(test)]
 pub(super) fn assert_displayable(text: &str) {
     assert!(!text.contains(['{', '}']), "a mark is left:\n{text}");

@@ -1,10 +1,12 @@
-//! How main programs begin: what an operator has left in force is refused or cancelled, then the modes are commanded.
+//! The beginning of main programs: modes left in force are refused or cancelled, then the initial modes are
+//! commanded.
 //!
-//! A main program says in which coordinates it works, its G54, and what else is in force contradicts it. So it refuses G16, G51,
-//! G51.1 and G68 in its first block, before its own G54 and tool change, and a shift by G52 or G92 behind its G54: such a shift
-//! stands on no screen for offsets, and whoever wants one writes it to G54 or to the external offset (by G10 too), which are read as
-//! they are. The resident macros refuse only what bends their formulas, in a block that they execute anyway: they drill or grind in
-//! whatever work offset their caller has chosen, and a G52 there is the usual way to a second pattern or part.
+//! A main program works in its own G54, and anything else in force contradicts it. It refuses G16, G51, G51.1
+//! and G68 in its first block, before its own G54 and tool change, and a shift by G52 or G92 after its G54.
+//! No offset screen shows such a shift; an intended shift belongs in G54 or in the external offset (also by
+//! G10), which are used as they are. The resident macros refuse only modes that distort their formulas, in a
+//! block that they execute anyway: they drill or grind in the work offset of their caller, and a G52 there is
+//! the usual way to a second pattern or part.
 use gcode_lang::control::{Dialect, Increment};
 use gcode_part::job::JobControl;
 
@@ -13,21 +15,21 @@ use crate::nc::block::Block;
 use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 
-/// What a main program does about what is in force where it is started.
+/// Checks of a main program on the modes and shifts in force at its start.
 pub(super) struct Start {
     pub(super) control: JobControl,
-    /// n of its `#3000=n` where coordinates are scaled, mirrored, turned or polar: that of its macro.
+    /// n of its `#3000=n` for scaled, mirrored, rotated or polar coordinates; that of its macro.
     pub(super) changed_alarm: u32,
-    /// n where the work zero is shifted.
+    /// n of its `#3000=n` for a shifted work zero.
     pub(super) shifted_alarm: u32,
-    /// The axes whose shift is an alarm, in the order of their numbers on the control, from 1.
+    /// Axes whose shift is an alarm, in the order of their numbers on the control, from 1.
     pub(super) axes: &'static str,
-    /// The rotaries whose local shift is cancelled, for their axes have other numbers on every machine.
+    /// Rotary axes whose local shift is cancelled, because their axis numbers differ between machines.
     pub(super) cancelled_rotaries: String,
 }
 
 impl Start {
-    /// What the head says of it: alarms of its own, shifts, coordinates.
+    /// Returns the remarks for the head: own alarms, shifts, coordinates.
     pub(super) fn remarks(&self) -> Vec<String> {
         let k = alarm_thousands(self.control.dialect);
         let mut lines = vec![format!(
@@ -61,10 +63,11 @@ impl Start {
     }
 }
 
-/// As the control shows it.
+/// Message of the alarm, as the control shows it.
 const CHANGED_TEXT: &str = "G16 G51 G51.1 G68 IN FORCE";
 
-/// What is true where coordinates are scaled, mirrored, turned or polar, terms joined by OR. A Haas has neither G16 nor #4022.
+/// Returns the condition for scaled, mirrored, rotated or polar coordinates, terms joined by OR. A Haas has
+/// neither G16 nor #4022.
 pub(super) fn changed_condition(dialect: Dialect) -> &'static str {
     match dialect {
         Dialect::HaasNgc => "[#4011 EQ 51]OR[#4016 EQ 68]",
@@ -74,7 +77,8 @@ pub(super) fn changed_condition(dialect: Dialect) -> &'static str {
     }
 }
 
-/// The external offset in a variable, taken off. On a Haas #5201 is the shift by G52 itself, which has to stay in.
+/// Returns the term that subtracts the external offset. On a Haas #5201 is the shift by G52 itself, which
+/// must stay in.
 pub(super) fn external_offset_term(dialect: Dialect, variable: &str) -> String {
     match dialect {
         Dialect::HaasNgc => String::new(),
@@ -82,25 +86,26 @@ pub(super) fn external_offset_term(dialect: Dialect, variable: &str) -> String {
     }
 }
 
-/// More than rounding makes, in mm, and less than the least shift there is: half an increment in x and y each is 0.707 of one.
+/// Returns a threshold in mm above rounding and below the least shift: half an increment in x and y each is
+/// 0.707 of one.
 pub(super) fn shift_threshold(increment: Increment) -> f64 {
     0.75 * increment.size()
 }
 
-/// The modes that all main programs begin in.
+/// Writes the initial modes of all main programs.
 pub(super) fn emit_modes(text: &mut Text) {
     text.block(Block::of("G21"));
     text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
 }
 
-/// A local shift of rotaries is taken off, where there are any.
+/// Cancels a local shift of rotary axes, if there are any.
 pub(super) fn emit_cancel(rotaries: &str, text: &mut Text) {
     if !rotaries.is_empty() {
         text.block(rotaries.chars().fold(Block::of("G52"), |block, letter| block.word(letter, "0.")));
     }
 }
 
-/// What the heads of main programs say of shifts and coordinates.
+/// Returns the remarks on shifts and coordinates for the heads of main programs.
 pub(super) fn remarks(axes: &str, cancelled: &str) -> [String; 2] {
     let cancelled = match cancelled.is_empty() {
         true => String::new(),
@@ -112,7 +117,7 @@ pub(super) fn remarks(axes: &str, cancelled: &str) -> [String; 2] {
     ]
 }
 
-/// `X Y Z`
+/// Returns `X Y Z`.
 fn spaced(letters: &str) -> String {
     letters.chars().map(String::from).collect::<Vec<_>>().join(" ")
 }

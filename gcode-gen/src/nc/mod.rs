@@ -1,4 +1,4 @@
-//! NC text: numbers, blocks and programs, with nothing in them that a control would not display.
+//! NC text: numbers, blocks and programs in characters that every control can display.
 pub mod block;
 pub mod number;
 pub mod program;

@@ -1,13 +1,13 @@
-//! Numbers as a control reads them: always with a point, never more digits than it takes.
+//! Numbers in NC text: always with a decimal point, never with more digits than a control accepts.
 
-/// Digits that all three dialects take in one number.
+/// Number of digits that all three dialects accept in one number.
 const DIGITS: usize = 9;
 
-/// Six places are a nanometre, or 0.02 µm at the end of a radius of 1000 mm: nothing is rounded here that matters,
-/// and the control rounds once, where the axis moves.
+/// Number of decimals. Six are a nanometre, or 0.02 µm at the end of a radius of 1000 mm: only the control
+/// rounds noticeably, once, where the axis moves.
 const PLACES: usize = 6;
 
-/// A value in mm, degrees or mm/min: `1158.8` stays `1158.8`, `420` becomes `420.`.
+/// Formats a value in mm, degrees or mm/min: `1158.8` stays `1158.8`, `420` becomes `420.`.
 pub fn number(value: f64) -> String {
     let whole = format!("{:.0}", value.abs().trunc()).len();
     let places = PLACES.min(DIGITS.saturating_sub(whole));

@@ -1,13 +1,13 @@
-//! A program from its O-number to the `%`: remarks, and blocks with sequence numbers to restart at.
+//! A program from its O-number to the `%`: remarks, and blocks with sequence numbers for a restart.
 use gcode_lang::control::Dialect;
 
 use super::block::Block;
 use super::text::displayable;
 
-/// The longest line of a remark.
+/// Length of the longest remark.
 pub(crate) const REMARK: usize = 72;
 
-/// The largest sequence number of all three dialects.
+/// Largest sequence number of all three dialects.
 const LARGEST_N: usize = 99_999;
 
 pub struct Program {
@@ -26,7 +26,7 @@ impl Program {
         Self { head, lines: Vec::new() }
     }
 
-    /// A comment on a line of its own.
+    /// Adds a comment on a line of its own.
     pub fn remark(&mut self, text: impl AsRef<str>) {
         self.lines.push(Line::Remark(displayable(text.as_ref(), REMARK)));
     }
@@ -35,7 +35,7 @@ impl Program {
         self.lines.push(Line::Block(block));
     }
 
-    /// The text; blocks are numbered in tens as far as that goes, else in ones.
+    /// Returns the text; blocks are numbered in tens if possible, else in ones.
     pub fn finish(self) -> String {
         let blocks = self.lines.iter().filter(|line| matches!(line, Line::Block(_))).count();
         let step = if blocks * 10 <= LARGEST_N { 10 } else { 1 };
@@ -56,7 +56,7 @@ impl Program {
     }
 }
 
-/// `O8100`; Haas writes five digits.
+/// Returns `O8100`; Haas writes five digits.
 pub fn name(number: u32, dialect: Dialect) -> String {
     match dialect {
         Dialect::Fanuc31i | Dialect::Fanuc0iF => format!("O{number:04}"),

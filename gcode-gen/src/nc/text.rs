@@ -1,6 +1,7 @@
-//! Text in programs: upper-case letters and the signs every control can display, whatever the job's names hold.
+//! Texts in programs: upper-case letters and the characters that every control can display.
 
-/// `text` as a comment may hold it, at most `most` characters: brackets would end a comment, `%` the whole file.
+/// Converts `text` to characters allowed in a comment, at most `most`: brackets would end the comment, `%`
+/// the whole file.
 pub fn displayable(text: &str, most: usize) -> String {
     text.chars().map(displayed).take(most).collect()
 }

@@ -1,16 +1,16 @@
-//! What a part takes and costs: the simulated run, and the minutes and rates that the user gives.
+//! Time and cost of a part, from the simulated run and the user's minutes and rates.
 use gcode_part::job::{AlternativeMachine, Minutes, Rates, SheetInfo};
 
 use super::record::Record;
 
-/// The time a part takes on one machine, in minutes. Nobody has measured it.
+/// Predicted time of a part on one machine, in minutes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineTime {
-    /// Of the program.
+    /// Running time of the program.
     pub run: f64,
     pub stops: usize,
     pub tool_changes: usize,
-    /// What the user gave; what is missing isn't counted.
+    /// Minutes given by the user; missing ones are not counted.
     pub minutes: Minutes,
 }
 
@@ -23,13 +23,13 @@ impl MachineTime {
         total_minutes(self.tool_changes, self.minutes.tool_change)
     }
 
-    /// The machine is taken for so many minutes.
+    /// Returns the machine time in minutes.
     pub fn total(&self) -> f64 {
         let rest = [self.minutes.setup, self.all_stops(), self.all_tool_changes()];
         self.run + rest.into_iter().flatten().sum::<f64>()
     }
 
-    /// What isn't in the sum, because nobody said how long it takes; in the words of the job's keys.
+    /// Returns the job's keys of times that are missing in the sum.
     pub fn not_counted(&self) -> Vec<&'static str> {
         let all = [
             ("setup_minutes", self.minutes.setup.is_none()),
@@ -44,33 +44,33 @@ fn total_minutes(count: usize, minutes: Option<f64>) -> Option<f64> {
     if count == 0 { Some(0.0) } else { minutes.map(|minutes| minutes * count as f64) }
 }
 
-/// What the part costs on one machine.
+/// Cost of the part on one machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    /// The machine's name; `None` for the job's own.
+    /// Name of the machine; `None` for the job's own.
     pub machine: Option<String>,
     pub time: MachineTime,
-    /// A machine hour.
+    /// Rate of a machine hour.
     pub rate: f64,
-    /// Whether the run's minutes are the user's, not the simulation's.
+    /// Whether the running time is the user's instead of the simulation's.
     pub is_run_specified: bool,
 }
 
 impl Cost {
-    /// In the currency of the rates.
+    /// Returns the cost in the currency of the rates.
     pub fn cost(&self) -> f64 {
         self.time.total() / 60.0 * self.rate
     }
 
-    /// How much more than on `other`, in percent of that, negative where it costs less; `None` where a time is given for one
-    /// of them only, which makes any difference.
+    /// Returns the cost difference to `other` in percent of the other's cost, negative if cheaper; `None` if
+    /// a time is given for only one of them.
     pub fn change(&self, other: &Self) -> Option<f64> {
         let alike = self.time.not_counted() == other.time.not_counted();
         alike.then(|| (self.cost() / other.cost() - 1.0) * 100.0)
     }
 }
 
-/// On the job's own machine.
+/// Returns the time on the job's own machine.
 pub fn machine_time(words: &SheetInfo, record: &Record) -> MachineTime {
     MachineTime {
         run: record.times.total() / 60.0,
@@ -80,7 +80,8 @@ pub fn machine_time(words: &SheetInfo, record: &Record) -> MachineTime {
     }
 }
 
-/// The job's own machine first, then those beside it. What isn't said of another machine is taken to be the same there.
+/// Returns the costs of the job's own machine and of the others. Times not given for another machine are
+/// taken to be the same.
 pub fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
     let beside = |other: &AlternativeMachine| Cost {
         machine: Some(other.machine.clone()),
@@ -104,7 +105,7 @@ pub fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
 mod tests {
     use super::*;
 
-    /// 30 min of run, 6 stops of 10, 2 tool changes of 5, 20 of set-up: two hours.
+    /// Run 30 min, 6 stops of 10, 2 tool changes of 5, set-up 20: two hours.
     fn two_hours() -> MachineTime {
         let minutes = Minutes { setup: Some(20.0), stop: Some(10.0), tool_change: Some(5.0) };
         MachineTime { run: 30.0, stops: 6, tool_changes: 2, minutes }
@@ -133,12 +134,12 @@ mod tests {
         let costs = costs(&rates, &two_hours());
         assert_eq!((costs[0].cost(), costs[1].cost()), (200.0, 800.0));
         assert_eq!(costs[0].change(&costs[1]), Some(-75.0));
-        // Without stops there, 60 min: 400, and half of it is saved.
+        // Without stops there, 60 min: 400, a saving of one half.
         let minutes = Minutes { stop: Some(0.0), ..Minutes::default() };
         let rates = Rates { alternatives: vec![AlternativeMachine { minutes, ..other }], ..rates };
         let costs = super::costs(&rates, &two_hours());
         assert_eq!((costs[1].cost(), costs[0].change(&costs[1])), (400.0, Some(-50.0)));
-        // A set-up that only the other one has would look like a saving.
+        // A set-up time of only the other machine would look like a saving.
         let silent = MachineTime { minutes: Minutes { setup: None, ..two_hours().minutes }, ..two_hours() };
         let other = Cost { time: silent, ..costs[1].clone() };
         assert_eq!(costs[0].change(&other), None);

@@ -1,4 +1,4 @@
-//! What an inspector is asked to measure, one line a characteristic, as form 3 of AS9102 has them.
+//! Characteristics for the inspector, one line each, after form 3 of AS9102.
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_inspect::verify::{Distance, HoleVerdict, Neighbours, Verdict};
 use gcode_lang::units::{Deg, Mm};
@@ -8,16 +8,16 @@ use gcode_sim::report::figures::{rounded, short, signed, signed_to};
 
 use crate::check::PackageVerdict;
 
-/// So many holes have lines each; of more only the pattern has.
+/// Largest number of holes with lines of their own; larger patterns have common lines.
 pub const LISTED: usize = 100;
 
-/// One thing to measure. The result isn't here: a simulation is no measurement.
+/// One characteristic. It has no result: a simulation is not a measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Characteristic {
     pub reference: String,
     pub name: &'static str,
     pub requirement: String,
-    /// What the simulation says.
+    /// Prediction of the simulation.
     pub predicted: String,
 }
 
@@ -77,7 +77,7 @@ fn diameter(nominal: f64) -> String {
     format!("Φ{}, limits: see the drawing", rounded(nominal, 3))
 }
 
-/// Of a pattern: the extremes over all holes.
+/// Returns the characteristics of a pattern: the extremes over all holes.
 fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
     let reference = format!("all {} holes", verdict.holes.len());
     let mut all = vec![characteristic(
@@ -148,7 +148,7 @@ fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
             format!("{}° off", number(verdict.index_error, 4)),
         ),
     ];
-    // Where a helix angle can be measured: at these polar angles, on the law that was asked for.
+    // Helix angles can be measured at these polar angles, on the specified law.
     all.extend(verdict.laws.iter().map(|law| {
         let wanted = if verdict.law == "published" { law.published } else { law.constant_helix };
         let requirement = format!("{}° ±{}°", rounded(wanted, 2), verdict.helix_tolerance);
@@ -159,7 +159,7 @@ fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
     all
 }
 
-/// What shows how a part stands: the sine table, the chord, the run-out at both heights.
+/// Returns the characteristics of a part's position: sine table, chord, run-out at both heights.
 fn of_alignment(job: &Alignment) -> Vec<Characteristic> {
     let table = &job.sine_table;
     let setting = gauge::sine_setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);

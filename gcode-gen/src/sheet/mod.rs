@@ -1,7 +1,9 @@
-//! The set-up sheet: one printable page for the people who set the machine up, watch the run and measure the part.
+//! The set-up sheet: one printable page for setting up the machine, running the programs and measuring the
+//! part.
 //!
-//! Everything on it is of the emitted package and of its simulation; what only people know is the job's section `[sheet]`,
-//! and what isn't known stands empty, to be filled in by hand. Results of measurements always do.
+//! Its contents come from the emitted package and its simulation. Facts that only the user has come from the
+//! job's section `[sheet]`; unknown ones are left blank for handwriting, as results of measurements always
+//! are.
 pub mod cost;
 mod html;
 pub mod measure;
@@ -17,10 +19,10 @@ use cost::{Cost, MachineTime};
 use record::Record;
 use settings::RequiredSetting;
 
-/// What the whole page says of its numbers, wherever it shows any.
+/// Basis of all numbers on the page.
 pub const BASIS: &str = "Predicted by simulation, not measured";
 
-/// A package that holds, with all that its sheet shows.
+/// A verified package with the data for its sheet.
 pub struct Sheet<'a> {
     job: &'a Job,
     package: &'a Package,
@@ -33,10 +35,11 @@ pub struct Sheet<'a> {
 }
 
 impl<'a> Sheet<'a> {
-    /// `checked` holds; `rates` go before those of the job. `pictures` are names and PNGs.
+    /// Runs the package once more for the sheet. `checked` must have passed; `rates` take precedence over
+    /// those of the job; `pictures` are names and PNGs.
     ///
     /// # Errors
-    /// A package that contradicts itself.
+    /// [`CheckError::Broken`] if the package contradicts itself.
     pub fn new(
         job: &'a Job,
         package: &'a Package,
@@ -57,18 +60,18 @@ impl<'a> Sheet<'a> {
         })
     }
 
-    /// The time that a part takes.
+    /// Returns the time of one part.
     pub fn machine_time(&self) -> MachineTime {
         cost::machine_time(self.job.sheet(), &self.record)
     }
 
-    /// What it costs, on the job's own machine first, and the currency; nothing where no rate was given.
+    /// Returns the currency and the costs, the job's own machine first; empty if no rate is given.
     pub fn costs(&self) -> (&str, Vec<Cost>) {
         self.rates
             .map_or(("", Vec::new()), |rates| (&rates.currency, cost::costs(rates, &self.machine_time())))
     }
 
-    /// One self-contained HTML file.
+    /// Returns the sheet as one self-contained HTML file.
     pub fn html(&self) -> String {
         html::page(self)
     }

@@ -1,4 +1,4 @@
-//! A run as the operator lives through it: the tools, the stops in their order, and what the time goes into.
+//! Record of a run for the operator: tools, stops in order, and times.
 use gcode_control::Outcome;
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::Machine;
@@ -11,49 +11,49 @@ use crate::check::{CheckError, Programs, broken_package};
 use crate::families::alignment::{RUNOUT, SINE_TABLE};
 use crate::package::{Package, file_name, stem};
 
-/// The common variables that a control keeps from one program to the next, and while it is switched off.
+/// Common variables that a control keeps between programs and while it is switched off.
 const KEPT_VARIABLES: std::ops::RangeInclusive<u32> = 500..=999;
 
-/// What happens at the machine, in the order in which it does.
+/// Record of the run of all main programs.
 #[derive(Debug, Default)]
 pub struct Record {
-    /// What each main program finds, the first time it is run, in the common variables that are kept.
+    /// Each main program with the kept common variables at its first start.
     pub program_starts: Vec<ProgramStart>,
     pub stops: Vec<OperatorStop>,
-    /// The numbers that M06 puts into the spindle.
+    /// Tool numbers of all M06, in order.
     pub tools: Vec<u32>,
     pub times: MotionTimes,
     /// M codes that are left to the machine builder.
     pub auxiliary_codes: Vec<u32>,
-    /// Main programs that end in an alarm on a part that stands right.
+    /// Main programs that end in an alarm on a part in its nominal position.
     pub alarmed_programs: Vec<String>,
-    /// Rapid rates that the times count with: of sliding axes, mm/min, and of turning ones, degrees/min.
+    /// Rapid rates of the times: of linear axes, mm/min, and of rotary axes, degrees/min.
     pub rapids: [f64; 2],
 }
 
-/// A main program, and the variables that those before it have left it.
+/// A main program, and the variables that earlier ones left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProgramStart {
     pub main: u32,
     pub variables: Vec<(u32, f64)>,
 }
 
-/// The program waits for the operator.
+/// An operator stop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatorStop {
     pub kind: StopKind,
     pub text: String,
-    /// The variables that the text names, with their values.
+    /// Variables that the text names, with their values.
     pub variables: Vec<(u32, f64)>,
-    /// The tool in the spindle.
+    /// Tool in the spindle.
     pub tool: Option<u32>,
-    /// The machine has run so long before it, in seconds.
+    /// Running time before the stop, seconds.
     pub elapsed: f64,
-    /// The block that stops, and those it was called from: program and line, innermost first.
+    /// The block that stops and its callers: program and line, innermost first.
     pub locations: Vec<(String, u32)>,
 }
 
-/// In seconds; paths over feeds and rapid rates, without acceleration, stops and tool changes.
+/// Times in seconds: paths over feeds and rapid rates, without acceleration, stops and tool changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotionTimes {
     pub rapid: f64,
@@ -67,11 +67,11 @@ impl MotionTimes {
     }
 }
 
-/// Runs the package's main programs on its own machine file, one after the other in the order of the work, each with the common variables that the one
-/// before it has left: O8230 reads what O8210 has found.
+/// Runs the package's main programs on its own machine file in the order of the work. Each starts with the
+/// common variables that the previous one left: O8230 reads results of O8210.
 ///
 /// # Errors
-/// A package that contradicts itself, which [`crate::check::check`] has refused before.
+/// [`CheckError::Broken`] if the package contradicts itself, which [`crate::check::check`] refuses before.
 pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
     let mut listener = RunRecorder::default();
     let mut record = Record::default();
@@ -101,14 +101,15 @@ pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
     Ok(Record { tools: listener.tools, times: listener.times, ..record })
 }
 
-/// The main programs as they are run. A part that is turned on the sine table moves, so that the run-out is measured twice at least.
+/// Returns the main programs in the order of execution. Setting the sine table moves the part, so the run-out
+/// is measured at least twice.
 fn run_order(job: &Job, package: &Package) -> Vec<u32> {
     let again = |main: u32| matches!(job, Job::Alignment(_)) && main == SINE_TABLE;
     let twice = |main: &u32| std::iter::once(*main).chain(again(*main).then_some(RUNOUT));
     package.mains.iter().flat_map(twice).collect()
 }
 
-/// A run with the part on the machine, where the programs are to touch it.
+/// Runs a program with the part on the machine, if the program touches it.
 pub(super) fn run_with_part<S: EventSink>(
     job: &Job,
     package: &Package,
@@ -125,7 +126,7 @@ pub(super) fn run_with_part<S: EventSink>(
     }
 }
 
-/// To run a main program on the package's own machine file.
+/// Builds the request to run a main program on the package's own machine file.
 pub(super) fn request(package: &Package, begin: &ProgramStart) -> Result<Request, CheckError> {
     let main = begin.main;
     let machine = Machine::parse(&package.machine).map_err(|e| broken_package("machine.toml", &e))?;

@@ -1,5 +1,5 @@
-//! Which settings of the control the programs depend on: each switch is turned in turn, and the run held against the one
-//! with all of them as the family of controls has them.
+//! Finds the control settings that the programs depend on: each switch is changed in turn, and the run
+//! compared with that of the default settings.
 use gcode_control::{Limits, Outcome};
 use gcode_lang::control::{ROWS, SettingRow, Settings};
 use gcode_lang::motion::{Event, EventKind, EventSink, Position, StopKind};
@@ -10,24 +10,25 @@ use super::record::{ProgramStart, request, run_with_part};
 use crate::check::{CheckError, broken_package};
 use crate::package::Package;
 
-/// A run is followed so far: loops only repeat blocks that have been seen by then.
+/// Number of blocks followed: later ones only repeat loops.
 pub const MAX_BLOCKS: u64 = 2_000;
 
-/// A switch that must stand as the simulation had it.
+/// A switch that must have the simulated value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequiredSetting {
     pub key: &'static str,
     pub meaning: &'static str,
     /// 0 or 1.
     pub value: &'static str,
-    /// What happens with the other value.
+    /// Effect of the other value.
     pub consequence: String,
 }
 
-/// Runs the main programs once for every switch; those that end in an alarm with all as it should be say nothing.
+/// Runs the main programs once for every switch; a program that ends in an alarm with default settings is
+/// skipped.
 ///
 /// # Errors
-/// A package that contradicts itself.
+/// [`CheckError::Broken`] if the package contradicts itself.
 pub fn required_settings(
     job: &Job,
     package: &Package,
@@ -63,7 +64,7 @@ pub fn required_settings(
     Ok(found)
 }
 
-/// The value that a switch has, and the settings with the other one; `None` for what is no switch.
+/// Returns the value of a switch and the settings with the other value; `None` if the row is not a switch.
 fn switched(row: &SettingRow, usual: &Settings) -> Option<(&'static str, Settings)> {
     ["0", "1"].into_iter().zip(["1", "0"]).find_map(|(value, other)| {
         let mut same = usual.clone();
@@ -74,7 +75,7 @@ fn switched(row: &SettingRow, usual: &Settings) -> Option<(&'static str, Setting
     })
 }
 
-/// All that a run tells the machine and the operator.
+/// All events of a run for the machine and the operator.
 #[derive(Debug, Default, PartialEq)]
 struct RunTrace {
     moves: Vec<(Position, Option<f64>)>,
@@ -129,14 +130,15 @@ mod tests {
     fn found(text: &str) -> Vec<(&'static str, &'static str, String)> {
         let programs = vec![Program { number: 1, text: text.to_owned() }];
         let package = Package { mains: vec![1], programs, machine: String::new() };
-        // Any job that isn't touched by a probe.
+        // Any job without probing.
         let job = Job::parse(families::ALL[0].new_job).unwrap();
         let needed =
             required_settings(&job, &package, &[ProgramStart { main: 1, variables: Vec::new() }]).unwrap();
         needed.into_iter().map(|one| (one.key, one.value, one.consequence)).collect()
     }
 
-    /// ATAN of the third quadrant is 225, or -135 with NAT; `IF[..]` needs THEN unless PLAIN-IF; X10 is 10 µm or mm.
+    /// ATAN of the third quadrant is 225, or -135 with NAT; `IF[..]` needs THEN unless PLAIN-IF; X10 is 10 µm
+    /// or mm.
     #[test]
     fn a_switch_that_changes_what_happens_is_named() {
         let moves = "the machine moves differently".to_owned();

@@ -1,4 +1,4 @@
-//! What the operator does at a stop, step by step, in the order in which it has to be done.
+//! The operator's actions at a stop, step by step.
 use gcode_lang::motion::StopKind;
 use gcode_lang::units::Deg;
 use gcode_part::job::{Alignment, HeadKind, Job, PinHoles};
@@ -32,7 +32,8 @@ pub fn instructions(job: &Job, stop: &OperatorStop) -> Vec<String> {
     steps
 }
 
-/// The head's angle is the control's rounded one, which the hole's feed then follows.
+/// Returns the steps to set the head. The angle is the control's rounded one, which the hole's feed then
+/// follows.
 fn set_head(job: &PinHoles, angle: f64) -> Vec<String> {
     let mut steps = vec![
         "Wait until the spindle has stopped; the tool is clear of the part.".to_owned(),
@@ -53,8 +54,8 @@ fn set_head(job: &PinHoles, angle: f64) -> Vec<String> {
     steps
 }
 
-/// The stops of the measurements, told by the first variable that they name. Its value isn't shown: the simulated part stands
-/// right, and what it leaves there is rounding.
+/// Returns the steps at a stop of the measurements, recognised by the first variable that it names. Its value
+/// is not shown: the simulated part is in its nominal position, and the value is a rounding error.
 fn set_up(job: &Alignment, stop: &OperatorStop) -> Option<Vec<String>> {
     let (first, _) = stop.variables.first()?;
     let steps = match first {
@@ -110,7 +111,8 @@ fn set_up(job: &Alignment, stop: &OperatorStop) -> Option<Vec<String>> {
     Some(steps)
 }
 
-/// The sense of #582 is a right-hand turn about X, which takes Y+ towards Z+. It sinks what lies towards Z+ by its sine.
+/// Returns the step with the shims. #582 is a right-hand rotation about X, which takes Y+ towards Z+ and
+/// lowers the side towards Z+ by its sine.
 fn shim() -> String {
     format!(
         "#582 above 0: the top leans towards Z+, so shim the side towards Z+. Below 0: the top leans \
@@ -120,7 +122,7 @@ fn shim() -> String {
     )
 }
 
-/// X and Y are told the tool's tip, not the head's pivot.
+/// Returns true if X and Y are programmed for the tool's tip instead of the head's pivot.
 pub fn tip_is_programmed(job: &PinHoles) -> bool {
     job.machine.head.pivot == 0.0 && job.tools.iter().all(|tool| tool.length == 0.0)
 }

@@ -1,5 +1,5 @@
-//! The command line as written: the commands and their help texts with examples. Each command's arguments stand in its
-//! file, those that several share in `conditions`.
+//! The command line's grammar: commands and their help texts with examples. The arguments of each command are
+//! in its own file, shared ones in `conditions`.
 use clap::{Parser, Subcommand};
 
 use super::budget::BudgetArguments;

@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
         TextFormat::Text => output::print(&report.text())?,
     }
     if let Some(path) = &arguments.picture {
-        // As high as its bars are many.
+        // The height grows with the number of bars.
         let height = 120 + 25 * sources.len() as u32;
         let size = Size::new(1200, height.max(360)).map_err(|error| UsageError::new(error.to_string()))?;
         let png = report.bars().draw(size).map_err(|error| UsageError::new(error.to_string()))?;

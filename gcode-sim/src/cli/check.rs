@@ -1,4 +1,4 @@
-//! `gcode-sim check`: what can be known of a program without running it.
+//! `gcode-sim check`: finds faults of a program without running it.
 use std::path::PathBuf;
 
 use clap::Args;

@@ -1,11 +1,11 @@
-//! What the command lines of both programs have in common: help, refusals, colours.
+//! Command-line parts that both programs share: help, usage errors, colours.
 use std::ffi::OsString;
 
 use clap::{Args, Parser, ValueEnum};
 
 use super::{ExitStatus, output};
 
-/// The flag that every command takes.
+/// The colour flag, which every command takes.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Colours {
     /// Colours on the terminal; NO_COLOR is obeyed
@@ -21,7 +21,7 @@ enum Colour {
 }
 
 impl Colours {
-    /// From here on everything printed obeys the flag.
+    /// Applies the flag to everything printed from here on.
     pub fn apply(self) {
         match self.colour {
             Colour::Auto => {}
@@ -31,8 +31,8 @@ impl Colours {
     }
 }
 
-/// The arguments as clap reads them. Help and version are results; everything else that isn't understood is a
-/// request that can't be used.
+/// Parses the arguments with clap. Help and version count as results; anything else that clap rejects is an
+/// invalid request.
 pub fn parse<A: Parser>(arguments: impl IntoIterator<Item = OsString>) -> Result<A, ExitStatus> {
     A::try_parse_from(arguments).map_err(|error| {
         let text = error.render().ansi().to_string();

@@ -1,4 +1,4 @@
-//! `gcode-sim compare`: where two pictures differ.
+//! `gcode-sim compare`: compares two pictures.
 use std::path::PathBuf;
 
 use clap::Args;

@@ -1,11 +1,11 @@
-//! What a run depends on: the arguments of every command that executes a program.
+//! Conditions of a run: the arguments of every command that executes a program.
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::{UsageError, overwrite_guard};
 
-/// The program, and everything its run depends on.
+/// A program and the conditions of its run.
 #[derive(Debug, Default, Args)]
 pub(super) struct ProgramArguments {
     /// The main program; '-' reads standard input
@@ -16,7 +16,7 @@ pub(super) struct ProgramArguments {
     pub(super) conditions: RunConditions,
 }
 
-/// Everything a run depends on but its program.
+/// The conditions of a run without its program.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct RunConditions {
     /// A folder that holds called programs (repeatable; the program's own folder is searched first)
@@ -69,7 +69,8 @@ pub(super) struct RunConditions {
 }
 
 impl ProgramArguments {
-    /// The files that are read, called programs aside; a reference is one more. Standard input is among them once.
+    /// Returns the input files except called programs, including the reference. Refuses a second use of
+    /// standard input.
     pub(super) fn files<'a>(&'a self, reference: Option<&'a Path>) -> Result<Vec<&'a Path>, UsageError> {
         let files = std::iter::once(self.program.as_path()).chain(self.conditions.files());
         let files: Vec<&Path> = files.chain(reference).collect();
@@ -79,12 +80,12 @@ impl ProgramArguments {
 }
 
 impl RunConditions {
-    /// These, and a program.
+    /// Combines these conditions with a program.
     pub(super) fn of(&self, program: &Path) -> ProgramArguments {
         ProgramArguments { program: program.to_owned(), conditions: self.clone() }
     }
 
-    /// The files that are read besides programs.
+    /// Returns the input files besides programs.
     pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         [&self.machine, &self.control_file, &self.part].into_iter().filter_map(|file| file.as_deref())
     }

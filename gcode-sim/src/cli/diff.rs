@@ -1,4 +1,4 @@
-//! `gcode-sim diff`: what two revisions of a program do differently.
+//! `gcode-sim diff`: compares two revisions of a program by their effect.
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     }
     if let Some(path) = &arguments.picture {
         let names = [&new_request, &old_request].map(render::name);
-        // Two of the same name are told apart by their folders.
+        // Equal names are distinguished by their folders.
         let [is, was] = if names[0] == names[1] {
             [&new_request, &old_request].map(|request| request.name.clone())
         } else {
@@ -152,10 +152,11 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     Ok(status)
 }
 
-/// For a code review: what changes, at its place in the new revision, and why that stops if it does.
+/// Returns the findings for a code review: the changes at their places in the new revision, and its alarm or
+/// limit.
 fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding> {
     let (files, sources) = (new.files(), new.simulation.run.control.memory().sources());
-    // A result without a place is taken by none.
+    // Code-review tools reject a result without a location.
     let first = FileLocation { file: file.to_owned(), line: Some(1), column: None };
     let found = |change| {
         let found = change_found(change, "", &files);
@@ -165,7 +166,7 @@ fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding>
     changes.chain(new.stopped().map(|stopped| Finding::of(stopped, sources))).collect()
 }
 
-/// The page's reference.
+/// Reads the page's reference.
 fn read_reference_holes(path: &Path) -> Result<Reference, UsageError> {
     match options::read_nominal(path)? {
         NominalPart::Holes(reference) => Ok(reference),

@@ -1,4 +1,4 @@
-//! `gcode-sim explain`: the page of a code.
+//! `gcode-sim explain`: explains an alarm or finding code.
 use clap::Args;
 
 use super::format::TextFormat;

@@ -1,7 +1,7 @@
-//! What results can be written as. Every command that answers something has `--format`, with one of these.
+//! Output formats. Every command with a result has `--format` with one of these sets.
 use clap::ValueEnum;
 
-/// Of every result.
+/// Formats of any result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum TextFormat {
     Text,
@@ -9,7 +9,7 @@ pub enum TextFormat {
     Json,
 }
 
-/// Of lists.
+/// Formats of a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ListFormat {
     Text,
@@ -19,7 +19,7 @@ pub enum ListFormat {
     Csv,
 }
 
-/// Of findings with places.
+/// Formats of findings with locations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FindingFormat {
     Text,
@@ -29,7 +29,7 @@ pub enum FindingFormat {
     Sarif,
 }
 
-/// Of cases.
+/// Formats of test cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum TestFormat {
     Text,

@@ -51,7 +51,7 @@ fn print_result(arguments: &HolesArguments, simulation: &Simulation) -> Result<E
     Ok(super::findings(&simulation.extracted.findings, &simulation.run))
 }
 
-/// A list of holes in the format asked for.
+/// Prints a list of holes in the given format.
 pub(super) fn print(list: &HoleList, format: ListFormat) -> Result<(), UsageError> {
     match format {
         ListFormat::Text => output::print(&report::text(list)),

@@ -1,13 +1,13 @@
-//! Reads what the user names: programs, jobs, references, machine files; one clear sentence where it can't.
+//! Reads the files that the user names: programs, jobs, references, machine files. Errors are one sentence.
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::UsageError;
 
-/// Nothing a control could hold is larger.
+/// Largest input, bytes; no control holds a larger program.
 const LARGEST: u64 = 1 << 30;
 
-/// A file's bytes; `-` is standard input.
+/// Reads a file's bytes; `-` is standard input.
 #[expect(clippy::disallowed_methods, reason = "the command line reads files")]
 pub fn bytes(path: &Path) -> Result<Vec<u8>, UsageError> {
     if path == Path::new("-") {
@@ -29,7 +29,7 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, UsageError> {
     std::fs::read(path).map_err(unreadable)
 }
 
-/// How files begin that are no programs, and what they are.
+/// Signatures of files that are not programs, and their kinds.
 const OTHERS: [(&[u8], &str); 5] = [
     (b"\x89PNG", "a picture"),
     (b"\xff\xd8\xff", "a picture"),
@@ -38,7 +38,7 @@ const OTHERS: [(&[u8], &str); 5] = [
     (b"{\\rtf", "a word processor's document"),
 ];
 
-/// A program's bytes; refuses what is plainly something else.
+/// Reads a program's bytes; refuses files of another kind.
 pub fn program(path: &Path) -> Result<Vec<u8>, UsageError> {
     let bytes = bytes(path)?;
     let name = path.display();
@@ -53,7 +53,7 @@ pub fn program(path: &Path) -> Result<Vec<u8>, UsageError> {
     Ok(bytes)
 }
 
-/// What is in a folder, by name.
+/// Returns the entries of a folder, sorted by name.
 pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
     let unreadable =
         |error: std::io::Error| UsageError::new(format!("{} cannot be read: {error}", path.display()));
@@ -64,13 +64,13 @@ pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
     Ok(paths)
 }
 
-/// A folder's one path, whatever links lead to it.
+/// Returns the canonical path of a folder, with links resolved.
 pub fn canonical(path: &Path) -> Result<PathBuf, UsageError> {
     path.canonicalize()
         .map_err(|error| UsageError::new(format!("{} cannot be read: {error}", path.display())))
 }
 
-/// A file's text, which must be UTF-8 (jobs, machine files, references; programs are bytes).
+/// Reads a file's text, which must be UTF-8 (jobs, machine files, references; programs are bytes).
 pub fn text(path: &Path) -> Result<String, UsageError> {
     let bytes = bytes(path)?;
     match String::from_utf8(bytes) {

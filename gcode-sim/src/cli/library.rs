@@ -1,4 +1,4 @@
-//! Finds called programs in folders: `O8101.nc` and `PROBE.nc` by their names, any other file by the programs it holds.
+//! Finds called programs in folders: `O8101.nc` and `PROBE.nc` by file name, all others by contents.
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -7,16 +7,16 @@ use gcode_lang::program::Library;
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::{self, FileItem, ast::ProgramName};
 
-/// The folders to look in, the first that has a program wins.
+/// Folders of called programs; the first folder that has a program wins.
 pub struct Folders {
     folders: Vec<PathBuf>,
-    /// What the files hold whose names don't tell; read at the first call that no name answers.
+    /// Index of the programs in all files; built at the first call that no file name answers.
     contents: Option<Contents>,
-    /// Folders and files that couldn't be read, and why.
+    /// Folders and files that could not be read, with the reasons.
     unread: BTreeSet<String>,
 }
 
-/// The files by what they hold.
+/// Index of files by the programs they contain.
 #[derive(Default)]
 struct Contents {
     numbers: BTreeMap<u32, PathBuf>,
@@ -24,7 +24,8 @@ struct Contents {
 }
 
 impl Folders {
-    /// `folders` must exist: a misspelt one would look like a missing program later.
+    /// Searches the program's own folder first, then `folders`, which must exist: a misspelt folder would
+    /// later look like a missing program.
     pub fn new(program: &Path, folders: &[PathBuf]) -> Result<Self, UsageError> {
         if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
             return Err(UsageError::new(format!("--lib {}: no such folder", missing.display())));
@@ -38,12 +39,13 @@ impl Folders {
         Ok(Self { folders, contents: None, unread: BTreeSet::new() })
     }
 
-    /// The first file, in the order of folders and names, that is wanted.
+    /// Returns the first file, in the order of folders and names, that satisfies `wanted`.
     fn find(&mut self, wanted: impl Fn(&Path) -> bool) -> Option<PathBuf> {
         self.files().into_iter().find(|path| wanted(path))
     }
 
-    /// What can be a program: files that aren't of another kind by their ending, in the order of folders and names.
+    /// Returns the files that may be programs, in the order of folders and names; known other extensions are
+    /// skipped.
     fn files(&mut self) -> Vec<PathBuf> {
         const OTHERS: [&str; 12] =
             ["toml", "json", "csv", "png", "md", "txt", "html", "snap", "pdf", "zip", "rs", "new"];
@@ -100,7 +102,7 @@ impl Folders {
 
 impl Library for Folders {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        // A file's name may promise a number that isn't in it: then the contents decide.
+        // A file name may announce a number that the file does not contain; the contents decide.
         let holds = |bytes: &[u8]| programs_in(bytes).any(|name| name == ProgramName::Number(number));
         let named = self.find(|path| numbered(path) == Some(number));
         let named = named.and_then(|path| Some((self.bytes(&path)?, path)));
@@ -117,7 +119,7 @@ impl Library for Folders {
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
         let path = match self.find_holder(|contents| contents.names.get(name)) {
             Some(path) => path,
-            // A file of this name that says neither name nor number itself.
+            // The file's name counts if the program in it has neither name nor number.
             None => self.find(|path| path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case(name)))?,
         };
         let bytes = self.bytes(&path)?;
@@ -130,7 +132,7 @@ impl Library for Folders {
     }
 }
 
-/// The programs in a file that have a number or a name.
+/// Returns the programs in a file that have a number or a name.
 fn programs_in(bytes: &[u8]) -> impl Iterator<Item = ProgramName> + '_ {
     syntax::FileItems::new(SourceId::default(), bytes).filter_map(|piece| match piece {
         FileItem::Program { name, .. } => Some(name),
@@ -138,7 +140,7 @@ fn programs_in(bytes: &[u8]) -> impl Iterator<Item = ProgramName> + '_ {
     })
 }
 
-/// The number in `O8101.nc`, `o8101.NC`, `O8101`, `8101.tap`.
+/// Returns the program number of a file name: `O8101.nc`, `o8101.NC`, `O8101`, `8101.tap`.
 fn numbered(path: &Path) -> Option<u32> {
     let stem = path.file_stem()?.to_str()?;
     let digits = stem.strip_prefix(['O', 'o']).unwrap_or(stem);

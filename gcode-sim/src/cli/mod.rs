@@ -1,4 +1,4 @@
-//! The only place that prints and opens files: arguments in, exit status out.
+//! The command line: arguments in, exit status out. All printing and file access is in this module.
 mod args;
 mod budget;
 mod check;
@@ -36,16 +36,16 @@ use crate::report::diagnostic;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_session::Run;
 
-/// How a request ended, the same for both programs.
+/// Outcome of a request, the same for both programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitStatus {
-    /// Done, and what was asked about holds.
+    /// Done, all checks passed: exit code 0.
     Passed,
-    /// Done, and the answer is no.
+    /// Done, a check failed: exit code 1.
     Failed,
-    /// The request can't be used.
+    /// The request is invalid: exit code 2.
     Invalid,
-    /// The control stopped with an alarm, or a limit ended the run.
+    /// The control stopped with an alarm, or a limit ended the run: exit code 3.
     Stopped,
 }
 
@@ -60,18 +60,19 @@ impl From<ExitStatus> for ExitCode {
     }
 }
 
-/// Why a request can't be used, in one sentence with its remedy.
+/// An invalid request: one sentence with its remedy.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct UsageError(String);
 
 impl UsageError {
+    /// Builds the error from its sentence.
     pub fn new(message: impl Into<String>) -> Self {
         Self(message.into())
     }
 }
 
-/// Does what the command line asks for.
+/// Parses the arguments and executes the command; messages go to standard error.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     let arguments: Arguments = match common::parse(arguments) {
         Ok(arguments) => arguments,
@@ -102,7 +103,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     })
 }
 
-/// Tells what a run did in silence, and why it stopped before its end, if it did.
+/// Prints a run's notes and, if it did not end normally, the finding that stopped it.
 fn stopped(run: &Run) -> Option<ExitStatus> {
     let sources = run.control.memory().sources();
     run.note_findings().for_each(|note| output::print_message(&diagnostic::render(&note, sources)));
@@ -111,7 +112,7 @@ fn stopped(run: &Run) -> Option<ExitStatus> {
     Some(ExitStatus::Stopped)
 }
 
-/// Tells what was found, and what that means for the exit status.
+/// Prints the findings and returns the exit status of the most severe one.
 fn findings(all: &[Diagnostic], run: &Run) -> ExitStatus {
     let sources = run.control.memory().sources();
     for finding in all {

@@ -1,4 +1,4 @@
-//! Turns what stands on the command line into a request the session can run.
+//! Turns the command-line arguments into a request for a session.
 use std::path::Path;
 
 use super::conditions::ProgramArguments;
@@ -11,7 +11,7 @@ use gcode_part::ProbedPart;
 use gcode_part::job::{Rotary, control_file};
 use gcode_session::Request;
 
-/// Reads the program and the machine, and resolves every setting.
+/// Reads the program and the machine, and applies every setting in order.
 pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), UsageError> {
     let ProgramArguments { program, conditions: arguments } = program;
     let machine = match &arguments.machine {
@@ -27,7 +27,7 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
         control_file::apply(&input::text(path)?, &mut request.settings).map_err(refused)?;
     }
     let mut settings: Vec<(&str, String)> = Vec::new();
-    // The family first: what stands behind --control changes it.
+    // The dialect comes first: `--control` changes its defaults.
     settings.extend(arguments.dialect.iter().map(|name| ("--dialect", format!("DIALECT={name}"))));
     settings.extend(arguments.control.iter().map(|text| ("--control", text.clone())));
     settings.extend(arguments.input.iter().map(|text| ("--input", text.clone())));
@@ -51,7 +51,7 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     Ok((request, folders))
 }
 
-/// Puts a part on the machine that can be probed; `file` is the machine's.
+/// Adds a part for probing to the request; `file` is the machine file, for messages.
 fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), UsageError> {
     let refused = |why: &dyn std::fmt::Display| UsageError::new(format!("{}, {why}", path.display()));
     if request.settings.skip_signal.is_some() {
@@ -81,7 +81,8 @@ fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result
     Ok(())
 }
 
-/// Whether the machine turns the part as the job says. Of two signs no fit could tell which is the right one.
+/// Checks that the machine rotates the part as the job specifies. With different signs a fit cannot tell
+/// which is right.
 fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), String> {
     let letter = rotary.letter;
     let turns = machine.axes.find(letter as u8).and_then(|axis| machine.table.rotary_sign(axis));
@@ -101,24 +102,24 @@ fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), Stri
     ))
 }
 
-/// A machine file.
+/// Reads a machine file.
 pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
     Machine::parse(&input::text(path)?)
         .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }
 
-/// A hole list or a job file.
+/// Reads a hole list or a job file.
 pub(super) fn read_nominal(path: &Path) -> Result<NominalPart, UsageError> {
     NominalPart::parse(&input::text(path)?)
         .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }
 
-/// The folder that the program was started in, which results name files from.
+/// Returns the working directory, to which file names in results are relative.
 pub(super) fn working_folder() -> String {
     std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default()
 }
 
-/// A tolerance that somebody asked for.
+/// Checks the value of a tolerance flag.
 pub(super) fn tolerance(flag: &str, value: Option<f64>) -> Result<Option<f64>, UsageError> {
     match value {
         Some(mm) if !(mm.is_finite() && mm > 0.0) => {
@@ -128,7 +129,7 @@ pub(super) fn tolerance(flag: &str, value: Option<f64>) -> Result<Option<f64>, U
     }
 }
 
-/// `#500=12.5`.
+/// Parses `#500=12.5`.
 fn assignment(text: &str) -> Result<(u32, f64), UsageError> {
     let parsed = text.trim().strip_prefix('#').and_then(|rest| {
         let (number, value) = rest.split_once('=')?;
@@ -138,7 +139,7 @@ fn assignment(text: &str) -> Result<(u32, f64), UsageError> {
     parsed.ok_or_else(|| UsageError::new(format!("--set {text}: write a variable and a number, '#500=12.5'")))
 }
 
-/// `#5041`.
+/// Parses `#5041`.
 pub(super) fn variable(text: &str) -> Result<u32, UsageError> {
     let number = text.trim().strip_prefix('#').and_then(|digits| digits.parse().ok());
     number.ok_or_else(|| UsageError::new(format!("--show {text}: write a variable, '#5041'")))

@@ -1,10 +1,10 @@
-//! Writes results: to standard output, or to a file that is complete or not there at all.
+//! Writes results to standard output, or to a file that is either complete or absent.
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::UsageError;
 
-/// Prints a result. A reader that has heard enough (`| head`) is no error.
+/// Prints a result. A reader that closes the pipe early (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), UsageError> {
     let mut out = anstream::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -24,18 +24,18 @@ pub fn json(document: &impl serde::Serialize) -> Result<(), UsageError> {
     )
 }
 
-/// Tells something that isn't the result.
+/// Prints a message to standard error.
 pub fn print_message(text: &str) {
-    // Where even standard error is closed there is nobody left to tell.
+    // A closed standard error leaves no channel for the error itself.
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Writes a file by way of a temporary one beside it, so that it is never half-written.
+/// Writes a file through a temporary one in the same folder, so that it is never half-written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), UsageError> {
     write_all(&[(path, bytes)])
 }
 
-/// Writes several files: all are written beside their places before the first is put into its place.
+/// Writes several files: all temporary files are complete before the first is renamed.
 pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
     let mut waiting = Vec::new();
     for (path, bytes) in files {
@@ -72,14 +72,14 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
     Ok(())
 }
 
-/// The error without the name of a temporary file, which nobody asked for.
+/// Formats the error without the name of the temporary file, which means nothing to the user.
 fn plain(error: &std::io::Error) -> String {
     let text = error.to_string();
     text.split(" at path ").next().unwrap_or_default().to_owned()
 }
 
-/// What stands there is no file: a device such as `/dev/null`, or a pipe. A file renamed onto it would take its place
-/// for everyone.
+/// Returns true for a device such as `/dev/null` or a pipe. A file renamed onto it would replace it for all
+/// users.
 fn is_device(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
 }
@@ -90,12 +90,12 @@ fn write_through(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     device.flush()
 }
 
-/// Where a link leads, so that it stays a link.
+/// Resolves a link, so that it stays a link.
 fn place(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
-/// Temporary files are private; a result may be read by everyone who may read new files.
+/// Sets the permissions of a new file: temporary files are private, results readable like other files.
 #[cfg(unix)]
 fn allow_reading(file: &std::fs::File) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_device_is_written_to_and_stays_a_device() {
-        // A link to the device: were it replaced after all, the device itself would be safe from this test.
+        // The device is behind a link: a failing test could replace the link, never the device.
         let folder = tempfile::tempdir().unwrap();
         let (link, full) = (folder.path().join("null"), folder.path().join("full"));
         std::os::unix::fs::symlink("/dev/null", &link).unwrap();

@@ -1,11 +1,11 @@
-//! A result never takes the place of a file that it is made of, and standard input is read once.
+//! Guards inputs: a result never overwrites one of them, and standard input is read once.
 use std::path::Path;
 
 use super::UsageError;
 
-/// Refuses to write to `result` where that is one of `inputs`, whatever links lead there.
+/// Refuses a `result` that is one of `inputs`, with links resolved.
 pub fn check_not_input(result: &Path, inputs: &[&Path]) -> Result<(), UsageError> {
-    // What can't be found isn't there yet.
+    // A path that cannot be resolved does not exist yet.
     let Ok(place) = result.canonicalize() else { return Ok(()) };
     let is_it = |input: &&&Path| input.canonicalize().is_ok_and(|other| other == place);
     match inputs.iter().find(is_it) {
@@ -19,7 +19,7 @@ pub fn check_not_input(result: &Path, inputs: &[&Path]) -> Result<(), UsageError
     }
 }
 
-/// Refuses two inputs that are both standard input: the second would find nothing left.
+/// Refuses two inputs that are both standard input: the second would be empty.
 pub(super) fn one_pipe(inputs: &[&Path]) -> Result<(), UsageError> {
     if inputs.iter().filter(|path| **path == Path::new("-")).count() > 1 {
         return Err(UsageError::new("only one file can be '-': standard input can be read once"));

@@ -1,4 +1,4 @@
-//! What a package of either program brings along: completions for shells, and manual pages.
+//! Shell completions and manual pages of either program.
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command, CommandFactory};
@@ -21,7 +21,7 @@ pub struct ManArguments {
     folder: PathBuf,
 }
 
-/// Prints what a shell reads to complete a program's commands and flags.
+/// Prints the completion script of a shell for a program's commands and flags.
 pub fn completions<A: CommandFactory>(arguments: &ShellArguments) -> Result<ExitStatus, UsageError> {
     let mut command = A::command();
     let name = command.get_name().to_owned();
@@ -41,7 +41,7 @@ pub fn man<A: CommandFactory>(arguments: &ManArguments) -> Result<ExitStatus, Us
     Ok(ExitStatus::Passed)
 }
 
-/// The page of the program and one for each of its commands, with their names.
+/// Returns the pages of the program and of each command, with their file names.
 fn pages(command: Command) -> std::io::Result<Vec<(String, Vec<u8>)>> {
     let mut command = command.disable_help_subcommand(true);
     command.build();

@@ -1,4 +1,4 @@
-//! Writes the review page, with everything that the result depends on named in it.
+//! Writes the review page, with all inputs of the result named on it.
 use std::path::Path;
 
 use super::conditions::RunConditions;
@@ -11,7 +11,7 @@ use gcode_part::Surface;
 use gcode_review::Revision;
 use gcode_session::{Request, Trace};
 
-/// A program's run with all that a page shows of it.
+/// Runs a program and records the trace that the page shows.
 pub(super) fn simulate_traced(
     request: &Request,
     folders: &mut Folders,
@@ -22,7 +22,7 @@ pub(super) fn simulate_traced(
     Ok((revision.map_err(|error| UsageError::new(error.to_string()))?, trace))
 }
 
-/// Writes the page of one program, with the verdict on it where there is a reference.
+/// Writes the page of one program, with its verdict if there is a reference.
 pub(super) fn write_alone(
     request: &Request,
     (revision, trace): &(Revision, Trace),
@@ -41,7 +41,7 @@ pub(super) fn write_alone(
     write(&page, path)
 }
 
-/// A page has no other ending: a program beside it is none.
+/// Refuses a file name with another extension than .html or .htm: it could be that of a program.
 pub(super) fn is_html(path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| {
         !["html", "htm"].iter().any(|known| extension.eq_ignore_ascii_case(known))
@@ -60,12 +60,12 @@ pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), UsageError> {
     output::write(path, html.as_bytes())
 }
 
-/// Says where the page is, among results that are text.
+/// Prints the page's path if the results are text.
 pub(super) fn report_written(path: &Path, is_text: bool) -> Result<(), UsageError> {
     if is_text { output::print(&format!("page: {}\n", path.display())) } else { Ok(()) }
 }
 
-/// The files besides the programs.
+/// Reads the input files besides the programs.
 pub(super) fn documents(
     conditions: &RunConditions,
     reference: Option<&Path>,
@@ -85,7 +85,7 @@ pub(super) fn documents(
         .collect()
 }
 
-/// The flags that the run depends on.
+/// Returns the flags that the run depends on.
 pub(super) fn flags(conditions: &RunConditions) -> Vec<String> {
     let RunConditions {
         libraries,

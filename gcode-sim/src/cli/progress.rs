@@ -1,5 +1,5 @@
-//! A line on standard error for who waits longer than a second, none where nobody watches; Ctrl-C ends a run with what is
-//! known so far.
+//! Progress of long work: a line on standard error after one second, only on a terminal. Ctrl-C ends a run
+//! and keeps the results so far.
 use std::io::IsTerminal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -9,10 +9,10 @@ use super::output;
 use gcode_control::Progress;
 use gcode_session::Request;
 
-/// Wider than any line shown.
+/// Width of the line; larger than any line shown.
 const WIDTH: usize = 60;
 
-/// Does the work, and meanwhile shows how much of `all` is counted.
+/// Does the work and shows which part of `all` is counted.
 pub(super) fn with_progress<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() -> T) -> T {
     let bar = || {
         let part = (counted.load(Ordering::Relaxed) as f64 / all.max(1) as f64).min(1.0);
@@ -21,18 +21,18 @@ pub(super) fn with_progress<T>(all: usize, counted: &AtomicUsize, work: impl FnO
     showing(bar, work)
 }
 
-/// Does the work, and meanwhile shows how many of `all` cases are done.
+/// Does the work and shows how many of `all` cases are done.
 pub(super) fn of_cases<T>(all: usize, done: &AtomicUsize, work: impl FnOnce() -> T) -> T {
     showing(|| format!("{} of {all} cases", done.load(Ordering::Relaxed)), work)
 }
 
-/// Runs a program, and meanwhile shows how many blocks it has executed. The first Ctrl-C ends the run, the second the
+/// Runs a program and shows the number of executed blocks. The first Ctrl-C ends the run, the second the
 /// process.
 pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T) -> T {
     let run = Arc::new(Progress::default());
     request.progress = Some(Arc::clone(&run));
     let watched = Arc::clone(&run);
-    // Where no handler can be set, Ctrl-C ends the process as ever.
+    // If no handler can be set, Ctrl-C ends the process as usual.
     _ = ctrlc::set_handler(move || {
         if watched.cancel.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
@@ -42,7 +42,7 @@ pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T)
     showing(count, || work(request))
 }
 
-/// Does the work, and after a second shows what `line` says of it again and again.
+/// Does the work and, from one second on, repeatedly shows the text of `line`.
 fn showing<T>(line: impl Fn() -> String + Sync, work: impl FnOnce() -> T) -> T {
     if !std::io::stderr().is_terminal() {
         return work();

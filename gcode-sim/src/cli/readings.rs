@@ -1,4 +1,4 @@
-//! `gcode-sim readings`: what an edge finder shows whose ball a program feeds along the part's surface.
+//! `gcode-sim readings`: shows the readings of an edge finder fed along the part's surface.
 use std::path::PathBuf;
 
 use clap::Args;

@@ -1,4 +1,4 @@
-//! `gcode-sim reference`: what the part should get, from the job's geometry alone.
+//! `gcode-sim reference`: computes the nominal holes or flutes from the job's geometry alone.
 use std::path::PathBuf;
 
 use clap::Args;

@@ -1,4 +1,4 @@
-//! `gcode-sim render`: a picture of the holes on the part, or of a burr's flutes.
+//! `gcode-sim render`: draws the holes on the part, or a burr's flutes.
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -60,7 +60,7 @@ enum View {
 }
 
 impl View {
-    /// As `--view` has it.
+    /// Returns the value of `--view`.
     fn name(self) -> &'static str {
         match self {
             Self::Top => "top",
@@ -142,7 +142,7 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus,
     Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Passed))
 }
 
-/// Says what was drawn, and where it is.
+/// Prints the view and the path of the picture.
 fn tell(arguments: &RenderArguments, view: View) -> Result<(), UsageError> {
     let report = RenderReport { picture: arguments.output.display().to_string(), view: view.name() };
     match arguments.format {
@@ -151,7 +151,7 @@ fn tell(arguments: &RenderArguments, view: View) -> Result<(), UsageError> {
     }
 }
 
-/// What the views of a verdict are made of.
+/// Builds the contents of the views from a verdict.
 pub(super) fn view(
     request: &Request,
     simulation: &Simulation,
@@ -161,7 +161,7 @@ pub(super) fn view(
     top::of_verdict(&name(request), simulation, reference, verdict, &request.machine)
 }
 
-/// Draws a scene to a file of exactly the size asked for.
+/// Draws a scene to a PNG file of exactly this size.
 pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
     if path.extension().is_some_and(is_other) {
@@ -178,7 +178,7 @@ pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageE
     output::write(path, &png)
 }
 
-/// The file's name without its folder.
+/// Returns the file name of the program without its folder.
 pub(super) fn name(request: &Request) -> String {
     let file = Path::new(&request.name).file_name();
     file.map_or_else(|| request.name.clone(), |name| name.to_string_lossy().into_owned())

@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(MoveRecorder::default);
     let done = progress::of_run(&mut request, |request| {
-        // Follows the tool only where there is a part that it could touch.
+        // The tool is followed only if a part for probing is given.
         let follow = |part| HoleExtractor::new(&request.machine).with_surface(Some(part));
         let mut probe = request.part.map(follow);
         let ball = request.part.zip(request.machine.probe.as_ref());
@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
             .push((number, value.map_err(|alarm| UsageError::new(format!("--show '#{number}': {alarm}")))?));
     }
     if let Some(path) = &arguments.output {
-        // Called programs are known only now.
+        // The called programs are known only after the run.
         let called = run.control.memory().sources().iter().map(|(_, source)| Path::new(&source.name));
         overwrite_guard::check_not_input(path, &called.collect::<Vec<_>>())?;
         let lines = run.control.output().iter();

@@ -1,4 +1,4 @@
-//! `gcode-sim schema`: the JSON Schema of a file or of a result.
+//! `gcode-sim schema`: prints the JSON Schema of a file or of a result.
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
@@ -12,7 +12,7 @@ pub(super) struct SchemaArguments {
     name: String,
 }
 
-/// The names of all formats, for either program's help.
+/// Returns the names of all formats for the help of either program.
 pub fn names(formats: &[Format]) -> PossibleValuesParser {
     let value = |format: &Format| PossibleValue::new(format.name).help(format.about);
     formats.iter().map(value).collect::<Vec<_>>().into()
@@ -22,7 +22,7 @@ pub(super) fn run(arguments: &SchemaArguments) -> Result<ExitStatus, UsageError>
     print(&arguments.name, FORMATS)
 }
 
-/// Prints the schema of one of the formats.
+/// Prints the schema of the named format.
 pub fn print(name: &str, formats: &[Format]) -> Result<ExitStatus, UsageError> {
     let format = formats.iter().find(|format| format.name == name);
     let format = format.ok_or_else(|| UsageError::new(format!("no schema '{name}'")))?;

@@ -1,4 +1,4 @@
-//! `gcode-sim settings`: what `--control` takes.
+//! `gcode-sim settings`: lists the control settings for `--control`.
 use clap::Args;
 
 use super::format::TextFormat;

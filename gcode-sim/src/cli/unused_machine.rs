@@ -1,5 +1,4 @@
-//! Tells that a machine file is there and isn't used: forgetting `--machine` is easily done, and the holes of another
-//! machine are other holes.
+//! Warns of an unused machine file: `--machine` is easily forgotten, and another machine makes other holes.
 use std::path::Path;
 
 use super::conditions::ProgramArguments;
@@ -7,10 +6,11 @@ use super::output;
 use gcode_lang::control::{Dialect, Increment};
 use gcode_session::Request;
 
-/// The name that the generator gives a machine file.
+/// Name that the generator gives a machine file.
 const NAME: &str = "machine.toml";
 
-/// Says so where no `--machine` is given and one is at hand, or where the program's own remarks name one.
+/// Prints a note if `--machine` is missing and a machine file is next to the program or named in its
+/// comments.
 pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_some() {
         return;
@@ -28,7 +28,7 @@ pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Reques
     output::print_message(&format!("note: {what}\n"));
 }
 
-/// Of a machine `check` needs nothing but its control: says so where the program's head names another one than is assumed.
+/// Prints a warning if the program's head names another control than `check` assumes.
 pub(super) fn warn_unused_control(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_some() {
         return;
@@ -57,15 +57,15 @@ pub(super) fn warn_unused_control(arguments: &ProgramArguments, request: &Reques
     }
 }
 
-/// The line that names a machine file, in capitals: `(CONTROL FANUC-31I, INCREMENT IS-B, MACHINE FILE MACHINE.TOML)`
-/// stands at the top of an emitted program.
+/// Returns the line that names a machine file, in capitals; an emitted program begins with `(CONTROL
+/// FANUC-31I, INCREMENT IS-B, MACHINE FILE MACHINE.TOML)`.
 fn head(program: &[u8]) -> Option<String> {
     const TOP: usize = 65_536;
     let top = String::from_utf8_lossy(&program[..program.len().min(TOP)]).to_ascii_uppercase();
     top.lines().find(|line| line.contains("MACHINE FILE")).map(str::to_owned)
 }
 
-/// The one whose name is a word of the line.
+/// Returns the value whose name is a word of the line.
 fn named<T: Copy>(line: &str, all: &[(&str, T)]) -> Option<T> {
     let is_word = |name: &str| {
         let mut words = line.split(|c: char| !c.is_ascii_alphanumeric() && c != '-');

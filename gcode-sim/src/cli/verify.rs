@@ -1,4 +1,4 @@
-//! `gcode-sim verify`: a program against a reference, by what the part should get.
+//! `gcode-sim verify`: verifies a program's holes or flutes against a reference.
 use std::path::PathBuf;
 
 use clap::Args;
@@ -115,7 +115,7 @@ fn flutes(
     Ok(combine_status(super::findings(&verdict.diagnostics, &grinding.run), verdict.verdict))
 }
 
-/// The findings for a code review.
+/// Prints the findings as SARIF for a code review.
 fn sarif(findings: &[Diagnostic], run: &Run) -> Result<(), UsageError> {
     let sources = run.control.memory().sources();
     let findings: Vec<_> = findings.iter().map(|finding| Finding::of(finding, sources)).collect();

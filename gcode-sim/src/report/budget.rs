@@ -8,7 +8,7 @@ use gcode_draw::{Bar, Bars};
 use gcode_inspect::budget::{Budget, BudgetRequest, ErrorShare, Statistics};
 use gcode_inspect::machine::Distribution;
 
-/// Diameters and lengths in mm.
+/// The position deviations of all holes under errors; diameters and lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct BudgetReport {
     basis: &'static str,
@@ -16,7 +16,7 @@ pub struct BudgetReport {
     seed: u64,
     tolerance: f64,
     holes: Vec<HoleRow>,
-    /// The worst hole of each part.
+    /// Statistics of the worst hole of each part.
     parts: BudgetRow,
     sources: Vec<SourceRow>,
 }
@@ -36,7 +36,7 @@ struct HoleRow {
     id: String,
     #[serde(flatten)]
     row: BudgetRow,
-    /// Without errors.
+    /// Position deviation without errors.
     nominal: f64,
     sources: Vec<SourceRow>,
 }
@@ -99,7 +99,7 @@ impl BudgetReport {
         }
     }
 
-    /// For a terminal.
+    /// Formats the budget for a terminal.
     pub fn text(&self) -> String {
         let mut text = format!(
             "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without errors\n\n",
@@ -144,7 +144,7 @@ impl BudgetReport {
         text
     }
 
-    /// The sources' shares, for a picture.
+    /// Returns the shares of the sources as bars.
     pub fn bars(&self) -> Bars {
         let bar = |row: &SourceRow| Bar {
             name: row.source.clone(),

@@ -1,4 +1,4 @@
-//! The top view of two revisions: the new holes over the old ones, and the cuts that are others beside those that aren't.
+//! The top view of two revisions: new holes over old ones, and changed cuts beside unchanged ones.
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{count, rounded};
@@ -9,18 +9,18 @@ use gcode_inspect::machine::Machine;
 use gcode_part::Reference;
 use gcode_review::{Change, Leg, Paired, Record, Revision, RevisionDiff};
 
-/// No more cuts of each revision than this are drawn, nor more points.
+/// Largest numbers of moves and points drawn of each revision.
 const MAX_MOVES: usize = 20_000;
 const MAX_POINTS: usize = 100_000;
 
-/// So many kinds of changes that no hole shows are told in words.
+/// Largest number of kinds of changes stated in the title block.
 const MAX_KINDS: usize = 7;
 
-/// Farther than this a hole's way is drawn on the part, not in a circle, mm.
+/// Movement beyond which a hole is drawn at both positions instead of in an enlarged circle, mm.
 const MAX_CIRCLE_MOVE: f64 = 5.0;
 
-/// The holes of a new revision over those of the old one, paired as `compared` has them, and the cuts besides. With a
-/// reference the part's outline is known.
+/// Builds the view of two revisions from the pairs in `compared`. With a reference, the part's outline is
+/// drawn.
 pub fn of_changes(
     name: &str,
     (old, new): (&Revision, &Revision),
@@ -79,7 +79,7 @@ pub fn of_changes(
             .unwrap_or_else(|| side(machine)),
         outline: reference.and_then(|reference| reference.surface).and_then(outline),
         cylinder: reference.and_then(super::top::cylinder),
-        // A circle that nothing is seen in has no scale to be told.
+        // Without a visible movement the circle has no scale.
         tolerance: (tolerance < shown).then(|| round_up(2.0 * shown)),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
@@ -100,7 +100,7 @@ pub fn of_changes(
     }
 }
 
-/// The changes that no hole's sign shows, those of a kind together.
+/// Returns the changes that no hole's symbol shows, one line for each kind.
 fn other_change_lines(others: &[(&str, &str)]) -> Vec<String> {
     let mut kinds: Vec<(&str, &str, usize)> = Vec::new();
     for (code, message) in others {
@@ -121,13 +121,13 @@ fn other_change_lines(others: &[(&str, &str)]) -> Vec<String> {
     lines
 }
 
-/// A change that a hole's own sign shows; of the order there is none.
+/// Returns true for changes shown by a hole's own symbol; a changed order has none.
 fn is_of_one_hole(code: &str) -> bool {
     code.starts_with("hole-") && code != "hole-order"
 }
 
 struct Path {
-    /// The cuts that make no hole: those of both, those of the new revision, those of the old one.
+    /// Cuts that make no hole: unchanged, new and old ones.
     cuts: Vec<PathPiece>,
     has_other_rapids: bool,
 }
@@ -152,7 +152,7 @@ fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Pa
     Path { cuts: pieces.into_values().flatten().collect(), has_other_rapids }
 }
 
-/// Cuts that follow one another are one line: dashes run on.
+/// Joins consecutive cuts to one line, so that their dashes continue.
 fn append_leg(pieces: &mut Vec<PathPiece>, leg: &Leg, kind: PathKind) {
     let mut points = leg.points.iter().map(|point| point.coords.into());
     let ends_at = |piece: &&mut PathPiece| piece.points.last().copied() == points.clone().next();

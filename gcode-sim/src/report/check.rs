@@ -1,4 +1,4 @@
-//! What `check` answers: the findings with their places, and a line that counts them.
+//! The result of `check`: findings with their places, and a line that counts them.
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -25,7 +25,7 @@ pub struct FindingReport {
     pub file: Option<String>,
     pub line: Option<u32>,
     pub column: Option<u32>,
-    /// The block as written.
+    /// The block's text.
     pub block: Option<String>,
     pub help: Option<String>,
     /// Secondary locations: the start of a loop, a call.
@@ -73,7 +73,7 @@ fn report(checked: &CheckResult, finding: &Diagnostic) -> FindingReport {
     }
 }
 
-/// The findings as the terminal shows them, and their count.
+/// Formats the findings and their count for a terminal.
 pub fn text(checked: &CheckResult) -> String {
     let sources = checked.memory.sources();
     let mut text: String =
@@ -83,7 +83,7 @@ pub fn text(checked: &CheckResult) -> String {
     text
 }
 
-/// `2 programs checked: 1 error, 2 warnings`.
+/// Returns `2 programs checked: 1 error, 2 warnings`.
 fn summary(checked: &CheckResult) -> String {
     let counted = |count: usize, what: &str| match count {
         1 => format!("1 {what}"),

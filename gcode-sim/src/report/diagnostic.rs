@@ -1,14 +1,14 @@
-//! A finding or an alarm as text: what, where with the line underlined, the calls that led there, what to do.
+//! A finding or an alarm as text: the fault, its line underlined, the calls that led to it, and the remedy.
 use annotate_snippets::{Annotation, AnnotationKind, Level, Renderer, Snippet};
 
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::source::{Sources, Span};
 
-/// How many calls of a chain are shown; the rest is counted.
+/// Number of calls of a chain that are shown; the others are counted.
 const CALLS_SHOWN: usize = 6;
 
-/// Draws a diagnostic with ANSI colours; the stream that prints it takes them out where they don't belong.
+/// Formats a diagnostic with ANSI colours; the output stream removes them if it is not a terminal.
 pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let level = match diagnostic.severity {
         Severity::Alarm => Level::ERROR.with_name("alarm"),
@@ -40,17 +40,18 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     text
 }
 
-/// Bytes of a program's comment may hold anything; a terminal should see no control characters.
+/// Replaces control characters: a program's comment may contain any bytes, which a terminal must not
+/// interpret.
 fn escape(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-/// `O8101.nc:12`.
+/// Returns `O8101.nc:12`.
 pub fn place_name(sources: &Sources, span: Span) -> String {
     format!("{}:{}", sources.get(span.source).name, sources.line_column(span).line)
 }
 
-/// The chain of calls, innermost first, one line each.
+/// Returns the chain of calls, innermost first, one line each.
 fn calls(place: &Backtrace, sources: &Sources) -> Vec<String> {
     let mut lines = Vec::new();
     let mut left = 0;
@@ -73,7 +74,7 @@ fn calls(place: &Backtrace, sources: &Sources) -> Vec<String> {
     lines
 }
 
-/// The line that `span` begins in, with the span underlined.
+/// Returns the line in which `span` begins, with the span underlined.
 fn snippet(sources: &Sources, span: Span) -> Snippet<'static, Annotation<'static>> {
     let source = sources.get(span.source);
     let at = source.line_column(span.start);
@@ -83,7 +84,7 @@ fn snippet(sources: &Sources, span: Span) -> Snippet<'static, Annotation<'static
         bytes[start..].iter().position(|b| matches!(b, b'\n' | b'\r')).map_or(bytes.len(), |n| start + n);
     let from = (span.start as usize).clamp(start, end);
     let to = (span.end as usize).clamp(from, end);
-    // Bytes that aren't UTF-8 are shown as replacement characters, which are longer: convert piece by piece.
+    // Bytes that are not UTF-8 become longer replacement characters, so each piece is converted separately.
     let text = |bytes: &[u8]| escape(&String::from_utf8_lossy(bytes));
     let (before, marked, after) = (text(&bytes[start..from]), text(&bytes[from..to]), text(&bytes[to..end]));
     let range = before.len()..before.len() + marked.len();

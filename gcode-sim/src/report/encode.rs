@@ -1,12 +1,12 @@
-//! Bytes as text: what a file is known by, and what a page carries inside itself.
+//! Bytes as text: digests that identify files, and data embedded in a page.
 use sha2::{Digest, Sha256};
 
-/// SHA-256 (FIPS 180-4) in 64 hexadecimal digits, as `sha256sum` and `certutil` show it.
+/// Returns the SHA-256 (FIPS 180-4) in 64 hexadecimal digits, as `sha256sum` and `certutil` print it.
 pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// RFC 4648, section 4.
+/// Returns the base64 encoding of RFC 4648, section 4.
 pub fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
@@ -27,7 +27,7 @@ mod tests {
 
     #[test]
     fn base64_is_that_of_the_rfc() {
-        // Its test vectors, section 10.
+        // The test vectors of section 10.
         let vectors = [
             ("", ""),
             ("f", "Zg=="),

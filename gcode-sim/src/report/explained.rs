@@ -1,4 +1,4 @@
-//! What `explain` answers: the pages of a code, or all codes with what they mean.
+//! The result of `explain`: the pages of a code, or a list of all codes.
 use std::fmt::Write;
 
 use schemars::JsonSchema;
@@ -17,7 +17,7 @@ pub struct PageReport {
     pub code: &'static str,
     /// The meaning of the code in a few words.
     pub title: &'static str,
-    /// The whole page, Markdown; a list of all codes has none.
+    /// The whole page in Markdown; absent in the list of all codes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub text: Option<&'static str>,
     #[serde(skip)]
@@ -25,7 +25,8 @@ pub struct PageReport {
 }
 
 impl ExplainReport {
-    /// The pages of a code in any of its spellings: of `hole-depth`, which `verify` tells and `diff` too, there are two.
+    /// Returns the pages of a code in any of its spellings; `hole-depth`, a code of `verify` and of `diff`,
+    /// has two.
     pub fn of(code: &str) -> Option<Self> {
         let page = |page: explain::Page| PageReport {
             code: page.code,
@@ -37,7 +38,7 @@ impl ExplainReport {
         (!pages.is_empty()).then_some(Self { pages })
     }
 
-    /// All codes.
+    /// Returns the list of all codes.
     pub fn list() -> Self {
         let page = |page: explain::Page| PageReport {
             code: page.code,
@@ -48,7 +49,7 @@ impl ExplainReport {
         Self { pages: explain::all().map(page).collect() }
     }
 
-    /// The same for people: the pages, or a line a code.
+    /// Formats the pages for a terminal, or one line per code.
     pub fn text(&self) -> String {
         let mut text = String::new();
         for (number, PageReport { code, title, text: page, shown }) in self.pages.iter().enumerate() {

@@ -1,6 +1,6 @@
-//! Figures as tables show them: rounded, with their signs, counted.
+//! Numbers as tables show them: rounded, signed, counted.
 
-/// Rounded; never "-0.000".
+/// Rounds to `places` decimals; never returns "-0.000".
 pub fn rounded(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
     match text.strip_prefix('-') {
@@ -21,7 +21,7 @@ pub fn signed_to(value: f64, places: usize) -> String {
     }
 }
 
-/// As a drawing has it: `+0.120`, `−1.500`.
+/// Formats with a sign and three decimals, as on a drawing: `+0.120`, `−1.500`.
 pub fn with_sign(value: f64) -> String {
     signed_to(value, 3).replace('-', "−")
 }
@@ -30,7 +30,7 @@ pub fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
-/// As short as six places allow: `6`, `5.9`, `66.132`.
+/// Formats with up to six decimals: `6`, `5.9`, `66.132`.
 pub fn short(value: f64) -> String {
     rounded(value, 6).trim_end_matches('0').trim_end_matches('.').to_owned()
 }

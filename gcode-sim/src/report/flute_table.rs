@@ -1,10 +1,10 @@
-//! The verdict on flutes in words, and the helix angle of both laws side by side.
+//! The verdict on flutes as text, with the helix angles of both laws side by side.
 use std::fmt::Write;
 
 use gcode_inspect::verify::Answer;
 use gcode_inspect::verify::flutes::{FluteVerdict, LawAngles, NominalFlutes};
 
-/// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
+/// Formats the verdict; lengths in mm, angles in degrees. Values are judged unrounded and shown rounded.
 pub fn table(verdict: &FluteVerdict) -> String {
     let mut text = format!(
         "Flutes of a burr, law {}: {}\na helix angle is measured over {} mm of the flute; tolerances are ±\n\n",
@@ -89,7 +89,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
     text
 }
 
-/// What is wanted, in words.
+/// Describes the nominal flutes.
 pub fn nominal_table(burr: &NominalFlutes) -> String {
     let mut text = format!(
         "{} flutes, law {}, from {:.3} mm behind the end of the cylinder to polar angle {}, the pole {:.3} \
@@ -100,7 +100,7 @@ pub fn nominal_table(burr: &NominalFlutes) -> String {
     text
 }
 
-/// The helix angle by polar angle θ from the tip: in degrees, as measured, and what each law has there.
+/// Writes the helix angle by polar angle θ from the tip: measured, and by either law, in degrees.
 fn laws(text: &mut String, laws: &[LawAngles]) {
     let _ = writeln!(
         text,

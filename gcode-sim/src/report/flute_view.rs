@@ -1,4 +1,4 @@
-//! What the pictures of a burr show: its outline, the flutes that were ground, and the helix angle along one.
+//! Contents of a burr's pictures: its outline, the ground flutes, and the helix angle along them.
 use nalgebra::Point3;
 
 use super::helix_courses;
@@ -10,7 +10,7 @@ use gcode_lang::units::Deg;
 use gcode_part::Profile;
 use gcode_session::GrindingRun;
 
-/// Of the program `name`.
+/// Builds the view of the program `name`.
 pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteView {
     let wanted = &grinding.nominal;
     let profile = &wanted.profile;
@@ -19,7 +19,7 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
         normal: profile.normal(&at).into_inner().into(),
     };
     let spots = |pass: &GrindingPass| pass.trace.samples.iter().map(|sample| spot(sample.point)).collect();
-    // Every degree of the nose from its widest to the pole.
+    // Every degree of the nose, from its widest circle to the pole.
     let nose = (0..=90).map(|degree| profile.point_at_polar(Deg(90.0 - f64::from(degree))));
     let nose: Vec<[f64; 2]> = nose.map(|at| [at.x, -at.y]).collect();
     let mut outline = nose;
@@ -61,7 +61,7 @@ fn flute_point(profile: &Profile, at: Point3<f64>) -> FlutePoint {
     FlutePoint { position: at.coords.into(), normal: profile.normal(&at).into_inner().into() }
 }
 
-/// Where the findings are; several in one place of a pass are one.
+/// Returns the places of the findings; several at one place of a pass are merged.
 fn faults(profile: &Profile, verdict: &FluteVerdict) -> Vec<Fault> {
     let mut faults: Vec<Fault> = Vec::new();
     for finding in &verdict.findings {

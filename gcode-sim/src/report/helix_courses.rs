@@ -1,4 +1,4 @@
-//! The helix angle along every flute, over the way from the shank's end, for its picture.
+//! The helix angle along every flute over the distance from the shank's end, for its picture.
 use gcode_draw::{HelixCourses, HelixPoint};
 use gcode_inspect::flutes::{GrindingPass, Trace};
 use gcode_inspect::verify::flutes::FluteVerdict;
@@ -7,7 +7,7 @@ use gcode_part::Flutes;
 use gcode_part::job::FluteLaw;
 use gcode_session::GrindingRun;
 
-/// The polar angles that are named along the nose; the tip angle comes last.
+/// Polar angles marked along the nose; the tip angle follows.
 const NAMED_ANGLES: [f64; 6] = [90.0, 75.0, 60.0, 45.0, 30.0, 15.0];
 
 pub(super) fn of(grinding: &GrindingRun, verdict: &FluteVerdict) -> HelixCourses {
@@ -38,7 +38,8 @@ pub(super) fn of(grinding: &GrindingRun, verdict: &FluteVerdict) -> HelixCourses
     }
 }
 
-/// The way from the shank's end along the nose, by the polar angle: every half degree and the tip angle.
+/// Returns the distance from the shank's end along the nose by polar angle, every half degree and at the tip
+/// angle.
 fn outline(wanted: &Flutes) -> Vec<(Deg, f64)> {
     let tip = wanted.tip_angle;
     let halves = (0..=180).map(|half| Deg(90.0 - f64::from(half) / 2.0)).filter(|polar| tip < *polar);
@@ -55,7 +56,7 @@ fn outline(wanted: &Flutes) -> Vec<(Deg, f64)> {
         .collect()
 }
 
-/// Whichever way it is ground.
+/// Returns the helix angles of a pass by distance, whatever its direction.
 fn course(wanted: &Flutes, pass: &GrindingPass) -> Vec<HelixPoint> {
     let begins = from_shank(wanted, &pass.trace);
     let windows = pass.trace.windows(wanted.gauge);
@@ -71,7 +72,8 @@ fn course(wanted: &Flutes, pass: &GrindingPass) -> Vec<HelixPoint> {
     course
 }
 
-/// How far behind the shank's end the pass begins, along the outline: its sample nearest to there tells.
+/// Returns the distance along the outline from the shank's end to the pass's start, by the sample nearest the
+/// shank.
 fn from_shank(wanted: &Flutes, trace: &Trace) -> f64 {
     let first = trace.samples.iter().max_by(|one, other| one.point.x.total_cmp(&other.point.x));
     first.map_or(0.0, |first| wanted.start - first.point.x - first.along)

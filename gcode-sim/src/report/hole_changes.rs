@@ -1,4 +1,4 @@
-//! What is different about a hole of two revisions, in a few words each: pictures and pages say the same.
+//! Differences of a hole between two revisions, a few words each, for pictures and pages.
 use super::figures::with_sign;
 use gcode_inspect::holes::DrilledHole;
 use gcode_lang::units::Deg;
@@ -7,7 +7,7 @@ use gcode_review::Paired;
 /// A hole of one revision, and the tools that make it.
 pub(super) type HoleWithTools<'a> = (&'a DrilledHole, &'a [u32]);
 
-/// Nothing of a hole that is as before, or that is there once only.
+/// Returns the differences; none for an unchanged hole or one that only one revision makes.
 pub(super) fn remarks(
     pair: &Paired,
     was: Option<HoleWithTools<'_>>,
@@ -34,7 +34,7 @@ pub(super) fn remarks(
     words
 }
 
-/// `T1 T2`.
+/// Returns `T1 T2`.
 pub(super) fn tools(numbers: &[u32]) -> String {
     numbers.iter().map(|tool| format!("T{tool}")).collect::<Vec<_>>().join(" ")
 }
@@ -61,7 +61,8 @@ mod tests {
         compared.holes.iter().map(|pair| remarks(pair, of(0, pair.old), of(1, pair.new))).collect()
     }
 
-    /// Spot drilled by T1 and drilled by T2 to 20 below the start; by T2 alone and 2 less; 0.03 aside.
+    /// Spot drilled by T1 and drilled by T2 to 20 mm; then drilled by T2 alone, 2 mm less deep and 0.03 mm
+    /// off.
     #[test]
     fn a_hole_is_told_with_all_its_tools() {
         let pass = |tool: u32, x: &str, y: &str| {

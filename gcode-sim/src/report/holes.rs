@@ -3,7 +3,7 @@ use std::fmt::Write;
 
 use gcode_part::HoleList;
 
-/// One line a hole, lengths in mm.
+/// Formats one line per hole, lengths in mm.
 pub fn text(list: &HoleList) -> String {
     let mut text = String::new();
     let _ = writeln!(
@@ -30,7 +30,7 @@ pub fn text(list: &HoleList) -> String {
     text
 }
 
-/// The columns that a reference in CSV has, and where each hole comes from.
+/// Formats the columns of a reference in CSV.
 pub fn csv(list: &HoleList) -> String {
     let mut text = String::from("id,x,y,z,i,j,k,depth,diameter\n");
     for (index, hole) in list.holes.iter().enumerate() {
@@ -44,7 +44,7 @@ pub fn csv(list: &HoleList) -> String {
     text
 }
 
-/// Nobody wants to read −0, nor a residue of 1e-14 as one.
+/// Replaces −0 and rounding residues by 0.
 fn plain(value: f64) -> f64 {
     if value.abs() < 5e-13 { 0.0 } else { value }
 }

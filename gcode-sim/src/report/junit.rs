@@ -1,12 +1,12 @@
-//! The cases of `test` as JUnit XML, the form that build servers count and show.
+//! The cases of `test` as JUnit XML for build servers.
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::test_report::{CaseAnswer, CaseReport, OLDER_TEXT, TestReport};
 
-/// The document of `test --format junit`: one suite, a test for each case.
+/// Returns the document of `test --format junit`: one suite with a test for each case.
 ///
 /// # Errors
-/// What the writer of XML has against it.
+/// The message of the XML writer.
 pub fn document(report: &TestReport) -> Result<String, String> {
     let mut suite = TestSuite::new("programs");
     suite.add_test_cases(report.cases.iter().map(case));
@@ -16,7 +16,7 @@ pub fn document(report: &TestReport) -> Result<String, String> {
 }
 
 fn case(case: &CaseReport) -> TestCase {
-    // A failure is told as it is on the terminal, and in a few words for lists.
+    // A failure has the terminal's text in full, and a short message for lists.
     let mut text = String::new();
     case.append_text(&mut text);
     let (code, message) = match (case.answer, &case.against, case.changes.first()) {

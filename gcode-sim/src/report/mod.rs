@@ -1,4 +1,4 @@
-//! Data to words: what the terminal, JSON and CSV say of runs, holes and verdicts.
+//! Results as text, JSON, CSV, pages and pictures: runs, holes, verdicts, changes.
 pub mod budget;
 pub mod changed_view;
 pub mod changes;

@@ -1,4 +1,4 @@
-//! What `render` and `compare` answer besides their pictures.
+//! The results of `render` and `compare` besides their pictures.
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -7,13 +7,13 @@ use gcode_draw::Difference;
 /// The document of `render --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct RenderReport {
-    /// The file that was written.
+    /// The picture's file.
     pub picture: String,
     pub view: &'static str,
 }
 
 impl RenderReport {
-    /// The same for people.
+    /// Formats the result for a terminal.
     pub fn text(&self) -> String {
         format!("picture: {}\n", self.picture)
     }
@@ -28,7 +28,7 @@ pub struct CompareReport {
     pub sizes: [[u32; 2]; 2],
     /// Number of different pixels.
     pub pixels: u64,
-    /// The largest difference of a colour value, 0 to 255.
+    /// Largest difference of a colour value, 0 to 255.
     pub largest: u8,
     /// Left, top, right and bottom of the differences, both ends included.
     pub bounds: Option<[u32; 4]>,
@@ -48,7 +48,7 @@ impl CompareReport {
         }
     }
 
-    /// The same for people.
+    /// Formats the result for a terminal.
     pub fn text(&self) -> String {
         if self.same {
             return "no difference between the pictures\n".to_owned();

@@ -1,4 +1,4 @@
-//! What an edge finder shows along the surface: as JSON, as a table, as CSV, and as a curve.
+//! Readings of an edge finder along the surface: as JSON, as a table, as CSV, and as a curve.
 use std::fmt::Write;
 
 use schemars::JsonSchema;
@@ -12,17 +12,17 @@ use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Severity;
 use gcode_session::StylusRun;
 
-/// Lengths in mm.
+/// The readings of an edge finder; lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ReadingsReport {
     basis: &'static str,
-    /// Of the ball.
+    /// Radius of the ball.
     radius: f64,
     /// Tolerance of a reading, either way, if given.
     tolerance: Option<f64>,
     /// A pass requires a complete run with readings on the whole path.
     verdict: Option<Answer>,
-    /// As `run` has it.
+    /// Outcome of the run: end, alarm or limit.
     outcome: &'static str,
     least: Option<f64>,
     greatest: Option<f64>,
@@ -30,7 +30,7 @@ pub struct ReadingsReport {
     findings: Vec<FindingRow>,
     #[serde(skip)]
     gaps: Vec<Gap>,
-    /// Feeds to the surface and from it.
+    /// Numbers of feeds towards the surface and away from it.
     #[serde(skip)]
     approach_retract_counts: [usize; 2],
     #[serde(skip)]
@@ -67,7 +67,7 @@ struct ReadingRow {
 }
 
 impl ReadingsReport {
-    /// Of the program `name`, for a ball of this radius.
+    /// Builds the report of the program `name`, for a ball of this radius.
     pub fn new(name: &str, following: &StylusRun, radius: f64, tolerance: Option<f64>) -> Self {
         let row = |pass: &ReadingPass, reading: &Reading| {
             let (program, line) = following.run.locate(pass.backtraces[reading.move_index].block);
@@ -123,17 +123,17 @@ impl ReadingsReport {
         }
     }
 
-    /// Whether every reading is as near to 0 as was asked; `None` where nothing was asked.
+    /// Returns the verdict; `None` without a tolerance.
     pub fn verdict(&self) -> Option<Answer> {
         self.verdict
     }
 
-    /// Whether no feed of the program goes along the surface.
+    /// Returns true if no feed of the program follows the surface.
     pub fn is_empty(&self) -> bool {
         self.passes.is_empty()
     }
 
-    /// For a terminal: every tenth of each pass.
+    /// Formats every tenth of each pass for a terminal.
     pub fn text(&self) -> String {
         let mut text = format!(
             "Readings of an edge finder, ball of radius {}: {}\nmm; above 0: gap between ball and surface; \
@@ -166,7 +166,7 @@ impl ReadingsReport {
         text
     }
 
-    /// `reading -0.0012 to 0.0500, spread 0.0512`, and what was asked about it.
+    /// Returns `reading -0.0012 to 0.0500, spread 0.0512`, with the verdict on it.
     fn sentence(&self) -> String {
         let Some((least, greatest)) = self.least.zip(self.greatest) else {
             return "no feed follows the surface".to_owned();
@@ -196,7 +196,7 @@ impl ReadingsReport {
         }
     }
 
-    /// One line a reading.
+    /// Formats one line per reading.
     pub fn csv(&self) -> String {
         let mut text = String::from("pass,along,x,y,z,reading,program,line\n");
         for (index, pass) in self.passes.iter().enumerate() {
@@ -209,7 +209,7 @@ impl ReadingsReport {
         text
     }
 
-    /// The readings over the way, one pass behind the other, with the stretches between that have none.
+    /// Returns the readings over the path, pass after pass, with the gaps between them.
     pub fn plot(&self) -> Plot {
         let mut begun = 0.0;
         let (mut curves, mut gaps) = (Vec::new(), Vec::new());
@@ -262,7 +262,7 @@ impl ReadingsReport {
     }
 }
 
-/// Nobody wants to read −0, nor a residue as one.
+/// Replaces −0 and rounding residues by 0.
 fn plain(value: f64, residue: f64) -> f64 {
     if value.abs() < residue { 0.0 } else { value }
 }

@@ -1,4 +1,4 @@
-//! What `run` answers: the end state of a control, its operator stops, and if asked for every move.
+//! The result of `run`: the end state of a control, its operator stops, and optionally every move.
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -33,7 +33,7 @@ pub struct RunReport {
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "shown")]
     #[schemars(with = "BTreeMap<String, Option<f64>>")]
     pub system: Vec<(u32, Option<f64>)>,
-    /// The end point in the active work coordinate system.
+    /// End point in the active work coordinate system.
     pub position: Coordinates,
     pub machine: Coordinates,
     pub blocks: u64,
@@ -63,7 +63,7 @@ pub struct StopReport {
     pub text: String,
 }
 
-/// An M code without an effect on the control, and the first block that has it.
+/// An M code without an effect on the control, and its first block.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "PassedOnReport")]
 pub struct AuxiliaryCodeReport {
@@ -122,7 +122,7 @@ impl std::fmt::Display for Coordinates {
     }
 }
 
-/// Nobody wants to read −0.
+/// Replaces −0 by 0.
 fn plain(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value }
 }
@@ -135,10 +135,10 @@ fn shown<S: Serializer>(all: &[(u32, Option<f64>)], serializer: S) -> Result<S::
     serializer.collect_map(all.iter().map(|(number, value)| (format!("#{number}"), value.map(plain))))
 }
 
-/// More moves than this aren't written down: a loop that never ends must not fill the memory.
+/// Largest number of recorded moves: a loop that never ends must not fill the memory.
 pub const MAX_MOVES: usize = 1_000_000;
 
-/// Writes down every move that goes somewhere, and every dwell.
+/// Records every move that changes the position, and every dwell.
 #[derive(Debug, Default)]
 pub struct MoveRecorder {
     /// There were more than [`MAX_MOVES`].
@@ -173,7 +173,7 @@ impl EventSink for MoveRecorder {
 }
 
 impl RunReport {
-    /// The end state of a run; `path` and the values of `system` variables are there if asked for.
+    /// Builds the report of a run; `moves` and the values of `system` variables are optional.
     pub fn new(run: &Run, moves: Option<&MoveRecorder>, system: Vec<(u32, Value)>) -> Self {
         let control = &run.control;
         let axes = &control.settings().axes;
@@ -227,7 +227,7 @@ impl RunReport {
         }
     }
 
-    /// The same for people.
+    /// Formats the result for a terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let word = match self.outcome {

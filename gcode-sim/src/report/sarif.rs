@@ -1,4 +1,4 @@
-//! Findings as SARIF 2.1.0, the form that code reviews take them in: each with its rule, its place and the rule's page.
+//! Findings as SARIF 2.1.0 for code reviews, each with its rule, its place and the rule's page.
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -7,15 +7,15 @@ use super::explain;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::source::{Sources, Span};
 
-/// One finding with its place in a file, whatever found it.
+/// One finding of any command, with its place in a file.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// The name of its rule: a code that `explain` knows.
+    /// Name of its rule: a code that `explain` knows.
     pub code: String,
     pub severity: Severity,
     pub message: String,
     pub at: Option<FileLocation>,
-    /// Second places, each with what is there.
+    /// Further places, each with its text.
     pub related: Vec<(FileLocation, String)>,
 }
 
@@ -29,7 +29,7 @@ pub struct FileLocation {
 }
 
 impl Finding {
-    /// A finding on a program, the calls that led to it as second places.
+    /// Converts a diagnostic, with its labels and calls as further places.
     pub fn of(diagnostic: &Diagnostic, sources: &Sources) -> Self {
         let at = |span: Span| {
             let place = sources.line_column(span);
@@ -145,7 +145,7 @@ struct Region {
     start_column: Option<u32>,
 }
 
-/// The log of all that was found. Files below `root`, the folder the program was started in, are named from there.
+/// Builds the log of all findings. Files below `root`, the working directory, have relative names.
 pub fn log(findings: &[Finding], root: &str) -> Log {
     let mut places: BTreeMap<&str, usize> = findings.iter().map(|finding| (&*finding.code, 0)).collect();
     places.values_mut().enumerate().for_each(|(number, place)| *place = number);
@@ -194,7 +194,7 @@ fn location(at: &FileLocation, text: Option<&String>, root: &str) -> Location {
     }
 }
 
-/// A file's name as a URI: relative where it lies below `root`, absolute with its scheme elsewhere.
+/// Returns a file's name as a URI: relative if it lies below `root`, else absolute with its scheme.
 fn uri(file: &str, root: &str) -> String {
     let (file, root) = (file.replace('\\', "/"), root.replace('\\', "/"));
     let below = file.strip_prefix(root.trim_end_matches('/')).and_then(|rest| rest.strip_prefix('/'));
@@ -204,7 +204,7 @@ fn uri(file: &str, root: &str) -> String {
     }
     let mut uri = match path.as_bytes() {
         [b'/', ..] => "file://".to_owned(),
-        // A drive's letter would be read as a scheme.
+        // A drive letter would be read as a scheme.
         [_, b':', ..] => "file:///".to_owned(),
         _ => String::new(),
     };

@@ -1,4 +1,4 @@
-//! The settings of the control that `--control` takes, as text and as data.
+//! The control settings for `--control`, as text and as data.
 use std::fmt::Write;
 
 use schemars::JsonSchema;
@@ -18,7 +18,7 @@ pub struct SettingReport {
     pub key: String,
     /// Its meaning, with the parameter's number where a control has one.
     pub meaning: String,
-    /// The values that it takes, in words.
+    /// Allowed values, in words.
     pub allowed: String,
 }
 
@@ -29,7 +29,7 @@ impl SettingReport {
 }
 
 impl SettingsReport {
-    /// All that there are.
+    /// Returns all settings.
     pub fn new() -> Self {
         let rows = ROWS.iter().map(|row| SettingReport::new(row.key, row.meaning, row.values.to_string()));
         let mut settings: Vec<_> = rows.collect();
@@ -55,7 +55,7 @@ impl SettingsReport {
         Self { settings }
     }
 
-    /// The same for people.
+    /// Formats the settings for a terminal.
     pub fn text(&self) -> String {
         self.settings.iter().fold(String::new(), |mut text, SettingReport { key, meaning, allowed }| {
             let _ = writeln!(text, "{key:<16} {meaning} [{allowed}]");

@@ -1,4 +1,4 @@
-//! What the top view shows: holes found, and where there is a reference, the verdict on each.
+//! Contents of the top view: actual holes and, with a reference, the verdict on each.
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
@@ -15,7 +15,7 @@ use gcode_part::Reference;
 use gcode_part::Surface;
 use gcode_session::Simulation;
 
-/// The holes of a program nobody has judged.
+/// Builds the view of holes without a reference.
 pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopView {
     let rotary = Rotary::of(machine);
     let found = simulation.hole_list().holes;
@@ -42,7 +42,7 @@ pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopVi
     }
 }
 
-/// The holes as they were judged: found and wanted, missing and too many.
+/// Builds the view of a verdict: actual and nominal, missing and extra holes.
 pub fn of_verdict(
     name: &str,
     simulation: &Simulation,
@@ -116,21 +116,21 @@ pub fn of_verdict(
     }
 }
 
-/// An axis that stands at 0 for every hole is nothing to be told at each.
+/// Removes the angles of a rotary axis that is at 0 for every hole.
 pub(super) fn hide_constant_rotary(holes: &mut [DrawnHole]) {
     if holes.iter().all(|hole| hole.rotary_angle.is_none_or(|turn| turn == 0.0)) {
         holes.iter_mut().for_each(|hole| hole.rotary_angle = None);
     }
 }
 
-/// The next of 1, 2, 5, 10, 20, … from `value` on.
+/// Returns the next of 1, 2, 5, 10, 20, … from `value` on.
 pub(super) fn round_up(value: f64) -> f64 {
     let decade = libm::pow(10.0, libm::floor(libm::log10(value)));
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| value <= step * decade * (1.0 + 1e-9));
     step.unwrap_or(10.0) * decade
 }
 
-/// The radius of the part seen along y, where that is a circle.
+/// Returns the radius of the part's outline seen along y; `None` if it is not a circle.
 pub(super) fn outline(surface: Surface) -> Option<f64> {
     match surface {
         Surface::Ellipsoid { a, .. } => Some(a),
@@ -138,14 +138,14 @@ pub(super) fn outline(surface: Surface) -> Option<f64> {
     }
 }
 
-/// From where most of the holes are looked into: seen from beside them a plate would be a line.
+/// Returns the side along which most holes point: seen across, a plate would be a line.
 pub(super) fn side_along_holes(holes: &[Hole]) -> Option<Side> {
     let is_along = |hole: &Hole, side: Side| 0.99 < Vector3::from(hole.axis).dot(&side.towards()).abs();
     let are_most = |side: &Side| holes.len() < 2 * holes.iter().filter(|hole| is_along(hole, *side)).count();
     [Side::Y, Side::Z, Side::X].into_iter().find(are_most)
 }
 
-/// A spindle that stands along z looks at the part from there.
+/// Returns the side of the spindle: +z for a fixed spindle along z, else +y.
 pub(super) fn side(machine: &Machine) -> Side {
     match machine.head.kind {
         HeadKind::Fixed(out) if out.z > 0.99 => Side::Z,
@@ -163,24 +163,24 @@ pub(super) fn cylinder(reference: &Reference) -> Option<Cylinder> {
     }
 }
 
-/// `91 + 91 rows close with a pitch of 9.9659 mm (arc)`.
+/// Returns `91 + 91 rows close with pitch 9.9659 (arc)`.
 fn closing_sentence(pattern: &Pattern) -> String {
     let (half, metric) = (pattern.rows / 2, pattern.metric.name());
     format!("{half} + {half} rows close with pitch {:.4} ({metric})", pattern.pitch)
 }
 
-/// The nearest and the farthest neighbours.
+/// Returns the distances of the nearest and the farthest neighbours.
 fn neighbour_range(neighbours: &Neighbours) -> Option<String> {
     let (min, max) = (neighbours.min.as_ref()?, neighbours.max.as_ref()?);
     Some(format!("neighbours {:.4} to {:.4} mm apart", min.distance, max.distance))
 }
 
-/// A picture shows no blocks.
+/// Locates no block: a picture shows none.
 pub(super) fn no_location(_: gcode_lang::source::Span) -> (String, u32) {
     (String::new(), 0)
 }
 
-/// The axis that turns the part: the one whose angle an operator looks for.
+/// The rotary axis of the table, whose angle is shown at each hole.
 pub(super) struct Rotary(Option<(AxisIndex, char, bool)>);
 
 impl Rotary {
@@ -203,7 +203,7 @@ impl Rotary {
     }
 }
 
-/// About x, the one direction a cylinder lies along.
+/// Returns true if the axis decreases about +x, the axis of every cylinder.
 fn is_link_reversed(link: &AxisLink) -> bool {
     matches!(link.motion, LinkMotion::Rotary { about, .. } if link.sign * about.x < 0.0)
 }
@@ -231,7 +231,7 @@ mod tests {
         assert_eq!(side_along_holes(&holes(&[[0.0, 0.0, -1.0]])), Some(Side::Z), "drilled from below");
         assert_eq!(side_along_holes(&holes(&[x, x, y])), Some(Side::X));
         assert_eq!(side_along_holes(&holes(&[y])), Some(Side::Y));
-        // A tenth of a radian off z still counts as z, a fifth doesn't: cos 0.1 = 0.995, cos 0.2 = 0.980.
+        // A tenth of a radian off z still counts as z, a fifth does not: cos 0.1 = 0.995, cos 0.2 = 0.980.
         assert_eq!(side_along_holes(&holes(&[[0.0, 0.0998, 0.9950]])), Some(Side::Z));
         assert_eq!(side_along_holes(&holes(&[[0.0, 0.1987, 0.9801]])), None);
         assert_eq!(side_along_holes(&holes(&[y, z])), None, "no more along one than along the other");

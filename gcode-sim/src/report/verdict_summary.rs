@@ -1,10 +1,10 @@
-//! What stands below a verdict's table: the answer, the worst hole, what is missing or too many.
+//! The summary below a verdict's table: the answer, the worst hole, missing and extra holes.
 use std::fmt::Write;
 
 use super::figures::{count, rounded};
 use gcode_inspect::verify::{Answer, Distance, HoleVerdict, Neighbours, Verdict};
 
-/// How many ids of missing holes, and how many extra ones, are written out; the rest is counted.
+/// Number of missing and of extra holes that are listed; the others are counted.
 const MAX_LISTED: usize = 12;
 
 pub(super) fn summary(text: &mut String, verdict: &Verdict) {
@@ -69,12 +69,19 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
     if !verdict.extra.is_empty() {
         append_line(
             text,
-            &format!("extra    {}", list_first(&verdict.extra, |extra| extra.why.clone(), "\n         ")),
+            &format!(
+                "extra    {}",
+                list_first(
+                    &verdict.extra,
+                    |extra| extra.why.trim_start_matches("extra ").to_owned(),
+                    "\n         "
+                )
+            ),
         );
     }
 }
 
-/// How far neighbours are from one another, and where the extremes are.
+/// Writes the distances of neighbours and the places of the extremes.
 fn append_neighbours(text: &mut String, neighbours: &Neighbours) {
     let Neighbours { metric, nominal: wanted, with_six, with_six_nominal: with_six_wanted, min, max } =
         neighbours;
@@ -92,7 +99,7 @@ fn append_neighbours(text: &mut String, neighbours: &Neighbours) {
     }
 }
 
-/// The first few, and how many more there are.
+/// Joins the first few items and the number of the others.
 fn list_first<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> String {
     let mut shown: Vec<_> = all.iter().take(MAX_LISTED).map(name).collect();
     if MAX_LISTED < all.len() {
@@ -102,11 +109,11 @@ fn list_first<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> Strin
 }
 
 pub(super) fn append_line(text: &mut String, line: &str) {
-    // Writing to a string can't fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "{}", line.trim_end());
 }
 
-/// `O8101 line 53, T2, called from O8100 line 20`.
+/// Returns `O8101 line 53, T2, called from O8100 line 20`.
 pub(super) fn made_by(hole: &HoleVerdict) -> String {
     let tool = hole.from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
     let calls: Vec<_> =

@@ -1,22 +1,22 @@
-//! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
+//! A verdict as an inspection table: nominal, actual, deviation, position, out of tolerance.
 use super::figures::{count, rounded, signed, signed_to};
 use super::verdict_summary::{append_line, made_by, summary};
 use gcode_inspect::verify::{HoleGeometry, HoleVerdict, Verdict};
 
-/// How much of it, and in which order.
+/// Extent and order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
-    /// By position, the worst hole first; else in the order of the reference.
+    /// Sorts by position deviation, the worst hole first; else in the order of the reference.
     pub worst_first: bool,
-    /// Every column of an inspection report, four lines a hole, instead of one line a hole.
+    /// Writes every column of an inspection report, four lines per hole, instead of one line.
     pub full: bool,
 }
 
-/// So many holes have a line each; of more, those that fail and the worst of the others, as many as are listed here.
+/// Largest number of holes with a line each, and the number of worst holes listed beyond it.
 const LINES: usize = 100;
 const OF_MANY: usize = 24;
 
-/// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
+/// Formats the verdict; lengths in mm, angles in degrees. Values are judged unrounded and shown rounded.
 pub fn table(verdict: &Verdict, layout: Layout) -> String {
     let all = verdict.holes.len();
     let mut holes: Vec<&HoleVerdict> = match layout.full || all <= LINES {
@@ -47,7 +47,7 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
     text
 }
 
-/// Of many holes those that fail, then the farthest off, in the order of the reference.
+/// Returns the worst holes, failed ones before others, in the order of the reference.
 fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     let mut order: Vec<usize> = (0..holes.len()).collect();
     if OF_MANY < order.len() {
@@ -61,7 +61,7 @@ fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     order.into_iter().map(|index| &holes[index]).collect()
 }
 
-/// One line a hole.
+/// Writes one line per hole.
 fn lines(text: &mut String, holes: &[&HoleVerdict]) {
     if holes.is_empty() {
         return;
@@ -95,7 +95,7 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
     text.push('\n');
 }
 
-/// Every column, a line each for nominal, actual and deviation.
+/// Writes every column, with a line each for nominal, actual and deviation.
 fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     let head = ["x", "y", "z", "i", "j", "k", "d", "l"].map(|name| format!("{name:>10}")).concat();
     append_line(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
@@ -241,7 +241,7 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }
 
-    /// Φ0.0211 by rounding alone is more than a zone of 0.02, and less than one of 0.0212.
+    /// Rounding alone causes Φ0.0211: more than a zone of 0.02, less than one of 0.0212.
     #[test]
     fn a_zone_smaller_than_rounding_is_warned_of() {
         let told = |tolerance: f64| table(&Verdict { tolerance, ..verdict() }, Layout::default());

@@ -1,6 +1,6 @@
-//! The JSON Schemas of the files that users write and of the results that are written as JSON.
+//! JSON Schemas of the files that users write and of the results written as JSON.
 //!
-//! They come from the types that files are read into and results are written from, so that neither can drift away.
+//! They are derived from the types that are read and written, so that schemas and documents always agree.
 mod types;
 
 use schemars::{JsonSchema, Schema};
@@ -23,17 +23,18 @@ use gcode_part::job::control_file::ControlFile;
 use gcode_part::job::{FileRates, JobFile};
 use gcode_review::AcceptedFile;
 
-/// One kind of document.
+/// One kind of document and its schema.
 pub struct Format {
+    /// Name for `gcode-sim schema`.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// Title: the document in one line.
     pub about: &'static str,
-    /// Users write it as TOML; else it is JSON.
+    /// Whether users write it as TOML; else it is JSON.
     pub is_toml: bool,
     schema: fn() -> Schema,
 }
 
-/// Files first, then results by the commands that write them.
+/// All formats: files first, then results by the commands that write them.
 pub const FORMATS: &[Format] = &[
     file::<JobFile>("job", "a job file, of any family"),
     file::<MachineFile>("machine", "a machine file: --machine"),
@@ -72,13 +73,13 @@ const fn file<T: JsonSchema>(name: &'static str, about: &'static str) -> Format 
     Format { name, about, is_toml: true, schema: types::toml::<T> }
 }
 
-/// The result of a command, as JSON.
+/// Returns the format of a command's JSON result.
 pub const fn result<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
     Format { name, about, is_toml: false, schema: types::written::<T> }
 }
 
 impl Format {
-    /// The schema, draft 2020-12.
+    /// Returns the schema, draft 2020-12.
     pub fn schema(&self) -> Value {
         let mut schema = (self.schema)();
         schema.insert("title".to_owned(), self.about.into());

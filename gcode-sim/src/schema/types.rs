@@ -1,20 +1,20 @@
-//! Schemas made of types: of files that are read, everything in one place and nothing that TOML hasn't got, and of results.
+//! Schemas derived from types: files that are read, with all subschemas inline for TOML, and results.
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value};
 
-/// The schema of a file that is JSON.
+/// Returns the schema of a JSON file that is read.
 pub(super) fn read<T: JsonSchema>() -> Schema {
     of::<T>(SchemaSettings::draft2020_12())
 }
 
-/// The schema of a result.
+/// Returns the schema of a result.
 pub(super) fn written<T: JsonSchema>() -> Schema {
     of::<T>(SchemaSettings::draft2020_12().for_serialize())
 }
 
-/// The schema of a file that is TOML. Editors follow no references beside descriptions, so that it has none.
+/// Returns the schema of a TOML file, without references: editors ignore keywords beside `$ref`.
 pub(super) fn toml<T: JsonSchema>() -> Schema {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
     of::<T>(settings.with_transform(RecursiveTransform(without_null)))
@@ -24,12 +24,12 @@ fn of<T: JsonSchema>(settings: SchemaSettings) -> Schema {
     settings.with_transform(RecursiveTransform(without_bits)).into_generator().into_root_schema_for::<T>()
 }
 
-/// How many bits a number takes up is nobody's business.
+/// Removes number formats: the width of an integer is an implementation detail.
 fn without_bits(schema: &mut Schema) {
     schema.remove("format");
 }
 
-/// TOML has no null: a key that may be left out has the type that it has where it is there.
+/// Removes null: TOML has none, and an optional key keeps its own type.
 fn without_null(schema: &mut Schema) {
     let Some(object) = schema.as_object_mut() else { return };
     if let Some(Value::Array(types)) = object.get_mut("type") {
@@ -45,7 +45,7 @@ fn without_null(schema: &mut Schema) {
     lift_only_choice(object);
 }
 
-/// `anyOf` a schema and null is that schema.
+/// Replaces `anyOf` of a schema and null by the schema.
 fn lift_only_choice(object: &mut Map<String, Value>) {
     let Some(Value::Array(choices)) = object.get_mut("anyOf") else { return };
     let others = choices.len();
@@ -57,7 +57,7 @@ fn lift_only_choice(object: &mut Map<String, Value>) {
         let only = only.clone();
         object.remove("anyOf");
         for (key, value) in only {
-            // What a key is for says more than what its table is.
+            // The description of the key takes precedence over that of its table.
             object.entry(key).or_insert(value);
         }
     }

@@ -1,5 +1,5 @@
-//! The chord program on candidates whose places are known: the best pair is searched for here as well, and E and F have
-//! to get their model coordinates.
+//! Trial of the chord program on candidates at known positions: it must choose the pair of an exhaustive
+//! search and bring E and F to their model coordinates.
 use gcode_inspect::machine::{Machine, Placement};
 use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
@@ -14,7 +14,7 @@ type Point = [f64; 3];
 /// The candidates that are E and F themselves, as numbers from 1.
 const TRUE_PAIR: [usize; 2] = [3, 8];
 
-/// How a part stands that the run-out has set right: shift along y in mm, turned about y in degrees.
+/// Positions of a part after the run-out correction: shift along y in mm, rotation about y in degrees.
 const TRIAL_PLACEMENTS: [(f64, f64); 2] = [(-0.3, 0.25), (0.1, -0.2)];
 
 pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
@@ -68,7 +68,8 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     Ok(tried)
 }
 
-/// Candidates that the program touches itself, on a part that stands too high: they have to be points of its surface.
+/// Lets the program touch the candidates itself, on a part that stands too high: they must be points of its
+/// surface.
 fn check_touched_candidates(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), CheckError> {
     let job = bench.job;
     let Surface { a, b } = job.surface;
@@ -79,7 +80,7 @@ fn check_touched_candidates(bench: &TrialProgram<'_>, tried: &mut TrialResult) -
         tried.refusals.extend(bench.stop_messages(&run));
         run.control.seconds().0
     };
-    // O8201 uses the points up: here it is one that leaves them.
+    // O8201 uses the points up; this replacement leaves them.
     let mut package = bench.package.clone();
     for program in package.programs.iter_mut().filter(|program| program.number == CHORD_MATCH) {
         program.text = format!("%\nO{CHORD_MATCH}\nM99\n%\n");
@@ -98,20 +99,21 @@ fn check_touched_candidates(bench: &TrialProgram<'_>, tried: &mut TrialResult) -
     Ok(())
 }
 
-/// Half an increment of each axis, and what half of one of the rotary is at the equator.
+/// Returns the allowed error: half an increment of each axis, and half an increment of the rotary axis at the
+/// equator.
 fn tolerance(job: &Alignment) -> f64 {
     let increment = job.control.increment.size();
     increment + job.surface.a * Deg(increment / 2.0).to_rad()
 }
 
-/// E and F as the model has them.
+/// Returns E and F of the model.
 fn ends(job: &Alignment) -> [Point; 2] {
     let Surface { a, b } = job.surface;
     [job.chord.e_radius, job.chord.f_radius].map(|x| [x, b * (1.0 - (x / a) * (x / a)).sqrt(), 0.0])
 }
 
-/// Ten points of the surface round each of E and F, one of them E or F itself; the others in no order that one could
-/// share with the other's.
+/// Returns ten points of the surface round each of E and F, one of them E or F itself. The two groups are
+/// arranged differently, so that no two pairs are alike.
 fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
     let Surface { a, b } = job.surface;
     let count = job.chord.candidates as usize;
@@ -122,7 +124,7 @@ fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
             let angle = Deg(turn * (index + 1) as f64);
             let [along, aside] = [angle.cos(), angle.sin()].map(|part| part * job.chord.circle / 2.0);
             let [x, y, z] = [p[0] + along, p[1] - along, aside];
-            // Back onto the surface, seen from its centre.
+            // Projected back onto the surface, from its centre.
             let beyond = ((x * x + z * z) / (a * a) + y * y / (b * b)).sqrt();
             *p = [x, y, z].map(|c| c / beyond);
         }
@@ -130,7 +132,8 @@ fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
     all
 }
 
-/// The pair whose distance is nearest to the model's, as numbers from 1, and how much longer it is.
+/// Returns the pair whose distance is nearest to the model's, as numbers from 1, and the excess of its
+/// distance.
 fn best_pair(job: &Alignment, [e, f]: &[[Point; 10]; 2]) -> ([usize; 2], f64) {
     let [model_e, model_f] = ends(job);
     let model = distance(model_e, model_f);
@@ -142,7 +145,8 @@ fn best_pair(job: &Alignment, [e, f]: &[[Point; 10]; 2]) -> ([usize; 2], f64) {
     (found, longer(found))
 }
 
-/// Where a point of the misplaced part stands in the corrected work coordinates, with the rotary at its corrected 0.
+/// Returns a point of the misplaced part in the corrected work coordinates, with the rotary axis at its
+/// corrected 0.
 fn corrected_position(
     bench: &TrialProgram<'_>,
     run: &Run,

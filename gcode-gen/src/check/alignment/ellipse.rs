@@ -1,5 +1,5 @@
-//! The ellipse program on a part that stands where it should: the ball has to keep its distance from the surface all the way,
-//! between the programmed points too.
+//! Trial of the ellipse program on a part in its nominal position: the ball must keep its distance from the
+//! surface all along, also between the programmed points.
 use gcode_inspect::machine::Placement;
 use gcode_inspect::stylus::{Reading, ReadingPass};
 use gcode_lang::diag::Severity;
@@ -35,10 +35,11 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
         tried.refusals.push(format!("{}: {message}\n", bench.name()));
     }
     for (reading, wanted) in ends(pass).into_iter().zip([job.ellipse.from, job.ellipse.to]) {
-        // The ball touches where the normal from its centre meets the surface.
+        // The ball touches where the normal through its centre meets the surface.
         let x = reading.ball_centre.x
             - surface.nearest(&reading.ball_centre).normal.x * (job.probe_radius + reading.value);
-        // Rounding moves the centre by half an increment in x and y each, and the foot of the normal no farther than twice that.
+        // Rounding moves the centre by up to half an increment in x and y each, and the foot of the normal by
+        // at most twice that.
         if (x - wanted).abs() > 2.0 * job.control.increment.size() || reading.ball_centre.z != 0.0 {
             let message =
                 format!("an end is at {}; x = {wanted} on the ellipse is specified", reading.ball_centre);

@@ -1,5 +1,5 @@
-//! Runs the programs of an alignment on simulated parts whose misplacement is known: a program that doesn't find it is
-//! not written.
+//! Trials of the alignment programs on simulated parts of known misplacement: a program that does not
+//! determine it is not written.
 mod chord;
 mod ellipse;
 mod runout;
@@ -19,21 +19,21 @@ use super::{CheckError, CheckedPackage, PackageVerdict, Programs, broken_package
 use crate::families::alignment;
 use crate::package::{Package, file_name};
 
-/// What one program was found to do.
+/// Result of one program's trial.
 #[derive(Default)]
 struct TrialResult {
     /// A paragraph for the terminal.
     report: String,
     refusals: Vec<String>,
-    /// For the terminal too.
+    /// Warnings for the terminal.
     warnings: Vec<String>,
-    /// Of one run.
+    /// Time of one run, seconds.
     seconds: f64,
 }
 
 type Trial = fn(&TrialProgram<'_>) -> Result<TrialResult, CheckError>;
 
-/// What each main program has to find.
+/// The trial of each main program.
 const TRIALS: &[(u32, Trial)] = &[
     (alignment::RUNOUT, runout::run_trial),
     (alignment::SINE_TABLE, sine::run_trial),
@@ -62,7 +62,7 @@ pub(super) fn check(job: &Alignment, package: &Package) -> Result<CheckedPackage
     Ok(checked)
 }
 
-/// One main program of a package, to be run on parts that stand this way and that.
+/// One main program of a package, to be run on parts in various positions.
 struct TrialProgram<'p> {
     job: &'p Alignment,
     package: &'p Package,
@@ -78,12 +78,12 @@ impl TrialProgram<'_> {
         broken_package(&self.name(), error)
     }
 
-    /// The machine of the package's own machine file.
+    /// Returns the machine of the package's own machine file.
     fn machine(&self) -> Result<Machine, CheckError> {
         Machine::parse(&self.package.machine).map_err(|e| broken_package("machine.toml", &e))
     }
 
-    /// The program, to be run on that machine with the part misplaced.
+    /// Builds the request to run the program on that machine with the part misplaced.
     fn request(&self, part: Placement) -> Result<Request, CheckError> {
         let machine = Machine { part, ..self.machine()? };
         let main = self.package.program(self.main).ok_or_else(|| self.broken(&"it was not emitted"))?;
@@ -94,7 +94,7 @@ impl TrialProgram<'_> {
         Programs(self.package)
     }
 
-    /// A run with variables set before.
+    /// Runs the program with variables set before the start.
     fn run(&self, part: Placement, variables: Vec<(u32, f64)>) -> Result<Run, CheckError> {
         let mut request = self.request(part)?;
         request.variables = variables;
@@ -103,7 +103,7 @@ impl TrialProgram<'_> {
         run(&request, &mut self.programs(), &mut probe).map_err(|e| self.broken(&e))
     }
 
-    /// Why a run is none, as for a terminal: an alarm, a limit, or what the control did without a word.
+    /// Returns the reasons to reject a run, for a terminal: warnings, an alarm, or a limit.
     fn stop_messages(&self, run: &Run) -> Vec<String> {
         let sources = run.control.memory().sources();
         let warned = run.note_findings().filter(|finding| Severity::Warning <= finding.severity);
@@ -115,7 +115,7 @@ impl TrialProgram<'_> {
     }
 }
 
-/// A variable as a run left it; a vacant one is not a number.
+/// Returns a variable after a run; a vacant one is NaN.
 fn common_variable(run: &Run, number: u32) -> f64 {
     match run.control.variable(number) {
         Ok(Value::Number(value)) => value,

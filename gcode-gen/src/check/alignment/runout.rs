@@ -1,4 +1,4 @@
-//! The run-out program on parts whose shift and tilt are known: it has to find them by probing alone.
+//! Trial of the run-out program on parts of known shift and tilt, which it must determine by probing alone.
 use gcode_control::Outcome;
 use gcode_inspect::machine::Placement;
 use gcode_lang::units::Deg;
@@ -12,14 +12,14 @@ use crate::families::alignment::ALARMS;
 
 use super::{CheckError, TrialProgram, TrialResult, common_variable, search};
 
-/// What has to be found to within this: mm, degrees.
+/// Allowed errors of the results: mm, degrees.
 const TOLERANCES: [f64; 2] = [0.01, 0.004];
 
-/// TOUCHES V BEFORE SURFACE and NO CONTACT of O8211.
+/// Alarm numbers of TOUCHES V BEFORE SURFACE and NO CONTACT in O8211.
 const MISSED_ALARMS: [u32; 2] = [154, 155];
 
-/// Shift in mm and tilt in degrees about x, y and z. Neither a shift in y nor a turn about y is asked for; the others
-/// have to be found in spite of them.
+/// Shift in mm and tilt in degrees about x, y and z. The shift in y and the rotation about y need not be
+/// determined, but must not disturb the others.
 const TRIAL_PLACEMENTS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
     [[0.3, 0.0, -0.3], [0.3, 0.0, 0.3]],
@@ -81,14 +81,14 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     Ok(tried)
 }
 
-/// Whether the run ended because a touch met the part too early or not at all.
+/// Returns true if the run ended because a touch met the part too early or not at all.
 fn is_contact_missed(run: &Run) -> bool {
     let text =
         |text: &str| ALARMS.iter().any(|alarm| MISSED_ALARMS.contains(&alarm.number) && alarm.text == text);
     matches!(&run.outcome, Outcome::Alarm(stopped) if text(&stopped.alarm.row().message))
 }
 
-/// What the noise of one touch becomes in the results, by the job's own angles and heights.
+/// Computes the amplification of touch noise in the results, from the job's angles and heights.
 fn fit_uncertainty(job: &Alignment) -> Result<FitUncertainty, FitError> {
     let runout = &job.runout;
     let sign = f64::from(job.machine.rotary.sign);
@@ -123,11 +123,11 @@ fn describe_fit_error(job: &Alignment, why: FitError) -> String {
     }
 }
 
-/// What the job's own noise of a touch leaves in the results.
+/// Effect of the job's touch noise on the results.
 struct NoiseEstimate {
-    /// Of a touch, mm.
+    /// Noise of a touch, mm.
     touch: f64,
-    /// The largest standard deviations for noise of 1 mm: of #580 and #581 in mm, of #582 and #583 in degrees.
+    /// Largest standard deviations for noise of 1 mm: of #580 and #581 in mm, of #582 and #583 in degrees.
     factors: [f64; 2],
 }
 
@@ -150,7 +150,8 @@ impl NoiseEstimate {
         )
     }
 
-    /// Where two standard deviations are more than what is promised: one pass in twenty is off by more than they are.
+    /// Returns a warning if two standard deviations exceed the allowed errors: one pass in twenty then
+    /// exceeds them.
     fn warning(&self) -> Option<String> {
         let twice = self.deviations().map(|deviation| 2.0 * deviation);
         (twice[0] > TOLERANCES[0] || twice[1] > TOLERANCES[1]).then(|| {
@@ -192,8 +193,9 @@ mod tests {
         NoiseEstimate::of(&job, fit_uncertainty(&job).unwrap()).warning()
     }
 
-    /// By the table of docs/methods/alignment.md a touch's 0.001 makes 0.0018 mm and 0.00087 degrees over ±25: 0.002 is allowed, for
-    /// twice the deviations are 0.0072 and 0.0035; 0.003 is not, for they are 0.0108. Over ±15 0.001 makes 0.0024 degrees.
+    /// By the table of docs/methods/alignment.md a touch noise of 0.001 mm causes 0.0018 mm and 0.00087
+    /// degrees over ±25. Noise of 0.002 is allowed, because twice the deviations are 0.0072 and 0.0035; 0.003
+    /// is not, because they are 0.0108. Over ±15, 0.001 causes 0.0024 degrees.
     #[test]
     fn a_probe_or_a_petal_that_the_promise_is_too_much_for_is_warned_of() {
         assert_eq!(warned(("radius = 3.0", "radius = 3.0")), None);

@@ -1,5 +1,5 @@
-//! How far before the surface a touch has to begin, where the job's search is too short for a part that stands as wrong as the run-out
-//! has to find.
+//! Advice on the search distance of a touch if the job's is too short for the misplacements of the run-out
+//! trial.
 use gcode_control::Outcome;
 use gcode_inspect::machine::Placement;
 use gcode_part::job::Alignment;
@@ -8,10 +8,11 @@ use gcode_sim::report::figures::short;
 use super::{TrialProgram, common_variable};
 use crate::families::alignment::emit;
 
-/// O8211's own margin at both ends of a touch, and what rounding takes.
+/// Margin of O8211 at both ends of a touch, and an allowance for rounding, mm.
 const MARGIN: f64 = 0.05;
 
-/// A sentence with the search that would do for parts that stand so; `None` where no search helps.
+/// Returns a sentence with a sufficient search distance for parts in these positions; `None` if none
+/// suffices.
 pub(super) fn advice(bench: &TrialProgram<'_>, parts: &[Placement]) -> Option<String> {
     let job = Alignment { probe_search: bench.job.surface.a.min(1000.0), ..bench.job.clone() };
     let package = emit(&job);
@@ -32,7 +33,8 @@ pub(super) fn advice(bench: &TrialProgram<'_>, parts: &[Placement]) -> Option<St
     search_advice(bench, "the surfaces of these parts are", farthest)
 }
 
-/// A sentence with the search that would do for what is met so far from its place; `None` where the job's own does.
+/// Returns a sentence with a sufficient search distance for a surface this far from its position; `None` if
+/// the job's suffices.
 pub(super) fn search_advice(bench: &TrialProgram<'_>, what: &str, farthest: f64) -> Option<String> {
     let enough = ((farthest + MARGIN) * 10.0).ceil() / 10.0;
     (enough > bench.job.probe_search && enough <= 1000.0).then(|| {
@@ -46,7 +48,7 @@ pub(super) fn search_advice(bench: &TrialProgram<'_>, what: &str, farthest: f64)
     })
 }
 
-/// x in the middle of a touch's way: where O8211 expects the centre of the ball.
+/// Returns x in the middle of a touch, where O8211 expects the centre of the ball.
 fn expected(job: &Alignment, height: f64) -> f64 {
     let (across, up) = (job.surface.a + job.probe_radius, job.surface.b + job.probe_radius);
     across * (1.0 - (height / up) * (height / up)).sqrt()
@@ -67,8 +69,9 @@ mod tests {
         check(&job, &families::emit(&job)).unwrap().refusals.concat()
     }
 
-    /// By hand: at y = 420 a tilt of 0.3° moves the surface by 420·(a²/b² − 1)·0.3° in rad = 3.43 along r, the two tilts at B's ends
-    /// and shifts of 0.3 add some tenths. E, turned by 0.25° about y, is 812.4·0.25° in rad = 3.54 aside, and a candidate half a circle more.
+    /// By hand: at y = 420 a tilt of 0.3° moves the surface by 420·(a²/b² − 1)·0.3° in rad = 3.43 along r;
+    /// the two tilts at the ends of B and shifts of 0.3 add some tenths. E, rotated by 0.25° about y, moves
+    /// by 812.4·0.25° in rad = 3.54, and a candidate by half a circle more.
     #[test]
     fn a_search_that_is_too_short_is_told_with_one_that_does() {
         let told = refusals("2.0");

@@ -1,4 +1,5 @@
-//! The sine table's program for tilts either way: the height has to make the angle that takes the tilt away.
+//! Trial of the sine table's program for tilts in both directions: the height must give the angle that
+//! cancels the tilt.
 use gcode_inspect::machine::Placement;
 use gcode_lang::units::Deg;
 use gcode_part::gauge::Thickness;
@@ -16,12 +17,13 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     let step = table.gauge_blocks.step().mm();
     let mut tried = TrialResult::default();
     let mut worst = 0.0_f64;
-    // After the first run-out the table stands at the job's angle; after another one as the stop before has left it.
+    // After the first run-out the table is at the job's angle; after a later one at the angle of the previous
+    // setting.
     let set = [None, Some(table.phi + 0.05)];
     for (tilt, set) in TILTS.into_iter().flat_map(|tilt| set.map(|set| (tilt, set))) {
         let stands = set.unwrap_or(table.phi);
         let wanted = stands - f64::from(table.sign) * tilt;
-        // The macro refuses what no sine table is set to.
+        // The macro refuses angles outside a sine table's range.
         if !(0.0..=45.0).contains(&wanted) || !(0.0..=45.0).contains(&stands) {
             continue;
         }
@@ -32,7 +34,7 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
         tried.refusals.extend(bench.stop_messages(&run));
         tried.seconds = run.control.seconds().0;
         let [angle, height, change, left] = [586, 587, 588, 589].map(|number| common_variable(&run, number));
-        // Half a step, and what doubles round off.
+        // Half a step, and the rounding of doubles.
         let off = (height - table.length * Deg(wanted).sin()).abs();
         worst = worst.max(off);
         let made = Deg::asin(height / table.length);
@@ -60,7 +62,7 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     Ok(tried)
 }
 
-/// Tilts that the macro corrects and this table can't be set for.
+/// Returns warnings of tilts that the macro corrects but this table cannot be set for.
 fn warnings(table: &SineTable) -> impl Iterator<Item = String> {
     let phi = short(table.phi);
     let room = table.phi.min(STEEPEST - table.phi);

@@ -1,12 +1,13 @@
-//! What to do at the machine when a measurement ends in an alarm: the set-up sheet's table. Alarms that refuse an argument of a call
-//! aren't here: `gcode-gen` writes the calls, and tries them.
+//! Remedies for the alarms of the measurements, for the set-up sheet. Alarms that refuse an argument of a
+//! call are omitted: the generator writes and tries the calls.
 
-/// An alarm that a macro or a main program raises where the machine, the part or its operator is not as it should be.
+/// An alarm that a macro or main program raises because of the machine, the part or the operation.
 pub struct MacroAlarm {
     /// n of `#3000=n`.
     pub number: u32,
-    /// As the control shows it.
+    /// Text as the control shows it.
     pub text: &'static str,
+    /// Remedy at the machine.
     pub remedy: &'static str,
 }
 
@@ -22,7 +23,7 @@ const START: &str = "The path to the part would lead through it. Move the ball u
                      or to X+; start again.";
 const NEEDS: &str = "The program's second block or the call has been changed: load the programs again.";
 
-/// In the order of the work.
+/// The alarms in the order of the work.
 pub const ALARMS: &[MacroAlarm] = &[
     alarm(138, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
     alarm(139, "G16 G51 G51.1 G68 IN FORCE", CHANGED),
@@ -153,7 +154,7 @@ mod tests {
         }
     }
 
-    /// Number and text of every `#3000=` in a text.
+    /// Returns number and text of every `#3000=` in a text.
     fn raised(text: &str) -> impl Iterator<Item = (u32, &str)> {
         text.split("#3000=").skip(1).map(|rest| {
             let (number, rest) = rest.split_once('(').unwrap();
@@ -166,7 +167,7 @@ mod tests {
         let package = emit(&job());
         let mut unknown = Vec::new();
         for program in &package.programs {
-            // Macros refuse their arguments last.
+            // Macros check their arguments last.
             let own = program.text.split("(REFUSED,").next().unwrap();
             let known = |(number, text): &(u32, &str)| {
                 ALARMS.iter().any(|alarm| alarm.number == *number && alarm.text == *text)

@@ -1,5 +1,5 @@
-//! Chord matching: of ten candidates for each of two points the pair whose distance is the model's, and the work offset
-//! and B corrected by it.
+//! Chord matching: chooses, of ten candidates for each of two points, the pair whose distance is the model's,
+//! and corrects the work offset and B by it.
 use gcode_part::job::Alignment;
 
 use super::writes::Writes;
@@ -9,16 +9,16 @@ use crate::nc::block::Block;
 use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8200;
 
-/// The pair and the correction.
+/// O-number of the macro that chooses the pair and corrects the offset.
 pub const MATCH: u32 = 8201;
-/// Candidates where none were entered.
+/// O-number of the macro that touches candidates if none were entered.
 const TOUCH: u32 = 8202;
 
-/// First common variable of the candidates of E and of F, and how a spiral turns from one candidate to the next: the golden
-/// angle, and another one the other way, so that no two pairs are alike.
+/// Name, first common variable of the candidates, and angle between successive candidates of a spiral. One
+/// angle is the golden angle, the other has the opposite sense, so that no two pairs are alike.
 const POINTS: [(&str, f64, f64); 2] = [("E", 501.0, 137.508), ("F", 531.0, -100.0)];
 
 pub(super) const MEASUREMENT: Measurement = Measurement {

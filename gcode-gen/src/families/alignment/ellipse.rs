@@ -1,4 +1,5 @@
-//! The ellipse in the plane z = 0: an edge finder's ball is fed along it, and its reading tells what is left of all errors.
+//! The ellipse in the plane z = 0: an edge finder's ball is fed along it, and its reading shows the remaining
+//! errors.
 use gcode_part::job::Alignment;
 
 use super::writes::Writes;
@@ -8,10 +9,10 @@ use crate::nc::block::Block;
 use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8220;
 
-/// The path.
+/// O-number of the macro with the path.
 const PATH: u32 = 8221;
 
 pub(super) const MEASUREMENT: Measurement = Measurement {

@@ -1,11 +1,11 @@
-//! The machine file of an alignment job: what `gcode-sim --machine` needs to follow the emitted programs.
+//! The machine file of an alignment job, for `gcode-sim --machine`.
 use std::fmt::Write;
 
 use gcode_part::job::Alignment;
 
 use crate::families::control;
 
-/// The text of `machine.toml`.
+/// Returns the text of `machine.toml`.
 pub(super) fn machine_file(job: &Alignment) -> String {
     let mut text = control::machine_file(job.control);
     text += &control::rotary_table(job.machine.rotary, 'y', "its axis goes through the part's origin");

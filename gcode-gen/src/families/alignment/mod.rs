@@ -1,8 +1,8 @@
-//! A part that is to be set up: programs that measure on the control how it stands, and what they call.
+//! Alignment of a part: programs that measure its position on the control, and their resident macros.
 //!
 //! The method is that of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*; see
-//! `docs/methods/alignment.md`. Each measurement is a file here and a row in `ALL`; what its program has to find on a
-//! simulated part before it is written is a file and a row in `check/alignment`.
+//! `docs/methods/alignment.md`. Each measurement is a file here and a row in `ALL`; its trial on simulated
+//! parts is a file and a row in `check/alignment`.
 mod alarms;
 mod chord;
 mod ellipse;
@@ -31,29 +31,29 @@ pub const FAMILY: Family =
 
 /// One measurement.
 struct Measurement {
-    /// The main program's O-number.
+    /// O-number of the main program.
     main: u32,
     title: &'static str,
     /// Writes the main program below its title.
     write: fn(&Alignment, &mut Text),
-    /// What it calls.
+    /// Macros that it calls.
     macros: &'static [Macro],
-    /// The common variables that the main program writes itself.
+    /// Common variables that the main program itself writes.
     writes: Writes,
 }
 
 impl Measurement {
-    /// The common variables that the main program or a macro that it calls writes.
+    /// Returns the common variables that the main program or its macros write.
     fn overwrites(&self) -> String {
         Writes::all(self.macros.iter().map(|one| one.writes).chain([self.writes]))
     }
 }
 
-/// Every measurement there is, in the order in which a part is set up: each needs what those before it have put right.
+/// All measurements in the order of the work: each needs the corrections of those before it.
 const ALL: &[Measurement] =
     &[runout::MEASUREMENT, sine::MEASUREMENT, chord::MEASUREMENT, ellipse::MEASUREMENT];
 
-/// The main programs, the resident macros and the machine file of a job.
+/// Emits the main programs, the resident macros and the machine file of a job.
 pub fn emit(job: &Alignment) -> Package {
     let main = |measurement: &Measurement| {
         let mut text = Text::new(measurement.main, measurement.title, job.control.dialect);
@@ -70,19 +70,20 @@ pub fn emit(job: &Alignment) -> Package {
     }
 }
 
-/// The main programs in the order of the work, each with the common variables that it and its macros overwrite.
+/// Returns the main programs in the order of the work, each with the common variables that it and its macros
+/// overwrite.
 pub fn overwritten() -> impl Iterator<Item = (u32, String)> {
     ALL.iter().map(|measurement| (measurement.main, measurement.overwrites()))
 }
 
-/// The modes that all measurements begin in. A local shift of the rotary is cancelled, for its axis has another number on every
-/// machine, so that no macro can look for it; the macros refuse those in X, Y and Z.
+/// Commands the initial modes of all measurements. A local shift of the rotary axis is cancelled, because its
+/// axis number differs between machines and no macro can read it; the macros refuse shifts in X, Y and Z.
 fn begin(job: &Alignment, text: &mut Text) {
     start::emit_modes(text);
     start::emit_cancel(&job.machine.rotary.letter.to_string(), text);
 }
 
-/// What the heads of all main programs say.
+/// Writes the remarks common to the heads of all main programs.
 fn common_remarks(job: &Alignment, text: &mut Text) {
     let rotary = job.machine.rotary;
     let sign = if rotary.sign < 0 { "-" } else { "" };

@@ -1,4 +1,4 @@
-//! The resident macros of the measurements: NC texts with marks for what differs between machines and controls.
+//! The resident macros of the measurements: NC texts with marks for machine and control.
 use gcode_lang::control::{Dialect, Increment};
 use gcode_part::job::Alignment;
 
@@ -10,16 +10,17 @@ use crate::nc::number::number;
 use crate::nc::program::name;
 use crate::package::Program;
 
-/// A resident macro as it stands in its `.nc` file here.
+/// A resident macro as in its `.nc` file in this folder.
 pub(super) struct Macro {
     pub(super) number: u32,
-    /// Its file's name in `macros/`.
+    /// File name in `macros/`.
     pub(super) file: &'static str,
     pub(super) text: &'static str,
     pub(super) writes: Writes,
 }
 
-/// What the macros depend on. Everything else is an argument, so that one copy in a control serves all jobs.
+/// Properties that the macros depend on. Everything else is an argument, so that one copy in a control serves
+/// all jobs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Resident {
     dialect: Dialect,
@@ -47,7 +48,7 @@ impl Resident {
             ("{increment}", number(self.increment.size())),
             ("{rounding}", number(shift_threshold(self.increment))),
             ("{per_unit}", number(self.increment.per_unit())),
-            // Of axis 1 + #12.
+            // Of the axis with number 1 + #12.
             ("{external}", external_offset_term(self.dialect, "[5201+#12]")),
             ("{writes}", one.writes.remark()),
         ];
@@ -59,7 +60,7 @@ fn macros() -> impl Iterator<Item = &'static Macro> {
     ALL.iter().flat_map(|measurement| measurement.macros)
 }
 
-/// As `macros/` has them.
+/// Returns the macros with default settings, as in `macros/`.
 pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
     let resident = Resident { dialect: Dialect::default(), increment: Increment::default(), rotary: 'B' };
     macros().map(|one| one.file).zip(resident.programs()).collect()

@@ -1,5 +1,5 @@
-//! Run-out: the part touched along X at two heights over the petal's angles, and its shift and tilt fitted on the
-//! control. After the operator's correction a second pass shows what remains.
+//! Run-out: touches the part along X at two heights over the petal's angles and fits its shift and tilt on
+//! the control. After the operator's correction a second pass measures the remainder.
 use gcode_part::job::Alignment;
 
 use super::writes::Writes;
@@ -9,10 +9,10 @@ use crate::nc::block::Block;
 use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8210;
 
-/// Readings and fit.
+/// O-number of the macro with readings and fit.
 const FIT: u32 = 8211;
 
 pub(super) const MEASUREMENT: Measurement = Measurement {
@@ -55,7 +55,7 @@ fn write(job: &Alignment, text: &mut Text) {
         text.remark(line);
     }
     begin(job, text);
-    // What stands there is of the part before; first what says of each pass that it is whole.
+    // These values are of the previous part; the first to be cleared are those that mark a pass as complete.
     for number in [585].into_iter().chain((590..596).rev()) {
         text.block(Block::of(format!("#{number}=#0")));
     }

@@ -1,7 +1,9 @@
-//! The sine table: which gauge blocks set φ, and on the control by how much they change for the tilt that the run-out found.
+//! The sine table: the gauge blocks that set φ, and on the control their change for the tilt that the run-out
+//! determined.
 //!
-//! The macro gives the height and not the blocks: the fewest of a set are a search through all stacks, which is done here for
-//! the job's φ; for the corrected one they are found by the digits of the height, the last one first, as always at the machine.
+//! The macro gives the height, not the blocks. The fewest blocks of a set need a search through all stacks,
+//! which is done here for the job's φ; for the corrected angle the operator chooses them by the digits of the
+//! height, last digit first, as usual.
 use gcode_lang::units::{Deg, Mm};
 use gcode_part::gauge::{self, SineSetting, Thickness};
 use gcode_part::job::{Alignment, SineTable};
@@ -13,14 +15,15 @@ use crate::nc::block::Block;
 use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8230;
 
-/// The largest tilt that O8231 corrects, and the steepest φ that it tells; degrees.
+/// Largest tilt that O8231 corrects, degrees.
 pub const LARGEST_TILT: f64 = 1.0;
+/// Largest φ that O8231 gives, degrees.
 pub const STEEPEST: f64 = 45.0;
 
-/// Height and angle.
+/// O-number of the macro that computes height and angle.
 const TABLE: u32 = 8231;
 
 pub(super) const MEASUREMENT: Measurement = Measurement {
@@ -83,21 +86,22 @@ fn write(job: &Alignment, text: &mut Text) {
     );
     text.block(Block::of("#3006=1(TABLE STANDS AT PHI #596)"));
     text.block(Block::of("#3006=1(SET BLOCKS TO H #587)"));
-    // Whatever RESET leaves is the state before, the one behind, or one that the next start refuses.
+    // RESET leaves the state before, the state after, or one that the next start refuses.
     text.block(Block::of("#596=-1."));
     text.block(Block::of("#583=#0"));
     text.block(Block::of(format!("#596=ASIN[#587/{length}]")));
     text.block(Block::of("M30"));
 }
 
-/// The lowest height within the tilts that O8231 corrects for which the set has no stack.
+/// Returns the lowest height within the tilts that O8231 corrects for which the set has no stack.
 pub fn gap(table: &SineTable) -> Option<Thickness> {
     let [low, high] = [-LARGEST_TILT, LARGEST_TILT]
         .map(|tilt| gauge::height(Mm(table.length), Deg((table.phi + tilt).clamp(0.0, STEEPEST))));
     table.gauge_blocks.first_gap(low, high)
 }
 
-/// The blocks in lines that a control can show, and what they leave of the angle. Jobs in which no block comes near are refused.
+/// Returns the blocks in lines that a control can show, and the error of the angle. Jobs without a sufficient
+/// stack are refused.
 fn stack(setting: &SineSetting) -> Vec<String> {
     if setting.stack.blocks.is_empty() {
         return vec!["NO BLOCKS, THE TABLE LIES FLAT".to_owned()];

@@ -1,18 +1,19 @@
-//! The common variables that a program overwrites: what the heads of programs and macros say, and the set-up sheet.
+//! Common variables that a program overwrites, for the heads of programs and macros and for the set-up sheet.
 //!
-//! A control keeps #500 to #999 while it is switched off, and other cycles of the shop may keep values there.
+//! A control keeps #500 to #999 while it is switched off, and other cycles of the shop may store values
+//! there.
 
-/// Ranges of common variables, ends included, in ascending order.
+/// Ranges of common variables, inclusive, in ascending order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Writes(pub(super) &'static [(u32, u32)]);
 
 impl Writes {
-    /// `#501-#560 #578`, or that there are none.
+    /// Returns `#501-#560 #578`, or a statement that there are none.
     pub(super) fn remark(self) -> String {
         Self::all([self])
     }
 
-    /// Of several programs together; ranges that meet are one.
+    /// Merges the ranges of several programs; adjacent ranges are joined.
     pub(super) fn all(several: impl IntoIterator<Item = Self>) -> String {
         let mut ranges: Vec<_> = several.into_iter().flat_map(|one| one.0).copied().collect();
         ranges.sort_unstable();

@@ -1,8 +1,9 @@
-//! What straight moves and rounding make of the helix angle, and how long moves may be so that it stays within the job's
-//! tolerance.
+//! Error of the helix angle from straight moves and rounding, and the chord error that keeps it within the
+//! job's tolerance.
 //!
-//! A path that strays by the chord error leans: over the gauge length by the error's part of it, and more near the tip,
-//! where the flute gets narrow within that length. Where this is too much the moves are made for a smaller chord error.
+//! A path that deviates by the chord error is inclined to the flute: by that error per gauge length, and by
+//! more near the tip, where the flute narrows within that length. If this exceeds the tolerance, the moves
+//! are made for a smaller chord error.
 use gcode_lang::control::Increment;
 use gcode_lang::units::Deg;
 use gcode_part::job::Burr;
@@ -11,21 +12,22 @@ use super::law::Flute;
 use super::nose::{Arc, arcs};
 use super::path::{Point, points};
 
-/// Where a flute leans most off its law.
+/// The place of a flute with the largest error of its helix angle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WorstHelixError {
     pub(super) error: Deg,
-    /// From the tip.
+    /// Polar angle from the tip.
     pub(super) polar: Deg,
 }
 
-/// The part of the tolerance that is used: a measurement may begin and end between the places looked at here.
+/// Share of the tolerance that is used: a measurement may begin and end between the places computed here.
 const USED_SHARE: f64 = 0.95;
 
-/// The chord error to make the moves for: the job's, or a smaller one that keeps the helix angle within its tolerance.
+/// Returns the chord error for the moves: the job's, or a smaller one that keeps the helix angle within its
+/// tolerance.
 ///
 /// # Errors
-/// None does; how far a flute leans off at best.
+/// If no chord error suffices, returns the place and size of the smallest helix angle error achieved.
 pub(super) fn chord_error(job: &Burr) -> Result<f64, WorstHelixError> {
     let allowed = Deg(USED_SHARE * job.tolerance.helix);
     let least = job.control.increment.size();
@@ -41,12 +43,12 @@ pub(super) fn chord_error(job: &Burr) -> Result<f64, WorstHelixError> {
             return Err(better);
         }
         best = Some(better);
-        // On a grid that can be read in the program.
+        // A grid keeps the value legible in the program.
         error = ((0.95e5 * error).floor() / 1e5).max(least);
     }
 }
 
-/// Why no moves keep the helix angle, and what would do.
+/// Returns the reason why no moves keep the helix angle, and alternatives.
 pub(super) fn refusal(job: &Burr) -> Option<String> {
     let helix_error = chord_error(job).err()?;
     let holds = |change: &dyn Fn(&mut Burr)| {
@@ -91,19 +93,20 @@ pub(super) fn refusal(job: &Burr) -> Option<String> {
     ))
 }
 
-/// The contact on the burr, and the ways it has come.
+/// A contact point on the burr, and the path lengths to it.
 #[derive(Clone, Copy, Debug, Default)]
 struct ContactPoint {
-    /// The direction of the surface's normal below it, as C has it.
+    /// Direction of the surface normal, as an angle of C.
     c: Deg,
     radius: f64,
-    /// Along the meridian, around the axis, and around as the law has it.
+    /// Path along the meridian and around the axis.
     along: f64,
     around: f64,
+    /// Path around the axis by the law.
     nominal: f64,
 }
 
-/// The worst place of a flute whose moves are made for that chord error.
+/// Returns the worst place of a flute whose moves are made for a chord error.
 fn worst_error(job: &Burr, error: f64) -> WorstHelixError {
     let places = contact_points(job, &points(job, error));
     let length = |one: &ContactPoint, other: &ContactPoint| {
@@ -112,7 +115,8 @@ fn worst_error(job: &Burr, error: f64) -> WorstHelixError {
     };
     let whole = places.first().zip(places.last()).map_or(0.0, |(first, last)| length(first, last));
     let gauge = job.gauge().min(whole * (1.0 - 1e-9));
-    // A is rounded otherwise on every flute: at both ends of a stretch by up to half an increment, against each other.
+    // A is rounded differently on every flute: at each end of a section by up to half an increment, in
+    // opposite directions.
     let turn = Deg(job.control.increment.size()).to_rad();
     let mut worst = WorstHelixError { error: Deg(0.0), polar: Deg(90.0) };
     let mut end = 0;
@@ -133,7 +137,8 @@ fn worst_error(job: &Burr, error: f64) -> WorstHelixError {
     worst
 }
 
-/// Places along all moves, a fortieth of the gauge length apart, ten a move at least.
+/// Returns contact points along all moves, at most a fortieth of the gauge length apart, at least ten per
+/// move.
 fn contact_points(job: &Burr, points: &[Point]) -> Vec<ContactPoint> {
     let helix = Deg(job.helix);
     let begin = ContactPoint { radius: job.shape.radius, ..ContactPoint::default() };
@@ -147,7 +152,7 @@ fn contact_points(job: &Burr, points: &[Point]) -> Vec<ContactPoint> {
         for n in 1..=count as u32 {
             let part = f64::from(n) / count;
             last = match &arc {
-                // On the cylinder X and A go alike.
+                // On the cylinder X and A move in proportion.
                 None => {
                     let along = to.path_length * helix.cos() / count;
                     let around = job.shape.radius * turn / count;
@@ -168,12 +173,13 @@ fn contact_points(job: &Burr, points: &[Point]) -> Vec<ContactPoint> {
     places
 }
 
-/// The direction of the normal below the contact, so far along a move: C, but for what X and Y are off there.
+/// Returns the direction of the normal at the contact after a fraction of a move: C, corrected by the
+/// deviation of X and Y.
 fn normal_direction(job: &Burr, arc: &Arc, from: &Point, to: &Point, part: f64) -> Deg {
     let grid = |value: f64| job.control.increment.round(value);
     let mix = |one: f64, other: f64| one + (other - one) * part;
     let c = Deg(mix(from.c.0, to.c.0));
-    // From the arc's centre to the wheel, which stands `radius` below the end of the cylinder when X, Y and C are 0.
+    // From the arc's centre to the wheel, which is `radius` below the end of the cylinder at X0 Y0 C0.
     let [offset_x, offset_y] = job.grinder.c_offset;
     let [centre_x, centre_y] = arc.carried(c);
     let x = offset_x - mix(grid(from.x), grid(to.x)) - centre_x;
@@ -182,7 +188,7 @@ fn normal_direction(job: &Burr, arc: &Arc, from: &Point, to: &Point, part: f64) 
 }
 
 impl ContactPoint {
-    /// The place `here`, with the ways gone on to it.
+    /// Returns the contact `here` with the path lengths extended to it.
     fn advanced_to(&self, here: Self, along: f64, around: f64, slope: f64) -> Self {
         Self {
             along: self.along + along,

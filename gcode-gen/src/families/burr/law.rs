@@ -1,10 +1,11 @@
-//! How far a flute has turned at C, by its law, and how it bends there, which tells how long a straight move may be.
+//! Rotation of a flute as a function of C by its law, and its curvature, which limits the length of straight
+//! moves.
 use gcode_lang::units::{Deg, ln};
 use gcode_part::job::FluteLaw;
 
 use super::nose::Arc;
 
-/// How much faster or slower than it should be the contact may go along the flute within a move: a quarter.
+/// Allowed variation of the contact's speed along the flute within a move, as a fraction.
 const MAX_SPEED_SWING: f64 = 0.25;
 
 /// A flute on one arc of the nose.
@@ -15,26 +16,26 @@ pub(super) struct Flute {
     pub(super) arc: Arc,
 }
 
-/// The slope of a flute at a point and how A bends there.
+/// Slope of a flute at a point, and the curvature of A there.
 struct SlopeChange {
-    /// tan of the helix angle: around over along.
+    /// Tangent of the helix angle: around over along.
     slope: f64,
-    /// radius·A'', A by C in rad: mm.
+    /// radius·A'', with A as a function of C in rad: mm.
     around: f64,
 }
 
 impl Flute {
-    /// How far A turns between the beginning of the arc and C.
+    /// Returns the rotation of A from the beginning of the arc to C.
     pub(super) fn turn(&self, c: Deg) -> Deg {
         Deg(self.angle(c).0 - self.angle(self.arc.from).0)
     }
 
-    /// A with an arbitrary zero.
+    /// Returns A with an arbitrary zero.
     fn angle(&self, c: Deg) -> Deg {
         let tan = self.helix.tan();
         let arc = &self.arc;
         match self.law {
-            // The integral of tan(helix)·ρ·dC/(ρ·cos C − d); on a ball (d = 0) that is LN TAN[45 + C/2].
+            // The integral of tan(helix)·ρ·dC/(ρ·cos C − d); on a ball (d = 0) it is ln tan(45° + C/2).
             FluteLaw::ConstantHelix => {
                 let k = arc.beyond / arc.radius;
                 let t = Deg(c.0 / 2.0).tan() * ((1.0 + k) / (1.0 - k)).sqrt();
@@ -48,7 +49,7 @@ impl Flute {
         }
     }
 
-    /// The tangent of the helix angle at C.
+    /// Returns the tangent of the helix angle at C.
     pub(super) fn slope(&self, c: Deg) -> f64 {
         self.slope_change(c).slope
     }
@@ -62,7 +63,8 @@ impl Flute {
             }
             FluteLaw::Published => {
                 let along = arc.station(c).along;
-                // Of the quotient along/radius: its slope's numerator, and what is left of the second derivative's.
+                // Numerators of the first derivative and of the remaining second derivative of the quotient
+                // along/radius.
                 let first = arc.radius * (c.cos() * r + c.sin() * along);
                 let second = arc.radius * (arc.beyond * c.sin() + arc.along * c.cos());
                 SlopeChange {
@@ -73,11 +75,11 @@ impl Flute {
         }
     }
 
-    /// How much the contact's path bends away from the flute it follows, per square of C in rad: mm.
+    /// Returns the curvature of the contact's path away from the flute, per square of C in rad: mm.
     ///
-    /// A straight move from C to C + c leaves the true X, Y and A by at most c²/8 of their second derivatives: X'' and
-    /// Y'' are Rot(C)·e. Y goes into the surface, X along the meridian, A around; of the last two only what is across
-    /// the flute counts.
+    /// A straight move from C to C + c deviates from the true X, Y and A by at most c²/8 of their second
+    /// derivatives; X'' and Y'' are Rot(C)·e. Y goes into the surface, X along the meridian, A around the
+    /// axis; of the last two only the component across the flute counts.
     fn path_curvature(&self, c: Deg) -> f64 {
         let [meridian, normal] = self.arc.carried(c);
         let SlopeChange { slope, around } = self.slope_change(c);
@@ -85,10 +87,11 @@ impl Flute {
         (normal * normal + across * across).sqrt()
     }
 
-    /// The longest move from C in which the contact's speed along the flute swings by [`SWING`] at most.
+    /// Returns the longest move from C in which the contact's speed along the flute varies by at most
+    /// [`SWING`].
     ///
-    /// What a move strays by along the flute leaves it on it, but from end to end the contact gets slower or faster by
-    /// half the move times that bending, and would even go back.
+    /// A deviation along the flute leaves the contact on it, but over a move the contact slows down or speeds
+    /// up by half the move times the curvature, and could even reverse.
     fn max_steady_step(&self, c: Deg) -> Deg {
         let [meridian, _] = self.arc.carried(c);
         let SlopeChange { slope, around } = self.slope_change(c);
@@ -96,9 +99,9 @@ impl Flute {
         Deg::from_rad(2.0 * MAX_SPEED_SWING * self.arc.radius * (1.0 + slope * slope) / along)
     }
 
-    /// The longest move from C on that stays within `error` mm of the flute at a steady speed, shortened so that moves of its length
-    /// fill the rest of the arc. Both are taken where the move begins and where it would end by that, whichever lets it
-    /// be shorter; 10° is the most.
+    /// Returns the longest move from C that stays within `error` mm of the flute at a steady speed, shortened
+    /// so that equal moves fill the rest of the arc. The stricter limit of the move's two ends applies; no
+    /// move exceeds 10°.
     pub(super) fn step(&self, c: Deg, error: f64) -> Deg {
         let by = |c: Deg| {
             let straight = Deg::from_rad((8.0 * error / self.path_curvature(c)).sqrt());

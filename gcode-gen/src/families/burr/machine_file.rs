@@ -1,9 +1,9 @@
-//! The machine file of a burr job: the grinder that `gcode-sim --machine` follows the programs on.
+//! The machine file of a burr job: the grinder for `gcode-sim --machine`.
 use gcode_part::job::Burr;
 
 use crate::families::control;
 
-/// The text of `machine.toml`.
+/// Returns the text of `machine.toml`.
 pub(super) fn machine_file(job: &Burr) -> String {
     let [x, y] = job.grinder.c_offset;
     let signs = job.grinder.signs;

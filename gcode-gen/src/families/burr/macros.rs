@@ -1,4 +1,4 @@
-//! The resident macro of the burrs: NC text with marks for what differs between machines and controls.
+//! The resident macro of the burrs: NC text with marks for machine and control.
 use gcode_lang::control::{Dialect, Increment};
 use gcode_part::job::{AxisSigns, Burr};
 
@@ -7,10 +7,11 @@ use crate::nc::number::number;
 use crate::nc::program::name;
 use crate::package::Program;
 
-/// One flute: approach, cylinder, nose, retract.
+/// O-number of the macro for one flute: approach, cylinder, nose, retract.
 pub const FLUTE: u32 = 8401;
 
-/// What the macro depends on. Everything else is an argument, so that one copy in a control serves all burrs.
+/// Properties that the macro depends on. Everything else is an argument, so that one copy in a control serves
+/// all burrs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resident {
     pub dialect: Dialect,
@@ -44,7 +45,7 @@ impl Resident {
     }
 }
 
-/// The macro as the default settings have it, with its file's name.
+/// Returns the macro with default settings and its file name in `macros/`.
 pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
     let signs = AxisSigns { x: 1, y: 1, a: 1, b: 1, c: 1 };
     let resident = Resident { dialect: Dialect::default(), increment: Increment::default(), signs };

@@ -1,5 +1,5 @@
-//! Ball-end rotary burrs on a 5-axis grinder: flutes on a cylinder and its nose, either computed by a resident macro or
-//! written out move by move.
+//! Ball-end rotary burrs on a 5-axis grinder: flutes on a cylinder and its nose, computed by a resident macro
+//! or written out move by move.
 //!
 //! The method is that of *Machining Rotary Burrs on 5-Axis Grinding Machine*; see `docs/methods/burr.md`.
 mod helix_error;
@@ -21,13 +21,13 @@ use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 use crate::package::{Package, Program};
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8400;
 
 pub const FAMILY: Family =
     Family { name: "burr", new_job: include_str!("new.toml"), resident: macros::of_the_defaults };
 
-/// The main program, the resident macro where it calls one, and the machine file of a job.
+/// Emits the main program, its resident macro if it calls one, and the machine file of a job.
 pub fn emit(job: &Burr) -> Package {
     let mut programs = vec![Program { number: MAIN, text: Main::new(job).text() }];
     if job.program.form == ProgramForm::Loop {
@@ -36,14 +36,14 @@ pub fn emit(job: &Burr) -> Package {
     Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
 }
 
-/// Why no program grinds the job's burr within its tolerances, and what would do.
+/// Returns the reason why no program grinds the job's burr within its tolerances, and alternatives.
 pub fn refusal(job: &Burr) -> Option<String> {
     helix_error::refusal(job)
 }
 
 struct Main<'j> {
     job: &'j Burr,
-    /// What the moves are made for: the job's, or less where the helix angle asks for it.
+    /// Chord error of the moves: the job's, or less if the helix angle requires it.
     chord_error: f64,
     start: Start,
     text: Text,
@@ -52,7 +52,8 @@ struct Main<'j> {
 impl<'j> Main<'j> {
     fn new(job: &'j Burr) -> Self {
         let chord_error = helix_error::chord_error(job).unwrap_or(job.chord_error);
-        // Not A, which turns all flutes alike. What axis the number 3 is on a grinder isn't known.
+        // A is not cancelled: a shift of A rotates all flutes alike. The axis with number 3 on a grinder is
+        // unknown.
         let start = Start {
             control: job.control,
             changed_alarm: 97,
@@ -83,7 +84,7 @@ impl<'j> Main<'j> {
         self.text.block(Block::of(words));
     }
 
-    /// The program's contract with whoever runs it.
+    /// Writes the remarks at the head: conditions for the run.
     fn header(&mut self) {
         let job = self.job;
         let shape = &job.shape;
@@ -126,7 +127,7 @@ impl<'j> Main<'j> {
         }
     }
 
-    /// One call a flute, counted by the control.
+    /// Writes a loop with one call per flute.
     fn calls(&mut self) {
         let job = self.job;
         self.text.remark(format!("ONE FLUTE BY O{FLUTE}, ITS ARGUMENTS STAND AT ITS HEAD"));
@@ -157,12 +158,12 @@ impl<'j> Main<'j> {
         self.block("END1");
     }
 
-    /// Every flute point by point.
+    /// Writes every flute point by point.
     fn moves(&mut self) {
         let job = self.job;
         let points = points(job, self.chord_error);
         let (signs, clear, stand_off) = (job.grinder.signs, clearance_y(job), stand_off(job));
-        // Rounded here: a control cuts off what a number in the program has beyond the increment.
+        // Rounded here, because a control truncates digits beyond its increment.
         let increment = job.control.increment;
         let along = |letter: char, sign: i8, value: f64| {
             format!("{letter}{}", number(increment.round(f64::from(sign) * value)))
@@ -202,12 +203,12 @@ impl<'j> Main<'j> {
     }
 }
 
-/// Of a move, in 1/min. Controls take three places of an F in inverse time.
+/// Returns the feed of a move in 1/min. Controls accept three decimals of an inverse-time F.
 fn rate(speed: f64, way: f64) -> f64 {
     (1000.0 * speed / way).round().max(1.0) / 1000.0
 }
 
-/// Which axes run against the formulas.
+/// Returns the remark on axes that run against the formulas.
 fn signs(job: &Burr) -> String {
     let signs = job.grinder.signs;
     let all = [('X', signs.x), ('Y', signs.y), ('A', signs.a), ('B', signs.b), ('C', signs.c)];
@@ -225,7 +226,7 @@ mod tests {
 
     use super::*;
 
-    /// The contract's burr with `more` under `[machine]`.
+    /// Returns the burr of the test with `more` under `[machine]`.
     pub(super) fn job(more: &str) -> Burr {
         let text = format!(
             "family = \"burr\"\n[burr]\ndiameter = 12.0\nlength = 25.0\nflutes = 16\nhelix = 20.0\n\

@@ -1,32 +1,32 @@
-//! The nose as the grinder goes along it: arcs by the angle of C, and where X and Y stand on them.
+//! The nose as the grinder follows it: arcs by the angle of C, and the positions of X and Y on them.
 //!
-//! At C the contact's normal stands 90° − C from the burr's axis. While C turns through an arc, that arc's centre has
-//! to stay where it is: (X, Y) = e − Rot(C)·e with e from the C axis to the centre. This is what equations (3) and (4)
-//! mean, the fourth with its sign and its constant put right.
+//! At C the contact's normal is at 90° − C to the burr's axis. While C rotates through an arc, the arc's
+//! centre must stay in place: (X, Y) = e − Rot(C)·e, with e from the C axis to the centre. This is the
+//! meaning of equations (3) and (4), with the sign and the constant of the fourth corrected.
 use gcode_lang::units::Deg;
 use gcode_part::job::{Burr, BurrShape, Nose};
 
-/// One arc of the meridian, gone along with C.
+/// One arc of the meridian, followed by C.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Arc {
-    /// C where it begins and ends, on the increment's grid.
+    /// C at its beginning and end, on the grid of the increment.
     pub(super) from: Deg,
     pub(super) to: Deg,
     pub(super) radius: f64,
     /// From the C axis to its centre at C = 0.
     pub(super) centre: [f64; 2],
-    /// Its centre lies this far beyond the burr's axis, seen from the contact.
+    /// Distance of its centre beyond the burr's axis, seen from the contact.
     pub(super) beyond: f64,
-    /// Its centre lies this far from the end of the cylinder towards the tip.
+    /// Distance of its centre from the end of the cylinder towards the tip.
     pub(super) along: f64,
 }
 
-/// What a flute is on an arc at one C.
+/// Position of a flute on an arc at one C.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Station {
-    /// From the burr's axis.
+    /// Distance from the burr's axis.
     pub(super) radius: f64,
-    /// From the end of the cylinder towards the tip.
+    /// Distance from the end of the cylinder towards the tip.
     pub(super) along: f64,
 }
 
@@ -35,20 +35,21 @@ impl Arc {
         Station { radius: self.radius * c.cos() - self.beyond, along: self.along + self.radius * c.sin() }
     }
 
-    /// Rot(C)·e: where the arc's centre would be with X and Y at 0.
+    /// Returns Rot(C)·e: the arc's centre with X and Y at 0.
     pub(super) fn carried(&self, c: Deg) -> [f64; 2] {
         let [x, y] = self.centre;
         [x * c.cos() - y * c.sin(), x * c.sin() + y * c.cos()]
     }
 }
 
-/// The length of the cylinder; what is less than half an increment is none, for no axis moves by it.
+/// Returns the length of the cylinder; less than half an increment counts as 0, because no axis can move by
+/// it.
 pub(super) fn cylinder(job: &Burr) -> f64 {
     let length = job.shape.length - tip(&job.shape);
     if length < job.control.increment.size() / 2.0 { 0.0 } else { length }
 }
 
-/// From the end of the cylinder to the pole.
+/// Returns the distance from the end of the cylinder to the pole.
 pub(super) fn tip(shape: &BurrShape) -> f64 {
     match shape.nose {
         Nose::Ball => shape.radius,
@@ -56,13 +57,13 @@ pub(super) fn tip(shape: &BurrShape) -> f64 {
     }
 }
 
-/// From the end of the cylinder to the centre of the small arc, on the burr's axis: both centres and the axis make a
-/// right triangle with the hypotenuse large − small.
+/// Returns the distance from the end of the cylinder to the centre of the small arc on the burr's axis: both
+/// centres and the axis form a right triangle with hypotenuse large − small.
 fn small_centre(radius: f64, large: f64, small: f64) -> f64 {
     ((radius - small) * (2.0 * large - small - radius)).sqrt()
 }
 
-/// The arcs from the cylinder to the end of the flute.
+/// Returns the arcs from the cylinder to the end of the flute.
 pub(super) fn arcs(job: &Burr) -> Vec<Arc> {
     let shape = &job.shape;
     let radius = shape.radius;
@@ -90,8 +91,8 @@ pub(super) fn arcs(job: &Burr) -> Vec<Arc> {
 mod tests {
     use super::*;
 
-    /// Radii 14 and 4 on a cylinder of 6: the centres are 10 apart and the large one's is 8 beyond the axis, so the
-    /// small one's is 6 along it, the nose is 10 long, and the arcs meet at sin C = 6/10.
+    /// Radii 14 and 4 on a cylinder of 6: the centres are 10 apart and the large one is 8 beyond the axis, so
+    /// the small one is 6 along it, the nose is 10 long, and the arcs meet at sin C = 6/10.
     #[test]
     fn two_arcs_worked_by_hand() {
         let job = crate::families::burr::tests::job("profile = { large = 14.0, small = 4.0 }\n");
@@ -116,7 +117,7 @@ mod tests {
             },
         ];
         assert_eq!(found, expected);
-        // There 14·0.8 − 8 = 3.2 from the axis and 14·0.6 = 8.4 along it, by either arc.
+        // There, 14·0.8 − 8 = 3.2 from the axis and 14·0.6 = 8.4 along it, on either arc.
         for arc in found {
             let station = arc.station(Deg(36.87));
             assert!((station.radius - 3.2).abs() < 1e-4 && (station.along - 8.4).abs() < 1e-4, "{station:?}");

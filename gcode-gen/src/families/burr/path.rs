@@ -5,25 +5,26 @@ use gcode_part::job::Burr;
 use super::law::Flute;
 use super::nose::{arcs, cylinder};
 
-/// Where the axes stand at the end of a move, signs as the formulas have them.
+/// Axis positions at the end of a move, with the signs of the formulas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Point {
     pub(super) x: f64,
     pub(super) y: f64,
-    /// From the flute's start.
+    /// A from the flute's start.
     pub(super) a: Deg,
     pub(super) c: Deg,
-    /// How long the contact's way is from the point before, on the burr.
+    /// Length of the contact's path from the previous point, on the burr.
     pub(super) path_length: f64,
 }
 
-/// The part of a chord error that rounding doesn't take: Y is rounded by up to half an increment; C is on its grid
-/// before X, Y and A are computed.
+/// Returns the part of a chord error left after rounding: Y is rounded by up to half an increment, while C is
+/// on its grid before X, Y and A are computed.
 fn usable_chord_error(chord_error: f64, job: &Burr) -> f64 {
     chord_error - job.control.increment.size() / 2.0
 }
 
-/// Moves as long as a chord error lets them be. The first point is where the wheel plunges; A counts from there.
+/// Returns the points of the longest moves within a chord error. The first is where the wheel plunges; A
+/// counts from it.
 pub(super) fn points(job: &Burr, chord_error: f64) -> Vec<Point> {
     let shape = &job.shape;
     let [offset_x, offset_y] = job.grinder.c_offset;
@@ -40,7 +41,7 @@ pub(super) fn points(job: &Burr, chord_error: f64) -> Vec<Point> {
         let (mut c, mut a) = (arc.from, start_angle);
         while c < arc.to {
             let step = flute.step(c, usable_chord_error(chord_error, job));
-            // A step below the grid would be none.
+            // A step below the grid would not move C.
             let next = Deg(job.control.increment.round(c.0 + step.0).max(c.0 + job.control.increment.size()));
             let turn = start_angle + flute.turn(next);
             let middle = arc.station(Deg((c.0 + next.0) / 2.0)).radius;
@@ -61,12 +62,12 @@ pub(super) fn points(job: &Burr, chord_error: f64) -> Vec<Point> {
     points
 }
 
-/// Y at which no point of the burr is lower than the clearance above the wheel's contact, at any C up to the end of
-/// the flute, and the blank's depth besides.
+/// Returns the Y at which no point of the burr is lower than the clearance and the blank's depth above the
+/// wheel's contact, at any C up to the end of the flute.
 ///
-/// The burr's lowest point is where its normal points down, which is where it touches while it is ground; so Y has to
-/// be as large as it is anywhere along the flute. A nose of arcs lies within a ball of the cylinder's radius that reaches
-/// as far.
+/// The burr's lowest point is where its normal points down, which is its contact while it is ground; so Y is
+/// the largest value along the flute. A nose of arcs lies within a ball of the cylinder's radius with the
+/// same pole.
 pub(super) fn clearance_y(job: &Burr) -> f64 {
     let shape = &job.shape;
     let [offset_x, y] = job.grinder.c_offset;
@@ -79,7 +80,7 @@ pub(super) fn clearance_y(job: &Burr) -> f64 {
     top + stand_off(job)
 }
 
-/// From the tooth bottom to where rapid becomes feed.
+/// Returns the distance from the tooth bottom at which rapid changes to feed.
 pub(super) fn stand_off(job: &Burr) -> f64 {
     job.grinder.clearance + job.shape.tooth_depth
 }

@@ -1,4 +1,4 @@
-//! The resident macro of the honeycomb: NC text with marks for what differs between machines and controls.
+//! The resident macro of the honeycomb: NC text with marks for machine and control.
 use gcode_lang::control::Dialect;
 use gcode_part::job::{Clamp, Honeycomb};
 
@@ -6,13 +6,15 @@ use crate::families::resident::fill;
 use crate::nc::program::name;
 use crate::package::Program;
 
-/// The whole pattern: rows, angles, pitch.
+/// O-number of the macro for the whole pattern: rows, angles, pitch.
 pub const COMB: u32 = 8301;
 
-/// As many digits as all three dialects take in one number: on a metre of circumference 1 nm is lost.
+/// π with as many digits as all three dialects accept in one number: the error on a metre of circumference is
+/// 1 nm.
 const PI: &str = "3.14159265";
 
-/// What the macro depends on. Everything else is an argument, so that one copy in a control serves all jobs.
+/// Properties that the macro depends on. Everything else is an argument, so that one copy in a control serves
+/// all jobs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resident {
     pub dialect: Dialect,
@@ -38,7 +40,7 @@ impl Resident {
     }
 }
 
-/// As `macros/` has it.
+/// Returns the macro with default settings, as in `macros/`.
 pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
     let resident = Resident { dialect: Dialect::default(), rotary: 'B', clamp: None };
     vec![("O8301_honeycomb.nc", resident.program())]

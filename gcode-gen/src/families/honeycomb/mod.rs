@@ -1,7 +1,8 @@
-//! A honeycomb of radial holes on a cylinder: a main program of one call, and a resident macro that lays the rows.
+//! A honeycomb of radial holes on a cylinder: a main program with one call, and a resident macro that
+//! computes the rows.
 //!
-//! See `docs/methods/honeycomb.md`. Nothing that follows from diameter, pitch and length stands in the main program as a
-//! number: changing D, B or X there gives another pattern that closes.
+//! See `docs/methods/honeycomb.md`. The main program contains no number that follows from diameter, pitch and
+//! length: changing D, B or X gives another closed pattern.
 mod machine_file;
 pub mod macros;
 
@@ -15,13 +16,13 @@ use crate::nc::number::number;
 use crate::nc::program::Program as Text;
 use crate::package::{Package, Program};
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8300;
 
 pub const FAMILY: Family =
     Family { name: "honeycomb", new_job: include_str!("new.toml"), resident: macros::of_the_defaults };
 
-/// The main program, the resident macro and the machine file of a job.
+/// Emits the main program, the resident macro and the machine file of a job.
 pub fn emit(job: &Honeycomb) -> Package {
     let programs = vec![Program { number: MAIN, text: main(job) }, Resident::of(job).program()];
     Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
@@ -29,7 +30,7 @@ pub fn emit(job: &Honeycomb) -> Package {
 
 fn main(job: &Honeycomb) -> String {
     let mut text = Text::new(MAIN, "HONEYCOMB OF RADIAL HOLES ON A CYLINDER", job.control.dialect);
-    // Where the rows begin round the axis is the operator's: a shift of the rotary turns the whole pattern.
+    // The operator chooses the angle of the first row: a shift of the rotary axis rotates the whole pattern.
     let start = Start {
         control: job.control,
         changed_alarm: 51,
@@ -52,7 +53,7 @@ fn main(job: &Honeycomb) -> String {
     text.finish()
 }
 
-/// The program's contract with whoever runs it.
+/// Returns the remarks at the head: conditions for the run.
 fn header(job: &Honeycomb) -> Vec<String> {
     let cylinder = job.cylinder;
     let [diameter, outer, length] = [cylinder.diameter, cylinder.outer, cylinder.length].map(number);

@@ -1,11 +1,11 @@
-//! The machine file of a pin-hole job: what `gcode-sim --machine` needs to follow the emitted programs.
+//! The machine file of a pin-hole job, for `gcode-sim --machine`.
 use std::fmt::Write;
 
 use gcode_part::job::{HeadKind, PinHoles};
 
 use crate::families::control;
 
-/// The text of `machine.toml`.
+/// Returns the text of `machine.toml`.
 pub(super) fn machine_file(job: &PinHoles) -> String {
     let head = job.machine.head;
     let mut text = control::machine_file(job.control);

@@ -1,4 +1,4 @@
-//! The resident macros of the pin holes: NC texts with marks for what differs between machines and controls.
+//! The resident macros of the pin holes: NC texts with marks for machine and control.
 use gcode_lang::control::{Dialect, Increment};
 use gcode_part::job::{HeadKind, PinHoles};
 
@@ -7,19 +7,20 @@ use crate::nc::number::number;
 use crate::nc::program::name;
 use crate::package::Program;
 
-/// One hole: approach, feed, retract.
+/// O-number of the macro for one hole: approach, feed, retract.
 pub const HOLE: u32 = 8101;
-/// The head angle of a radius, and the head set to it.
+/// O-number of the macro that computes the head angle of a radius and sets the head.
 pub const HEAD: u32 = 8102;
 
-/// What the macros depend on. Everything else is an argument, so that one copy in a control serves all jobs.
+/// Properties that the macros depend on. Everything else is an argument, so that one copy in a control serves
+/// all jobs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resident {
     pub dialect: Dialect,
     pub increment: Increment,
     pub rotary: char,
     pub head: HeadKind,
-    /// The common variable that shows the head angle to set; the next one holds the angle that is set.
+    /// Common variable with the head angle to be set; the next one holds the angle that is set.
     pub common: u32,
 }
 
@@ -41,7 +42,7 @@ impl Resident {
         ]
     }
 
-    /// The common variable with the angle the head has; vacant until the head is set.
+    /// Returns the common variable with the head's angle; it is vacant until the head is set.
     pub fn set(&self) -> u32 {
         self.common + 1
     }
@@ -56,7 +57,7 @@ impl Resident {
         };
         let marks = [
             ("{hole}", name(HOLE, self.dialect)),
-            // A program's name stands at its head, where Haas writes five digits, and in sentences.
+            // A program's name is at its head, where Haas writes five digits, and in remarks.
             ("{head}(", format!("{}(", name(HEAD, self.dialect))),
             ("{head}", format!("O{HEAD}")),
             ("{head_call}", HEAD.to_string()),
@@ -64,7 +65,7 @@ impl Resident {
             ("{angle}", self.common.to_string()),
             ("{set}", self.set().to_string()),
             ("{per_degree}", number(self.increment.per_unit())),
-            // The head's angle is rounded to its increment: half of one is no other angle.
+            // The head's angle is rounded to its increment: within half of one the angle is the same.
             ("{half}", number(self.increment.size() / 2.0)),
             ("{set_head}", set_head),
             ("{spindle_note}", spindle_note.to_owned()),
@@ -73,7 +74,7 @@ impl Resident {
     }
 }
 
-/// As `macros/` has them.
+/// Returns the macros with default settings, as in `macros/`.
 pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
     let resident = Resident {
         dialect: Dialect::default(),

@@ -1,8 +1,9 @@
-//! Pin holes on an ellipsoid of revolution: a main program of calls, and resident macros that compute equation (8).
+//! Pin holes on an ellipsoid of revolution: a main program of calls, and resident macros that compute
+//! equation (8).
 //!
 //! The method is that of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*; see
-//! `docs/methods/pin-holes.md`. Nothing that follows from a, b, r and the azimuth stands in the main program as a
-//! number: changing R there moves the hole to its right new place.
+//! `docs/methods/pin-holes.md`. The main program contains no number that follows from a, b, r and the
+//! azimuth: changing R moves the hole to its correct new position.
 mod machine_file;
 pub mod macros;
 
@@ -17,13 +18,13 @@ use crate::nc::program::Program as Text;
 use crate::order::{HeadSetting, ToolPass, passes};
 use crate::package::{Package, Program};
 
-/// The main program.
+/// O-number of the main program.
 pub const MAIN: u32 = 8100;
 
 pub const FAMILY: Family =
     Family { name: "pin-holes", new_job: include_str!("new.toml"), resident: macros::of_the_defaults };
 
-/// The main program, the resident macros and the machine file of a job.
+/// Emits the main program, the resident macros and the machine file of a job.
 pub fn emit(job: &PinHoles) -> Package {
     let mut programs = vec![Program { number: MAIN, text: Main::new(job).text() }];
     programs.extend(Resident::of(job).programs());
@@ -63,7 +64,7 @@ impl<'j> Main<'j> {
         self.text.finish()
     }
 
-    /// The program's contract with whoever runs it.
+    /// Writes the remarks at the head: conditions for the run.
     fn header(&mut self, passes: &[ToolPass<'_>]) {
         let job = self.job;
         let (a, b) = (number(job.surface.a), number(job.surface.b));
@@ -127,8 +128,8 @@ impl<'j> Main<'j> {
             }
         }
         self.text.block(Block::of("M09"));
-        // The tip is then V above the pole or higher, whatever the angle of the head: see O8102. The next tool's
-        // too, which may be longer.
+        // The tip is then at least V above the pole, whatever the angle of the head: see O8102. This includes
+        // the next tool, which may be longer.
         let reach = next.map_or(0.0, |next| self.reach(next)).max(self.reach(pass));
         let height = [self.job.surface.b, reach, self.job.machine.retract].map(number);
         self.text
@@ -136,7 +137,7 @@ impl<'j> Main<'j> {
         self.text.block(Block::of("M05"));
     }
 
-    /// From the head's pivot to the tip.
+    /// Returns the distance from the head's pivot to the tip.
     fn reach(&self, pass: &ToolPass<'_>) -> f64 {
         self.job.machine.head.pivot + pass.tool.length
     }

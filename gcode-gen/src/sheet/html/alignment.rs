@@ -1,4 +1,5 @@
-//! What only a part that is set up has: lines to write its readings into, and what to do when a measurement ends in an alarm.
+//! Sections of the alignment sheet alone: a form for the readings, and remedies for the alarms of the
+//! measurements.
 use gcode_part::job::{Alignment, Job};
 use gcode_sim::report::figures::{rounded, short};
 use maud::{Markup, html};
@@ -10,7 +11,7 @@ use crate::families::control::alarm_thousands;
 use crate::package::stem;
 use crate::sheet::Sheet;
 
-/// What is read at the stops, with room for three passes.
+/// Returns the values to be read at the stops; the form has room for three passes.
 fn lines(job: &Alignment) -> Vec<(String, &'static str, String)> {
     let rotary = job.machine.rotary.letter;
     let shift = format!("±{}", short(job.limits.shift));
@@ -48,7 +49,7 @@ fn lines(job: &Alignment) -> Vec<(String, &'static str, String)> {
     all
 }
 
-/// So many places of the ellipse have a line.
+/// Number of positions on the ellipse with a line in the form.
 const PLACES: u32 = 7;
 
 pub(super) fn readings(sheet: &Sheet<'_>) -> Markup {
@@ -124,12 +125,12 @@ pub(super) fn alarms(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// The same in several macros.
+/// Returns true for the same alarm in several macros.
 fn alike(one: &MacroAlarm, other: &MacroAlarm) -> bool {
     one.text == other.text && one.remedy == other.remedy
 }
 
-/// The numbers that a control shows of an alarm: `3112, 3137, 3138`.
+/// Returns the numbers of an alarm as the control shows them: `3112, 3137, 3138`.
 fn shown(alarm: &MacroAlarm, k: &str) -> String {
     let mut numbers: Vec<_> =
         ALARMS.iter().filter(|other| alike(alarm, other)).map(|one| one.number).collect();
@@ -137,7 +138,7 @@ fn shown(alarm: &MacroAlarm, k: &str) -> String {
     numbers.iter().map(|number| format!("{k}{number:03}")).collect::<Vec<_>>().join(", ")
 }
 
-/// For the section on the control: what other cycles of the shop must not keep there.
+/// Returns the item on common variables for the section on the control.
 pub(super) fn overwritten_variables(job: &Alignment) -> Markup {
     let all: Vec<_> =
         overwritten().map(|(main, named)| format!("{}: {}", stem(main), named.to_lowercase())).collect();
@@ -158,7 +159,7 @@ mod tests {
         let of = |text: &str| ALARMS.iter().find(|alarm| alarm.text == text).unwrap();
         assert_eq!(shown(of("G52 OR G92 SHIFT IN X Y Z"), "3"), "3112, 3137, 3138");
         assert_eq!(shown(of("G52 OR G92 SHIFT IN X Y Z"), "1"), "1112, 1137, 1138");
-        // What is to be done at each is another thing.
+        // The remedies differ.
         assert_eq!(shown(of("NO CONTACT"), "3"), "3155");
         assert_eq!(shown(of("A CANDIDATE IS MISSING"), "3"), "3068");
     }

@@ -1,10 +1,10 @@
-//! Small line drawings as SVG: a place in mm becomes one on the paper, y upwards.
+//! Small line drawings as SVG; mm of the part are mapped to paper units, y upwards.
 use maud::{Markup, html};
 
-/// Every drawing is so wide, in its own units; text is 12 of them high.
+/// Width of every drawing in its own units; text is 12 units high.
 pub(super) const WIDTH: f64 = 480.0;
 
-/// Where the drawing's origin is on the paper, and how large a millimetre is there.
+/// Origin and scale of a drawing on the paper.
 #[derive(Clone, Copy)]
 pub(super) struct Paper {
     pub origin: [f64; 2],
@@ -17,12 +17,12 @@ impl Paper {
     }
 }
 
-/// Units of the paper, to a tenth.
+/// Formats paper units to a tenth.
 fn unit(value: f64) -> String {
     format!("{value:.1}")
 }
 
-/// A drawing so high, described in words for those who can't see it.
+/// Wraps the content into a drawing of this height, with a description for screen readers.
 pub(super) fn drawing(height: f64, words: &str, content: Markup) -> Markup {
     html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {}", unit(height))) role="img"
@@ -37,17 +37,17 @@ pub(super) fn line(from: [f64; 2], to: [f64; 2]) -> Markup {
     html! { line x1=(unit(from[0])) y1=(unit(from[1])) x2=(unit(to[0])) y2=(unit(to[1])) {} }
 }
 
-/// A thin line that leads to a word, or shows a measure.
+/// Draws a thin line, as a leader or a dimension.
 pub(super) fn thin(from: [f64; 2], to: [f64; 2]) -> Markup {
     html! { g stroke="#555" stroke-width="0.6" { (line(from, to)) } }
 }
 
-/// Of an axis of revolution.
+/// Draws the centre line of an axis of revolution.
 pub(super) fn centre_line(from: [f64; 2], to: [f64; 2]) -> Markup {
     html! { g stroke="#555" stroke-width="0.8" stroke-dasharray="12 3 2 3" { (line(from, to)) } }
 }
 
-/// A tool, or the way it comes: an arrow whose tip is at `to`.
+/// Draws a tool or its path as an arrow whose tip is at `to`.
 pub(super) fn arrow(from: [f64; 2], to: [f64; 2]) -> Markup {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
     let long = (dx * dx + dy * dy).sqrt().max(1e-9);
@@ -86,7 +86,7 @@ pub(super) fn text(at: [f64; 2], anchor: Anchor, words: &str) -> Markup {
     html! { text x=(unit(at[0])) y=(unit(at[1])) text-anchor=(anchor) fill="#111" stroke="none" { (words) } }
 }
 
-/// The sign for the zero of the work: a circle with two black quarters.
+/// Draws the symbol of the work zero: a circle with two black quarters.
 pub(super) fn zero_sign([x, y]: [f64; 2]) -> Markup {
     let quarters = format!(
         "M{x} {y}L{x} {}A8 8 0 0 1 {} {y}ZM{x} {y}L{x} {}A8 8 0 0 1 {} {y}Z",

@@ -1,11 +1,11 @@
-//! The end of the sheet: what nobody has checked, and lines to sign.
+//! The end of the sheet: unchecked aspects, and lines for signatures.
 use maud::{Markup, html};
 
 use super::table;
 use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
 
-/// What no simulation here looks at, whatever the part.
+/// Aspects that no simulation here covers, for any part.
 const NEVER: &[&str] = &[
     "the machine's own errors: positioning, run-out of the rotary axis, accuracy of the head setting",
     "chips, clamps, fixtures, the tool's shank and holder, the machine's travel: only the tool against the part's surface is simulated",

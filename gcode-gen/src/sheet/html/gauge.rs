@@ -1,4 +1,4 @@
-//! The gauge blocks under the sine table, from the thickest to the thinnest; only a part that is set up has them.
+//! The gauge blocks under the sine table, thickest first; for alignment jobs only.
 use gcode_lang::units::{Deg, Mm};
 use gcode_part::gauge;
 use gcode_part::job::Job;
@@ -8,7 +8,7 @@ use maud::{Markup, html};
 use super::{cell, table};
 use crate::sheet::Sheet;
 
-/// Which way the part turns when the blocks get higher.
+/// Returns the sentence on the part's direction of rotation when the blocks get higher.
 fn sense(sign: i8) -> &'static str {
     if sign < 0 {
         "Direction: higher blocks rotate the part back, from Y towards X (sine_table.sign -1). A tilt #583 \
@@ -54,7 +54,7 @@ pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
 mod tests {
     use super::*;
 
-    /// U·#583 is taken off φ: with the sign −1 a tilt above 0 makes it larger, and the blocks higher.
+    /// U·#583 is subtracted from φ: with the sign −1 a tilt above 0 makes it larger, and the blocks higher.
     #[test]
     fn the_sense_of_the_table_is_that_of_its_sign() {
         assert!(sense(1).contains(

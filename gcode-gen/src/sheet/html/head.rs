@@ -1,4 +1,4 @@
-//! The head of the sheet: what part, on what machine, which programs, and what the simulation says of them.
+//! The head of the sheet: part, machine, programs, and the verdict of the simulation.
 use gcode_sim::report::encode::sha256;
 use gcode_sim::report::figures::{count, rounded};
 use maud::{Markup, html};
@@ -78,14 +78,14 @@ pub(super) fn programs(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// In two halves, that a narrow column breaks between.
+/// Writes the digest in two halves, with a break opportunity between them.
 fn digest(text: &str) -> Markup {
     let digits = sha256(text.as_bytes());
     let (one, other) = digits.split_at(digits.len() / 2);
     html! { span.mono.digest { (one) wbr; (other) } }
 }
 
-/// A program's first comment; what the machine file is for.
+/// Returns a program's first comment, or the purpose of the machine file.
 fn title(text: &str) -> &str {
     let line = text.lines().find(|line| line.starts_with('O')).unwrap_or("");
     let comment = line.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));

@@ -1,4 +1,4 @@
-//! What to measure: requirements, room for results, and beside them what the simulation says.
+//! The inspection form: requirements, empty columns for results, and the predictions.
 use gcode_inspect::verify::{HoleVerdict, Verdict};
 use gcode_sim::report::encode::base64;
 use gcode_sim::report::figures::{rounded, signed, signed_to};
@@ -9,7 +9,7 @@ use crate::check::PackageVerdict;
 use crate::sheet::measure::{LISTED, characteristics};
 use crate::sheet::{BASIS, Sheet};
 
-/// In the manner of form 3 of AS9102: requirements are filled in, results are the inspector's.
+/// Builds the form after AS9102, form 3: requirements are filled in, results are the inspector's.
 pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
     let all = characteristics(sheet.job, &sheet.checked.verdict);
     html! {
@@ -41,7 +41,7 @@ pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// Nominal and predicted places; of many holes the worst ones.
+/// Returns nominal and predicted positions; of many holes the worst ones.
 pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
     let PackageVerdict::Holes(verdict) = &sheet.checked.verdict else { return html! {} };
     let shown = shown(verdict);
@@ -91,7 +91,7 @@ fn shown(verdict: &Verdict) -> Vec<&HoleVerdict> {
     all
 }
 
-/// The part as the simulated program makes it.
+/// Returns the pictures of the part as the simulated program makes it.
 pub(super) fn pictures(sheet: &Sheet<'_>) -> Markup {
     if sheet.pictures.is_empty() {
         return html! {};

@@ -1,4 +1,4 @@
-//! What stands in the machine: the tools, the head's angles in their order, the settings of the control.
+//! Set-up of the machine: the tools, the sequence of head angles, the control settings.
 use gcode_inspect::verify::Verdict;
 use gcode_lang::units::Deg;
 use gcode_part::job::{HeadKind, Job, PinHoles};
@@ -100,7 +100,7 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// The order in which the head is set, and the holes made with each setting; only pin holes have it.
+/// Returns the sequence of head settings with their holes, for pin holes only.
 pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
     let (Job::PinHoles(job), PackageVerdict::Holes(verdict)) = (sheet.job, &sheet.checked.verdict) else {
         return html! {};
@@ -129,7 +129,7 @@ pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
 
 struct Setting {
     tool: u32,
-    /// Of the holes as the simulation made them.
+    /// Angle of the holes in the simulation, degrees.
     angle: Option<f64>,
     radius: f64,
     holes: Vec<String>,
@@ -139,7 +139,7 @@ fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
     let angle = |id: &str| {
         let hole = verdict.holes.iter().find(|hole| hole.id == id)?;
         let [x, y, z] = hole.actual.axis;
-        // In the plane z = 0 to which the table brings it; rounded like the angle that was set.
+        // In the plane z = 0, to which the table rotates it; rounded like the angle that was set.
         let angle = Deg::atan2(y, (x * x + z * z).sqrt()).0;
         Some(job.control.increment.round(angle))
     };
@@ -157,7 +157,7 @@ fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
     all
 }
 
-/// What the control must be set to for the numbers of this sheet.
+/// Returns the control settings on which the numbers of this sheet depend.
 pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
     let [slide, turn] = sheet.record.rapids;
     let codes: Vec<String> = sheet.record.auxiliary_codes.iter().map(|code| format!("M{code:02}")).collect();
@@ -177,7 +177,7 @@ pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// The switches that the programs depend on.
+/// Returns the switches that the programs depend on.
 fn needed(sheet: &Sheet<'_>) -> Markup {
     let (needed, waiting) = (&sheet.required_settings, &sheet.record.alarmed_programs);
     html! {

@@ -1,4 +1,5 @@
-//! The sheet as HTML: self-contained, for paper (A4) and for screens. Every text from outside is escaped by the macro.
+//! The sheet as HTML: self-contained, for paper (A4) and for screens. The macro escapes every text from
+//! outside.
 mod alignment;
 mod drawing;
 mod end;
@@ -68,7 +69,7 @@ fn sections(sheet: &Sheet<'_>) -> Markup {
         (inspection::form(sheet))
         (inspection::holes(sheet))
         (inspection::pictures(sheet))
-        // On paper whoever signs has the page's other half to read.
+        // On paper, the rest of the page is next to the signatures.
         div.together {
             (time::time(sheet))
             (end::unknown(sheet))
@@ -77,7 +78,8 @@ fn sections(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// A table that a narrow screen shows row by row, each cell with its column's name; columns named with a leading `#` hold figures.
+/// Builds a table that a narrow screen shows row by row, each cell with its column's name; columns with a
+/// leading `#` hold figures.
 fn table(columns: &[&str], rows: impl IntoIterator<Item = Vec<Markup>>) -> Markup {
     html! {
         div.wide {
@@ -107,22 +109,22 @@ fn table(columns: &[&str], rows: impl IntoIterator<Item = Vec<Markup>>) -> Marku
     }
 }
 
-/// A cell of plain text.
+/// Returns a cell of plain text.
 fn cell(text: impl AsRef<str>) -> Markup {
     html! { (text.as_ref()) }
 }
 
-/// Room to write by hand.
+/// Returns blank space for handwriting.
 fn blank() -> Markup {
     html! { span.blank {} }
 }
 
-/// The main programs: `O8100`.
+/// Returns the main programs: `O8100`.
 fn mains(sheet: &Sheet<'_>) -> String {
     sheet.package.mains.iter().map(|main| stem(*main)).collect::<Vec<_>>().join(", ")
 }
 
-/// What kind of part it is, as a heading has it.
+/// Returns the kind of part, for a heading.
 fn kind(job: &Job) -> &'static str {
     match job {
         Job::PinHoles(_) => "pin holes on an ellipsoid of revolution",

@@ -1,4 +1,4 @@
-//! The operator's stops in their order: what the control shows, what to do, a box to tick.
+//! The operator stops in order: message, actions, a box to tick.
 use gcode_part::job::Job;
 use gcode_sim::report::figures::{count, rounded};
 use maud::{Markup, html};
@@ -39,7 +39,7 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// Of a part to be set up: each program needs what those before it have put right.
+/// Returns the sequence of the alignment programs: each needs the corrections of those before it.
 fn order_of_the_work() -> Markup {
     html! {
         p {
@@ -55,7 +55,7 @@ fn order_of_the_work() -> Markup {
     }
 }
 
-/// Programs that couldn't be followed to their ends.
+/// Returns a note on programs that could not be simulated to their ends.
 fn unknown(waiting: &[String]) -> Markup {
     html! {
         @if !waiting.is_empty() {
@@ -66,7 +66,7 @@ fn unknown(waiting: &[String]) -> Markup {
     }
 }
 
-/// The message as the control shows it, and where the program stands.
+/// Returns the message as the control shows it, and its block and calls.
 fn shown(stop: &OperatorStop) -> Markup {
     let at =
         stop.locations.iter().map(|(program, line)| format!("{program} line {line}")).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! Run time, and where rates are given the cost, beside the same part on other machines.
+//! Running time and, with rates, the cost, compared with other machines.
 use gcode_sim::report::figures::{rounded, short, signed_to};
 use maud::{Markup, html};
 
@@ -39,7 +39,7 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
     }
 }
 
-/// `6 × 10`, or that nobody said.
+/// Returns `60.0 (6 × 10)`, or that the time is not given.
 fn times(count: usize, each: Option<f64>, all: Option<f64>) -> String {
     match (count, each, all) {
         (0, ..) => "none".to_owned(),
@@ -87,7 +87,7 @@ fn cost_table(all: &[Cost], currency: &str) -> Markup {
     table(&columns.iter().map(String::as_str).collect::<Vec<_>>(), rows)
 }
 
-/// One sentence with the difference.
+/// Returns one sentence with the difference.
 fn beside(own: &Cost, other: &Cost) -> Markup {
     html! {
         p {
@@ -119,7 +119,7 @@ fn uncounted(own: &MachineTime) -> Markup {
     html! {
         @if !keys.is_empty() {
             p.note {
-                "Not counted, because the job's section " code { "[sheet]" } " doesn't say it: " (keys.join(", ")) "."
+                "Not counted, because the job's section " code { "[sheet]" } " does not give it: " (keys.join(", ")) "."
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Where the zero is: a picture of each family, and the offsets and signs in words.
+//! The work zero: a drawing for each family, and the offsets and signs in words.
 use gcode_inspect::verify::Verdict;
 use gcode_part::Flutes;
 use gcode_part::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
@@ -63,7 +63,7 @@ fn length(one: f64, other: f64) -> f64 {
     (one * one + other * other).sqrt()
 }
 
-/// The tool at every angle of the head.
+/// Draws the section with the tool at every angle of the head.
 fn of_pin_holes(job: &PinHoles, verdict: &Verdict) -> Markup {
     let mut tools: Vec<([f64; 4], String)> = Vec::new();
     for hole in &verdict.holes {
@@ -76,7 +76,7 @@ fn of_pin_holes(job: &PinHoles, verdict: &Verdict) -> Markup {
     section(job.surface, job.machine.rotary.letter, tools)
 }
 
-/// Of a point of the surface in the plane z = 0: itself, and the direction out of the part.
+/// Returns a point of the surface in the plane z = 0 and the direction out of the part: x, y, across, up.
 pub(super) fn on_surface(surface: Surface, x: f64) -> [f64; 4] {
     let (a, b) = (surface.a, surface.b);
     let y = b * (1.0 - (x / a) * (x / a)).sqrt();
@@ -132,7 +132,7 @@ fn of_alignment(job: &Alignment) -> Markup {
     section(job.surface, job.machine.rotary.letter, ends.into())
 }
 
-/// The section z = 0: the ellipse, and arrows to some of its points, from the direction that goes out there.
+/// Draws the section z = 0: the ellipse, and arrows along the outward directions at some of its points.
 fn section(surface: Surface, rotary: char, mut tools: Vec<([f64; 4], String)>) -> Markup {
     let (a, b) = (surface.a, surface.b);
     let scale = (150.0 / a).min(220.0 / b);
@@ -144,7 +144,7 @@ fn section(surface: Surface, rotary: char, mut tools: Vec<([f64; 4], String)>) -
         format!("M{:.1} {:.1}A{wide:.1} {high:.1} 0 0 1 {:.1} {:.1}", left[0], left[1], right[0], right[1]);
     let zero = paper.at(0.0, 0.0);
     let column = right[0] + 60.0;
-    // From the top down, each label below the one before.
+    // From the top down, each label below the previous one.
     tools.sort_by(|(one, _), (other, _)| other[1].total_cmp(&one[1]));
     let more = tools.len().saturating_sub(8);
     tools.truncate(8);
@@ -201,7 +201,7 @@ fn honeycomb(job: &Honeycomb) -> Vec<String> {
     all
 }
 
-/// From the side, the drill from above; and seen along the axis.
+/// Draws the cylinder from the side, with the drill above it, and along its axis.
 fn of_honeycomb(job: &Honeycomb) -> Markup {
     let (length, outer, bore) = (job.cylinder.length, job.cylinder.outer, job.cylinder.bore);
     let scale = (180.0 / length).min(120.0 / outer);
@@ -261,7 +261,7 @@ fn burr(job: &Burr) -> Vec<String> {
     ]
 }
 
-/// The burr at C0, X0 and Y0, the wheel touching it.
+/// Draws the burr at C0 X0 Y0 with the wheel in contact.
 fn of_burr(job: &Burr) -> Markup {
     let flutes = Flutes::from_job(job);
     let (radius, pole, start) = (flutes.profile.radius(), flutes.profile.pole(), flutes.start);

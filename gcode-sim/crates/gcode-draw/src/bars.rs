@@ -1,4 +1,4 @@
-//! Bars below one another, each with its name and its number.
+//! Bar charts: horizontal bars below one another, each with its name and its value.
 use super::font::Font;
 use super::ink::{Align, DrawCommand, Rect, px};
 use super::palette;
@@ -8,35 +8,40 @@ use super::size::Size;
 use super::words::Words;
 use super::{PictureError, paint, png};
 
-/// A picture of bars.
+/// A bar chart with a title and notes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bars {
+    /// Title above the bars.
     pub title: String,
     /// Lines below the title.
     pub notes: Vec<String>,
-    /// Those that find no room are left out from the end, and counted.
+    /// Bars from top to bottom; the last ones are omitted and counted in a note if the page is too short.
     pub bars: Vec<Bar>,
 }
 
+/// One bar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
+    /// Text to the left of the bar.
     pub name: String,
-    /// 0 to 1.
+    /// Relative length, 0 to 1; the longest bar fills the width.
     pub length: f64,
+    /// Text to the right of the bar.
     pub text: String,
 }
 
 impl Bars {
-    /// As a PNG file of exactly this size.
+    /// Draws the chart as a PNG file of exactly this size.
     ///
     /// # Errors
-    /// What the encoder has to say.
+    /// [`PictureError::Encode`] if the PNG encoder fails.
     pub fn draw(&self, size: Size) -> Result<Vec<u8>, PictureError> {
         png(&paint(&self.lay_out(size)))
     }
 
-    /// The names stand on the left, the bars begin behind the longest of them, and the longest bar leaves room for its text.
-    pub fn lay_out(&self, size: Size) -> Sheet {
+    /// Places names at the left, bars behind the longest name, and leaves room for the longest value at the
+    /// right.
+    fn lay_out(&self, size: Size) -> Sheet {
         let font = Font::embedded();
         let text = size.text();
         let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height())).grown(-2.0 * text);

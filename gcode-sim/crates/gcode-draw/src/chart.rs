@@ -1,4 +1,4 @@
-//! Curves over a way: graphs one above the other over the same way, with numbers at round places, bands and signs.
+//! Charts: graphs above one another over a common abscissa, with ticks, tolerance bands and markers.
 use super::ink::{Align, Dash, DrawCommand, Px, Rect, Rgb, px};
 use super::obstacle::Obstacle;
 use super::palette;
@@ -7,51 +7,58 @@ use super::symbol;
 use super::ticks::Ticks;
 use super::words::Words;
 
-/// Graphs over one way.
+/// Graphs over a common abscissa, usually a distance in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
-    /// What is counted to the right, with its unit.
+    /// Name of the abscissa, with its unit.
     pub x_label: String,
-    /// Upright lines at places of the way, with their names.
+    /// Vertical guide lines: abscissa and caption.
     pub guides: Vec<(f64, String)>,
-    /// From where to where nothing is known, marked as such.
+    /// Intervals of the abscissa without data, marked as such.
     pub gaps: Vec<[f64; 2]>,
-    /// From above down.
+    /// Graphs from top to bottom.
     pub graphs: Vec<Graph>,
 }
 
-/// What is counted upwards over the way.
+/// One graph: curves, tolerance band and markers over the chart's abscissa.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Graph {
-    /// With its unit.
+    /// Name of the ordinate, with its unit.
     pub y_label: String,
+    /// Curves, the later ones on top.
     pub curves: Vec<Curve>,
-    /// What is allowed: way, least, greatest.
+    /// Tolerance band: abscissa, lower limit, upper limit.
     pub band: Vec<[f64; 3]>,
-    /// Zero has a line of its own and is never left out.
+    /// Whether zero is in range and has a line of its own.
     pub has_zero_line: bool,
+    /// Markers with a name.
     pub markers: Vec<ChartMarker>,
 }
 
-/// A line of a graph.
+/// A polyline of a graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
+    /// Abscissa and ordinate, in the units of the axes.
     pub points: Vec<Point>,
+    /// Line style.
     pub pen: Pen,
-    /// Drawn as far as the graph reaches that the others need.
+    /// Whether the curve is left out of the graph's range and clipped to it.
     pub is_clipped: bool,
 }
 
-/// A place of a graph to look at, with what it is.
+/// A named marker in a graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChartMarker {
+    /// Abscissa and ordinate of the marker.
     pub position: Point,
+    /// Status that selects the symbol.
     pub status: HoleStatus,
+    /// Text beside the symbol.
     pub name: String,
 }
 
 impl Chart {
-    /// Into an area of the page.
+    /// Draws the graphs into an area of the page.
     pub(super) fn draw(&self, area: Rect, words: &mut Words<'_>) {
         let (text, soft) = (words.text_size, palette::SOFT_TEXT);
         let count = self.graphs.len().max(1) as f64;
@@ -100,7 +107,7 @@ impl Chart {
 }
 
 impl Chart {
-    /// Between two upright lines a thick one at zero.
+    /// Draws two vertical lines for each gap and a thick line at zero between them.
     fn draw_gaps(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
         let (text, frame) = (words.text_size, place.frame);
         let color = palette::status_colour(HoleStatus::Bad);
@@ -117,7 +124,7 @@ impl Chart {
     }
 }
 
-/// Where a graph stands on the sheet.
+/// The frame of one graph on the sheet, with its scales.
 struct ChartArea<'c> {
     frame: Rect,
     x: &'c dyn Fn(f64) -> f64,
@@ -130,7 +137,7 @@ impl ChartArea<'_> {
         px((self.x)(x), self.frame.bottom - self.frame.height() * (y - low) / (high - low))
     }
 
-    /// A level line from side to side.
+    /// Returns a horizontal line across the frame.
     fn level(&self, at: f64, pen: (Rgb, f64, Dash)) -> DrawCommand {
         let y = self.px([0.0, at]).y;
         stroke(vec![px(self.frame.left, y), px(self.frame.right, y)], pen)
@@ -174,7 +181,7 @@ impl Graph {
         }
     }
 
-    /// Writes what a sign stands for where no curve runs: beside it, else above or below.
+    /// Writes a marker's name where no curve runs: beside the symbol, else above or below it.
     fn name(&self, sign: &ChartMarker, at: Px, place: &ChartArea<'_>, words: &mut Words<'_>) {
         let text = words.text_size;
         let beside = [(Align::Left, 0.8), (Align::Right, -0.8)];
@@ -197,7 +204,7 @@ fn stroke(points: Vec<Px>, (color, width, dash): (Rgb, f64, Dash)) -> DrawComman
     DrawCommand::Line { points, closed: false, width: width.max(1.0), dash, color }
 }
 
-/// The pieces of a curve from `low` to `high`.
+/// Returns the pieces of a curve between the ordinates `low` and `high`.
 fn between(points: &[Point], low: f64, high: f64) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     for pair in points.windows(2) {
@@ -227,7 +234,7 @@ fn between(points: &[Point], low: f64, high: f64) -> Vec<Vec<Point>> {
     pieces
 }
 
-/// From where to where a graph reaches, and the numbers beside it.
+/// Range of a graph's ordinate and its ticks.
 struct Range {
     low: f64,
     high: f64,
@@ -248,7 +255,7 @@ impl Range {
     }
 }
 
-/// The least and the greatest value; where they are as good as one, `least` apart.
+/// Returns the least and the greatest value; values closer together than `least` give a range of that width.
 fn spread(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
     let reach = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), reach);
@@ -263,7 +270,7 @@ fn spread(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Up from 0 to 4 and down again, seen between 1 and 3: two pieces, cut where the line is at 1 and at 3.
+    /// A curve from 0 up to 4 and down again, clipped to 1 to 3, gives two pieces that end on the limits.
     #[test]
     fn a_curve_is_cut_where_it_leaves_its_graph() {
         let roof = [[0.0, 0.0], [4.0, 4.0], [8.0, 0.0]];

@@ -1,35 +1,36 @@
-//! Holds two pictures against each other and makes a third that shows where they differ.
+//! Compares two pictures and marks the differences in a third.
 use image::{ImageFormat, Rgb, RgbImage};
 
 use super::PictureError;
 use super::raster;
 
-/// What differs between two pictures.
+/// Differences between two pictures.
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// Pixels that differ by more than the tolerance in a channel; where the sizes differ, also all that only one has.
+    /// Number of pixels that differ by more than the tolerance in a channel; pixels in one picture alone
+    /// count too.
     pub pixels: u64,
-    /// The largest difference of a channel.
+    /// Largest difference of a channel.
     pub largest: u8,
-    /// Left, top, right, bottom of what differs, pixels, both ends included.
+    /// Left, top, right, bottom of the differing area, pixels, inclusive; `None` without a difference.
     pub bounds: Option<[u32; 4]>,
     /// Width and height of both pictures.
     pub sizes: [(u32, u32); 2],
-    /// The first picture faded. Where they differ, what is darker in the first is blue, what is darker in the second
-    /// is vermilion; a frame goes round it.
-    pub picture: RgbImage,
+    /// The first picture, faded. A differing pixel is blue if it is darker in the first picture and vermilion
+    /// if it is darker in the second; a frame encloses the differences.
+    pub(super) picture: RgbImage,
 }
 
 impl Difference {
-    /// Nothing differs, the size neither.
+    /// Returns true if no pixel differs and the sizes are equal.
     pub fn is_none(&self) -> bool {
         self.pixels == 0 && self.sizes[0] == self.sizes[1]
     }
 
-    /// The marked picture as a PNG file.
+    /// Encodes the marked picture as a PNG file.
     ///
     /// # Errors
-    /// What the encoder has to say.
+    /// [`PictureError::Encode`] if the PNG encoder fails.
     pub fn png(&self) -> Result<Vec<u8>, PictureError> {
         raster::encode(self.picture.as_raw(), self.picture.width(), self.picture.height())
     }
@@ -43,7 +44,7 @@ const FRAME: Rgb<u8> = Rgb([204, 121, 167]);
 /// Compares two PNG files pixel by pixel; channels that differ by at most `tolerance` are equal.
 ///
 /// # Errors
-/// Bytes that are no PNG; the message names the first or the second picture.
+/// [`PictureError::Decode`] if a file is not a PNG; the message names the first or the second file.
 pub fn compare(first: &[u8], second: &[u8], tolerance: u8) -> Result<Difference, PictureError> {
     let (a, b) = (decode("the first file", first)?, decode("the second file", second)?);
     let (width, height) = (a.width().max(b.width()), a.height().max(b.height()));
@@ -78,7 +79,7 @@ pub fn compare(first: &[u8], second: &[u8], tolerance: u8) -> Result<Difference,
     Ok(Difference { pixels, largest, bounds, sizes, picture })
 }
 
-/// How dark a pixel is; paper that isn't there counts as paper.
+/// Returns the darkness of a pixel; a pixel outside the picture counts as paper.
 fn darkness(pixel: Option<&Rgb<u8>>) -> u32 {
     pixel.map_or(0, |p| p.0.iter().map(|v| u32::from(u8::MAX - v)).sum())
 }
@@ -89,7 +90,7 @@ fn decode(which: &str, bytes: &[u8]) -> Result<RgbImage, PictureError> {
         .map_err(|error| PictureError::Decode { which: which.to_owned(), reason: error.to_string() })
 }
 
-/// A line of two pixels, three pixels off what differs, as far as the picture reaches.
+/// Draws a frame of two pixels, three pixels outside the differing area, clipped to the picture.
 fn frame(picture: &mut RgbImage, [left, top, right, bottom]: [u32; 4]) {
     for off in [3, 4] {
         let (l, t, r, b) = (left.checked_sub(off), top.checked_sub(off), right + off, bottom + off);

@@ -1,4 +1,4 @@
-//! How much can be shown of each hole: where there is room for a dial with the misfit, how large, how enlarged.
+//! Level of detail per hole: which holes have a dial with their deviation, its size and its magnification.
 use nalgebra::Point3;
 
 use super::frame::{Frame, LABEL_LIMIT};
@@ -8,10 +8,10 @@ use super::role::HoleStatus;
 use super::scene::{Mark, Scene};
 use gcode_part::PointTree;
 
-/// Nearer than this, in heights of a line, one sign would cover another: that of a surplus hole moves aside.
+/// Distance in text heights below which two symbols overlap; the symbol of an extra hole then moves aside.
 pub(super) const MIN_SIGN_DISTANCE: f64 = 0.8;
 
-/// How much is drawn of the holes, tried in this order until every hole has its number.
+/// Level of detail, tried in this order until every hole has its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
     AllDeviations,
@@ -34,10 +34,10 @@ impl Detail {
     }
 }
 
-/// Where misfits are shown on this sheet, and how large.
+/// The dials of one sheet: which holes have one, and how large.
 #[derive(Clone, Debug)]
 pub(super) struct DeviationDials {
-    /// Times enlarged and radius of the zone's circle in pixels.
+    /// Magnification, and radius of the tolerance zone's circle in pixels.
     pub(super) zone_circle: Option<(f64, f64)>,
     /// Whether a hole has a dial.
     has_dial: Vec<bool>,
@@ -49,7 +49,8 @@ pub(super) struct DeviationDials {
 }
 
 impl DeviationDials {
-    /// As large as the distances of three in four holes allow, but legible; a hole closer to a neighbour has none.
+    /// Chooses the size from the spacing of three quarters of the holes; a hole closer to a neighbour has no
+    /// dial.
     pub(super) fn choose(scene: &Scene, frame: &Frame, detail: Detail) -> Self {
         let gaps = gaps(scene, frame);
         let wanted: Vec<bool> = scene.marks.iter().map(|mark| detail.shows_deviation(mark)).collect();
@@ -64,45 +65,45 @@ impl DeviationDials {
         let radius = shown.map_or(f64::INFINITY, |(_, radius)| radius);
         let has: Vec<bool> = wanted.iter().zip(&gaps).map(|(w, gap)| *w && 2.0 * radius <= *gap).collect();
         let many = LABEL_LIMIT < scene.marks.len();
-        // Where hundreds aren't good, none of them stands out any more, and what counts is where they lie.
+        // Among hundreds of bad holes none stands out, and their positions matter more.
         let dense = LABEL_LIMIT < scene.marks.iter().filter(|mark| !mark.status.is_good()).count();
         let dots = scene.marks.iter().map(|mark| many && (dense || mark.status.is_good())).collect();
         Self { zone_circle: shown, has_dial: has, gaps, can_be_dot: dots, detail }
     }
 
-    /// Times enlarged and radius of the circle, for a hole that has a dial.
+    /// Returns magnification and circle radius for a hole that has a dial.
     pub(super) fn dial(&self, index: usize) -> Option<(f64, f64)> {
         self.zone_circle.filter(|_| self.has_dial[index])
     }
 
-    /// Times enlarged, if any misfit is drawn.
+    /// Returns the magnification if any deviation is drawn.
     pub(super) fn magnification(&self) -> Option<f64> {
         self.zone_circle.filter(|_| self.has_dial.contains(&true)).map(|(times, _)| times)
     }
 
-    /// Radius of a hole's sign: as large as its neighbours allow, but legible. Among thousands a good hole may be a
-    /// mere dot, so that those that aren't good stand out.
+    /// Returns the radius of a hole's symbol: as large as its neighbours allow, but legible. Among hundreds a
+    /// good hole may be a mere dot, so that bad holes stand out.
     pub(super) fn badge(&self, index: usize, text: f64) -> f64 {
         let least = if self.can_be_dot[index] { 1.2 } else { 0.28 * text };
         (0.36 * self.gaps[index]).min(0.55 * text).max(least)
     }
 
-    /// Whether the hole is one of so many that its sign may shrink to a dot in its very place.
+    /// Returns true if the hole's symbol may shrink to a dot at its exact position.
     pub(super) fn is_dot(&self, index: usize) -> bool {
         self.can_be_dot[index]
     }
 
-    /// Whether holes of such standings are drawn as they are, without a sign.
+    /// Returns true if holes whose status satisfies `of` are drawn to scale, without a symbol.
     pub(super) fn has_plain(&self, scene: &Scene, of: impl Fn(HoleStatus) -> bool) -> bool {
         self.can_be_dot.iter().zip(&scene.marks).any(|(dot, mark)| *dot && of(mark.status))
     }
 
-    /// Signs that lie on each other: a label beside them could belong to either.
+    /// Returns true if the symbol overlaps another: a label beside them could belong to either.
     pub(super) fn is_crowded(&self, index: usize, text: f64) -> bool {
         self.gaps[index] < 2.0 * self.badge(index, text)
     }
 
-    /// What is left out.
+    /// Returns a note that counts the omitted deviations.
     pub(super) fn note(&self, scene: &Scene) -> Option<String> {
         let known = scene.marks.iter().filter(|m| m.deviation.is_some() && scene.zone.is_some()).count();
         match known - self.has_dial.iter().filter(|has| **has).count() {
@@ -113,8 +114,8 @@ impl DeviationDials {
     }
 }
 
-/// The distance from each hole to its nearest neighbour, pixels. A surplus hole in the place of another doesn't count:
-/// its sign moves aside.
+/// Returns the distance from each hole to its nearest neighbour, pixels. An extra hole at the position of
+/// another does not count: its symbol moves aside.
 fn gaps(scene: &Scene, frame: &Frame) -> Vec<f64> {
     let places: Vec<Px> = scene.marks.iter().map(|mark| frame.scale.px(mark.position)).collect();
     let flat = |place: &Px| Point3::new(place.x, place.y, 0.0);
@@ -151,7 +152,7 @@ mod tests {
         }
     }
 
-    /// 1 px a mm, text of 10 px.
+    /// 1 px per mm, text of 10 px.
     fn frame() -> Frame {
         let scale = Scale::fitting(([0.0, 0.0], [100.0, 100.0]), Rect::new(0.0, 0.0, 100.0, 100.0));
         Frame { font: Font::embedded(), text_size: 10.0, scale, largest_dial: 25.0, axis_reach: 20.0 }
@@ -162,7 +163,7 @@ mod tests {
         let marks = vec![mark([0.0, 0.0], HoleStatus::Good), mark([50.0, 0.0], HoleStatus::Good)];
         let scene = Scene { marks, zone: Some(0.1), ..Scene::default() };
         let dials = DeviationDials::choose(&scene, &frame(), Detail::AllDeviations);
-        // 0.42 of 50 px are 21 px; the zone's radius is 0.05 px: 420 times at most.
+        // 0.42 of 50 px is 21 px; the zone's radius is 0.05 px: at most 420 times.
         assert_eq!(dials.magnification().map(|m| m.round()), Some(400.0));
         assert_eq!(dials.note(&scene), None);
     }

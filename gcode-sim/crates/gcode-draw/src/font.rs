@@ -1,9 +1,9 @@
-//! The embedded font (DejaVu Sans, a subset; licence in `assets/`): how wide a text is, and its pixels.
+//! The embedded font (DejaVu Sans, a subset; licence in `assets/`): text widths and glyph coverage.
 use ab_glyph::{Font as _, FontRef, Glyph, PxScale, ScaleFont, point};
 
 use super::ink::Px;
 
-/// Latin, Greek and the signs a drawing needs. A character it lacks is shown as a box.
+/// Latin, Greek and drawing symbols. A missing character is shown as a box.
 static TTF: &[u8] = include_bytes!("../assets/DejaVuSans-subset.ttf");
 
 /// Heights in parts of the em, for placing lines of text.
@@ -17,13 +17,13 @@ impl Font {
         Self(FontRef::try_from_slice(TTF).expect("the embedded font is a font: every picture test reads it"))
     }
 
-    /// Width in pixels at an em of `size` pixels.
+    /// Returns the width in pixels at an em of `size` pixels.
     pub(super) fn width(&self, text: &str, size: f64) -> f64 {
         let font = self.0.as_scaled(self.scale(size));
         text.chars().map(|c| f64::from(font.h_advance(font.glyph_id(c)))).sum()
     }
 
-    /// `text`, or as much of its beginning as fits into `width` and an ellipsis.
+    /// Returns `text`, or the longest beginning that fits into `width` with an ellipsis.
     pub(super) fn fitted(&self, text: &str, size: f64, width: f64) -> String {
         if self.width(text, size) <= width {
             return text.to_owned();
@@ -39,8 +39,8 @@ impl Font {
         format!("{}…", short.trim_end())
     }
 
-    /// Lines of at most `width`, broken at spaces (not at no-break spaces); a word that is too long for a line of
-    /// its own is cut short, and so is the last line if there are more than `most`.
+    /// Breaks a text into lines of at most `width`, at spaces but not at no-break spaces. Words wider than a
+    /// line are cut short, and so is the last of more than `most` lines.
     pub(super) fn wrapped(&self, text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split(' ').filter(|word| !word.is_empty()) {

@@ -1,11 +1,12 @@
-//! What every step of the layout needs, and what the drawing turns out to show.
+//! Values shared by all layout steps, and the symbols that the legend has to explain.
 use super::font::Font;
 use super::measure::Scale;
 
-/// Beyond so many holes labels could not be told apart: the most important ones get theirs.
+/// Largest number of labelled holes: more labels could not be told apart, and the most important ones are
+/// kept.
 pub(super) const LABEL_LIMIT: usize = 400;
 
-/// What every step of the layout needs.
+/// Values shared by all layout steps.
 pub(super) struct Frame {
     pub(super) font: Font,
     /// Size of ordinary text, pixels.
@@ -13,24 +14,24 @@ pub(super) struct Frame {
     pub(super) scale: Scale,
     /// Radius in pixels beyond which a dial would hide the part.
     pub(super) largest_dial: f64,
-    /// How far the axes' arrows reach beyond the part, pixels.
+    /// Distance by which the axis arrows exceed the part, pixels.
     pub(super) axis_reach: f64,
 }
 
-/// Which signs the drawing really has, for the legend.
+/// Symbols that the drawing really contains, for the legend.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LegendUse {
     pub(super) magnification: Option<f64>,
     pub(super) directions: bool,
     pub(super) displacements: bool,
-    /// Good holes are drawn as they are, without a sign.
+    /// Whether good holes are drawn to scale, without a symbol.
     pub(super) has_plain_good: bool,
-    /// And those that aren't.
+    /// Whether bad holes are drawn to scale, without a symbol.
     pub(super) has_plain_rest: bool,
 }
 
 impl LegendUse {
-    /// No holes are drawn.
+    /// Use of a drawing without holes.
     pub(super) const NOTHING: Self = Self {
         magnification: None,
         directions: false,

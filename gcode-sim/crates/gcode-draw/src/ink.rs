@@ -1,13 +1,13 @@
-//! What a painter is asked for, in pixels from the picture's top left corner.
+//! Drawing commands in pixels from the picture's top left corner.
 
-/// A place on the sheet, pixels: to the right and down.
+/// A point of the sheet, pixels to the right and down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Px {
-    pub x: f64,
-    pub y: f64,
+pub(super) struct Px {
+    pub(super) x: f64,
+    pub(super) y: f64,
 }
 
-/// Shorthand for a place on the sheet.
+/// Builds a [`Px`].
 pub(super) const fn px(x: f64, y: f64) -> Px {
     Px { x, y }
 }
@@ -17,63 +17,67 @@ impl Px {
         libm::hypot(self.x - other.x, self.y - other.y)
     }
 
-    /// The place `length` pixels further in a direction.
+    /// Returns the point `length` pixels further in a direction.
     pub(super) fn toward(self, direction: [f64; 2], length: f64) -> Self {
         px(self.x + direction[0] * length, self.y + direction[1] * length)
     }
 }
 
-/// An upright rectangle, pixels.
+/// An axis-parallel rectangle, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rect {
+    /// Left edge.
     pub left: f64,
+    /// Top edge.
     pub top: f64,
+    /// Right edge.
     pub right: f64,
+    /// Bottom edge.
     pub bottom: f64,
 }
 
 impl Rect {
-    pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+    pub(super) fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
         Self { left, top, right: left + width, bottom: top + height }
     }
 
-    pub fn width(&self) -> f64 {
+    pub(super) fn width(&self) -> f64 {
         self.right - self.left
     }
 
-    pub fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         self.bottom - self.top
     }
 
-    pub fn centre(&self) -> Px {
+    pub(super) fn centre(&self) -> Px {
         px((self.left + self.right) / 2.0, (self.top + self.bottom) / 2.0)
     }
 
     #[must_use]
-    pub fn grown(&self, by: f64) -> Self {
+    pub(super) fn grown(&self, by: f64) -> Self {
         Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
     }
 
-    pub fn overlaps(&self, other: &Self) -> bool {
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
         self.left < other.right
             && other.left < self.right
             && self.top < other.bottom
             && other.top < self.bottom
     }
 
-    pub fn contains(&self, inner: &Self) -> bool {
+    pub(super) fn contains(&self, inner: &Self) -> bool {
         self.left <= inner.left
             && self.top <= inner.top
             && inner.right <= self.right
             && inner.bottom <= self.bottom
     }
 
-    /// The point of the rectangle that is nearest to `to`.
+    /// Returns the point of the rectangle that is nearest to `to`.
     pub(super) fn nearest(&self, to: Px) -> Px {
         px(to.x.clamp(self.left, self.right), to.y.clamp(self.top, self.bottom))
     }
 
-    /// How far its farthest corner is from `from`.
+    /// Returns the distance from `from` to the farthest corner.
     pub(super) fn farthest(&self, from: Px) -> f64 {
         let x = (from.x - self.left).abs().max((from.x - self.right).abs());
         let y = (from.y - self.top).abs().max((from.y - self.bottom).abs());
@@ -83,28 +87,29 @@ impl Rect {
 
 /// An opaque colour, sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rgb(pub u8, pub u8, pub u8);
+pub(super) struct Rgb(pub(super) u8, pub(super) u8, pub(super) u8);
 
+/// Dash pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Dash {
+pub(super) enum Dash {
     Solid,
-    /// Pixels on, pixels off, and so on.
+    /// Dash and gap, pixels.
     Pattern([f64; 2]),
-    /// Long, gap, short, gap: a centre line.
+    /// Centre line: long dash, gap, short dash, gap, in multiples of this length.
     Chain(f64),
 }
 
-/// Where a text stands against its place.
+/// Horizontal alignment of a text to its reference point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Align {
+pub(super) enum Align {
     Left,
     Centre,
     Right,
 }
 
-/// One thing to paint. Later ones cover earlier ones.
+/// One drawing command; later ones cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
-pub enum DrawCommand {
+pub(super) enum DrawCommand {
     Line {
         points: Vec<Px>,
         closed: bool,
@@ -128,7 +133,7 @@ pub enum DrawCommand {
         radius: f64,
         color: Rgb,
     },
-    /// `at` is on the base line; `size` is the em in pixels.
+    /// Text with `at` on the base line; `size` is the em in pixels.
     Text {
         at: Px,
         align: Align,

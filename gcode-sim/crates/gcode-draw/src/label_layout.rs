@@ -1,4 +1,4 @@
-//! Letters holes and lines: as many lines of every label as there is room for, and a note of what had none.
+//! Labels of holes and lines: as many lines of each label as fit, and notes on omitted ones.
 use super::font::{ASCENT, DESCENT};
 use super::frame::{Frame, LABEL_LIMIT};
 use super::ink::{Align, DrawCommand, Px, Rect, px};
@@ -12,17 +12,17 @@ use super::scene::{Mark, Scene, Shape, Stroke};
 use super::symbol;
 use gcode_lang::units::Deg;
 
-/// Height of a line of text in parts of its size.
+/// Line spacing in parts of the text size.
 const LEADING: f64 = 1.18;
 
 /// The labels of all holes, placed.
 pub(super) struct LabelLayout {
-    /// The field with the labels in it.
+    /// The label area with these labels in it.
     pub(super) field: LabelArea,
     labels: Vec<Label>,
 }
 
-/// Which hole, where, and how many lines of its label.
+/// A placed label: hole, position and number of lines shown.
 struct Label {
     mark: usize,
     placement: LabelPlacement,
@@ -30,8 +30,8 @@ struct Label {
 }
 
 impl LabelLayout {
-    /// As many lines for every good hole as all good holes have room for; the others get all they can, unless that
-    /// costs others their number.
+    /// Gives all good holes the same number of label lines, as many as fit. Bad holes get all their lines
+    /// unless that costs another hole its number.
     pub(super) fn of(scene: &Scene, drawn: &[DrawnMark], frame: &Frame, field: &LabelArea) -> Self {
         let mut order: Vec<usize> = (0..scene.marks.len()).collect();
         order.sort_by_key(|i| (scene.marks[*i].status, *i));
@@ -72,7 +72,7 @@ impl LabelLayout {
                 Symbol { position: hole.centre, clearance: hole.label_clearance, leader_rule: way },
                 frame,
             );
-            // What is wrong must be found again: its number may stand far off, on a line over other holes.
+            // A bad hole must be identifiable: its number may be far off, on a leader over other holes.
             let far = Symbol {
                 position: hole.centre,
                 clearance: hole.label_clearance,
@@ -100,7 +100,7 @@ impl LabelLayout {
         })
     }
 
-    /// How many holes that have a label are drawn without one.
+    /// Returns the number of holes whose label is omitted.
     pub(super) fn unlabelled(&self, scene: &Scene) -> usize {
         scene.marks.iter().filter(|m| !m.label.is_empty()).count() - self.labels.len()
     }
@@ -123,7 +123,7 @@ impl LabelLayout {
         labels
     }
 
-    /// What is left out.
+    /// Returns notes that count the omitted and the shortened labels.
     pub(super) fn notes(&self, scene: &Scene) -> Vec<String> {
         let mut notes = Vec::new();
         let without = self.unlabelled(scene);
@@ -140,9 +140,9 @@ impl LabelLayout {
     }
 }
 
-/// Radii and the like, on the lines that are `wanted`: somewhere round a circle, from the lower left on, on a straight
-/// line, at the end of a scale's tick, along a path or on a leader to its middle. Gives back those that found no room;
-/// a scale can do without some of its numbers.
+/// Captions the lines that are `wanted`, such as radii, and returns the captions without room. A circle's
+/// caption lies anywhere on it, from the lower left on; a straight line's on its middle; a scale's at the end
+/// of the tick; a path's on the path or on a leader to its middle. A scale may lose numbers without a note.
 pub(super) fn caption_strokes(
     scene: &Scene,
     wanted: impl Fn(&Stroke) -> bool,
@@ -163,7 +163,7 @@ pub(super) fn caption_strokes(
                 let angles = (0..48).map(|i| Deg(f64::from(i) * 7.5 + 225.0));
                 angles.map(|angle| centre.toward(symbol::direction(angle), radius)).collect()
             }
-            // A number on one of several paths covers none of the others: nobody should take it for theirs.
+            // The number of one path must not cover another path, to which a reader would assign it.
             Shape::Line(_) if is_path(stroke.pen) => {
                 let own = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke));
                 let mut places = own.into_iter().flat_map(|path| path.points.iter().copied());
@@ -178,7 +178,7 @@ pub(super) fn caption_strokes(
                 .windows(2)
                 .flat_map(|ends| {
                     let (from, to) = (frame.scale.px(ends[0]), frame.scale.px(ends[1]));
-                    // Beyond an upright tick it would stand between its neighbours.
+                    // Beyond a vertical tick the number would collide with its neighbours.
                     let is_level = stroke.pen == Pen::Scale && from.y == to.y;
                     let middle = px((from.x + to.x) / 2.0, (from.y + to.y) / 2.0);
                     [is_level.then(|| beyond(from, to, size)), Some(middle)]
@@ -213,19 +213,19 @@ pub(super) fn caption_strokes(
     left
 }
 
-/// The middle of a box that goes on where a level line ends.
+/// Returns the middle of a box that continues a horizontal line at its end.
 fn beyond(from: Px, to: Px, (width, _): (f64, f64)) -> Px {
     px(to.x + (width / 2.0).copysign(to.x - from.x), to.y)
 }
 
-/// A tool's path that has a number, and the rectangle round it: some of its points will do.
+/// A captioned tool path: a sample of its points and their bounding box.
 struct Path<'s> {
     stroke: &'s Stroke,
     points: Vec<Px>,
     bounds: Rect,
 }
 
-/// So many points of a path are looked at.
+/// Number of points sampled from a path.
 const POINTS: usize = 120;
 
 impl<'s> Path<'s> {
@@ -262,7 +262,7 @@ fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
     (widest + 0.3 * frame.text_size, height + 0.1 * frame.text_size)
 }
 
-/// The lines in a box that interrupts what is below it, as a dimension interrupts its line.
+/// Writes the lines in a box that interrupts the lines below it, as a dimension interrupts its line.
 fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<DrawCommand>) {
     let (rect, size, align) = (spot.rect, frame.text_size, spot.align);
     inks.push(DrawCommand::area(rect, palette::PAPER));
@@ -315,7 +315,7 @@ mod tests {
         assert!(3 <= ends, "{places:?}");
     }
 
-    /// The left one's number goes on to the left where the tick ends, the upper one's interrupts its tick.
+    /// The number of the left tick continues it to the left; the number of the upper tick interrupts it.
     #[test]
     fn a_scales_number_stands_beside_a_level_tick_and_on_an_upright_one() {
         let tick = |from: Point, to: Point, name: &'static str| (vec![from, to], Pen::Scale, name);

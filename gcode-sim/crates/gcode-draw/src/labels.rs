@@ -1,26 +1,26 @@
-//! Finds a free place for every label: near its symbol, else further away on a leader, else none at all.
+//! Finds a free position for every label: near its symbol, else farther away on a leader, else none.
 //!
-//! Greedy and deterministic: the most important label first, each at its cheapest free place. A label is only put
-//! where it covers nothing that is in the field, so two labels can never overlap.
+//! The search is greedy and deterministic: the most important label first, each at its cheapest free
+//! position. A label never covers anything in the area, so two labels never overlap.
 use super::ink::{Align, Px, Rect, px};
 use super::obstacle::Obstacle;
 use gcode_lang::units::Deg;
 
-/// What a label belongs to.
+/// The symbol that a label belongs to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Symbol {
     pub(super) position: Px,
-    /// Labels keep this far from it.
+    /// Least distance of labels from the centre, pixels.
     pub(super) clearance: f64,
     pub(super) leader_rule: LeaderRule,
 }
 
-/// What a leader may pass over.
+/// Obstacles that a leader may cross.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LeaderRule {
-    /// Nothing; it ends at the symbol's rim.
+    /// None; the leader ends at the symbol's rim.
     Clear,
-    /// The symbols of the crowd it starts in; it ends in the very place.
+    /// Symbols that overlap its own; the leader ends at the symbol's centre.
     OutOfCrowd,
     /// All symbols, but no label.
     ThroughAll,
@@ -48,30 +48,30 @@ impl Symbol {
     }
 }
 
-/// Where a label stands, and the line that leads to it.
+/// Position of a label, and its leader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LabelPlacement {
     pub(super) rect: Rect,
     pub(super) leader: Option<(Px, Px)>,
-    /// The side of the box that is towards the symbol: lines of unequal length keep to it.
+    /// Alignment of the text: lines of unequal length keep to the side towards the symbol.
     pub(super) align: Align,
 }
 
-/// The area for labels and what is already in it, sorted into cells so that asking stays cheap.
+/// The area for labels and its obstacles, sorted into cells for fast queries.
 #[derive(Clone)]
 pub(super) struct LabelArea {
     area: Rect,
     cell: f64,
     columns: usize,
     cells: Vec<Vec<Obstacle>>,
-    /// Lines that may be interrupted by a label where nothing better is found.
+    /// Lines that a label may interrupt if no better position is free.
     soft_obstacles: Vec<Obstacle>,
 }
 
 const DIRECTIONS: u32 = 24;
-/// Distances between symbol and label, in heights of a line; from the second on there is a leader.
+/// Distances between symbol and label in line heights; from the second on the label has a leader.
 const DISTANCES: [f64; 12] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5, 9.0, 12.0, 16.0, 21.0];
-/// A label whose leader may not pass over other symbols stays within so many distances.
+/// Number of distances tried for a label whose leader must not cross other symbols.
 const NEAR_DISTANCES: usize = 8;
 
 impl LabelArea {
@@ -81,7 +81,7 @@ impl LabelArea {
         Self { area, cell, columns, cells: vec![Vec::new(); columns * rows], soft_obstacles: Vec::new() }
     }
 
-    /// Nothing will be placed over it.
+    /// Adds an obstacle that no label may cover.
     pub(super) fn block(&mut self, obstacle: Obstacle) {
         let cells = self.touched_cells(&obstacle.bounds());
         for index in cells {
@@ -89,7 +89,7 @@ impl LabelArea {
         }
     }
 
-    /// Labels keep off it if they can.
+    /// Adds an obstacle that labels avoid if possible.
     pub(super) fn discourage(&mut self, obstacle: Obstacle) {
         self.soft_obstacles.push(obstacle);
     }
@@ -99,7 +99,8 @@ impl LabelArea {
             && self.touched_cells(rect).into_iter().all(|i| self.cells[i].iter().all(|o| !o.hits(rect)))
     }
 
-    /// Puts a label of this size beside a symbol and blocks its place; `line` is the height of a line of text.
+    /// Places a label of this size beside a symbol and blocks its position; `line` is the height of a text
+    /// line.
     pub(super) fn place(
         &mut self,
         symbol: Symbol,
@@ -112,7 +113,7 @@ impl LabelArea {
         let mut best: Option<(f64, LabelPlacement)> = None;
         for (step, distance) in DISTANCES.iter().take(reach).enumerate() {
             for turn in 0..DIRECTIONS {
-                // From the upper right, alternately to both sides: where a reader expects a number.
+                // The search starts at the upper right and alternates sides: readers expect a number there.
                 let side = if turn % 2 == 0 { 1.0 } else { -1.0 };
                 let off = f64::from(turn.div_ceil(2)) * side * 360.0 / f64::from(DIRECTIONS);
                 let angle = Deg(-30.0 + off);
@@ -157,7 +158,7 @@ impl LabelArea {
         Some(spot)
     }
 
-    /// Puts a label onto one of `middles`, the first that is free.
+    /// Centres a label on the first free point of `middles`.
     pub(super) fn place_on(
         &mut self,
         middles: impl IntoIterator<Item = Px>,
@@ -170,7 +171,7 @@ impl LabelArea {
         Some(LabelPlacement { rect, leader: None, align: Align::Centre })
     }
 
-    /// Whether a reader would take the label for another symbol's.
+    /// Returns true if a reader would assign the label to another symbol.
     fn is_nearer_to_another(&self, rect: &Rect, symbol: Symbol) -> bool {
         let own = rect.nearest(symbol.position).distance(symbol.position) - symbol.clearance;
         let cells = self.touched_cells(&rect.grown(1.5 * own.max(0.0)));
@@ -183,7 +184,7 @@ impl LabelArea {
         })
     }
 
-    /// Whether something lies in the leader's way.
+    /// Returns true if an obstacle lies across the leader.
     fn is_crossed(&self, (from, to): (Px, Px), symbol: Symbol) -> bool {
         let passable = |o: &Obstacle| match (symbol.leader_rule, *o) {
             (LeaderRule::Clear, _) | (_, Obstacle::Box(_) | Obstacle::Ring { .. }) => false,
@@ -246,7 +247,7 @@ mod tests {
         assert!(!Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 }.hits(&spot.rect));
         field.block(Obstacle::Disc { centre: px(100.0, 100.0), radius: 26.0 });
         let spot = field.place(symbol(100.0, 100.0, 10.0), (30.0, 12.0), 12.0);
-        // The leader itself would run through the disc that fills the surroundings.
+        // The leader itself would cross the disc that fills the surroundings.
         assert_eq!(spot, None);
     }
 

@@ -1,4 +1,4 @@
-//! The drawing's own lines: edges and circles, axes through the origin, the scale bar.
+//! Lines of the drawing: edges, circles, axes through the origin, and the scale bar.
 use super::frame::Frame;
 use super::ink::{Align, Dash, DrawCommand, Px, Rect, px};
 use super::labels::LabelArea;
@@ -9,7 +9,7 @@ use super::role::{Pen, Point};
 use super::scene::{Scene, Shape, Stroke};
 use super::symbol;
 
-/// The tool's path: seen, but nothing needs to keep off it.
+/// Returns true for pens of the tool path, which labels may cover.
 pub(super) fn is_path(pen: Pen) -> bool {
     matches!(pen, Pen::Feed | Pen::Faulty | Pen::Hidden | Pen::Rapid | Pen::Unchanged | Pen::New | Pen::Old)
 }
@@ -32,11 +32,11 @@ pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> DrawCommand {
     }
 }
 
-/// Labels keep off edges, and off other lines if they can.
+/// Adds a stroke to the label area: labels never cover edges and avoid other lines.
 pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame) {
     let hard = stroke.pen == Pen::Outline;
     let obstacles: Vec<Obstacle> = match &stroke.shape {
-        // One that has a number is told apart from others: better not covered. A few pieces will do.
+        // A captioned path must stay recognisable, so labels avoid it. A few segments suffice.
         Shape::Line(points) if is_path(stroke.pen) && stroke.caption.is_some() => {
             let step = (points.len() / 40).max(1);
             let ends: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
@@ -55,7 +55,8 @@ pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame
     }
 }
 
-/// Centre lines through the origin, a little longer than the drawing, with arrow and name at the positive ends.
+/// Draws centre lines through the origin, a little longer than the drawing, with arrow and name at the
+/// positive ends.
 pub(super) fn axes(
     scene: &Scene,
     frame: &Frame,
@@ -85,7 +86,7 @@ pub(super) fn axes(
 
         let size = 1.15 * text;
         let wide = frame.font.width(&axis.name, size);
-        // Beside the arrow: above a level one, to the right of an upright one.
+        // The name lies beside the arrow: above a horizontal one, to the right of a vertical one.
         let beside = [-along[1].abs() * -1.0, -along[0].abs()];
         let middle = tip.toward(along, -0.3 * text).toward(beside, 0.45 * size + wide / 2.0);
         let name = Rect::new(middle.x - wide / 2.0, middle.y - size * 0.4, wide, size * 0.8);
@@ -102,13 +103,13 @@ pub(super) fn axes(
     inks
 }
 
-/// What must be seen, on the sheet.
+/// Returns the extent of the drawing on the sheet.
 fn part(frame: &Frame, (low, high): (Point, Point)) -> Rect {
     let (low, high) = (frame.scale.px(low), frame.scale.px(high));
     Rect { left: low.x, top: high.y, right: high.x, bottom: low.y }
 }
 
-/// Whether a dial, as large as any may be, would cover an axis' arrow.
+/// Returns true if a dial of the largest size would cover an axis arrow.
 pub(super) fn are_arrows_hidden(scene: &Scene, frame: &Frame, extent: (Point, Point)) -> bool {
     let origin = frame.scale.px([0.0, 0.0]);
     let with_dial = scene.marks.iter().filter(|mark| mark.deviation.is_some() && scene.zone.is_some());
@@ -126,14 +127,14 @@ pub(super) fn are_arrows_hidden(scene: &Scene, frame: &Frame, extent: (Point, Po
     })
 }
 
-/// The rectangle, moved as little as it takes to lie in `area`.
+/// Moves the rectangle by the least amount so that it lies in `area`.
 fn inside(rect: Rect, area: Rect) -> Rect {
     let x = (area.left - rect.left).max(0.0) + (area.right - rect.right).min(0.0);
     let y = (area.top - rect.top).max(0.0) + (area.bottom - rect.bottom).min(0.0);
     Rect::new(rect.left + x, rect.top + y, rect.width(), rect.height())
 }
 
-/// Where a ray from inside the rectangle leaves it.
+/// Returns the point where a ray from inside the rectangle leaves it.
 fn leave(from: Px, along: [f64; 2], rect: Rect) -> Px {
     let reach = |slope: f64, low: f64, high: f64| match slope {
         s if s > 1e-9 => high / s,
@@ -145,7 +146,7 @@ fn leave(from: Px, along: [f64; 2], rect: Rect) -> Px {
     from.toward(along, x.min(y).max(0.0))
 }
 
-/// A bar of a round length, no longer than a third of the drawing.
+/// Draws a bar of a round length, at most a third of the drawing.
 pub(super) fn scale_bar(frame: &Frame, area: Rect) -> Vec<DrawCommand> {
     let text = frame.text_size;
     let length = bar_length(0.3 * area.width() / frame.scale.factor);

@@ -1,4 +1,4 @@
-//! Holes on the sheet: symbol, direction of the axis, and round it the dial that shows the misfit enlarged.
+//! Holes on the sheet: symbol, axis direction, and the dial that shows the deviation enlarged.
 use super::deviation_dials::{Detail, DeviationDials, MIN_SIGN_DISTANCE};
 use super::frame::Frame;
 use super::ink::{Dash, DrawCommand, Px, Rgb};
@@ -10,27 +10,27 @@ use super::scene::{Mark, Scene, ZoneDeviation};
 use super::symbol;
 use gcode_lang::units::Deg;
 
-/// A hole as drawn.
+/// A drawn hole.
 #[derive(Clone, Debug)]
 pub(super) struct DrawnMark {
     pub(super) centre: Px,
-    /// Labels keep this far from the centre.
+    /// Least distance of labels from the centre, pixels.
     pub(super) label_clearance: f64,
-    /// Other signs are so close that a label needs a line to the very place.
+    /// Whether symbols overlap, so that a label needs a leader to the exact centre.
     pub(super) is_crowded: bool,
     pub(super) commands: Vec<DrawCommand>,
-    /// Its misfit is longer than the sheet shows.
+    /// Whether the deviation is longer than drawn.
     pub(super) is_truncated: bool,
-    /// A line leads to where it is instead.
+    /// Whether a dotted line leads to the actual position instead.
     pub(super) has_displacement_line: bool,
-    /// Its axis is drawn.
+    /// Whether the axis is drawn.
     pub(super) has_axis_arrow: bool,
 }
 
-/// A misfit is drawn up to this many radii of its zone.
+/// Largest drawn deviation, in radii of the tolerance zone.
 const MAX_DEVIATION_RADII: f64 = 1.7;
 
-/// Draws the holes and blocks their places for labels.
+/// Draws the holes and blocks their positions for labels.
 pub(super) fn draw_marks(
     scene: &Scene,
     frame: &Frame,
@@ -51,7 +51,7 @@ pub(super) fn draw_marks(
     drawn
 }
 
-/// The zone's circle with the hole in its centre, the misfit, and the verdict on the rim.
+/// Draws the zone's circle with the hole in its centre, the deviation, and the status symbol on the rim.
 fn draw_dial(
     mark: &Mark,
     misfit: ZoneDeviation,
@@ -109,7 +109,7 @@ fn draw_dial(
     }
 }
 
-/// A hole so far from its place that it needs no enlarging: a dotted line to where it is.
+/// Draws a dotted line to the actual position of a hole too far off to need enlarging.
 fn displacement_line(centre: Px, found: Px, hole: f64, text: f64, field: &mut LabelArea) -> [DrawCommand; 2] {
     let radius = hole.max(0.3 * text);
     field.block(Obstacle::Disc { centre: found, radius: radius + 0.1 * text });
@@ -120,8 +120,8 @@ fn displacement_line(centre: Px, found: Px, hole: f64, text: f64, field: &mut La
     [line, ring(found, radius, width, color)]
 }
 
-/// Lines from the centre to the entry and on to the bottom: a tilted hole shows as a line across its dial. What is
-/// longer than the sheet shows ends in an arrow, whose tip is given back.
+/// Draws lines from the centre to the deviation at the entry and on to that at the bottom: a tilted hole
+/// shows as a line across its dial. A deviation longer than drawn ends in an arrow, whose tip is returned.
 fn deviation_commands(
     standing: HoleStatus,
     misfit: ZoneDeviation,
@@ -155,8 +155,8 @@ fn deviation_commands(
     (inks, beyond)
 }
 
-/// A hole without a dial: the sign itself marks the place. A surplus hole in the place of another moves aside. One of
-/// hundreds is drawn as the hole itself, as wide as it is and as flat as it is seen.
+/// Draws a hole without a dial: the symbol marks the position. The symbol of an extra hole on top of another
+/// moves aside. One of hundreds is drawn to scale, foreshortened by its tilt.
 fn draw_sign(
     mark: &Mark,
     index: usize,
@@ -222,14 +222,14 @@ fn draw_sign(
     }
 }
 
-/// The direction on the sheet of an axis that doesn't point at the reader, and how much of it is seen.
+/// Returns the sheet direction of the hole axis and its projected length; `None` if it points at the reader.
 fn projected_axis(mark: &Mark) -> Option<([f64; 2], f64)> {
     let [right, up] = mark.direction?;
     let projected = libm::hypot(right, up);
     (0.02 < projected).then(|| ([right / projected, -up / projected], projected))
 }
 
-/// The part of the hole's axis that is seen: longer, the more the hole lies across the view.
+/// Draws the projected hole axis; the arrow is longer, the more the hole lies across the view.
 fn axis_arrow(
     centre: Px,
     along: [f64; 2],
@@ -244,7 +244,7 @@ fn axis_arrow(
     symbol::arrow(start, end, (0.08 * text).max(1.0), 0.5 * text, palette::TEXT)
 }
 
-/// A place for the verdict on the dial's rim that covers neither arrow nor misfit: upper right if possible.
+/// Chooses an angle on the dial's rim clear of arrow and deviation: upper right if possible.
 fn badge_angle(taken: &[Deg]) -> Deg {
     let apart = |angle: f64, other: &Deg| {
         let turn = (angle - other.0).rem_euclid(360.0);
@@ -252,7 +252,7 @@ fn badge_angle(taken: &[Deg]) -> Deg {
     };
     let free = |angle: f64| taken.iter().map(|other| apart(angle, other)).fold(60.0, f64::min);
     let choices = [45.0, 135.0, -45.0, -135.0, 0.0, 180.0, 90.0, -90.0];
-    // The first of the freest.
+    // Equally free angles: the first wins.
     Deg(choices.into_iter().fold(45.0, |best, angle| if free(best) < free(angle) { angle } else { best }))
 }
 

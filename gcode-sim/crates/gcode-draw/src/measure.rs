@@ -1,17 +1,17 @@
-//! Round numbers and scales: the scale bar, the magnification of misfits, and mm to pixels.
+//! Round numbers and scales: the scale bar, the magnification of deviations, and mm to pixels.
 use super::ink::{Px, Rect, px};
 use super::role::Point;
 
-/// Maps the drawing's mm to pixels, the same scale both ways.
+/// Maps the drawing's mm to pixels, with the same scale in both directions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
-    /// Pixels a mm.
+    /// Pixels per mm.
     pub(super) factor: f64,
     origin: Px,
 }
 
 impl Scale {
-    /// The largest scale at which `extent` (two corners, mm) fits into `area`, centred.
+    /// Returns the largest scale at which `extent` (two corners, mm) fits into `area`, centred.
     pub(super) fn fitting(extent: (Point, Point), area: Rect) -> Self {
         let (low, high) = extent;
         let (wide, tall) = ((high[0] - low[0]).max(1e-6), (high[1] - low[1]).max(1e-6));
@@ -27,26 +27,26 @@ impl Scale {
     }
 }
 
-/// The largest of `steps`·10ⁿ that is not above `most`.
+/// Returns the largest of `steps`·10ⁿ that is not above `most`.
 fn round_below(most: f64, steps: &[f64]) -> f64 {
     let decade = libm::pow(10.0, libm::floor(libm::log10(most)));
-    // The decade itself may come out one too high or low where `most` is just a power of ten.
+    // Rounding may make the decade one too high or low if `most` is a power of ten.
     let candidates = [decade / 10.0, decade, decade * 10.0].into_iter();
     let all = candidates.flat_map(|d| steps.iter().map(move |s| s * d));
     all.filter(|c| *c <= most * (1.0 + 1e-12)).fold(decade / 10.0, f64::max)
 }
 
-/// Length of a scale bar: the largest of 1, 2, 5 times a power of ten that isn't longer than `most` mm.
+/// Returns the length of a scale bar: the largest of 1, 2, 5 times a power of ten up to `most` mm.
 pub(super) fn bar_length(most: f64) -> f64 {
     round_below(most, &[1.0, 2.0, 5.0])
 }
 
-/// How many times misfits are enlarged: the largest easy number that isn't above `most`.
+/// Returns the magnification of deviations: the largest easy number up to `most`.
 pub(super) fn magnification(most: f64) -> f64 {
     round_below(most, &[1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0])
 }
 
-/// `500`, `0.02`: no more digits than the round number needs.
+/// Formats a round number with the digits it needs: `500`, `0.02`.
 pub(super) fn plain(number: f64) -> String {
     let text = format!("{number:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

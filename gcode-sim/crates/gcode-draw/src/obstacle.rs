@@ -1,7 +1,7 @@
-//! What stands on a sheet, as far as labels and their leaders are concerned.
+//! Obstacles on a sheet for labels and their leaders.
 use super::ink::{Px, Rect, px};
 
-/// Something a label must keep off.
+/// An area or line that labels must not cover.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Obstacle {
     Box(Rect),
@@ -30,7 +30,7 @@ impl Obstacle {
         }
     }
 
-    /// Whether a label in `rect` would cover some of it.
+    /// Returns true if a label in `rect` would cover part of the obstacle.
     pub(super) fn hits(&self, rect: &Rect) -> bool {
         match *self {
             Self::Box(other) => other.overlaps(rect),
@@ -42,7 +42,7 @@ impl Obstacle {
         }
     }
 
-    /// A leader may pass over the thin line of a circle, over nothing else.
+    /// Returns true if a leader would cross the obstacle; it may cross the thin line of a circle.
     pub(super) fn crosses(&self, from: Px, to: Px) -> bool {
         match *self {
             Self::Box(rect) => enters(&rect, from, to),
@@ -56,7 +56,7 @@ impl Obstacle {
     }
 }
 
-/// Whether a segment has points inside the rectangle (Liang and Barsky's clipping).
+/// Returns true if a segment has points inside the rectangle (clipping by Liang and Barsky).
 fn enters(rect: &Rect, a: Px, b: Px) -> bool {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
     let (mut first, mut last) = (0.0f64, 1.0f64);

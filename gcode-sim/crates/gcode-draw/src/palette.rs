@@ -1,6 +1,8 @@
-//! Colours and line kinds of the roles: Okabe and Ito's palette, which the colour-blind can tell apart, on white.
+//! Colours and line styles of the pens and statuses: Okabe and Ito's palette, safe for colour-blind readers,
+//! on white.
 //!
-//! Colour never stands alone: every standing has a shape and a mark of its own (`symbol`), every pen its dashes.
+//! Colour never carries meaning alone: every status has its own shape and mark (`symbol`), every pen its own
+//! width or dash pattern.
 use super::ink::{Dash, Rgb};
 use super::role::{HoleStatus, Pen};
 
@@ -11,7 +13,7 @@ pub(super) const RULE: Rgb = Rgb(150, 150, 150);
 /// Leaders, direction arrows, the circle of the tolerance zone.
 pub(super) const THIN: Rgb = Rgb(90, 90, 90);
 
-/// What lies within the limits of a graph.
+/// Tolerance band of a graph.
 pub(super) const BAND: Rgb = Rgb(238, 238, 238);
 
 pub(super) fn status_colour(standing: HoleStatus) -> Rgb {
@@ -24,7 +26,7 @@ pub(super) fn status_colour(standing: HoleStatus) -> Rgb {
     }
 }
 
-/// Colour, width in parts of the text's height, dashes in the same unit.
+/// Returns colour, width and dash pattern of a pen at a text height of `text` pixels.
 pub(super) fn pen(pen: Pen, text: f64) -> (Rgb, f64, Dash) {
     match pen {
         Pen::Outline => (Rgb(0, 0, 0), 0.13 * text, Dash::Solid),

@@ -8,16 +8,16 @@ use super::role::HoleStatus;
 use super::scene::{LegendItem, Sample, Scene};
 use super::symbol;
 
-/// Where the drawing goes, and the columns beside it or below it.
+/// The areas of drawing, title block and legend on the page.
 pub(super) struct Panel {
     pub(super) drawing: Rect,
     page: Rect,
     title: Rect,
-    /// Below the title block where nothing else is said.
+    /// Column of the legend; `None` if it continues below the title block.
     legend: Option<Rect>,
 }
 
-/// One line or group of lines of a column.
+/// One row of a column.
 enum PanelRow {
     Text {
         text: String,
@@ -26,17 +26,17 @@ enum PanelRow {
         important: bool,
     },
     Verdict(HoleStatus, String),
-    /// ⌖ | Φ0.1 as a feature control frame has it.
+    /// Feature control frame: ⌖ | Φ0.1.
     Zone(f64),
     Sample(Sample, String),
     Gap,
     Rule,
-    /// Something is left out.
+    /// Marks omitted rows.
     Dots,
 }
 
 impl PanelRow {
-    /// The higher, the later it is left out.
+    /// Returns the importance of the row; the least important rows are omitted first.
     fn importance(&self) -> u8 {
         match self {
             Self::Gap => 0,
@@ -53,11 +53,11 @@ impl PanelRow {
     }
 }
 
-/// A text of more lines than this is cut short.
+/// Largest number of lines of a row; longer texts are cut short.
 const MOST_LINES: usize = 3;
 
 impl Panel {
-    /// Beside the drawing on a wide page, below it on a tall one.
+    /// Places the columns beside the drawing on a wide page, below it on a tall one.
     pub(super) fn beside(page: Rect, scene: &Scene, font: &Font, text: f64) -> Self {
         let space = 0.6 * text;
         if page.height() <= page.width() {
@@ -73,7 +73,7 @@ impl Panel {
         }
         let middle = page.centre().x;
         let column = Rect::new(0.0, 0.0, page.width() / 2.0 - 2.0 * space, 0.0);
-        // Two lines are kept for notes, which are known only when everything has its place.
+        // Two lines are reserved for notes, which are known only after the layout.
         let notes = vec!["n".to_owned(), "n".to_owned()];
         let all = LegendUse {
             magnification: Some(1000.0),
@@ -141,8 +141,8 @@ impl Panel {
     }
 }
 
-/// The rows in the largest text that the column has room for; what finds none even in the smallest is left out, the
-/// least important first, and a row of dots says so.
+/// Sets the rows in the largest text that fits the column. If even the smallest is too large, the least
+/// important rows are omitted and a row of dots marks the omission.
 fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<PanelRow>) -> Vec<DrawCommand> {
     let least = 9.5f64.min(frame.text_size);
     let mut text = frame.text_size;
@@ -222,7 +222,7 @@ fn legend_rows(scene: &Scene, shown: LegendUse, notes: &[String], text: f64) -> 
     rows
 }
 
-/// Sets the rows below each other; also says how high they are.
+/// Sets the rows below each other; returns the commands and the height.
 fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCommand>, f64) {
     let mut inks = Vec::new();
     let mut y = column.top;

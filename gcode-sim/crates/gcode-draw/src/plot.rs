@@ -7,26 +7,28 @@ use super::size::Size;
 use super::words::Words;
 use super::{PictureError, paint, png};
 
-/// A picture of curves.
+/// A chart with a title and notes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
+    /// Title above the chart.
     pub title: String,
     /// Lines below the title.
     pub notes: Vec<String>,
+    /// The chart, which fills the rest of the page.
     pub chart: Chart,
 }
 
 impl Plot {
-    /// As a PNG file of exactly this size.
+    /// Draws the chart as a PNG file of exactly this size.
     ///
     /// # Errors
-    /// What the encoder has to say.
+    /// [`PictureError::Encode`] if the PNG encoder fails.
     pub fn draw(&self, size: Size) -> Result<Vec<u8>, PictureError> {
         png(&paint(&self.lay_out(size)))
     }
 
-    /// The title and notes stand above the chart.
-    pub fn lay_out(&self, size: Size) -> Sheet {
+    /// Places title and notes above the chart.
+    fn lay_out(&self, size: Size) -> Sheet {
         let font = Font::embedded();
         let text = size.text();
         let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height())).grown(-2.0 * text);
@@ -86,7 +88,7 @@ mod tests {
         }
     }
 
-    /// Twice as high is twice as far above the line at zero.
+    /// Twice the ordinate is twice the distance from the zero line.
     #[test]
     fn a_curve_stands_where_its_numbers_say() {
         let mut plot = plot(0.05, 100.0);

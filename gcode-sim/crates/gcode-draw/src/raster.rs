@@ -1,4 +1,4 @@
-//! A sheet to pixels with tiny-skia, and pixels to PNG. Nothing is decided here.
+//! Paints a sheet to pixels with tiny-skia and encodes pixels as PNG; makes no layout decision.
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder as _};
 use tiny_skia::{
@@ -11,7 +11,7 @@ use super::ink::{Align, Dash, DrawCommand, Px, Rgb};
 use super::palette;
 use super::sheet::Sheet;
 
-/// The picture of a sheet, opaque, of exactly its size.
+/// Paints a sheet: an opaque picture of exactly its size.
 pub fn paint(sheet: &Sheet) -> Pixmap {
     let (width, height) = (sheet.size.width(), sheet.size.height());
     let mut pixmap = Pixmap::new(width, height).expect("a Size is neither empty nor too large");
@@ -24,16 +24,16 @@ pub fn paint(sheet: &Sheet) -> Pixmap {
     pixmap
 }
 
-/// The bytes of a PNG file: 8-bit RGB, no time stamp, the same bytes for the same pixels.
+/// Encodes a PNG file: 8-bit RGB, no time stamp, the same bytes for the same pixels.
 ///
 /// # Errors
-/// What the encoder has to say.
+/// [`PictureError::Encode`] if the PNG encoder fails.
 pub fn png(pixmap: &Pixmap) -> Result<Vec<u8>, PictureError> {
     let rgb: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|p| p[..3].iter().copied()).collect();
     encode(&rgb, pixmap.width(), pixmap.height())
 }
 
-/// Rows of 8-bit RGB as a PNG file. Line drawings pack best without a filter.
+/// Encodes rows of 8-bit RGB as a PNG file. Line drawings compress best without a filter.
 pub(super) fn encode(rgb: &[u8], width: u32, height: u32) -> Result<Vec<u8>, PictureError> {
     let mut bytes = Vec::new();
     PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::NoFilter)
@@ -113,7 +113,7 @@ fn ink(Rgb(r, g, b): Rgb) -> Paint<'static> {
     paint
 }
 
-/// Lays a colour over one pixel of the opaque picture.
+/// Blends a colour over one pixel of the opaque picture.
 fn blend(pixmap: &mut Pixmap, x: i64, y: i64, coverage: f32, Rgb(r, g, b): Rgb) {
     let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
     let (width, height) = (pixmap.width() as usize, pixmap.height() as usize);

@@ -1,55 +1,63 @@
-//! What lines and signs stand for: colours, dashes and shapes follow from that (`palette`, `symbol`).
+//! Meaning of lines and symbols; `palette` and `symbol` give them colours, dash patterns and shapes.
 
-/// A point of the plane of the drawing, mm: to the right and up. A view says which way of the part is right.
+/// A point of the drawing plane, mm to the right and up; the view defines the two directions on the part.
 pub type Point = [f64; 2];
 
-/// What a line stands for; its colour and dashes follow from that.
+/// Meaning of a line, from which colour, width and dash pattern follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pen {
     /// Edge of the part.
     Outline,
-    /// Not an edge, only helps the eye: the circle on which holes lie.
+    /// Construction line, not an edge: for example the circle on which holes lie.
     Construction,
-    /// Tick of a scale, drawn outwards; where its numbers would run into each other some are left out.
+    /// Tick of a scale, drawn outwards; numbers that would collide are omitted.
     Scale,
-    /// Path of the tool while it cuts.
+    /// Tool path at cutting feed.
     Feed,
-    /// The same where something is wrong with it.
+    /// Tool path with a fault.
     Faulty,
-    /// That on the side that isn't seen.
+    /// Tool path with a fault, on the far side.
     Hidden,
-    /// Path of the tool in rapid motion.
+    /// Tool path in rapid motion.
     Rapid,
-    /// Of two revisions a cut of both, one that is another one now, and what it was before.
+    /// Cut that both revisions make.
     Unchanged,
+    /// New version of a changed cut.
     New,
+    /// Old version of a changed cut.
     Old,
-    /// Of a graph.
+    /// Grid line of a graph.
     Grid,
-    /// A curve of a graph: what was found, and where that is one of many, the others.
+    /// Actual curve of a graph.
     Measured,
+    /// Further actual curves of a graph.
     Others,
-    /// Edge of what is allowed, in a graph.
+    /// Tolerance limit in a graph.
     Limit,
-    /// Two curves of a graph to compare with what was found.
+    /// Nominal curve of a graph.
     First,
+    /// Second curve of a graph, for comparison.
     Second,
 }
 
-/// How a hole stands against what was wanted.
+/// Result of comparing a hole with its nominal, in order of importance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum HoleStatus {
+    /// Out of tolerance, or changed.
     Bad,
+    /// Not made, or lost.
     Missing,
+    /// Not in the reference, or added.
     Extra,
-    /// Nothing was held against it.
+    /// Not compared.
     Unjudged,
+    /// In tolerance, or unchanged.
     Good,
 }
 
 impl HoleStatus {
-    /// Nothing to look at twice.
-    pub fn is_good(self) -> bool {
+    /// Returns true if the hole needs no attention.
+    pub(super) fn is_good(self) -> bool {
         matches!(self, Self::Good | Self::Unjudged)
     }
 }

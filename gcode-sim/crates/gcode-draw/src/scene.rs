@@ -1,100 +1,103 @@
-//! What to draw, in mm and in roles: no pixels, no colours, no NC words.
+//! Scenes: contents of a drawing in mm, without pixels, colours or NC words.
 use super::chart::Chart;
 use super::role::{HoleStatus, Pen, Point};
 
-/// One drawing.
+/// One drawing in mm, as a view builds it and [`lay_out`](crate::lay_out) places it on a sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    pub title: Title,
-    pub axes: Vec<Axis>,
-    pub strokes: Vec<Stroke>,
-    pub marks: Vec<Mark>,
-    /// Diameter of the tolerance zone round every mark that has a misfit, mm.
-    pub zone: Option<f64>,
-    pub legend: Vec<LegendItem>,
-    /// In the place of the drawing.
-    pub chart: Option<Chart>,
+    pub(super) title: Title,
+    pub(super) axes: Vec<Axis>,
+    pub(super) strokes: Vec<Stroke>,
+    pub(super) marks: Vec<Mark>,
+    /// Diameter of the tolerance zone round every mark with a deviation, mm.
+    pub(super) zone: Option<f64>,
+    pub(super) legend: Vec<LegendItem>,
+    /// Chart that replaces the drawing.
+    pub(super) chart: Option<Chart>,
 }
 
 /// The title block.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Title {
-    pub name: String,
-    /// What is seen and from where.
-    pub view: String,
-    /// Position tolerance as a feature control frame has it: diameter of the zone, mm.
-    pub position: Option<f64>,
-    /// Verdict on the whole.
-    pub verdict: Option<(HoleStatus, String)>,
-    /// Further lines, one thing each.
-    pub lines: Vec<String>,
-    /// What the reader must not take the picture for.
-    pub caution: String,
+pub(super) struct Title {
+    pub(super) name: String,
+    /// Name of the view and its direction.
+    pub(super) view: String,
+    /// Position tolerance for the feature control frame: diameter of the zone, mm.
+    pub(super) position: Option<f64>,
+    /// Overall verdict.
+    pub(super) verdict: Option<(HoleStatus, String)>,
+    /// Further lines, one fact each.
+    pub(super) lines: Vec<String>,
+    /// Restriction on the use of the picture, such as “predicted by simulation”.
+    pub(super) caution: String,
 }
 
-/// An axis of the part: drawn as a centre line through its origin, arrow and name at its positive end.
+/// An axis of the part: a centre line through its origin, with arrow and name at the positive end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
-    pub name: String,
-    /// Unit vector of its positive end.
-    pub direction: Point,
+pub(super) struct Axis {
+    pub(super) name: String,
+    /// Unit vector of the positive direction.
+    pub(super) direction: Point,
 }
 
 /// A line of the drawing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stroke {
-    pub shape: Shape,
-    pub pen: Pen,
-    /// Written onto the line where there is room.
-    pub caption: Option<String>,
+pub(super) struct Stroke {
+    pub(super) shape: Shape,
+    pub(super) pen: Pen,
+    /// Text on the line, if there is room.
+    pub(super) caption: Option<String>,
 }
 
+/// Geometry of a stroke, mm.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub(super) enum Shape {
     Line(Vec<Point>),
     Circle { centre: Point, radius: f64 },
 }
 
-/// A hole seen along or across its axis, or another place with a sign.
+/// A hole, or another position with a symbol.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
-    /// Where it should be; where it is, if nothing was asked for.
-    pub position: Point,
-    pub radius: f64,
-    pub status: HoleStatus,
-    /// Most important first; what finds no room is left out from the end.
-    pub label: Vec<String>,
+pub(super) struct Mark {
+    /// Nominal position; the actual one if there is no nominal.
+    pub(super) position: Point,
+    pub(super) radius: f64,
+    pub(super) status: HoleStatus,
+    /// Label lines, most important first; lines without room are omitted from the end.
+    pub(super) label: Vec<String>,
     /// Projection of the unit vector out of the part.
-    pub direction: Option<Point>,
-    pub deviation: Option<ZoneDeviation>,
-    /// Where it is in truth, if there is a place for it.
-    pub actual: Option<Point>,
+    pub(super) direction: Option<Point>,
+    pub(super) deviation: Option<ZoneDeviation>,
+    /// Actual position, if a nominal one is given too.
+    pub(super) actual: Option<Point>,
 }
 
-/// Actual − nominal at both ends of a hole, mm, seen along the nominal axis: inside the zone's circle is inside tolerance.
+/// Actual − nominal at both ends of a hole, mm, seen along the nominal axis: inside the zone's circle is
+/// inside tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ZoneDeviation {
-    pub entry: Point,
-    pub bottom: Point,
+pub(super) struct ZoneDeviation {
+    pub(super) entry: Point,
+    pub(super) bottom: Point,
 }
 
+/// A line of the legend.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LegendItem {
-    pub sample: Sample,
-    pub text: String,
+pub(super) struct LegendItem {
+    pub(super) sample: Sample,
+    pub(super) text: String,
 }
 
-/// What a line of the legend shows at its left.
+/// The sample at the left of a legend line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sample {
+pub(super) enum Sample {
     Status(HoleStatus),
-    /// The sheet puts it in the place of a standing whose holes it draws as they are, without a sign.
+    /// Replaces `Standing` for holes that the sheet draws to scale, without a symbol.
     Plain(HoleStatus),
     Pen(Pen),
-    /// Left out by the sheet where no axis is drawn.
+    /// Direction of a hole axis; omitted if no axis is drawn.
     Direction,
-    /// The sheet adds how many times it is magnified, or leaves the line out where none is drawn.
+    /// Deviation in its zone; the sheet adds the magnification, or omits the line if none is drawn.
     Deviation,
-    /// A line to where a hole is instead. Left out by the sheet where none is drawn.
+    /// Line to the actual position of a hole; omitted if none is drawn.
     Displacement,
 }

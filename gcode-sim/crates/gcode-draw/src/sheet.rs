@@ -1,4 +1,4 @@
-//! Lays a scene out on a sheet of a given size: scale, dials, labels, scale bar, title block. Decides, doesn't paint.
+//! Lays a scene out on a sheet of a given size: scale, dials, labels, scale bar, title block.
 use super::PictureError;
 use super::deviation_dials::{Detail, DeviationDials};
 use super::font::Font;
@@ -15,24 +15,27 @@ use super::scene::{Scene, Shape, Stroke};
 use super::size::Size;
 use super::words::Words;
 
-/// A picture, laid out: every ink has its place in pixels.
+/// A laid-out picture: every command has its position in pixels.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    pub size: Size,
-    pub commands: Vec<DrawCommand>,
-    /// The labels of the holes and lines, as placed: none overlaps another.
+    pub(super) size: Size,
+    pub(super) commands: Vec<DrawCommand>,
+    /// Labels of holes and lines with their boxes; none overlaps another.
     pub labels: Vec<(Rect, Vec<String>)>,
-    /// What the picture leaves out, as it says itself.
+    /// Omissions that the picture itself states.
     pub notes: Vec<String>,
-    /// How many times misfits are enlarged against the part; none is drawn without.
+    /// Magnification of deviations; `None` if none is drawn.
     pub magnification: Option<f64>,
 }
 
-/// Coordinates beyond are slips, not parts, mm.
+/// Largest coordinate, mm; larger values are mistakes.
 const MAX_COORDINATE: f64 = 1e6;
 
+/// Places a scene on a sheet with as much detail as leaves every hole its number.
+///
 /// # Errors
-/// A coordinate that is no number, or farther than a kilometre from the origin.
+/// [`PictureError::OffTheSheet`] if a coordinate is not a number or lies more than a kilometre from the
+/// origin.
 pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
     check(scene)?;
     let font = Font::embedded();
@@ -77,13 +80,13 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
     Ok(Sheet { size, commands: inks, labels, notes, magnification: shown.magnification })
 }
 
-/// The drawing with some of the detail there could be.
+/// One attempt at a layout, at a given level of detail.
 struct Plan {
     commands: Vec<DrawCommand>,
     labels: Vec<(Rect, Vec<String>)>,
     notes: Vec<String>,
     legend_use: LegendUse,
-    /// Holes without a number.
+    /// Number of holes without a label.
     unlabelled: usize,
 }
 
@@ -96,13 +99,14 @@ impl Plan {
             block_stroke(&mut field, stroke, frame);
         }
         inks.extend(axes(scene, frame, extent, drawing, &mut field));
-        // The number on a straight line has one place, a hole's label many, the number on a circle or a path any.
+        // A straight line's caption has one position, a hole's label many, the caption of a circle or path
+        // any.
         let mut labels = Vec::new();
         let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !is_path(stroke.pen);
         let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut inks, &mut labels);
         let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
-        // What isn't good comes last, on top.
+        // Bad holes are drawn last, on top.
         for good in [true, false] {
             let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.status.is_good() == good);
             inks.extend(holes.flat_map(|(_, hole)| hole.commands.iter().cloned()));
@@ -156,12 +160,13 @@ fn check(scene: &Scene) -> Result<(), PictureError> {
     Ok(())
 }
 
-/// The path of the tool that somebody looks for.
+/// Returns true for pens of changed cuts, which are part of the extent.
 fn is_changed(pen: Pen) -> bool {
     matches!(pen, Pen::New | Pen::Old)
 }
 
-/// What must be seen, mm: every line but the tool's path where it is as before, every hole, and the origin where there are axes.
+/// Returns the extent of the drawing, mm: all holes, all lines except unchanged tool paths, and the origin if
+/// axes are drawn.
 fn extent(scene: &Scene) -> (Point, Point) {
     let mut seen: Vec<(Point, f64)> = Vec::new();
     let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| is_path(s.pen));
@@ -187,7 +192,7 @@ fn extent(scene: &Scene) -> (Point, Point) {
         low = [low[0].min(at[0] - radius), low[1].min(at[1] - radius)];
         high = [high[0].max(at[0] + radius), high[1].max(at[1] + radius)];
     }
-    // A single hole without a part round it would fill the sheet.
+    // A single hole without an outline would fill the sheet.
     let widest = (high[0] - low[0]).max(high[1] - low[1]);
     let alone = scene.strokes.iter().all(|stroke| is_path(stroke.pen));
     let least = 20.0 * scene.marks.iter().map(|m| m.radius).fold(0.5, f64::max);
@@ -253,7 +258,7 @@ mod tests {
         }
     }
 
-    /// How far an ink reaches, pixels.
+    /// Returns the extent of a command, pixels.
     fn reach(ink: &DrawCommand, font: &Font) -> Rect {
         match ink {
             DrawCommand::Line { points, .. } | DrawCommand::Area { points, .. } => {

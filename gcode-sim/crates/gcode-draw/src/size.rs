@@ -1,23 +1,25 @@
-//! The size of a picture in pixels, within what can be read and held in memory.
+//! Picture size in pixels, within the limits of legibility and memory.
 use std::str::FromStr;
 
 use super::PictureError;
 
-/// Width and height in pixels.
+/// Width and height of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
     width: u32,
     height: u32,
 }
 
-/// The longer and the shorter side below which the smallest text is no longer legible.
+/// Longer and shorter side below which the smallest text is illegible.
 const MIN_SIZE: (u32, u32) = (480, 360);
 /// 8,192 × 8,192 pixels are 256 MB while painting.
 const MAX_SIDE: u32 = 8192;
 
 impl Size {
+    /// Checks a size in pixels.
+    ///
     /// # Errors
-    /// Below 480x360 (or 360x480) or beyond 8192 a side.
+    /// [`PictureError::TooSmall`] below 480x360 (or 360x480), [`PictureError::TooLarge`] beyond 8192 a side.
     pub fn new(width: u32, height: u32) -> Result<Self, PictureError> {
         if width.max(height) < MIN_SIZE.0 || width.min(height) < MIN_SIZE.1 {
             return Err(PictureError::TooSmall { width, height, least: "480x360" });
@@ -28,16 +30,18 @@ impl Size {
         Ok(Self { width, height })
     }
 
-    pub fn width(self) -> u32 {
+    /// Returns the width in pixels.
+    pub(super) fn width(self) -> u32 {
         self.width
     }
 
-    pub fn height(self) -> u32 {
+    /// Returns the height in pixels.
+    pub(super) fn height(self) -> u32 {
         self.height
     }
 
-    /// Height of ordinary text in pixels: grows with the picture, never too small to read.
-    pub fn text(self) -> f64 {
+    /// Returns the height of ordinary text in pixels: it grows with the picture and stays legible.
+    pub(super) fn text(self) -> f64 {
         let short = f64::from(self.width.min(self.height));
         ((6.5 + short / 110.0) * 2.0).round().clamp(21.0, 120.0) / 2.0
     }
@@ -52,7 +56,7 @@ impl Default for Size {
 impl FromStr for Size {
     type Err = PictureError;
 
-    /// `1600x1200`.
+    /// Parses `1600x1200`.
     fn from_str(text: &str) -> Result<Self, PictureError> {
         let wrong = || PictureError::NoSize(text.to_owned());
         let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;

@@ -1,11 +1,11 @@
-//! The signs of a drawing as paths: what a verdict looks like without its colour, arrows, the position symbol.
+//! Symbols as paths: status symbols that are distinct without colour, arrows, the position symbol.
 use super::ink::{Dash, DrawCommand, Px, Rgb, px};
 use super::palette;
 use super::role::HoleStatus;
 use gcode_lang::units::Deg;
 
-/// The sign of a standing, `radius` pixels large. Every one differs from the others in outline and in its mark:
-/// ✓ in a disc, ✗ in a square, an empty dashed ring, + in a triangle, a dot in a ring.
+/// Draws the symbol of a status, `radius` pixels large. Each differs from the others in outline and mark: ✓
+/// in a disc, ✗ in a square, an empty dashed ring, + in a triangle, a dot in a ring.
 pub(super) fn status_sign(standing: HoleStatus, at: Px, radius: f64) -> Vec<DrawCommand> {
     let color = palette::status_colour(standing);
     let stroke = (radius * 0.3).max(1.2);
@@ -70,14 +70,14 @@ pub(super) fn status_sign(standing: HoleStatus, at: Px, radius: f64) -> Vec<Draw
     }
 }
 
-/// Smaller signs are dots, pixels.
+/// Radius below which a symbol becomes a dot, pixels.
 const DOT: f64 = 2.5;
 
-/// A hole smaller than this could not be seen, pixels.
+/// Least visible radius of a hole, pixels.
 pub(super) const LEAST_HOLE: f64 = 1.2;
 
-/// A hole as it is, without a mark in it: a disc, a square, a ring, a triangle. Seen from aside it is `flat` as high
-/// along `along` as it is wide.
+/// Draws a hole to scale without a mark: a disc, a square, a ring, a triangle. `flat` is the ratio of its
+/// height along `along` to its width, below 1 for a tilted hole.
 pub(super) fn hole(
     standing: HoleStatus,
     at: Px,
@@ -106,7 +106,7 @@ pub(super) fn hole(
     }
 }
 
-/// A line with a head at its end.
+/// Draws a line with a head at its end.
 pub(super) fn arrow(from: Px, to: Px, width: f64, head: f64, color: Rgb) -> Vec<DrawCommand> {
     let length = from.distance(to).max(1e-9);
     let along = [(to.x - from.x) / length, (to.y - from.y) / length];
@@ -116,7 +116,7 @@ pub(super) fn arrow(from: Px, to: Px, width: f64, head: f64, color: Rgb) -> Vec<
     vec![DrawCommand::line(from, neck, width, color), DrawCommand::Area { points, color }]
 }
 
-/// ⌖ of ISO 1101: a circle with crosshairs that reach beyond it.
+/// Draws ⌖ of ISO 1101: a circle with crosshairs that reach beyond it.
 pub(super) fn position(at: Px, radius: f64, width: f64, color: Rgb) -> Vec<DrawCommand> {
     vec![
         DrawCommand::Ring { centre: at, radius: radius * 0.62, width, dash: Dash::Solid, color },
@@ -125,7 +125,7 @@ pub(super) fn position(at: Px, radius: f64, width: f64, color: Rgb) -> Vec<DrawC
     ]
 }
 
-/// The unit direction on the sheet at an angle, counter-clockwise from the right.
+/// Returns the unit direction on the sheet at an angle counter-clockwise from the right.
 pub(super) fn direction(angle: Deg) -> [f64; 2] {
     [angle.cos(), -angle.sin()]
 }
@@ -139,7 +139,7 @@ fn path(at: Px, radius: f64, points: &[[f64; 2]], width: f64, color: Rgb) -> Dra
 mod tests {
     use super::*;
 
-    /// What is left of a sign in a photocopy: kinds of ink and number of points, but no colours.
+    /// Describes a symbol without colours, as in a photocopy: kinds of command and number of points.
     fn shape(of: HoleStatus) -> Vec<String> {
         let inks = status_sign(of, px(0.0, 0.0), 10.0);
         let kinds = inks.iter().map(|ink| match ink {

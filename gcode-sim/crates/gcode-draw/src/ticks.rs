@@ -1,16 +1,16 @@
 //! Round numbers along an axis.
 
-/// Steps of 1, 2 or 5 times a power of ten.
+/// Ticks at steps of 1, 2 or 5 times a power of ten.
 pub(super) struct Ticks {
     first: i64,
     last: i64,
-    /// From one to the next: `of` times a power of ten.
+    /// Mantissa of the step; the step is `of` · 10^`power`.
     of: f64,
     power: i32,
 }
 
 impl Ticks {
-    /// From `low` to `high` in at most so many steps.
+    /// Covers `low` to `high` in at most `most` steps.
     pub(super) fn over(low: f64, high: f64, most: f64) -> Self {
         let rough = (high - low) / most;
         let power = libm::floor(libm::log10(rough)) as i32;
@@ -34,7 +34,7 @@ impl Ticks {
         (self.first..=self.last).map(|n| n as f64 * self.step())
     }
 
-    /// With as many places as tell it from the next one.
+    /// Formats a tick with the decimals that distinguish it from the next one.
     pub(super) fn name(&self, at: f64) -> String {
         let power = if self.of < 10.0 { self.power } else { self.power + 1 };
         let places = usize::try_from(-power).unwrap_or(0);

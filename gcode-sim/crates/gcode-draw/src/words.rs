@@ -1,11 +1,11 @@
-//! The words of a chart, each with the place it takes: title and notes above, names and numbers in it.
+//! Texts of a chart, each with its box: title, notes, names and numbers.
 use super::font::Font;
 use super::ink::{Align, DrawCommand, Px, Rect, Rgb, px};
 use super::palette;
 
 pub(super) struct Words<'f> {
     pub(super) font: &'f Font,
-    /// Height of the plain text, pixels.
+    /// Height of ordinary text, pixels.
     pub(super) text_size: f64,
     pub(super) commands: Vec<DrawCommand>,
     pub(super) labels: Vec<(Rect, Vec<String>)>,
@@ -16,7 +16,7 @@ impl<'f> Words<'f> {
         Self { font, text_size: text, commands: Vec::new(), labels: Vec::new() }
     }
 
-    /// A larger title and a line for each note, from the page's top; where the last line stands.
+    /// Writes a larger title and a line for each note from the page's top; returns the last base line.
     pub(super) fn head(&mut self, page: &Rect, title: &str, notes: &[String]) -> f64 {
         let text = self.text_size;
         let mut y = page.top + 1.4 * text;
@@ -28,7 +28,7 @@ impl<'f> Words<'f> {
         y
     }
 
-    /// Words on the line through `at`, unless others stand there.
+    /// Writes a text on the base line through `at` unless it would cover another.
     pub(super) fn write_if_free(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str) {
         let place = self.place(at, align, size, words);
         if self.labels.iter().all(|(other, _)| !other.overlaps(&place)) {
@@ -36,7 +36,7 @@ impl<'f> Words<'f> {
         }
     }
 
-    /// Words on the line through `at`, shortened to `width`.
+    /// Writes a text on the base line through `at`, shortened to `width`.
     pub(super) fn write(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str, width: f64) {
         let words = self.font.fitted(words, size, width);
         let place = self.place(at, align, size, &words);
@@ -44,7 +44,7 @@ impl<'f> Words<'f> {
         self.commands.push(DrawCommand::Text { at, align, size, text: words, color });
     }
 
-    /// The place that words on the line through `at` take.
+    /// Returns the box of a text on the base line through `at`.
     pub(super) fn place(&self, at: Px, align: Align, size: f64, words: &str) -> Rect {
         let wide = self.font.width(words, size);
         let part = match align {

@@ -1,21 +1,23 @@
-//! Findings and messages as plain data: what, where, why and what to do. Drawing them is `report`'s business.
+//! Findings and messages as plain data: code, severity, place, reason and remedy. Rendering is left to the
+//! caller.
 use crate::motion::Backtrace;
 use crate::source::Span;
 
+/// Grade of a finding, least serious first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Worth knowing; the answer stays yes.
+    /// An observation; the check still passes.
     Note,
-    /// Likely a slip; the answer stays yes.
+    /// A probable mistake; the check still passes.
     Warning,
-    /// The answer is no.
+    /// A fault; the check fails.
     Error,
-    /// The control stops.
+    /// An alarm that stops the control.
     Alarm,
 }
 
 impl Severity {
-    /// As JSON, tables and summaries write it.
+    /// Returns the lower-case name used in JSON, tables and summaries.
     pub fn name(self) -> &'static str {
         match self {
             Self::Note => "note",
@@ -26,40 +28,50 @@ impl Severity {
     }
 }
 
-/// A place on the part, and which pass of the tool it is on, counted from 0; mm, in the part's frame.
+/// Point on the part that a finding refers to, in the part's coordinate system, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
+    /// Tool pass through the point, counted from 0; `None` if no pass applies.
     pub pass: Option<usize>,
+    /// Coordinates x, y, z, mm.
     pub point: [f64; 3],
 }
 
 impl Site {
+    /// Creates a site from a pass and a point.
     pub fn new(pass: Option<usize>, at: impl Into<[f64; 3]>) -> Self {
         Self { pass, point: at.into() }
     }
 }
 
-/// One thing to tell. The message alone makes sense on a narrow screen: both numbers with units, wanted and found.
+/// One finding: message, place and remedy.
+///
+/// The message is complete without the other fields, also on a narrow screen: it states the actual and the
+/// nominal value with their units.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// A stable name such as `rapid-into-part` or an alarm's code.
+    /// Stable identifier, such as `rapid-into-part` or the code of an alarm.
     pub code: String,
+    /// Grade of the finding.
     pub severity: Severity,
+    /// Statement of the fault, one sentence.
     pub message: String,
-    /// The block it is about, and the calls that led to it.
+    /// Block of the finding and the calls that led to it.
     pub backtrace: Option<Backtrace>,
-    /// The exact part of the block, where known.
+    /// Exact part of the block; `None` if the whole block is meant.
     pub span: Option<Span>,
-    /// Where that is on the part, the worst first.
+    /// Points on the part, the worst first.
     pub sites: Vec<Site>,
-    /// Second places: "the loop starts here".
+    /// Secondary places with their captions: "the loop starts here".
     pub labels: Vec<(Span, String)>,
+    /// Additional facts, one sentence each.
     pub notes: Vec<String>,
-    /// One thing to do.
+    /// Remedy: one instruction.
     pub help: Option<String>,
 }
 
 impl Diagnostic {
+    /// Creates a finding without place, notes or help.
     pub fn new(severity: Severity, code: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             code: code.into(),
@@ -74,32 +86,38 @@ impl Diagnostic {
         }
     }
 
+    /// Creates a finding of severity [`Severity::Error`].
     pub fn error(code: impl Into<String>, message: impl Into<String>) -> Self {
         Self::new(Severity::Error, code, message)
     }
 
+    /// Creates a finding of severity [`Severity::Warning`].
     pub fn warning(code: impl Into<String>, message: impl Into<String>) -> Self {
         Self::new(Severity::Warning, code, message)
     }
 
+    /// Sets the block and the calls that led to it.
     #[must_use]
     pub fn with_backtrace(mut self, backtrace: Backtrace) -> Self {
         self.backtrace = Some(backtrace);
         self
     }
 
+    /// Appends points on the part.
     #[must_use]
     pub fn with_sites(mut self, sites: impl IntoIterator<Item = Site>) -> Self {
         self.sites.extend(sites);
         self
     }
 
+    /// Sets the remedy.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
+    /// Appends a note.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());

@@ -1,33 +1,36 @@
-//! The seam between the control and the machine: what the control asks for, absolute, in machine coordinates,
-//! in mm and degrees. Below this line there are no modes, no cycles, no inches and no variables.
+//! Interface between control and machine: absolute motion in machine coordinates, mm and degrees.
+//!
+//! Events carry no modes, cycles, inches or variables; the control has resolved them.
 use std::sync::Arc;
 
 use crate::source::Span;
 use crate::units::{Deg, MmPerMin, Rpm, Seconds};
 
-/// How many axes a control can have here.
+/// Largest number of axes of a control.
 pub const MAX_AXES: usize = 8;
 
-/// The place of an axis in the control's axis table, counted from 0 (the manuals count from 1).
+/// Index of an axis in the control's axis table, counted from 0 (the manuals count from 1).
 pub type AxisIndex = usize;
 
-/// The letters of a control's axes, axis 1 first: `#5001` is the first, `#5002` the second.
+/// Letters of a control's axes, axis 1 first: `#5001` refers to the first, `#5002` to the second.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Axes {
     letters: [u8; MAX_AXES],
     count: usize,
-    /// The axis of each letter, [`Axes::NONE`] where it is none's.
+    /// Axis of each letter, [`Axes::NO_AXIS`] if the letter names none.
     axis_of_letter: [u8; 256],
-    /// The letters as bits, A the lowest.
+    /// Letters as bits, A the lowest.
     letter_bits: u32,
-    /// The axes that turn as bits, axis 1 the lowest.
+    /// Rotary axes as bits, axis 1 the lowest.
     rotary_bits: u32,
 }
 
 impl Axes {
     const NO_AXIS: u8 = MAX_AXES as u8;
 
-    /// At most [`MAX_AXES`] letters; more are an error of the machine file and refused there.
+    /// Creates the table from letters out of `XYZABCUVW`.
+    ///
+    /// `None` if a letter is repeated, names no axis, or if there are more than [`MAX_AXES`].
     pub fn new(letters: &str) -> Option<Self> {
         let bytes = letters.as_bytes();
         let has_valid_letters = bytes.len() <= MAX_AXES && bytes.iter().all(|b| b"XYZABCUVW".contains(b));
@@ -52,58 +55,62 @@ impl Axes {
         }
     }
 
-    /// The axis of an address.
+    /// Returns the axis with this letter.
     #[inline]
     pub fn find(&self, letter: u8) -> Option<AxisIndex> {
         let axis = usize::from(self.axis_of_letter[usize::from(letter)]);
         (axis < MAX_AXES).then_some(axis)
     }
 
+    /// Returns the letter of an axis, `?` if there is no such axis.
     pub fn letter(&self, axis: AxisIndex) -> char {
         self.letters[..self.count].get(axis).map_or('?', |l| char::from(*l))
     }
 
-    /// A B C turn; all others slide.
+    /// Returns true for A, B and C; all other axes are linear.
     pub fn is_rotary(&self, axis: AxisIndex) -> bool {
         axis < MAX_AXES && self.rotary_bits >> axis & 1 == 1
     }
 
+    /// Returns the number of axes.
     pub fn len(&self) -> usize {
         self.count
     }
 
+    /// Returns true if the control has no axis.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// The letters as bits, A the lowest.
+    /// Returns the letters as bits, A the lowest.
     pub fn letter_bits(&self) -> u32 {
         self.letter_bits
     }
 
+    /// Iterates over the axes with their letters as characters.
     pub fn iter(&self) -> impl Iterator<Item = (AxisIndex, char)> + '_ {
         self.letters().map(|(axis, letter)| (axis, char::from(letter)))
     }
 
-    /// The axes with the letters of their addresses.
+    /// Iterates over the axes with their letters as bytes.
     pub fn letters(&self) -> impl Iterator<Item = (AxisIndex, u8)> + '_ {
         self.letters[..self.count].iter().copied().enumerate()
     }
 }
 
 impl Default for Axes {
-    /// X Y Z A B C: axis 1 to 6 of the default control.
+    /// X Y Z A B C as axes 1 to 6.
     fn default() -> Self {
         Self::from_letters(b"XYZABC")
     }
 }
 
-/// One number per axis: mm for those that slide, degrees for those that turn.
+/// One coordinate per axis: mm for linear axes, degrees for rotary axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Position(pub [f64; MAX_AXES]);
 
 impl PartialEq for Position {
-    /// All places are looked at, whichever differs: several are compared at a time.
+    /// Compares all axes without an early exit, so that several are compared at a time.
     #[inline]
     fn eq(&self, other: &Self) -> bool {
         self.0.iter().zip(&other.0).fold(true, |same, (one, other)| same & (one == other))
@@ -123,104 +130,139 @@ impl std::ops::IndexMut<AxisIndex> for Position {
     }
 }
 
-/// One call on the way to a block: the block that called, and the call it was itself made from.
+/// One call in the chain that led to a block.
 #[derive(Debug, PartialEq)]
 pub struct Call {
-    /// The calling block (`G65 P8101 …`).
+    /// Calling block (`G65 P8101 …`).
     pub calling_block: Span,
+    /// Calls that led to the calling block.
     pub outer_calls: CallChain,
 }
 
-/// The chain of calls that led to a block, innermost first; `None` in the main program.
+/// Chain of calls that led to a block, innermost first; `None` in the main program.
 pub type CallChain = Option<Arc<Call>>;
 
-/// Where an event comes from: the block, and the calls that led to it.
+/// Origin of an event: the block and the calls that led to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Backtrace {
+    /// Executed block.
     pub block: Span,
+    /// Calls that led to it.
     pub calls: CallChain,
 }
 
-/// What the machine is told by one block, or by one step of a cycle.
+/// Action of the machine, caused by one block or by one step of a cycle.
 #[derive(Clone, Debug)]
 pub struct Event<'a> {
+    /// Action and its operands.
     pub kind: &'a EventKind,
-    /// How long it takes: path over feed, rapid rates of the control's parameters, no acceleration.
+    /// Duration: path over feed, rapid rates from the parameters, no acceleration.
     pub seconds: Seconds,
+    /// Block that causes the action.
     pub block: Span,
+    /// Calls that led to the block.
     pub calls: &'a CallChain,
 }
 
 impl Event<'_> {
+    /// Returns the origin of the event as an owned value.
     pub fn backtrace(&self) -> Backtrace {
         Backtrace { block: self.block, calls: self.calls.clone() }
     }
 }
 
+/// Action of the machine.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EventKind {
-    /// Every axis at its rapid rate, taken as one straight segment in axis space.
+    /// Rapid move: each axis at its rapid rate, modelled as one straight segment in axis space.
     Rapid {
+        /// End point.
         to: Position,
     },
-    /// All axes linear together.
+    /// Linear feed move of all axes.
     Feed {
+        /// End point.
         to: Position,
+        /// Feed along the path.
         rate: MmPerMin,
     },
-    /// A circle in the plane of two axes while all others move linearly.
+    /// Circular move in the plane of two axes; all other axes move linearly.
     Arc {
+        /// End point.
         to: Position,
+        /// Plane, centre and angle.
         arc: PlanarArc,
+        /// Feed along the path.
         rate: MmPerMin,
     },
-    /// G31: a feed that ended at `to`, where the signal came or at its end.
+    /// G31: a feed move that ended at the skip signal or at its programmed end.
     Skip {
+        /// Point where the motion ended.
         to: Position,
+        /// Feed along the path.
         rate: MmPerMin,
+        /// True if the skip signal ended the motion.
         has_signal: bool,
     },
+    /// Pause without motion.
     Dwell {
+        /// Length of the pause.
         time: Seconds,
     },
-    /// M06: this tool is in the spindle now.
+    /// M06: the tool is now in the spindle.
     ToolChange {
+        /// Tool number.
         number: u32,
     },
-    /// The tool length offset that is part of every machine position from now on, or what it comes of, is another; moves
-    /// nothing itself.
+    /// Change of the tool length offset or of its source; causes no motion.
+    ///
+    /// The offset is part of every machine position from now on.
     ToolLength {
+        /// Offset of each axis.
         offset: Position,
+        /// Code and offset number that the offset comes from.
         compensation: LengthCompensation,
     },
-    /// From the next move's end on these axes stand where G28, G30 or G53 sends them, as bits, axis 1 the lowest, while
-    /// nothing has set the work offset in effect: where that is on the part isn't known. Moves nothing itself.
+    /// Axes whose end position on the part is unknown; causes no motion.
+    ///
+    /// After the next move these axes are at a position commanded in machine coordinates (G28, G30, G53)
+    /// while no program has set the active work offset.
     WorkZeroUnknown {
+        /// Axes as bits, axis 1 the lowest.
         axes: u8,
     },
+    /// Change of spindle direction or speed.
     Spindle {
+        /// Direction, or off.
         direction: SpindleDirection,
+        /// Speed.
         speed: Rpm,
     },
-    /// M07 and M08 switch it on, M09 off.
+    /// M07 and M08 switch the coolant on, M09 off.
     Coolant {
+        /// New state.
         is_on: bool,
+        /// Number of the M code.
         code: u32,
     },
-    /// An M code for the machine builder's logic: what it does isn't simulated.
+    /// M code for the machine builder's logic; its effect is not simulated.
     Auxiliary {
+        /// Number of the M code.
         code: u32,
     },
-    /// The program waits for the operator.
+    /// Stop until the operator continues.
     Stop {
+        /// Code that causes the stop.
         kind: StopKind,
+        /// Message text; empty without one.
         text: String,
+        /// Variables named in the text, with their values at the stop.
         variables: Vec<(u32, f64)>,
     },
 }
 
 impl EventKind {
-    /// Where a move ends; `None` for what moves nothing.
+    /// Returns the end point of a motion; `None` for an event without motion.
     pub fn end(&self) -> Option<&Position> {
         match self {
             Self::Rapid { to } | Self::Feed { to, .. } | Self::Arc { to, .. } | Self::Skip { to, .. } => {
@@ -238,45 +280,57 @@ impl EventKind {
     }
 }
 
-/// An arc of [`EventKind::Arc`].
+/// Geometry of an [`EventKind::Arc`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarArc {
-    /// The two axes of the plane, in its right-handed order: X Y, Z X or Y Z.
+    /// The two axes of the plane in right-handed order: X Y, Z X or Y Z.
     pub plane: (AxisIndex, AxisIndex),
-    /// The centre in machine coordinates, in the order of `plane`.
+    /// Centre in machine coordinates, in the order of `plane`.
     pub centre: (f64, f64),
-    /// The angle swept; positive is counterclockwise seen from the plane's positive third axis.
+    /// Angle swept; positive is counterclockwise seen from the positive third axis of the plane.
     pub sweep: Deg,
 }
 
-/// What a tool length offset comes of: G43 or G44, and the H with it.
+/// Source of a tool length offset: the code and its H.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LengthCompensation {
     #[default]
+    /// G49: no compensation.
     Off,
+    /// G43 with this H.
     Plus(u32),
+    /// G44 with this H.
     Minus(u32),
 }
 
+/// State of the spindle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SpindleDirection {
     #[default]
+    /// Stopped.
     Off,
+    /// Clockwise, M03.
     Clockwise,
+    /// Counterclockwise, M04.
     Counterclockwise,
 }
 
-/// Why the program waits. `#3006=1(TEXT)` is [`StopKind::Message`]; its event names the variables that the text
-/// names (`#149`) with the values they had, so that the simulated operator can do what the message says.
+/// Cause of a stop.
+///
+/// The event of a message names the variables in its text (`#149`) with their values, so that a simulated
+/// operator can follow the instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopKind {
+    /// M00, program stop.
     M00,
+    /// M01, optional stop.
     M01,
+    /// `#3006=1(TEXT)`, stop with a message.
     Message,
 }
 
 impl StopKind {
-    /// As a program writes it.
+    /// Returns the command as written in a program.
     pub fn name(self) -> &'static str {
         match self {
             Self::M00 => "M00",
@@ -286,47 +340,59 @@ impl StopKind {
     }
 }
 
-/// A straight cut that a skip signal may end: G31, before it moves.
+/// Straight feed move of G31 before its execution.
 #[derive(Clone, Copy, Debug)]
 pub struct SkipMove<'a> {
+    /// Start point.
     pub from: &'a Position,
+    /// Programmed end point.
     pub to: &'a Position,
+    /// Feed along the path.
     pub rate: MmPerMin,
-    /// For the whole way.
+    /// Duration of the whole path.
     pub seconds: Seconds,
 }
 
-/// Whether the skip signal comes; places are parts of the way, 0 to 1.
+/// Result of a G31 move; positions are fractions of the path, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SkipSignal {
-    /// The motion goes to its end.
+    /// No signal: the motion goes to its end.
     Missed,
+    /// The signal ends the motion.
     Received {
-        /// Where the control notes the position.
+        /// Position that the control latches.
         latched: f64,
-        /// Where the axes stand still: there, or farther on.
+        /// Position where the axes stop: at the signal or beyond it.
         stop_fraction: f64,
     },
-    /// The probe is pushed farther than it gives, in mm.
-    StylusBroken { stopped: f64, deflection: f64, overtravel_limit: f64 },
+    /// The stylus is deflected beyond its overtravel.
+    StylusBroken {
+        /// Position where the axes stop.
+        stopped: f64,
+        /// Deflection, mm.
+        deflection: f64,
+        /// Largest permitted deflection, mm.
+        overtravel_limit: f64,
+    },
 }
 
-/// Who is told what the machine does: of each event once, in order.
+/// Receiver of the machine's events, each once and in order.
 pub trait EventSink {
+    /// Receives one event.
     fn event(&mut self, event: &Event<'_>);
 
-    /// Whether anybody listens. Where nobody does, plain moves are counted and not told.
+    /// Returns false if events may be dropped; plain moves are then counted but not emitted.
     fn is_active(&self) -> bool {
         true
     }
 
-    /// Where the skip signal comes on a way that is about to be gone. `None`: here nothing gives such a signal.
+    /// Returns where the skip signal ends a G31 move about to start; `None` if this sink gives no signal.
     fn skip_signal(&mut self, _: &SkipMove<'_>) -> Option<SkipSignal> {
         None
     }
 }
 
-/// Nobody listens: only the control's end state is asked for.
+/// Discards all events, for runs of which only the end state of the control is needed.
 impl EventSink for () {
     fn event(&mut self, _: &Event<'_>) {}
 
@@ -335,7 +401,7 @@ impl EventSink for () {
     }
 }
 
-/// Two listeners side by side; the first that can answer does.
+/// Forwards each event to both sinks; the first skip signal counts.
 impl<A: EventSink, B: EventSink> EventSink for (A, B) {
     fn event(&mut self, event: &Event<'_>) {
         self.0.event(event);
@@ -352,7 +418,7 @@ impl<A: EventSink, B: EventSink> EventSink for (A, B) {
     }
 }
 
-/// A listener that may be there.
+/// Forwards to the sink if there is one.
 impl<S: EventSink> EventSink for Option<S> {
     fn event(&mut self, event: &Event<'_>) {
         if let Some(sink) = self {

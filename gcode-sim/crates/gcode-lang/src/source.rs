@@ -2,39 +2,47 @@
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
-/// Which text a place belongs to.
+/// Index of a text in its [`Sources`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 
-/// The bytes from `start` up to `end` of one text.
+/// Byte range of one text, from `start` up to but not including `end`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Span {
+    /// Text that the range belongs to.
     pub source: SourceId,
+    /// Offset of the first byte.
     pub start: u32,
+    /// Offset after the last byte.
     pub end: u32,
 }
 
-/// A value with the place it was written at.
+/// A value with the place where it is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spanned<T> {
+    /// The value.
     pub node: T,
+    /// Its place.
     pub span: Span,
 }
 
 impl<T> Spanned<T> {
+    /// Pairs a value with its place.
     pub fn new(node: T, span: Span) -> Self {
         Self { node, span }
     }
 }
 
-/// A place for people: both count from 1, the column in bytes.
+/// Line and column as shown in messages, both counted from 1; the column counts bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LineColumn {
+    /// Line number.
     pub line: u32,
+    /// Byte position in the line.
     pub column: u32,
 }
 
-/// The bytes of a text, shared by all who need them. Those of a file are taken over as they were read, without a copy.
+/// Shared bytes of a text. Bytes read from a file are taken over without a copy.
 #[derive(Clone, Debug)]
 pub struct Bytes(Arc<Vec<u8>>);
 
@@ -64,12 +72,14 @@ impl<const N: usize> From<[u8; N]> for Bytes {
     }
 }
 
-/// One text: its name as the user gave it, its bytes, and where its lines begin.
+/// One text: its name, its bytes and the starts of its lines.
 #[derive(Debug)]
 pub struct Source {
+    /// Name as given by the user.
     pub name: String,
+    /// Content.
     pub bytes: Bytes,
-    /// Found when a place is asked for.
+    /// Offsets of the line starts, computed on first use.
     lines: OnceLock<Vec<u32>>,
 }
 
@@ -82,7 +92,7 @@ impl Source {
         self.lines.get_or_init(|| line_starts(&self.bytes))
     }
 
-    /// The lines without their ends, bytes that aren't UTF-8 replaced.
+    /// Iterates over the lines without their ends; invalid UTF-8 is replaced.
     pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
         let starts = self.cached_line_starts();
         let ends = starts.iter().skip(1).map(|end| *end as usize).chain([self.bytes.len()]);
@@ -94,7 +104,7 @@ impl Source {
         })
     }
 
-    /// The line and column of the byte at `offset`.
+    /// Returns line and column of the byte at `offset`.
     pub fn line_column(&self, offset: u32) -> LineColumn {
         let lines = self.cached_line_starts();
         let index = lines.partition_point(|start| *start <= offset).saturating_sub(1);
@@ -103,8 +113,10 @@ impl Source {
     }
 }
 
-/// Where each line begins. A line ends with LF, with CR LF, or with a CR that stands alone; the stray CRs
-/// that some senders put around a LF belong to that one end of line.
+/// Returns the offset of each line start.
+///
+/// A line ends with LF, with CR LF or with a single CR. The stray CRs that some senders put around a LF
+/// belong to that one line end.
 fn line_starts(bytes: &[u8]) -> Vec<u32> {
     let mut starts = vec![0];
     let mut at = 0;
@@ -118,12 +130,12 @@ fn line_starts(bytes: &[u8]) -> Vec<u32> {
     }
 }
 
-/// The length of the line that a text begins with, its end not counted. Sixteen bytes are looked at together.
+/// Returns the length of the first line of a text without its end. Sixteen bytes are compared at a time.
 #[inline]
-pub fn line_length(text: &[u8]) -> usize {
+pub(crate) fn line_length(text: &[u8]) -> usize {
     const ONES: u64 = u64::from_ne_bytes([1; 8]);
     let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
-    // The top bit of each byte up to CR, LF among them; behind such a one a byte may get it as well.
+    // Sets the top bit of every byte up to CR, LF included. A byte above a match may get a false bit.
     let low_byte_bits = |word: u64| word.wrapping_sub(ONES * u64::from(b'\r' + 1)) & !word & ONES << 7;
     let (chunks, rest) = text.as_chunks::<16>();
     for (place, chunk) in chunks.iter().enumerate() {
@@ -146,14 +158,14 @@ pub fn line_length(text: &[u8]) -> usize {
     16 * chunks.len() + rest.iter().position(is_line_end).unwrap_or(rest.len())
 }
 
-/// No sender puts more CRs than this around a LF; the limit keeps reading linear in a file of nothing but CRs.
+/// Most CRs next to a LF that belong to one line end. The limit keeps reading linear in a file of CRs only.
 const MAX_CARRIAGE_RETURNS: usize = 4;
 
-/// The length of the end of line that `rest` begins with: CRs with at most one LF among them, 0 if none.
+/// Returns the length of the line end at the start of `rest`: CRs with at most one LF, 0 if none.
 #[inline]
-pub fn end_of_line(rest: &[u8]) -> usize {
+pub(crate) fn end_of_line(rest: &[u8]) -> usize {
     match rest {
-        // The commonest of all.
+        // The most common line end.
         [b'\n', behind, ..] if *behind != b'\r' => 1,
         _ => mixed_line_end_length(rest),
     }
@@ -167,38 +179,44 @@ fn mixed_line_end_length(rest: &[u8]) -> usize {
     }
 }
 
-/// CRs after a LF that don't begin the next CR LF.
+/// Counts the CRs after a LF that do not begin the next CR LF.
 fn trailing_return_count(rest: &[u8]) -> usize {
     let count = rest.iter().take(MAX_CARRIAGE_RETURNS).take_while(|b| **b == b'\r').count();
     if rest.get(count) == Some(&b'\n') { 0 } else { count }
 }
 
-/// All texts of one session. Adding one never moves another, so a [`SourceId`] stays good.
+/// All texts of one session. Adding a text moves no other, so a [`SourceId`] stays valid.
 #[derive(Clone, Debug, Default)]
 pub struct Sources(Vec<Arc<Source>>);
 
 impl Sources {
+    /// Adds a text and returns its id.
     pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Bytes>) -> SourceId {
         let id = SourceId(self.0.len() as u32);
         self.0.push(Arc::new(Source::new(name.into(), bytes.into())));
         id
     }
 
-    /// All texts with their ids, in the order they were read.
+    /// Iterates over all texts with their ids, in the order of addition.
     pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Arc<Source>)> {
         self.0.iter().enumerate().map(|(id, source)| (SourceId(id as u32), source))
     }
 
-    /// The text with this id; ids come only from [`Sources::add`] of the same collection.
+    /// Returns the text with this id.
+    ///
+    /// # Panics
+    ///
+    /// If the id comes from another collection.
     pub fn get(&self, id: SourceId) -> &Arc<Source> {
         &self.0[id.0 as usize]
     }
 
+    /// Returns line and column of the first byte of `span`.
     pub fn line_column(&self, span: Span) -> LineColumn {
         self.get(span.source).line_column(span.start)
     }
 
-    /// What stands at `span`, bytes that aren't UTF-8 replaced.
+    /// Returns the text at `span`; invalid UTF-8 is replaced.
     pub fn text(&self, span: Span) -> String {
         let bytes = &self.get(span.source).bytes;
         String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize]).into_owned()

@@ -1,17 +1,19 @@
-//! Lengths, angles, feeds, speeds and times as types, and the only sines and cosines of the project.
+//! Lengths, angles, feeds, speeds and times as types, and the only trigonometric functions of the project.
 //!
-//! The trigonometry comes from `libm`, so that every machine computes the same bits and stored results hold.
+//! The functions come from `libm`: every machine computes the same bits, so stored results stay valid.
 use std::ops::{Add, Mul, Neg, Sub};
 
 use serde::{Deserialize, Serialize};
 
-/// `value` × `scale` as the nearest whole number, halves away from 0. What binary numbers miss of a half counts as one:
-/// 0.5005 × 1000 is 500.49999999999994 to a double, and 501 to everybody who reads it.
+/// Returns `value` × `scale` rounded to the nearest whole number, halves away from 0.
+///
+/// A product within four epsilons of a half counts as that half: 0.5005 × 1000 is 500.49999999999994 as a
+/// double and rounds to 501.
 pub fn round_scaled(value: f64, scale: f64) -> f64 {
     round(value * scale * HALF_CORRECTION)
 }
 
-/// As [`nearest`], up to a largest size; `None` beyond it.
+/// Rounds as [`round_scaled`] does; `None` if the magnitude of the result exceeds `max`.
 #[inline]
 pub fn round_scaled_within(value: f64, scale: f64, max: f64) -> Option<f64> {
     debug_assert!(max < FRACTION_LIMIT, "{max} has no room for a fraction");
@@ -19,7 +21,7 @@ pub fn round_scaled_within(value: f64, scale: f64, max: f64) -> Option<f64> {
     (rounded.abs() <= max).then_some(rounded)
 }
 
-/// What lifts a half that binary numbers miss.
+/// Factor that raises a product just below a half to that half.
 const HALF_CORRECTION: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 macro_rules! unit {
@@ -30,8 +32,10 @@ macro_rules! unit {
         pub struct $name(pub f64);
 
         impl $name {
+            /// The value 0.
             pub const ZERO: Self = Self(0.0);
 
+            /// Returns the magnitude.
             pub fn abs(self) -> Self {
                 Self(self.0.abs())
             }
@@ -66,7 +70,7 @@ macro_rules! unit {
         }
 
         impl std::fmt::Display for $name {
-            /// The number with the precision asked for, and its unit.
+            /// Writes the number with the precision of the formatter, followed by the unit.
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 std::fmt::Display::fmt(&self.0, f)?;
                 f.write_str($suffix)
@@ -75,75 +79,82 @@ macro_rules! unit {
     };
 }
 
-unit!(/// A length in millimetres.
+unit!(/// Length in millimetres.
     Mm, " mm");
-unit!(/// An angle in degrees.
+unit!(/// Angle in degrees.
     Deg, "°");
-unit!(/// A feed in millimetres a minute.
+unit!(/// Feed in millimetres per minute.
     MmPerMin, " mm/min");
-unit!(/// A spindle speed in revolutions a minute.
+unit!(/// Spindle speed in revolutions per minute.
     Rpm, " r/min");
-unit!(/// A time in seconds.
+unit!(/// Time in seconds.
     Seconds, " s");
 
 impl Deg {
+    /// Converts from radians.
     pub fn from_rad(rad: f64) -> Self {
         Self(rad.to_degrees())
     }
 
+    /// Converts to radians.
     pub fn to_rad(self) -> f64 {
         self.0.to_radians()
     }
 
+    /// Returns the sine.
     pub fn sin(self) -> f64 {
         libm::sin(self.to_rad())
     }
 
+    /// Returns the cosine.
     pub fn cos(self) -> f64 {
         libm::cos(self.to_rad())
     }
 
+    /// Returns the tangent.
     pub fn tan(self) -> f64 {
         libm::tan(self.to_rad())
     }
 
-    /// −90° … 90°.
+    /// Returns the arc sine, −90° to 90°.
     pub fn asin(sine: f64) -> Self {
         Self::from_rad(libm::asin(sine))
     }
 
-    /// 0° … 180°.
+    /// Returns the arc cosine, 0° to 180°.
     pub fn acos(cosine: f64) -> Self {
         Self::from_rad(libm::acos(cosine))
     }
 
-    /// The direction of the point (x, y): −180° … 180°.
+    /// Returns the direction of the point (x, y), −180° to 180°.
     #[inline]
     pub fn atan2(y: f64, x: f64) -> Self {
         Self::from_rad(libm::atan2(y, x))
     }
 }
 
-/// Beyond it a double has no fraction.
+/// 2^52: a double of this magnitude or above has no fraction.
 const FRACTION_LIMIT: f64 = 4_503_599_627_370_496.0;
 
-/// Half away from 0: `f64::round` without a branch, so that several numbers can be rounded at once.
+/// Rounds to the nearest whole number, halves away from 0.
+///
+/// Gives the bits of `f64::round` without a branch, so that several numbers can be rounded at once.
 #[inline]
 pub fn round(value: f64) -> f64 {
     if value.abs() < FRACTION_LIMIT { round_small(value) } else { value }
 }
 
-/// The same of numbers that have room for a fraction; the others are only near to what they were.
+/// Rounds a number below [`FRACTION_LIMIT`]; the result for larger numbers is inexact.
 #[inline]
 fn round_small(value: f64) -> f64 {
     let magnitude = value.abs();
-    // In the sum there is no room for a fraction: it is the nearest whole number, of two the even one.
+    // The sum has no bits for a fraction: it is the nearest whole number, ties to even.
     let even = (magnitude + FRACTION_LIMIT) - FRACTION_LIMIT;
     let half_step = if magnitude - even == 0.5 { 1.0 } else { 0.0 };
     (even + half_step).copysign(value)
 }
 
-/// The natural logarithm, the same bits everywhere like the sines.
+/// Returns the natural logarithm, with the same bits on every machine.
 pub fn ln(value: f64) -> f64 {
     libm::log(value)
 }

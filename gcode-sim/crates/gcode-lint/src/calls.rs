@@ -1,4 +1,4 @@
-//! Who calls whom: G65, G66, M98 and the codes that call macros, with the locals that their arguments set.
+//! Calls of a program: G65, G66, M98 and the codes that call programs, with the locals their arguments set.
 use gcode_lang::control::{CodeCallKind, Settings};
 use gcode_lang::program::{
     ArgumentLocals, CallCode, CallTarget, LoweredWord, Memory, OpIndex, OpKind, Program, WordOperand, Words,
@@ -7,45 +7,49 @@ use gcode_lang::source::Span;
 
 use super::literal;
 
-/// One block that calls.
+/// Block with a call.
 #[derive(Debug)]
 pub(crate) struct CallSite {
     pub block: OpIndex,
-    /// A fresh set of locals; M98 shares the caller's.
+    /// True for a call with its own locals; M98 shares the caller's.
     pub has_own_locals: bool,
-    /// G66: called after moves that follow, not here.
+    /// True for G66, whose macro is called after later moves.
     pub is_modal: bool,
     pub target: CalledProgramName,
-    /// Where Q of M98 starts.
+    /// Sequence number in Q of M98, where the subprogram starts.
     pub start: Option<u32>,
-    /// The locals that arguments set, with the letters they stand behind.
+    /// Locals that the arguments set.
     pub arguments: Vec<Argument>,
     pub span: Span,
 }
 
+/// Program of a call, as far as it is known without a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CalledProgramName {
+    /// O number.
     Number(u32),
+    /// Program name.
     Name(String),
-    /// `P#1`: only a run knows.
+    /// Computed number, `P#1`.
     Computed,
-    /// No P at all.
+    /// No P.
     Missing,
 }
 
+/// Argument of a macro call.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Argument {
     pub local: usize,
-    /// A number, so surely not vacant.
+    /// True for a number, which cannot be vacant.
     pub is_number: bool,
 }
 
-/// The programs that a program calls, by codes that call too.
+/// Returns the programs that a program calls, also by codes that call programs.
 pub fn called_programs(program: &Program, settings: &Settings) -> Vec<CalledProgramName> {
     call_sites(program, settings).into_iter().map(|site| site.target).collect()
 }
 
-/// Every call of a program.
+/// Returns all calls of a program.
 pub(super) fn call_sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
     let mut found = Vec::new();
     for (block, op) in program.ops().iter().enumerate() {
@@ -66,7 +70,7 @@ fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallS
         CallTarget::None => CalledProgramName::Missing,
         CallTarget::Name(name) => CalledProgramName::Name(name.clone()),
         CallTarget::Number(word) => match literal::word_count(word) {
-            // M98 P with more than four digits: repeats in front of a four-digit program number.
+            // M98 P with more than four digits: repeats before a four-digit program number.
             Some(number)
                 if call.kind == CallCode::Subprogram
                     && settings.reads_repeats_in_p
@@ -90,8 +94,10 @@ fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallS
     })
 }
 
-/// A code that calls by a parameter: a macro's code comes first, and the other words are its arguments; a subprogram's
-/// may stand anywhere.
+/// Returns the call that a code makes by a parameter.
+///
+/// The code of a macro is the first word, and the other words are its arguments; the code of a subprogram may
+/// have any position.
 fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
     if settings.code_calls.is_empty() {
         return None;
@@ -137,7 +143,7 @@ fn arguments(words: &[LoweredWord], is_every_block: bool, settings: &Settings) -
 }
 
 impl CalledProgramName {
-    /// As a message names it: `O8101`, `<PROBE>`.
+    /// Returns the name used in messages: `O8101`, `<PROBE>`.
     pub fn label(&self) -> String {
         match self {
             Self::Number(number) => format!("O{number:04}"),
@@ -146,7 +152,7 @@ impl CalledProgramName {
         }
     }
 
-    /// The program, where it is in memory.
+    /// Returns the program if it is in memory.
     pub fn find(&self, memory: &Memory) -> Option<gcode_lang::program::ProgramId> {
         match self {
             Self::Number(number) => memory.find(*number),

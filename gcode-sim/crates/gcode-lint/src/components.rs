@@ -1,8 +1,9 @@
-//! Which blocks lie on common ways round: the strongly connected parts of a program's ways, found in one pass
-//! (Tarjan, Depth-first search and linear graph algorithms, 1972).
+//! Strongly connected components of a control flow graph, found in one pass.
+//!
+//! Algorithm: Tarjan, Depth-first search and linear graph algorithms, 1972.
 use super::control_flow::ControlFlowGraph;
 
-/// For each place of the ways the number of its circle: two places have the same one if each can lead to the other.
+/// Returns the component number of each node. Two nodes share a component if each can reach the other.
 pub(crate) fn strongly_connected_components(flow: &ControlFlowGraph) -> Vec<usize> {
     let after = |place: usize| flow.successors(place).collect();
     let mut search = Search::new(flow.block_count());
@@ -14,13 +15,14 @@ pub(crate) fn strongly_connected_components(flow: &ControlFlowGraph) -> Vec<usiz
 
 const UNVISITED: usize = usize::MAX;
 
+/// State of the depth-first search.
 struct Search {
-    /// In which order the places were first seen.
+    /// Order in which the nodes were first visited.
     visit_order: Vec<usize>,
-    /// The first of them, by order, that a place leads back to.
+    /// Lowest visit order reachable from each node.
     lowest_reachable: Vec<usize>,
     component: Vec<usize>,
-    /// Seen, and their circle not yet closed.
+    /// Visited nodes whose component is not complete.
     stack: Vec<usize>,
     visit_count: usize,
     component_count: usize,
@@ -43,7 +45,7 @@ impl Search {
         if self.visit_order[start] != UNVISITED {
             return;
         }
-        // Each place with the ways from it that are still to be followed.
+        // Nodes on the current path with the successors still to follow.
         let mut path = vec![(start, self.enter(start, after))];
         while let Some((place, ways)) = path.last_mut() {
             let place = *place;
@@ -73,7 +75,7 @@ impl Search {
         after(place)
     }
 
-    /// A place that leads back to nothing before itself is the first of its circle.
+    /// Completes a component if the node reaches no earlier node.
     fn close(&mut self, place: usize) {
         if self.lowest_reachable[place] < self.visit_order[place] {
             return;

@@ -1,4 +1,4 @@
-//! The programs under check, each with its text, its blocks, its ways and its calls.
+//! Programs under check, each with its text, blocks, control flow and calls.
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::control::Settings;
@@ -11,43 +11,43 @@ use gcode_lang::syntax::{self, ast};
 use super::calls::{self, CallSite};
 use super::control_flow::ControlFlowGraph;
 
-/// Everything a rule may look at.
+/// Input of a rule.
 #[derive(Debug)]
 pub(crate) struct CheckContext<'a> {
     pub memory: &'a Memory,
     pub settings: &'a Settings,
     pub units: Vec<ProgramUnit<'a>>,
-    /// The names of all rules, as CHECK-OFF may have them.
+    /// Names of all rules, as valid in CHECK-OFF.
     pub rules: Vec<&'static str>,
     unit_indices: BTreeMap<ProgramId, usize>,
 }
 
-/// One program.
+/// One program under check.
 #[derive(Debug)]
 pub(crate) struct ProgramUnit<'a> {
-    /// As written: the tree keeps comments and points.
+    /// Blocks as written: the tree keeps comments and decimal points.
     pub blocks: Vec<ast::Block>,
-    /// As it will run; block and operation have the same index.
+    /// Operations; block and operation have the same index.
     pub program: &'a Program,
     pub flow: ControlFlowGraph,
     pub calls: Vec<CallSite>,
-    /// Who calls it: unit and place in its calls.
+    /// Callers, each as the index of the unit and of its call.
     pub callers: Vec<(usize, usize)>,
-    /// The first block, and those where calls with Q start.
+    /// The first block, and the blocks at which calls with Q start.
     pub entry_blocks: Vec<OpIndex>,
-    /// Whether anything reaches each block.
+    /// True for each reachable block.
     pub is_reached: Vec<bool>,
     pub role: Role,
 }
 
-/// How a program is entered.
+/// Way in which a program is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// By the operator: all locals are vacant.
+    /// Started by the operator: all locals are vacant.
     Main,
-    /// Only by calls that are seen here.
+    /// Called only by the programs under check.
     Called,
-    /// Nothing here calls it, and it returns: by calls that nobody sees.
+    /// Returns but has no caller under check: called by unknown programs.
     Resident,
 }
 
@@ -81,7 +81,7 @@ impl<'a> CheckContext<'a> {
         subject
     }
 
-    /// Tells each program who calls it, each call where it may return to, and what is reached.
+    /// Links callers and called programs, adds the return targets of calls and computes reachability.
     fn link_calls(&mut self) {
         for caller in 0..self.units.len() {
             for site in 0..self.units[caller].calls.len() {
@@ -119,14 +119,14 @@ impl<'a> CheckContext<'a> {
         }
     }
 
-    /// The unit that a call goes to, where it is here.
+    /// Returns the index of the called program if it is under check.
     pub(crate) fn called_unit(&self, call: &CallSite) -> Option<usize> {
         let id = call.target.find(self.memory)?;
         self.unit_indices.get(&id).copied()
     }
 }
 
-/// The trees of programs, read once more from the texts in memory: lowering doesn't keep them.
+/// Returns the trees of programs, read again from their texts, because lowering does not keep them.
 fn trees(memory: &Memory, programs: &[ProgramId]) -> BTreeMap<ProgramId, Vec<ast::Block>> {
     let programs: BTreeSet<_> = programs.iter().collect();
     let mut ids: BTreeMap<SourceId, Vec<ProgramId>> = BTreeMap::new();
@@ -162,13 +162,13 @@ impl ProgramUnit<'_> {
         &self.program.ops()[block]
     }
 
-    /// The call that a block makes; a block has one at most, and they are kept in the order of their blocks.
+    /// Returns the call of a block. A block has at most one, and the calls are sorted by block.
     pub(crate) fn call_in(&self, block: OpIndex) -> Option<&CallSite> {
         let place = self.calls.binary_search_by_key(&block, |call| call.block).ok()?;
         self.calls.get(place)
     }
 
-    /// A finding about a block.
+    /// Creates a finding about a block.
     pub(crate) fn finding(
         &self,
         severity: Severity,
@@ -203,7 +203,7 @@ impl ProgramUnit<'_> {
     }
 }
 
-/// What a rule says of a block.
+/// Finding of a rule about a block.
 #[derive(Debug)]
 pub(crate) struct RuleFinding {
     pub block: OpIndex,
@@ -211,7 +211,7 @@ pub(crate) struct RuleFinding {
 }
 
 impl RuleFinding {
-    /// The exact part of the block.
+    /// Sets the exact part of the block.
     pub(crate) fn with_span(mut self, span: Span) -> Self {
         self.diagnostic.span = Some(span);
         self

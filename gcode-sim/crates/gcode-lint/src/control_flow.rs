@@ -1,32 +1,33 @@
-//! The ways from block to block: falling through, jumps, loops, ends; and which blocks anything reaches.
+//! Control flow of a program: the blocks that can follow each block, and the blocks that are reachable.
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{CallCode, CallTarget, OpIndex, OpKind, Operand, Program, Statement, Words};
 
 use super::literal;
 
-/// Where a block can go.
+/// Blocks that can follow a block.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Successors {
-    /// To the next block.
+    /// True if the next block can follow.
     pub falls_through: bool,
-    /// By a jump, a loop, or a return from a call.
+    /// Targets of jumps, loops and returns from calls.
     pub jumps: Vec<OpIndex>,
-    /// A computed jump: to any numbered block.
+    /// True for a computed jump, which can reach any numbered block.
     pub jumps_anywhere: bool,
-    /// The program ends here, returns, or stops with an alarm of its own (`#3000`).
+    /// True if the program ends, returns, or stops with its own alarm (`#3000`).
     pub is_exit: bool,
 }
 
-/// A sequence number that a block goes to, and whether it is there.
+/// Jump to a sequence number, with its target if it exists.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Jump {
     pub block: OpIndex,
     pub number: u32,
     pub to: Option<OpIndex>,
-    /// `M99 P`: in a called program the number is the caller's.
+    /// True for `M99 P`: in a called program the number is the caller's.
     pub is_return: bool,
 }
 
+/// Control flow graph of one program.
 #[derive(Debug)]
 pub(crate) struct ControlFlowGraph {
     pub block_successors: Vec<Successors>,
@@ -52,7 +53,7 @@ impl ControlFlowGraph {
 
     fn block_successors_of(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Successors {
         match kind {
-            // An alarm stops the control; what stands behind it is looked at as if it had been mended.
+            // An alarm stops the control; the blocks after it are checked as if it were corrected.
             OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => {
                 Successors { falls_through: true, ..Successors::default() }
             }
@@ -79,7 +80,7 @@ impl ControlFlowGraph {
         if codes().any(|m| matches!(m, 2 | 30)) {
             ways = Successors { is_exit: true, ..Successors::default() };
         }
-        // Haas: a subprogram at a sequence number of the same program.
+        // Haas: M97 calls a subprogram at a sequence number of the same program.
         if codes().any(|m| m == 97)
             && let Some(number) = words.list.iter().find(|w| w.letter == b'P').and_then(literal::word_count)
         {
@@ -145,26 +146,29 @@ impl ControlFlowGraph {
         };
         let to = program.find_number(number, block + 1);
         self.jumps.push(Jump { block, number, to, is_return: false });
-        // A jump to nowhere is told by a rule; what stands behind it is no second fault.
+        // The rule `missing-n` reports a missing target; the blocks after it are not a second fault.
         Successors { falls_through: to.is_none(), jumps: to.into_iter().collect(), ..Successors::default() }
     }
 
-    /// A called program may return to these blocks.
+    /// Adds the blocks to which the program called in `block` may return.
     pub(super) fn add_return_targets(&mut self, block: OpIndex, to: impl IntoIterator<Item = OpIndex>) {
         self.block_successors[block].jumps.extend(to);
     }
 
+    /// Marks a call whose program may return to any numbered block.
     pub(super) fn add_return_anywhere(&mut self, block: OpIndex) {
         self.block_successors[block].jumps_anywhere = true;
     }
 
-    /// How many places there are: the blocks, the end of the program one past the last of them, and behind it one that
-    /// computed jumps lead to and that leads to every numbered block, which keeps the ways few.
+    /// Returns the number of nodes: the blocks, the end of the program and one for computed jumps.
+    ///
+    /// The end is one past the last block. The last node leads to every numbered block, which keeps the edges
+    /// few.
     pub(crate) fn block_count(&self) -> usize {
         self.block_successors.len() + 2
     }
 
-    /// The places that can follow a place.
+    /// Iterates over the nodes that can follow a node.
     pub(crate) fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
         let anywhere = self.block_successors.len() + 1;
         let ways = self.block_successors.get(place);
@@ -175,7 +179,7 @@ impl ControlFlowGraph {
         jumps.iter().copied().chain(next).chain(computed).chain(numbered.iter().copied())
     }
 
-    /// Whether anything reaches each block from one of `starts`.
+    /// Returns, for each block, whether it is reachable from one of `starts`.
     pub(crate) fn reachable(&self, starts: impl IntoIterator<Item = OpIndex>) -> Vec<bool> {
         let mut reached = vec![false; self.block_count()];
         let mut open: Vec<OpIndex> = starts.into_iter().collect();
@@ -189,7 +193,7 @@ impl ControlFlowGraph {
     }
 }
 
-/// Whether a block is `#3000=…`, alone or behind IF … THEN.
+/// Returns true for `#3000=…`, alone or after IF … THEN.
 pub(crate) fn raises_alarm(kind: &OpKind) -> bool {
     match kind {
         OpKind::Statement(Statement::IfThen { then, .. }) => is_raise(then),
@@ -206,7 +210,7 @@ fn is_raise(statement: &Statement) -> bool {
     }
 }
 
-/// Loops without a partner, which a rule of their own tells.
+/// Returns true for the alarms of unpaired loops, which the rule `loop-pairs` reports.
 pub(crate) fn is_loop_alarm(alarm: &Alarm) -> bool {
     matches!(alarm, Alarm::MissingEnd { .. } | Alarm::MissingDo { .. } | Alarm::LoopNumber { .. })
 }

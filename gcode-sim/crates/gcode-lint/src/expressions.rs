@@ -1,7 +1,7 @@
-//! The expressions of a block: of its words, and of its statements and their conditions.
+//! Expressions of a block: those of its words, statements and conditions.
 use gcode_lang::syntax::ast::{Block, Condition, Expr, Item, PrintPart, Statement, WordValue};
 
-/// The outermost ones, in the order they stand in.
+/// Returns the outermost expressions in the order written.
 pub(super) fn block_expressions(block: &Block) -> Vec<&Expr> {
     let mut found = Vec::new();
     for item in &block.items {

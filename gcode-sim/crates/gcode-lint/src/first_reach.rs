@@ -1,4 +1,4 @@
-//! What a local is when a block is reached for the first time, whichever way that is.
+//! State of a local when a block is reached for the first time, on any path.
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::program::OpIndex;
@@ -8,15 +8,16 @@ use super::context::ProgramUnit;
 use super::vacancy::{Locals, States, UNSET, steps};
 use super::variables;
 
-/// The states of a program with the circles of its ways: what lies on no circle is reached once, so that only circles
-/// are ever gone round again.
+/// States of a program with the components of its control flow.
+///
+/// A node outside all cycles is reached once, so that only cycles are traced again.
 pub(super) struct FirstReach<'a> {
     unit: &'a ProgramUnit<'a>,
     states: &'a States,
     component: Vec<usize>,
-    /// For each circle the places outside that lead into it.
+    /// Nodes outside each component that lead into it.
     entries: BTreeMap<usize, Vec<OpIndex>>,
-    /// Blocks with locals of theirs that may be set when the block is reached for the first time.
+    /// Blocks with those of their locals that may be set when the block is reached for the first time.
     set_reads: BTreeSet<(OpIndex, u32)>,
 }
 
@@ -35,8 +36,10 @@ impl<'a> FirstReach<'a> {
         first
     }
 
-    /// Most reads in a circle are told by following each local round it once, with all blocks that read it as ends: what
-    /// one of them finds set there is set on a way that passes none of them before.
+    /// Returns the reads in cycles whose local may be set before.
+    ///
+    /// Each local is traced once around its cycle, with all blocks that read it as ends. A value set at one
+    /// of them is set on a path that passes no earlier reader, which decides most reads.
     fn find_set_reads(&self) -> BTreeSet<(OpIndex, u32)> {
         let mut readers: BTreeMap<(usize, u32), BTreeSet<OpIndex>> = BTreeMap::new();
         for (block, written) in self.unit.blocks.iter().enumerate() {
@@ -56,8 +59,8 @@ impl<'a> FirstReach<'a> {
         set
     }
 
-    /// Whether a local is still unset when a block is reached for the first time: no way to the block that doesn't pass
-    /// it sets the local.
+    /// Returns true if a local is unset when a block is reached for the first time: no path to it sets the
+    /// local.
     pub(super) fn is_unset(&self, block: OpIndex, local: u32) -> bool {
         let bits = self.bits(block, local);
         if !is_unclear(bits) {
@@ -67,7 +70,8 @@ impl<'a> FirstReach<'a> {
         !self.set_reads.contains(&(block, local)) && traced().get(&block) == Some(&UNSET)
     }
 
-    /// Follows a local once more round a circle, with some blocks as ends: what it may be at each place that is reached.
+    /// Traces a local once more around a component, with some blocks as ends, and returns its bits at each
+    /// node.
     fn trace(&self, circle: usize, local: u32, ends: &BTreeSet<OpIndex>) -> BTreeMap<OpIndex, u8> {
         let mut component_state = ComponentState {
             components: &self.component,
@@ -104,17 +108,17 @@ impl<'a> FirstReach<'a> {
     }
 }
 
-/// Whether a local may be unset, and may be set as well.
+/// Returns true if a local may be unset and may be set.
 fn is_unclear(bits: u8) -> bool {
     bits & UNSET != 0 && bits != UNSET
 }
 
-/// What the local may be at the places of one circle.
+/// Bits of a local at the nodes of one component.
 struct ComponentState<'a> {
     components: &'a [usize],
     component: usize,
     known: BTreeMap<OpIndex, u8>,
-    /// Places where it has become known to be more.
+    /// Nodes whose bits have grown.
     pending: Vec<OpIndex>,
 }
 

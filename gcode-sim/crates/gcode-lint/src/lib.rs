@@ -1,9 +1,23 @@
-//! What can be known of a program without running it: faults that a control would meet, and slips it would not notice.
+//! Checker of programs without a run: program text in, findings out.
 //!
-//! The program and the ones it calls by number are read into one subject (`subject`): their blocks with the ways from
-//! one to another (`flow`), what is called from where (`calls`), which locals are vacant where (`vacancy`) and read
-//! there (`unset`). The rules, a file each in [`rules`], look at that and say what they find. A comment
-//! `(CHECK-OFF NAME)` on a block, or at the head of a program for all of it, silences a rule there (`silence`).
+//! A finding is a fault at which a control raises an alarm, or a mistake that the control does not notice. The
+//! programs of the file and those they call form one context (`context`): the control flow between their blocks
+//! (`control_flow`), their calls (`calls`), the vacancy of local variables (`vacancy`) and the reads of unset ones
+//! (`unset_reads`). Each rule, a row of [`rules::ALL`], reports its findings about this context. A comment
+//! `(CHECK-OFF NAME)` on a block, or in the head of a program, turns a rule off there (`suppression`).
+//!
+//! ```
+//! use gcode_lang::control::Settings;
+//! use gcode_lang::program::NoLibrary;
+//!
+//! let text = *b"O1\nG0 X1.5\nGOTO 90\nM30\n";
+//! let result = gcode_lint::check("O1.nc", text, &Settings::default(), &mut NoLibrary);
+//! assert_eq!(result.findings.len(), 1);
+//! assert_eq!(result.findings[0].code, "missing-n");
+//! assert_eq!(result.findings[0].message, "PS0128: sequence number N90 is not in O0001");
+//! ```
+#![warn(missing_docs)]
+
 mod calls;
 mod components;
 mod context;
@@ -20,7 +34,7 @@ mod variables;
 
 use std::collections::BTreeSet;
 
-pub use calls::{CalledProgramName, called_programs as called};
+pub use calls::{CalledProgramName, called_programs};
 
 use context::CheckContext;
 use gcode_lang::control::Settings;
@@ -29,18 +43,20 @@ use gcode_lang::program::{Library, Memory, Program, ProgramId};
 use gcode_lang::source::{Bytes, Span};
 pub use variables::variables_read;
 
-/// What was found, and the texts it was found in.
+/// Result of a check: the findings and the texts they refer to.
 #[derive(Debug)]
 pub struct CheckResult {
+    /// Checked programs with their texts.
     pub memory: Memory,
-    /// How many programs were looked at: those of the file, and those they call.
+    /// Number of checked programs: those of the file and those they call.
     pub programs: usize,
-    /// In the order of the programs and their blocks.
+    /// Findings in the order of the programs and their blocks.
     pub findings: Vec<Diagnostic>,
 }
 
-/// Checks all programs of a file and those that they call. A file without any program has no findings and
-/// `programs` is 0.
+/// Checks all programs of a file and the programs that they call.
+///
+/// A file without a program has no findings, and `programs` is 0.
 pub fn check(
     name: impl Into<String>,
     bytes: impl Into<Bytes>,
@@ -52,7 +68,7 @@ pub fn check(
     check_loaded(memory, settings, library)
 }
 
-/// As [`check`], of programs that have been loaded.
+/// Checks the programs in memory as [`check`] does.
 pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> CheckResult {
     let programs = load_called_programs(&mut memory, settings, library);
     let context = CheckContext::new(&memory, settings, &programs, rules::names());
@@ -60,7 +76,7 @@ pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl 
     CheckResult { programs: programs.len(), memory, findings }
 }
 
-/// The programs in memory, then those that they call, as far as they can be found.
+/// Returns the programs in memory, followed by the programs that they call, as far as these are found.
 fn load_called_programs(
     memory: &mut Memory,
     settings: &Settings,
@@ -84,16 +100,17 @@ fn load_called_programs(
 }
 
 impl CheckResult {
-    /// Whether something stands against the program; notes don't.
+    /// Returns true if there is an error or a warning; notes do not count.
     pub fn has_findings(&self) -> bool {
         self.count(Severity::Warning) + self.count(Severity::Error) > 0
     }
 
+    /// Returns the number of findings of one severity.
     pub fn count(&self, severity: Severity) -> usize {
         self.findings.iter().filter(|finding| finding.severity == severity).count()
     }
 
-    /// The program a place belongs to.
+    /// Returns the program that contains a place.
     pub fn program(&self, span: Span) -> Option<&Program> {
         self.memory.program_at(span)
     }

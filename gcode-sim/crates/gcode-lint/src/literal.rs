@@ -1,8 +1,8 @@
-//! Numbers that a program writes out: what a word, an operand or an expression is without running anything.
+//! Literal numbers: values of words, operands and expressions known without a run.
 use gcode_lang::program::{LoweredWord, Operand, WordOperand, names};
 use gcode_lang::syntax::ast::{BinaryOp, Decimal, Expr, ExprKind, Name};
 
-/// The number a word writes out, point or not; `None` where it is computed.
+/// Returns the number of a word, with or without a decimal point; `None` if it is computed.
 pub(super) fn word_number(word: &LoweredWord) -> Option<f64> {
     match word.value {
         WordOperand::Literal(number) => Some(number.value()),
@@ -12,7 +12,7 @@ pub(super) fn word_number(word: &LoweredWord) -> Option<f64> {
     }
 }
 
-/// The whole number a word writes out.
+/// Returns the whole number of a word.
 pub(super) fn word_count(word: &LoweredWord) -> Option<u32> {
     word_number(word).and_then(to_whole)
 }
@@ -24,13 +24,14 @@ pub(super) fn operand_number(operand: &Operand) -> Option<f64> {
     }
 }
 
-/// As a control makes an index or a sequence number of it.
+/// Rounds as a control does for an index or a sequence number; `None` out of range.
 pub(super) fn to_whole(value: f64) -> Option<u32> {
     let rounded = value.round();
     (0.0..=999_999_999.0).contains(&rounded).then_some(rounded as u32)
 }
 
-/// A literal without a point that isn't 0: increments where a control has no calculator-type input.
+/// Returns a literal other than 0 without a decimal point, which counts increments unless calculator input is
+/// on.
 pub(super) fn without_point(word: &LoweredWord) -> Option<Decimal> {
     match word.value {
         WordOperand::Literal(number) if number.places.is_none() && number.digits != 0 => Some(number),
@@ -38,7 +39,7 @@ pub(super) fn without_point(word: &LoweredWord) -> Option<Decimal> {
     }
 }
 
-/// The value of an expression of literals, as far as sums and products go.
+/// Returns the value of an expression of literals, limited to sums and products.
 pub(super) fn constant(expr: &Expr) -> Option<f64> {
     match &expr.kind {
         ExprKind::Literal(number) => Some(number.value()),
@@ -53,7 +54,7 @@ pub(super) fn constant(expr: &Expr) -> Option<f64> {
     }
 }
 
-/// The four kinds of arithmetic; the operators on bits and the remainder are left to a run.
+/// Computes the four basic operations; `None` for the others and for division by 0.
 pub(super) fn arithmetic(op: BinaryOp, left: f64, right: f64) -> Option<f64> {
     match op {
         BinaryOp::Add => Some(left + right),
@@ -64,7 +65,7 @@ pub(super) fn arithmetic(op: BinaryOp, left: f64, right: f64) -> Option<f64> {
     }
 }
 
-/// The number of a variable, `#5` or `#[100+1]`.
+/// Returns the number of a variable, `#5` or `#[100+1]`.
 pub(super) fn variable(expr: &Expr) -> Option<u32> {
     match &expr.kind {
         ExprKind::Variable(index) => constant(index).and_then(to_whole),
@@ -74,7 +75,7 @@ pub(super) fn variable(expr: &Expr) -> Option<u32> {
     }
 }
 
-/// The number of a system variable's name; names given by SETVN are common variables, which only a run knows.
+/// Returns the number of a named system variable. A name given by SETVN is known at run time only.
 fn named(name: &Name) -> Option<u32> {
     let row = names::find(&name.text)?;
     match (&name.index, row.suffix) {

@@ -1,9 +1,10 @@
-//! Blocks between G10 L50 or L52 and G11: their words are parameters, their N is a parameter's number.
+//! Blocks of parameter input, between G10 L50 or L52 and G11: N is a parameter number, the words are its
+//! values.
 use gcode_lang::program::{OpKind, Program, WordOperand, Words};
 
 use super::literal;
 
-/// Whether each block is such a one; G10 itself and G11 are not.
+/// Returns true for each block of parameter input, without its G10 and G11.
 pub(crate) fn parameter_blocks(program: &Program) -> Vec<bool> {
     let mut parameters = false;
     let blocks = program.ops().iter().map(|op| {
@@ -16,7 +17,7 @@ pub(crate) fn parameter_blocks(program: &Program) -> Vec<bool> {
     blocks.collect()
 }
 
-/// What G10 writes: its L.
+/// Returns L of a block with G10, the kind of data input.
 pub(crate) fn data_input_kind(words: &Words) -> Option<u32> {
     let l = words.list.iter().find(|word| word.letter == b'L');
     l.filter(|_| has_g(words, 100)).and_then(literal::word_count)

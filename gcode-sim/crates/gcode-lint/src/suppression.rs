@@ -1,17 +1,20 @@
-//! `(CHECK-OFF NAME)`: silences a rule on its block, or in the whole program where it stands before the first block
-//! that does something. A control takes it for the comment it is.
+//! Suppression comments: `(CHECK-OFF NAME)` turns a rule off for its block.
+//!
+//! In the head of a program, before the first block with an operation, it turns the rule off for the whole
+//! program. A control treats it as a comment.
 use gcode_lang::program::OpKind;
 use gcode_lang::source::Span;
 
 use super::context::{ProgramUnit, RuleFinding};
 
-/// The word that begins such a comment.
+/// First word of a suppression comment.
 const KEYWORD: &str = "CHECK-OFF";
 
-/// What a program's comments silence.
+/// Suppressions of a program.
 #[derive(Debug)]
 pub(super) struct Suppressions {
-    /// The block's index, or `None` for all of the program; the rule's name in upper case.
+    /// Index of the block, `None` for the whole program; name of the rule in upper case; place of the
+    /// comment.
     entries: Vec<(Option<usize>, String, Span)>,
 }
 
@@ -43,7 +46,7 @@ impl Suppressions {
         })
     }
 
-    /// The names in all the comments, in upper case, with the comments they stand in.
+    /// Iterates over the suppressed names in upper case with the places of their comments.
     pub(super) fn names(&self) -> impl Iterator<Item = (&str, Span)> {
         self.entries.iter().map(|(_, name, span)| (name.as_str(), *span))
     }

@@ -1,4 +1,4 @@
-//! Locals that nothing has set: what a call leaves vacant, and what reads it.
+//! Reads of unset locals: locals that a call leaves vacant and that no block sets.
 use std::rc::Rc;
 
 use gcode_lang::program::OpIndex;
@@ -12,7 +12,7 @@ use super::literal::variable;
 use super::vacancy::{ANY_VALUE, Locals, NUMBER, States, guards};
 use super::variables::{self, VariableRead, VariableUse};
 
-/// The locals as a call hands them over.
+/// Returns the locals at the start of a called macro.
 pub(super) fn entry_locals(call: &CallSite) -> Locals {
     let mut entry = Locals::UNSET;
     for argument in &call.arguments {
@@ -21,7 +21,7 @@ pub(super) fn entry_locals(call: &CallSite) -> Locals {
     entry
 }
 
-/// The reads of locals that are surely unset there, each block's local once.
+/// Iterates over the reads of locals that are certainly unset, each local once per block.
 pub(super) fn unset_reads<'a>(
     unit: &'a ProgramUnit<'a>,
     states: &'a States,
@@ -34,7 +34,7 @@ pub(super) fn unset_reads<'a>(
         let reads = variables::block_uses(written).reads;
         let minded = guarded_locals(unit, block, &reads);
         let plain = reads.into_iter().filter(move |read| {
-            // `#1=#1` says nothing.
+            // `#1=#1` has no effect.
             (1..=33).contains(&read.number)
                 && read.usage != VariableUse::VacancyTest
                 && itself.is_none()
@@ -47,8 +47,9 @@ pub(super) fn unset_reads<'a>(
     })
 }
 
-/// The locals whose vacancy a condition minds: what is behind it reads them only where they are set, and what stands
-/// beside the test in it means no harm.
+/// Returns the locals whose vacancy a condition tests: the conditional part reads them only if they are set.
+///
+/// Other comparisons in the same condition are harmless.
 fn guarded_locals(unit: &ProgramUnit<'_>, block: OpIndex, reads: &[VariableRead]) -> Vec<u32> {
     use Statement::{IfGoto, IfThen, While};
     let Some(IfThen { condition, .. } | IfGoto { condition, .. } | While { condition, .. }) =
@@ -57,11 +58,11 @@ fn guarded_locals(unit: &ProgramUnit<'_>, block: OpIndex, reads: &[VariableRead]
         return Vec::new();
     };
     let tested = reads.iter().filter(|read| read.usage == VariableUse::VacancyTest).map(|read| read.number);
-    // Behind IF[#9 EQ #0]THEN a #9 is a slip all the same.
+    // After IF[#9 EQ #0]THEN a read of #9 is still an error.
     tested.filter(|number| !is_computed_with(reads, *number) || guards(condition, *number)).collect()
 }
 
-/// Whether a local is used for more than comparing.
+/// Returns true if a local has a use other than comparison.
 fn is_computed_with(reads: &[VariableRead], number: u32) -> bool {
     reads.iter().any(|read| {
         read.number == number && !matches!(read.usage, VariableUse::VacancyTest | VariableUse::Comparison)

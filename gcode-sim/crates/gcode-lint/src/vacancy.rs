@@ -1,21 +1,21 @@
-//! Which locals are vacant where: every block's state from the ways that lead to it, conditions on vacancy followed.
+//! Vacancy analysis: the possible states of each local at each block.
 //!
-//! A state says of each local what it may be: never set, set to `#0` on purpose, or a number. Where ways meet, it may
-//! be what it is on either. A condition whose answer follows from the state (`#24 EQ #0` of a local that was never
-//! set) is followed one way only.
+//! A state is a set of possibilities for each local: never set, set to `#0`, or a number. Where paths meet,
+//! the sets are united. A condition that the state decides (`#24 EQ #0` for a local that is never set) is
+//! followed in one direction only.
 use gcode_lang::program::{OpIndex, OpKind};
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Relation, Statement};
 
 use super::context::ProgramUnit;
 use super::{literal, variables};
 
-/// What a local may be, as bits.
+/// Possible values of a local, as bits.
 pub(crate) const UNSET: u8 = 1;
 pub(crate) const VACANT: u8 = 2;
 pub(crate) const NUMBER: u8 = 4;
 pub(crate) const ANY_VALUE: u8 = VACANT | NUMBER;
 
-/// The locals #1 to #33; place 0 is not used.
+/// States of the locals #1 to #33; element 0 is unused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Locals(pub [u8; 34]);
 
@@ -43,14 +43,14 @@ impl Locals {
     }
 }
 
-/// The state at each place of the ways; `None` where nothing leads.
+/// State at each node of the control flow graph; `None` if the node is unreachable.
 pub(crate) type States = Vec<Option<Locals>>;
 
-/// Follows a program from its first block with what its locals are there.
+/// Computes the states of a program whose locals are `entry` at its first block.
 pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
     let mut states: States = vec![None; unit.flow.block_count()];
     let mut open = unit.entry_blocks.clone();
-    // A call that starts elsewhere brings its own locals.
+    // A call that starts at another block brings its own locals.
     for (place, start) in unit.entry_blocks.iter().enumerate() {
         states[*start] = Some(if place == 0 { entry } else { Locals::ANYTHING });
     }
@@ -73,7 +73,7 @@ pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
     states
 }
 
-/// Where a place leads and with which state.
+/// Returns the nodes that follow a node, each with its state.
 pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Locals)> {
     let to = || unit.flow.successors(block);
     let to_all = |state: Locals| to().map(|to| (to, state)).collect::<Vec<_>>();
@@ -88,7 +88,7 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             let on_true = truth(condition, state);
             let is_jump = matches!(statement, Some(Statement::IfGoto { .. }));
             let split = |to: OpIndex| {
-                // IF jumps when it is true, WHILE when it is not.
+                // IF jumps if its condition is true, WHILE if it is false.
                 let taken = (to == block + 1) != is_jump;
                 let sure = to != block + 1 || !unit.flow.block_successors[block].jumps.contains(&to);
                 if sure && on_true == Some(!taken) {
@@ -135,12 +135,12 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             to_all(after)
         }
         (OpKind::If { .. }, _) => {
-            // What stands behind the condition may have written any of them, or none.
+            // The conditional part may have set any local.
             after.add_bits(ANY_VALUE);
             to_all(after)
         }
         (OpKind::Words(_), _) => {
-            // A subprogram works on the same locals.
+            // A subprogram uses the locals of its caller.
             if unit.call_in(block).is_some_and(|call| !call.has_own_locals) {
                 after.add_bits(ANY_VALUE);
             }
@@ -163,17 +163,17 @@ fn assign(target: &Expr, value: &Expr, state: &mut Locals) {
     match literal::variable(target) {
         Some(number @ 1..=33) => state.0[number as usize] = bits,
         Some(_) => {}
-        // Any local could be meant.
+        // A computed number may be that of any local.
         None => state.add_bits(ANY_VALUE),
     }
 }
 
-/// What is known of a value.
+/// Static knowledge of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum KnownValue {
     Vacant,
     Number(f64),
-    /// A number, but not which.
+    /// Unknown number.
     Some,
     Unknown,
 }
@@ -191,7 +191,7 @@ fn value_of(expr: &Expr, state: &Locals) -> KnownValue {
         ExprKind::Bracket(inner) | ExprKind::Plus(inner) => value_of(inner, state),
         ExprKind::Negate(inner) => match value_of(inner, state) {
             KnownValue::Number(value) => KnownValue::Number(-value),
-            // Whether a minus keeps vacancy is a setting.
+            // A setting decides whether a minus keeps vacancy.
             _ => KnownValue::Unknown,
         },
         ExprKind::Binary(op, left, right) => {
@@ -199,7 +199,7 @@ fn value_of(expr: &Expr, state: &Locals) -> KnownValue {
             let value = sides.and_then(|(left, right)| literal::arithmetic(*op, left, right));
             match value {
                 Some(value) => KnownValue::Number(value),
-                // A product with a vacant factor is 0 whatever the other one is.
+                // A product with a vacant factor is 0 for any other factor.
                 None if *op == BinaryOp::Mul
                     && [left, right].iter().any(|e| known_number(value_of(e, state)) == Some(0.0)) =>
                 {
@@ -216,7 +216,7 @@ fn value_of(expr: &Expr, state: &Locals) -> KnownValue {
     }
 }
 
-/// The number a value counts as where it is reckoned with.
+/// Returns the number that a value counts as in arithmetic.
 fn known_number(value: KnownValue) -> Option<f64> {
     match value {
         KnownValue::Vacant => Some(0.0),
@@ -225,7 +225,7 @@ fn known_number(value: KnownValue) -> Option<f64> {
     }
 }
 
-/// The answer of a condition, where it follows from the state.
+/// Returns the result of a condition if the state decides it.
 pub(crate) fn truth(condition: &Condition, state: &Locals) -> Option<bool> {
     match condition {
         Condition::Compare { left, relation, right, .. } => {
@@ -245,7 +245,7 @@ pub(crate) fn truth(condition: &Condition, state: &Locals) -> Option<bool> {
 
 fn compare(left: KnownValue, relation: Relation, right: KnownValue) -> Option<bool> {
     use KnownValue::{Number, Some as Any, Vacant};
-    // EQ and NE tell vacant from 0, the others don't.
+    // EQ and NE distinguish vacant from 0; the other relations do not.
     if matches!(relation, Relation::Eq | Relation::Ne) {
         let equal = match (left, right) {
             (Vacant, Vacant) => true,
@@ -265,14 +265,14 @@ fn compare(left: KnownValue, relation: Relation, right: KnownValue) -> Option<bo
     })
 }
 
-/// Whether a condition is only true where something has set the local, as `#9 NE #0` is.
+/// Returns true if a condition can only be true with the local set, as `#9 NE #0`.
 pub(crate) fn guards(condition: &Condition, local: u32) -> bool {
     let mut state = Locals([UNSET | ANY_VALUE; 34]);
     refine(condition, true, &mut state);
     state.bits_of(local) & UNSET == 0
 }
 
-/// What a condition tells where it is known to be `answer`.
+/// Restricts a state to the locals for which a condition has the result `answer`.
 fn refine(condition: &Condition, answer: bool, state: &mut Locals) {
     match condition {
         Condition::Compare { left, relation: relation @ (Relation::Eq | Relation::Ne), right, .. } => {
@@ -283,7 +283,7 @@ fn refine(condition: &Condition, answer: bool, state: &mut Locals) {
             let vacant = (*relation == Relation::Eq) == answer;
             if let Some(bits) = state.0.get_mut(tested as usize).filter(|_| tested > 0) {
                 let left = *bits & if vacant { UNSET | VACANT } else { NUMBER };
-                // A way that can't be gone is not looked at any closer.
+                // An impossible result is not analysed further.
                 if left != 0 {
                     *bits = left;
                 }

@@ -1,4 +1,4 @@
-//! The variables that a block reads and writes, and how it reads them: a vacant one is harmless in some places.
+//! Variables that a block reads, with the use of each value: some uses tolerate a vacant variable.
 use gcode_lang::program::OpIndex;
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{
@@ -7,21 +7,22 @@ use gcode_lang::syntax::ast::{
 
 use super::literal;
 
-/// What is done with the value.
+/// Use of a variable's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum VariableUse {
-    /// Held against `#0`: asks whether it is vacant.
+    /// Compared with `#0`, a test for vacancy.
     VacancyTest,
-    /// Stands in another comparison.
+    /// Operand of another comparison.
     Comparison,
-    /// `#1=#2`, `G65 … A#2`: passed on as it is, vacancy included.
+    /// Passed on unchanged, vacancy included: `#1=#2`, `G65 … A#2`.
     PassedOn,
-    /// The value of a word, which disappears with a vacant one.
+    /// Value of a word, which is ignored if the variable is vacant.
     Word,
-    /// Anything else, where vacant counts as 0.
+    /// Any other use, where a vacant variable counts as 0.
     Computed,
 }
 
+/// One read of a variable.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VariableRead {
     pub number: u32,
@@ -29,15 +30,15 @@ pub(crate) struct VariableRead {
     pub span: Span,
 }
 
-/// What a block does with variables.
+/// Variable reads of a block.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VariableUses {
     pub reads: Vec<VariableRead>,
-    /// A variable is read whose number is computed.
+    /// True if the number of a variable is computed.
     pub reads_computed: bool,
 }
 
-/// The variables that a block reads.
+/// Returns the variable reads of a block.
 pub(super) fn block_uses(block: &Block) -> VariableUses {
     let mut uses = VariableUses::default();
     let call = block.items.iter().any(is_macro_call);
@@ -56,7 +57,7 @@ pub(super) fn block_uses(block: &Block) -> VariableUses {
     uses
 }
 
-/// The numbers of the variables that a block reads by number or by name, each once.
+/// Returns the numbers of the variables that a block reads by number or by name, without duplicates.
 pub fn variables_read(block: &Block) -> Vec<u32> {
     let mut numbers = Vec::new();
     for read in block_uses(block).reads {
@@ -67,7 +68,7 @@ pub fn variables_read(block: &Block) -> Vec<u32> {
     numbers
 }
 
-/// G65, G66, G66.1: the other words are arguments.
+/// Returns true for G65, G66 and G66.1, whose other words are arguments.
 fn is_macro_call(item: &Item) -> bool {
     let Item::Word(word) = item else { return false };
     match &word.value {
@@ -79,7 +80,7 @@ fn is_macro_call(item: &Item) -> bool {
     }
 }
 
-/// The variables that stand in a condition.
+/// Returns the variable reads of a condition.
 pub(super) fn condition_uses(condition: &Condition) -> VariableUses {
     let mut uses = VariableUses::default();
     uses.condition(condition);
@@ -134,7 +135,7 @@ impl VariableUses {
     }
 
     fn expr(&mut self, expr: &Expr, usage: VariableUse) {
-        // What is computed inside a comparison is still part of the comparison.
+        // An operand computed within a comparison is still part of the comparison.
         let inside = if matches!(usage, VariableUse::VacancyTest | VariableUse::Comparison) {
             VariableUse::Comparison
         } else {
@@ -178,7 +179,7 @@ impl VariableUses {
         }
     }
 
-    /// The number of a variable, where it is computed from others.
+    /// Records the variables from which a variable's number is computed.
     fn record_index_reads(&mut self, variable: &Expr) {
         if let ExprKind::Variable(index) = &variable.kind {
             self.expr(index, VariableUse::Computed);
@@ -186,12 +187,12 @@ impl VariableUses {
     }
 }
 
-/// What a block assigns, alone or behind IF … THEN.
+/// Returns target and value of a block's assignment, alone or after IF … THEN.
 pub(super) fn assignment(block: &Block) -> Option<(&Expr, &Expr)> {
     block.items.iter().find_map(item_assignment)
 }
 
-/// What a part of a block assigns.
+/// Returns target and value of an item's assignment.
 pub(super) fn item_assignment(item: &Item) -> Option<(&Expr, &Expr)> {
     match item {
         Item::Statement(statement) => statement_assignment(&statement.node),
@@ -207,7 +208,7 @@ pub(super) fn statement_assignment(statement: &Statement) -> Option<(&Expr, &Exp
     }
 }
 
-/// The statement of a block, where it is one.
+/// Returns the statement of a block, `None` for a block of words.
 pub(super) fn statement(blocks: &[Block], block: OpIndex) -> Option<&Statement> {
     blocks.get(block)?.items.iter().find_map(|item| match item {
         Item::Statement(statement) => Some(&statement.node),

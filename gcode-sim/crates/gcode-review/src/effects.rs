@@ -70,7 +70,8 @@ impl<'a> Effects<'a> {
             || matches!(group.numbers, Numbers::Speeds(..));
         let of_block = || {
             let known = *self.by_places.get(&places).filter(|_| is_of_block)?;
-            let is_alike = !matches!(group.numbers, Numbers::Speeds(..)) || self.all[known].numbers == group.numbers;
+            let is_alike =
+                !matches!(group.numbers, Numbers::Speeds(..)) || self.all[known].numbers == group.numbers;
             is_alike.then_some(known)
         };
         let known = self.by_text.get(&text).copied().or_else(of_block);

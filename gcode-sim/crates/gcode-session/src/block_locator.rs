@@ -1,15 +1,15 @@
-//! Blocks as people name them, many of them: each program's name is made once.
+//! Locations of many blocks; the label of each program is formatted once.
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use super::Run;
 use gcode_lang::source::{SourceId, Span};
 
-/// The program and the line of a block.
+/// Converts spans to program and line.
 #[derive(Debug)]
 pub(super) struct BlockLocator<'r> {
     run: &'r Run,
-    /// By where the program begins.
+    /// Labels by the start of the program.
     names: RefCell<BTreeMap<(SourceId, u32), String>>,
 }
 

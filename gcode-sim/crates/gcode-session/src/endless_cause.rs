@@ -1,10 +1,10 @@
-//! Why a loop never ends, where that can be seen: a counter to which nothing is added.
+//! Cause of an endless loop, if visible: a counter that its assignment does not change.
 use gcode_control::{Control, Value};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
 
-/// `#8=#8+#7 adds nothing, for #7 is 0`, of the blocks from `first` to `last` of one file.
+/// Returns `#8=#8+#7 adds nothing: #7 is 0` for the blocks from `first` to `last` of one file.
 pub(super) fn unchanged_counter(control: &Control, first: Span, last: Span) -> Option<String> {
     if first.source != last.source {
         return None;
@@ -28,7 +28,7 @@ pub(super) fn unchanged_counter(control: &Control, first: Span, last: Span) -> O
     })
 }
 
-/// The number of a variable that is written out.
+/// Returns the number of a variable with a literal index.
 fn number(expr: &Expr) -> Option<u32> {
     let ExprKind::Variable(index) = &expr.kind else { return None };
     let ExprKind::Literal(literal) = &index.kind else { return None };

@@ -1,4 +1,26 @@
-//! One program through the whole chain: what the command line, the generator and tests call.
+//! Runs one program through the whole chain: from its text to a run, its holes, flutes or readings, and findings.
+//!
+//! **In:** a [`Request`], which holds the program's bytes, the control's settings and the machine, and a
+//! [`Library`] of called programs. **Out:** a [`Run`] with the control in its end state, or a run with the
+//! extracted holes ([`simulate`]), the ground flutes ([`grind`]) or the readings of an edge finder ([`follow`]).
+//! Each result verifies itself against a reference and reports findings as [`Diagnostic`]s.
+//!
+//! ```
+//! use gcode_inspect::machine::Machine;
+//! use gcode_lang::program::NoLibrary;
+//! use gcode_session::{Request, simulate};
+//!
+//! let machine = Machine::parse("[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n")?;
+//! let program = "O1\nS1000 M03\nG90 G54 G00 X10. Y20. Z50.\nG81 Z-15. R2. F100.\nM30\n";
+//! let request = Request::new("O1.nc", program.as_bytes(), machine);
+//! let simulation = simulate(&request, &mut NoLibrary, None)?;
+//! let holes = simulation.list().holes;
+//! // Without a surface a hole begins where the cutting feed begins: at the R point level.
+//! assert_eq!(holes[0].entry, [10.0, 20.0, 2.0]);
+//! assert_eq!(holes[0].depth, 17.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![warn(missing_docs)]
 mod block_locator;
 mod endless_cause;
 mod likely_causes;
@@ -28,27 +50,31 @@ use gcode_part::ProcessLimits;
 use gcode_part::Reference;
 use gcode_part::Surface;
 
-/// A program to run, and everything its run depends on.
+/// A program and the conditions of its run.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// The file's name as the user gave it.
     pub name: String,
+    /// The program file.
     pub bytes: Bytes,
+    /// The control's settings.
     pub settings: Settings,
+    /// The machine with its tools and work offsets.
     pub machine: Machine,
+    /// Limits that end the run.
     pub limits: Limits,
-    /// Variables set before the start.
+    /// Numbers and values of variables set before the start.
     pub variables: Vec<(u32, f64)>,
-    /// The part's surface, where it is there to be probed.
+    /// The surface of a part for probing.
     pub part: Option<Surface>,
-    /// How the part is to be worked, as far as the reference says it.
+    /// Limits of the process that the reference specifies.
     pub conduct: ProcessLimits,
-    /// Who sees how far the run is, and may end it.
+    /// Shared progress of the run, through which it can be cancelled.
     pub progress: Option<Arc<Progress>>,
 }
 
 impl Request {
-    /// A program on a machine, with that machine's control and the limits of [`Limits::default`].
+    /// Builds a request with the machine's control and the limits of [`Limits::default`].
     pub fn new(name: impl Into<String>, bytes: impl Into<Bytes>, machine: Machine) -> Self {
         let mut settings =
             Settings { axes: machine.axes.clone(), increment: machine.increment, ..Settings::default() };
@@ -67,28 +93,51 @@ impl Request {
     }
 }
 
-/// Why a run can't begin.
+/// An error that prevents a run.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
+    /// The file contains no program.
     #[error("{name} contains no program")]
-    NoProgram { name: String },
+    NoProgram {
+        /// The file's name.
+        name: String,
+    },
+    /// The file contains two programs of the same number or name.
     #[error(
         "{name}, line {line}: {program} is defined twice, and a control refuses the second: give it a \
          number of its own"
     )]
-    DuplicateProgram { name: String, line: u32, program: String },
+    DuplicateProgram {
+        /// The file's name.
+        name: String,
+        /// Line of the second program.
+        line: u32,
+        /// Number or name of the program.
+        program: String,
+    },
+    /// A variable cannot be set before the start.
     #[error("#{number} cannot be set: {alarm}")]
-    Variable { number: u32, alarm: Alarm },
+    Variable {
+        /// Number of the variable.
+        number: u32,
+        /// The alarm of the assignment.
+        alarm: Alarm,
+    },
 }
 
-/// A run that is over, with the control as it stands.
+/// A finished run with the control in its end state.
 #[derive(Debug)]
 pub struct Run {
+    /// The control after the run.
     pub control: Control,
+    /// The end of the run: program end, alarm or limit.
     pub outcome: Outcome,
 }
 
-/// Runs a program and tells `sink` what the machine does.
+/// Runs a program and emits the machine's events to `sink`.
+///
+/// # Errors
+/// [`SessionError`] if the run cannot begin; an alarm is an outcome of the run, not an error.
 pub fn run<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
@@ -97,7 +146,10 @@ pub fn run<S: EventSink>(
     run_observed(request, library, sink, &mut ())
 }
 
-/// As [`run`], with somebody who looks on from block to block.
+/// Runs a program like [`run`], with an observer that is called before and after every block.
+///
+/// # Errors
+/// See [`run`].
 pub fn run_observed<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
@@ -130,8 +182,8 @@ pub fn run_observed<S: EventSink>(
     Ok(Run { control, outcome })
 }
 
-/// What stands in the control of a machine that is set up: work offsets (#5221…), and the lengths of the tools in
-/// the table as geometry offsets H (#11001…, or #2001… on a Haas).
+/// Returns the variables of a machine that is set up: work offsets (#5221…), and the tool lengths as geometry
+/// offsets H (#11001…, or #2001… on a Haas).
 fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
     let work = machine.offsets.iter().flat_map(|offset| {
         let first = 5221 + 20 * (offset.code - 54);
@@ -145,24 +197,32 @@ fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<It
     work.chain(lengths)
 }
 
-/// A run with the flutes it ground.
+/// A run with the flutes that it grinds.
 #[derive(Debug)]
 pub struct GrindingRun {
+    /// The run.
     pub run: Run,
+    /// The ground flutes, and the findings of the run.
     pub result: GrindingResult,
+    /// The nominal flutes.
     pub nominal: Flutes,
 }
 
-/// Why flutes can't be followed.
+/// An error that prevents following the wheel.
 #[derive(Debug, thiserror::Error)]
 pub enum GrindingError {
+    /// The machine is not a grinder for this burr.
     #[error(transparent)]
     Machine(#[from] GrinderError),
+    /// The run cannot begin.
     #[error(transparent)]
     Session(#[from] SessionError),
 }
 
-/// Runs a program and follows the wheel on the burr that is wanted.
+/// Runs a program and follows the wheel's contact on the nominal burr.
+///
+/// # Errors
+/// [`GrindingError`] if the machine is not a grinder for this burr or the run cannot begin.
 pub fn grind(
     request: &Request,
     library: &mut impl Library,
@@ -178,21 +238,26 @@ pub fn grind(
 }
 
 impl GrindingRun {
-    /// The flutes against the wanted ones.
+    /// Verifies the ground flutes against the nominal ones.
     pub fn verify(&self) -> FluteVerdict {
         verify_flutes(&self.nominal, &self.result, &|span| self.run.locate(span))
     }
 }
 
-/// A run with what an edge finder showed.
+/// A run with the readings of an edge finder.
 #[derive(Debug)]
 pub struct StylusRun {
+    /// The run.
     pub run: Run,
+    /// The readings, and the findings of the run.
     pub readings: StylusReadings,
 }
 
-/// Runs a program and reads the ball of an edge finder, of so many mm of radius, along the part's surface; where the
-/// program probes, a probe touches it.
+/// Runs a program and records the readings of an edge finder along the part's surface; `radius` is its ball's, mm.
+/// Skip moves of the program touch the surface.
+///
+/// # Errors
+/// [`SessionError`] if the run cannot begin.
 pub fn read_stylus(
     request: &Request,
     library: &mut impl Library,
@@ -210,15 +275,20 @@ pub fn read_stylus(
     Ok(StylusRun { run, readings: followed })
 }
 
-/// A run with the holes it made.
+/// A run with the holes that it makes.
 #[derive(Debug)]
 pub struct Simulation {
+    /// The run.
     pub run: Run,
+    /// The holes, and the findings of the run.
     pub extracted: HoleExtraction,
 }
 
-/// Runs a program and follows the tool; with the surface known, motion inside the part is seen as well, and a machine
-/// that has a probe can touch it.
+/// Runs a program and extracts its holes. With a surface, motion inside the part is detected too, and a probe of the
+/// machine can touch the part.
+///
+/// # Errors
+/// [`SessionError`] if the run cannot begin.
 pub fn simulate(
     request: &Request,
     library: &mut impl Library,
@@ -227,8 +297,11 @@ pub fn simulate(
     simulate_observed(request, library, surface, &mut (), &mut ())
 }
 
-/// As [`simulate`], with another listener beside the one that follows the tool, and somebody who looks on from block to
+/// Runs a program like [`simulate`], with a further event sink and an observer that is called before and after every
 /// block.
+///
+/// # Errors
+/// See [`simulate`].
 pub fn simulate_observed<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
@@ -247,7 +320,7 @@ pub fn simulate_observed<S: EventSink>(
 }
 
 impl Simulation {
-    /// The holes against the wanted ones.
+    /// Verifies the holes against a reference, and adds likely causes to a verdict with findings.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
         let places = BlockLocator::of(&self.run);
         let locate = |span| places.locate(span);
@@ -257,7 +330,7 @@ impl Simulation {
         verdict
     }
 
-    /// The document that `holes` writes.
+    /// Returns the list of holes, the JSON document of `gcode-sim holes`.
     pub fn hole_list(&self) -> HoleList {
         let places = BlockLocator::of(&self.run);
         self.extracted.list(|span| places.locate(span))
@@ -265,16 +338,16 @@ impl Simulation {
 }
 
 impl Run {
-    /// The program and the line of a block, as people name them: `O8101`, 31.
+    /// Returns program and line of a block: `O8101`, 31.
     pub fn locate(&self, span: Span) -> (String, u32) {
         BlockLocator::of(self).locate(span)
     }
 
-    /// What the control did without a word and the programmer hardly meant, as warnings.
+    /// Returns the control's notes as findings: actions without an alarm that are probably unintended are warnings.
     pub fn note_findings(&self) -> impl Iterator<Item = Diagnostic> + '_ {
         self.control.notes().map(|(note, block)| {
             let (code, message, help) = note.describe();
-            // K0, lower case, block skip, G53 to wait and a centre where the tool stands are meant; the others are slips.
+            // K0, lower case, block skip, G53 as a wait and a centre at the tool are intentional; the others are slips.
             let meant = matches!(
                 note,
                 Note::CycleRepeatsZero
@@ -290,7 +363,7 @@ impl Run {
         })
     }
 
-    /// Why the run stopped before its end, as a finding; `None` where it didn't.
+    /// Returns the finding that ended the run before its end: an alarm or a limit.
     pub fn stop_finding(&self) -> Option<Diagnostic> {
         match &self.outcome {
             Outcome::End => None,
@@ -301,7 +374,7 @@ impl Run {
                 finding.span = Some(stopped.span);
                 finding.help = remedy(&stopped.alarm, stopped.span, self.control.memory().sources()).or_else(
                     || match row.code {
-                        // The program's own words are all there is to say.
+                        // The program's own message is the only help.
                         AlarmCode::Mc(_) => None,
                         code => Some(format!("run 'gcode-sim explain {code}' for the correct form")),
                     },

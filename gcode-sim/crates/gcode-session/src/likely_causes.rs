@@ -1,4 +1,4 @@
-//! What may explain a verdict: work offsets that nothing has set, numbers without a point in the program's text.
+//! Likely causes of a verdict: unset work offsets, and numbers without a decimal point.
 use super::Run;
 use gcode_inspect::machine::Machine;
 use gcode_lang::diag::Diagnostic;
@@ -6,7 +6,7 @@ use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_lint::{check_loaded, rules};
 
-/// `explain`: whether there is something that a slip may explain.
+/// Returns the likely causes; numbers without a decimal point are included only if `explain` is true.
 pub(super) fn likely_causes(run: &Run, machine: &Machine, explain: bool) -> Vec<Diagnostic> {
     let mut found: Vec<Diagnostic> = unset_work_offsets(run, machine, "holes").collect();
     if explain {
@@ -20,7 +20,7 @@ pub(super) fn likely_causes(run: &Run, machine: &Machine, explain: bool) -> Vec<
     found
 }
 
-/// The programs of the run, loaded anew in the same order: places in them stay what they are.
+/// Loads the programs of the run in the same order, so that spans remain valid.
 fn reload(run: &Run) -> Memory {
     let mut memory = Memory::default();
     for (_, source) in run.control.memory().sources().iter() {
@@ -29,8 +29,8 @@ fn reload(run: &Run) -> Memory {
     memory
 }
 
-/// Work offsets that the run moved in and of which the machine file says nothing, nor the program itself: each counts as 0,
-/// as G54 does, so that what is `made` comes out alike whichever is in effect.
+/// Returns the work offsets used by the run that neither the machine file nor the program sets. Each counts
+/// as 0 like G54, so that `made` (“holes” or “flutes”) does not depend on which one is active.
 pub(super) fn unset_work_offsets<'r>(
     run: &'r Run,
     machine: &'r Machine,

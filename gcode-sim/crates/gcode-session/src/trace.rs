@@ -1,27 +1,29 @@
-//! What a run did block by block: how often each was executed, and what the variables in it were.
+//! Trace of a run, block by block: execution counts and values of variables.
 use std::collections::BTreeMap;
 
 use gcode_control::{Control, Observer, Outcome, Value};
 use gcode_lang::source::{SourceId, Span};
 use gcode_lang::syntax::parse;
 
-/// As many values of one block are kept; a block that fills a table by computed numbers has thousands.
+/// Largest number of variables recorded per block; a block that fills a table by computed numbers has
+/// thousands.
 const MAX_VALUES: usize = 40;
 
-/// Reading a clock tells a control that the program waits, and these have nothing to show besides: alarm, clocks, date.
+/// Variables that are not recorded: alarm, clocks and date. The control treats reading a clock as waiting.
 const IGNORED_VARIABLES: [u32; 5] = [3000, 3001, 3002, 3011, 3012];
 
-/// Every block that was executed.
+/// All executed blocks of a run, with the values of their variables. Record it with
+/// [`run_observed`](crate::run_observed).
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     blocks: BTreeMap<(SourceId, u32), ExecutedBlock>,
-    /// The variables that the blocks of each text name by number.
+    /// Variables that each block names by number.
     named_variables: BTreeMap<(SourceId, u32), Vec<u32>>,
     read_sources: Vec<SourceId>,
     current: Option<CurrentBlock>,
 }
 
-/// The block at hand.
+/// The block being executed.
 #[derive(Clone, Debug)]
 struct CurrentBlock {
     block: Span,
@@ -29,46 +31,54 @@ struct CurrentBlock {
     assigned: Vec<u32>,
 }
 
-/// One block of the text.
+/// Executions of one block.
 #[derive(Clone, Debug)]
 pub struct ExecutedBlock {
+    /// The block in its file.
     pub block: Span,
+    /// Number of executions.
     pub count: u64,
+    /// Values of its variables, in the order of first use.
     pub values: Vec<VariableValues>,
-    /// There were more variables than are kept.
+    /// Whether the block has more variables than are recorded.
     pub is_truncated: bool,
 }
 
-/// What one variable was in one block.
+/// Values of one variable in one block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VariableValues {
+    /// Number of the variable.
     pub number: u32,
+    /// Use of the variable in the block.
     pub role: VariableRole,
+    /// Number of recorded values.
     pub count: u64,
+    /// First value.
     pub first: Value,
+    /// Last value.
     pub last: Value,
-    /// The least and the greatest of the numbers it was; `None` where it was never one.
+    /// Least and greatest numeric value; `None` if it was never a number.
     pub range: Option<(f64, f64)>,
 }
 
-/// What the block does with it.
+/// Use of a variable in a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum VariableRole {
-    /// It is named; its value before the block.
+    /// The block names it; the value before the block.
     Read,
-    /// Its value behind the block.
+    /// The block assigns it; the value after the block.
     Assigned,
-    /// A local of the program that is called: an argument.
+    /// A local variable of the called program: an argument.
     Argument,
 }
 
 impl Trace {
-    /// The blocks in the order of the texts.
+    /// Returns the blocks in the order of the files and their lines.
     pub fn blocks(&self) -> impl Iterator<Item = &ExecutedBlock> {
         self.blocks.values()
     }
 
-    /// Reads a text for the variables in it, once.
+    /// Records the variables that the blocks of a file name, once per file.
     fn read_source(&mut self, control: &Control, source: SourceId) {
         if self.read_sources.contains(&source) {
             return;
@@ -172,7 +182,7 @@ mod tests {
         trace
     }
 
-    /// The times of the lines, counted from 1; lines that weren't executed are left out.
+    /// Returns the executed lines, counted from 1, with their numbers of executions.
     fn times(text: &str) -> Vec<(usize, u64)> {
         let line = |executed: &ExecutedBlock| text[..executed.block.start as usize].lines().count() + 1;
         trace(text).blocks().map(|executed| (line(executed), executed.count)).collect()
@@ -181,7 +191,7 @@ mod tests {
     #[test]
     fn blocks_are_counted_and_those_jumped_over_are_not() {
         let text = "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#1=#1+1\nEND1\nGOTO9\n#2=1\nN9 M30\n";
-        // The loop's condition is looked at a fourth time, and doesn't hold.
+        // The loop's condition is evaluated a fourth time and is false.
         assert_eq!(times(text), [(2, 1), (3, 4), (4, 3), (5, 3), (6, 1), (8, 1)]);
     }
 

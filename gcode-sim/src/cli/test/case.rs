@@ -1,4 +1,4 @@
-//! One case of `gcode-sim test`: a folder with a program, what it needs, and what was accepted of it.
+//! One case of `gcode-sim test`: a folder with a program, its inputs, and its accepted result.
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -13,27 +13,27 @@ use gcode_part::NominalPart;
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
 use gcode_session::{Run, SessionError};
 
-/// The file that holds what was accepted.
+/// Name of the file with the accepted result.
 pub(super) const ACCEPTED: &str = "accepted.json";
 
 /// A folder with a program.
 pub(super) struct Case {
-    /// Its path below the folder that was asked for, `/` between the parts.
+    /// Path below the given folder, with `/` as separator.
     pub name: String,
     pub folder: PathBuf,
-    /// None where a program was accepted and is gone.
+    /// The programs in the folder; empty if only an accepted result is left.
     pub programs: Vec<PathBuf>,
 }
 
-/// What came of a case.
+/// Result of a case.
 pub(super) struct CaseResult {
     pub report: CaseReport,
-    /// To be accepted; `None` where nothing could be run.
+    /// Record to be accepted; `None` if the case could not be run.
     pub record: Option<Record>,
 }
 
 impl Case {
-    /// Runs the case and holds it against what was accepted.
+    /// Runs the case and compares it with its accepted result.
     pub(super) fn run(&self, libraries: &[PathBuf], tolerance: f64) -> CaseResult {
         let main = self.lost().map_or_else(|| main_program::of(&self.folder, &self.programs), Err);
         let unclear = || self.programs.first().cloned().unwrap_or_else(|| self.accepted());
@@ -46,12 +46,12 @@ impl Case {
         })
     }
 
-    /// The file that holds what was accepted; what stands for the case where even that is gone.
+    /// Returns the path of the accepted result, or the folder's own path if the folder is gone.
     fn accepted(&self) -> PathBuf {
         if self.folder.is_dir() { self.folder.join(ACCEPTED) } else { self.folder.clone() }
     }
 
-    /// Why there is nothing to run.
+    /// Returns the reason why there is nothing to run.
     fn lost(&self) -> Option<UsageError> {
         let folder = self.folder.display();
         if self.folder.is_symlink() && !self.folder.exists() {
@@ -70,7 +70,7 @@ impl Case {
         tolerance: f64,
         empty: impl Fn(CaseAnswer) -> CaseReport,
     ) -> Result<CaseResult, UsageError> {
-        // A link to nothing is there: that it can't be read is told.
+        // A broken link counts as present, so that reading it reports the error.
         let there =
             |name: &str| Some(self.folder.join(name)).filter(|path| path.exists() || path.is_symlink());
         let conditions = RunConditions {
@@ -145,7 +145,7 @@ impl Case {
     }
 }
 
-/// Where the run was when it had no end.
+/// Returns the error of a run ended by a limit, with its last block.
 fn cut_off(revision: &Revision) -> UsageError {
     let place = revision.stopped().find_map(|finding| finding.backtrace.as_ref());
     let place = place.map(|place| BlockLocation::of(&revision.simulation.run, place));
@@ -155,7 +155,7 @@ fn cut_off(revision: &Revision) -> UsageError {
     UsageError::new(format!("the run was cut off by a limit{place}: the rest cannot be compared"))
 }
 
-/// The first thing that a failed verdict has against the program.
+/// Returns the first error of a failed verdict.
 fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<FirstFailure> {
     if answer != verify::Answer::Fail {
         return None;
@@ -167,7 +167,7 @@ fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<F
     Some(FirstFailure { code: code.to_owned(), message: message.to_owned(), place })
 }
 
-/// The files of the programs that are named by what is told.
+/// Returns the files of the programs that the changes and the failure name.
 fn files(
     revision: &Revision,
     changes: &[Change],

@@ -1,15 +1,15 @@
-//! Where the cases are: every folder with a program, at any depth, none of them hidden by what stands above it.
+//! Finds the cases: every folder with a program, at any depth, also below another case.
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::case::{ACCEPTED, Case};
 use crate::cli::{UsageError, input};
 
-/// Called programs of the case that it is in; a folder in it is a case where something was accepted of it.
+/// Folder of a case's called programs; a folder below it is a case only if it has an accepted result.
 const LIBRARY: &str = "lib";
 
-/// The cases in folders and below them, by name within each folder that was asked for. A folder that is reached twice,
-/// by a link or because it was named twice, counts once, and by a name without links where it has one.
+/// Returns the cases in the folders and below them, sorted by name within each given folder. A folder that is
+/// reached twice counts once, preferably by a path without links.
 pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, UsageError> {
     let mut search = Search::default();
     for (root, folder) in roots.iter().enumerate() {
@@ -30,12 +30,12 @@ pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, UsageError> {
     Ok(cases)
 }
 
-/// A folder to look into.
+/// A folder to be searched.
 struct CaseFolder {
-    /// Which of the folders that were asked for it is below.
+    /// Index of the given folder that it is below.
     root: usize,
     folder: PathBuf,
-    /// Below that one; empty for that one itself.
+    /// Path below the given folder; empty for that folder itself.
     name: String,
     in_library: bool,
 }
@@ -43,13 +43,13 @@ struct CaseFolder {
 #[derive(Default)]
 struct Search {
     found: Vec<(usize, Case)>,
-    /// Folders behind links: looked into last.
+    /// Folders behind links, searched last.
     links: Vec<CaseFolder>,
     seen: BTreeSet<PathBuf>,
 }
 
 impl Search {
-    /// Everything below a folder but for what links lead to.
+    /// Searches a folder and everything below it except links.
     fn look(&mut self, from: CaseFolder) -> Result<(), UsageError> {
         let mut places = vec![from];
         while let Some(place) = places.pop() {
@@ -76,7 +76,7 @@ impl Search {
                 let list = if path.is_symlink() { &mut self.links } else { &mut *places };
                 list.push(place);
             } else if path.is_symlink() && !path.exists() && !own.starts_with('.') && !is_program(&path) {
-                // It may have been a folder of cases.
+                // The link may have been a folder of cases.
                 self.found.push((root, Case { name: below, folder: path, programs: Vec::new() }));
             }
         }

@@ -1,13 +1,13 @@
-//! Which program of a case's folder is the one to run.
+//! Chooses the main program of a case's folder.
 use std::path::{Path, PathBuf};
 
 use crate::cli::{UsageError, input};
 use gcode_lang::control::Settings;
 use gcode_lang::program::Memory;
 use gcode_lang::syntax::ast::ProgramName;
-use gcode_lint::{CalledProgramName, called};
+use gcode_lint::{CalledProgramName, called_programs};
 
-/// `main.nc`, the only program, or the only one that no other calls: where a main program stands with its macros.
+/// Returns `main.nc`, the only program, or the only one that no other calls: a main program with its macros.
 pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageError> {
     let is_main = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem == "main");
     if let Some(main) = programs.iter().find(is_main) {
@@ -29,7 +29,7 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageEr
     Err(UsageError::new(format!("{} contains {which}: name the main program main.nc", folder.display())))
 }
 
-/// The programs that none of the others calls.
+/// Returns the programs that none of the others calls.
 fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
     let settings = Settings::default();
     let mut files = Vec::with_capacity(programs.len());
@@ -37,7 +37,7 @@ fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
         let mut memory = Memory::default();
         memory.load(path.display().to_string(), input::bytes(path)?);
         let calls: Vec<CalledProgramName> =
-            memory.ids().flat_map(|id| called(memory.lower_program(id), &settings)).collect();
+            memory.ids().flat_map(|id| called_programs(memory.lower_program(id), &settings)).collect();
         let names: Vec<ProgramName> = memory.programs().iter().map(|p| p.name.clone()).collect();
         files.push((path, names, calls));
     }
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
     use crate::cli::output;
 
-    /// What is run of a folder with these programs: a file's name, or why nothing is.
+    /// Returns the file chosen from a folder with these programs, or the error.
     fn chosen(files: &[(&str, &str)]) -> Result<String, String> {
         let folder = tempfile::tempdir().unwrap();
         let paths: Vec<PathBuf> = files.iter().map(|(name, _)| folder.path().join(name)).collect();
@@ -76,7 +76,7 @@ mod tests {
         let row = ("O9001.nc", "O9001\nG66 P9002\nG67\nM99\n");
         let hole = ("hole.nc", "O9002\nM99\n");
         assert_eq!(chosen(&[("O1.nc", "O1\nG65 P9001\nM30\n"), row, hole]), Ok("O1.nc".to_owned()));
-        // A program that calls itself is called by no other.
+        // A program that calls itself is not called by another.
         assert_eq!(chosen(&[("O1.nc", "O1\nM98 P1\nM98 P9002\nM30\n"), hole]), Ok("O1.nc".to_owned()));
         assert_eq!(chosen(&[("main.nc", "O1\nM30\n"), hole]), Ok("main.nc".to_owned()));
         assert_eq!(chosen(&[hole]), Ok("hole.nc".to_owned()));

@@ -1,12 +1,12 @@
-//! `gcode-sim test --merge`: the results of shards that ran on machines side by side, as one.
+//! `gcode-sim test --merge`: merges the results of shards that ran on separate machines.
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use crate::cli::{UsageError, input};
 use crate::report::test_report::TestReport;
 
-/// All results as one, the cases in the order of their names. A missing shard would look like cases that hold, so it is
-/// refused, and so is a case that stands twice.
+/// Merges the results, with the cases in the order of their names. A missing shard is refused, because its
+/// cases would look unchanged; so is a duplicated case.
 pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, UsageError> {
     let mut reports = Vec::with_capacity(files.len());
     for file in files {
@@ -29,7 +29,7 @@ pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, UsageError> {
     Ok(report)
 }
 
-/// The tolerance of all results: what is the same by one and a change by another has no answer.
+/// Returns the common tolerance of all results; results with different tolerances cannot be merged.
 fn same_tolerance(reports: &[TestReport]) -> Result<f64, UsageError> {
     let first = reports.first().map_or(0.0, |report| report.tolerance);
     match reports.iter().find(|report| report.tolerance != first) {
@@ -41,7 +41,7 @@ fn same_tolerance(reports: &[TestReport]) -> Result<f64, UsageError> {
     }
 }
 
-/// All shards are there, of one collection.
+/// Checks that all shards of one collection are present.
 fn complete(reports: &[TestReport]) -> Result<(), UsageError> {
     let shards: Vec<_> = reports.iter().filter_map(|report| report.shard).collect();
     let Some(first) = shards.first() else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! `gcode-sim test`: a shop's own programs, each held against what was accepted of it.
+//! `gcode-sim test`: runs a folder of programs and compares each with its accepted result.
 mod case;
 mod find;
 mod main_program;
@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &TestArguments) -> Result<ExitStatus, UsageError> {
     };
     print(&report, arguments.format)?;
     if arguments.format != TestFormat::Text {
-        // A build server keeps the document in a file: its log has to say why it stops.
+        // A build server keeps the document in a file; its log has to state the error.
         report.refused().for_each(|why| output::print_message(&format!("error: {why}\n")));
     }
     let is_refused = report.cases.iter().any(|case| case.answer == CaseAnswer::Refused);
@@ -97,7 +97,7 @@ fn run_cases(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Us
     Ok(TestReport::new(shard, tolerance, tried.into_iter().map(|tried| tried.report).collect(), accepted))
 }
 
-/// The cases that are asked for, and which part of them these are.
+/// Returns the selected cases, and the shard that they form.
 fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), UsageError> {
     let mut cases = find::cases(&arguments.folders)?;
     if cases.is_empty() {
@@ -118,7 +118,7 @@ fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), UsageE
     Ok((Some(shard), cases.into_iter().skip(number - 1).step_by(of).collect()))
 }
 
-/// `2/4`: the second of four parts.
+/// Parses `2/4`: the second of four shards.
 fn shard(text: &str) -> Result<(usize, usize), UsageError> {
     let parts =
         text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
@@ -127,13 +127,13 @@ fn shard(text: &str) -> Result<(usize, usize), UsageError> {
         .ok_or_else(|| UsageError::new(format!("--shard {text}: write K/N; the second of four parts is 2/4")))
 }
 
-/// Runs the cases on all cores; the answers are in the order of the cases.
+/// Runs the cases on all cores; the results are in the order of the cases.
 fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<CaseResult> {
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     progress::of_cases(cases.len(), &done, || all_of(cases, libraries, tolerance, &next, &done))
 }
 
-/// Takes the next case again and again, on every core, and counts those that are done.
+/// Lets every core take the next case until none is left, and counts the finished ones.
 fn all_of(
     cases: &[Case],
     libraries: &[PathBuf],
@@ -163,7 +163,7 @@ fn all_of(
     tried.into_iter().map(|(_, tried)| tried).collect()
 }
 
-/// Writes what came of the cases as what is accepted of them, all files or none.
+/// Writes the results as the accepted ones, all files or none.
 fn accept(cases: &[Case], tried: &mut [CaseResult]) -> Result<Vec<String>, UsageError> {
     let mut files = Vec::new();
     let mut names = Vec::new();

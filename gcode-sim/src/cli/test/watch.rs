@@ -1,4 +1,4 @@
-//! `gcode-sim test --watch`: runs again what a saved file concerns, until Ctrl-C.
+//! `gcode-sim test --watch`: re-runs the cases affected by a saved file, until Ctrl-C.
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -7,23 +7,24 @@ use super::{TestArguments, all, case, cases};
 use crate::cli::{ExitStatus, UsageError, output};
 use crate::report::test_report::TestReport;
 
-/// How often the files are looked at.
+/// Interval between two checks of the files.
 const PAUSE: Duration = Duration::from_millis(250);
 
-/// What is known of a file without reading it: when it was written, and how long it is.
+/// Time of the last write and length of each file.
 type Stamps = BTreeMap<PathBuf, (Option<SystemTime>, u64)>;
 
-/// Tells what came of all cases, then of those that each saved file concerns; comes back only where nothing can be told.
+/// Prints the results of all cases, then of those affected by each saved file. Returns only if printing
+/// fails.
 pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<ExitStatus, UsageError> {
     let folders = || arguments.folders.iter().chain(&arguments.libraries);
     let mut stamps = stamps(folders());
     let mut changed: Option<Vec<PathBuf>> = None;
-    // A misspelt folder should be told at once, not waited for.
+    // A misspelt folder is reported at once.
     cases(arguments)?;
     loop {
         match round(arguments, tolerance, changed.as_deref()) {
             Ok(text) => output::print(&text)?,
-            // A folder may be away while it is replaced.
+            // A folder may be absent while it is replaced.
             Err(refusal) => output::print_message(&format!("error: {refusal}\n")),
         }
         let now = next(&stamps, || self::stamps(folders()));
@@ -32,7 +33,7 @@ pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<ExitStatu
     }
 }
 
-/// The cases that the changed files concern: those in whose folders they are, or all where one is elsewhere.
+/// Runs the cases whose folders contain the changed files, or all cases if a changed file is elsewhere.
 fn round(
     arguments: &TestArguments,
     tolerance: f64,
@@ -58,7 +59,8 @@ fn round(
     Ok(text)
 }
 
-/// The stamps as soon as they are others than `old` and stay so for a pause: an editor may write in several steps.
+/// Waits until the stamps differ from `old` and are stable for one interval: an editor may write in several
+/// steps.
 fn next(old: &Stamps, look: impl Fn() -> Stamps) -> Stamps {
     let mut last = look();
     loop {
@@ -77,13 +79,13 @@ fn differing(old: &Stamps, new: &Stamps) -> Vec<PathBuf> {
     gone.chain(written).cloned().collect()
 }
 
-/// All files in folders and below them.
+/// Returns the stamps of all files in the folders and below them.
 fn stamps<'a>(folders: impl Iterator<Item = &'a PathBuf>) -> Stamps {
     let mut found = Stamps::new();
     let mut left: Vec<PathBuf> = folders.cloned().collect();
     let mut seen = BTreeSet::new();
     while let Some(folder) = left.pop() {
-        // A link may lead back up.
+        // A link may lead back to a parent folder.
         if folder.canonicalize().is_ok_and(|path| !seen.insert(path)) {
             continue;
         }
@@ -93,7 +95,7 @@ fn stamps<'a>(folders: impl Iterator<Item = &'a PathBuf>) -> Stamps {
             match std::fs::metadata(&path) {
                 Ok(about) if about.is_dir() => left.push(path),
                 Ok(about) => _ = found.insert(path, (about.modified().ok(), about.len())),
-                // Gone between the two looks.
+                // The file was deleted between the two calls.
                 Err(_) => {}
             }
         }

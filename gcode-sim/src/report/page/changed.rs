@@ -1,4 +1,4 @@
-//! What two revisions do differently, each change with its blocks and the calls that led to them.
+//! The changes between two revisions, each with its blocks and the calls that led to them.
 use maud::{Markup, html};
 
 use super::lines::Lines;
@@ -65,7 +65,7 @@ fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[Revie
     }
 }
 
-/// A block and the calls that led to it, each a link to its line.
+/// Returns a block and the calls that led to it, each a link to its line.
 pub(super) fn chain(place: &BlockLocation, lines: &Lines) -> Markup {
     html! {
         (block(place, lines))

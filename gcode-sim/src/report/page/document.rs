@@ -1,4 +1,4 @@
-//! The file as a whole: head, style, data and script, under a policy that lets nothing else run and nothing be fetched.
+//! The HTML file: head, style, data and script, under a policy that allows no other code and no fetches.
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -8,13 +8,13 @@ use crate::report::encode::base64;
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = concat!(include_str!("table.js"), include_str!("viewer.js"), include_str!("page.js"));
 
-/// A page of its own; `data` is what its script reads.
+/// Assembles a self-contained page; the script reads `data`.
 pub(super) fn document(
     title: &str,
     body: &Markup,
     data: &impl Serialize,
 ) -> Result<String, serde_json::Error> {
-    // In a JSON text `<` stands in strings only, and as an escape it can't end the element it stands in.
+    // In JSON `<` occurs in strings only, and escaped it cannot end the script element.
     let data = serde_json::to_string(data)?.replace('<', "\\u003c");
     let policy = format!(
         "default-src 'none'; style-src 'sha256-{}'; script-src 'sha256-{}'; base-uri 'none'; form-action 'none'",

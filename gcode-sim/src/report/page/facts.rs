@@ -1,4 +1,4 @@
-//! What the page says first: the answer, and both runs in numbers.
+//! The head of the page: the answer, and both runs in numbers.
 use maud::{Markup, html};
 
 use super::words::{count, duration, shown};
@@ -6,7 +6,7 @@ use super::{Page, ReviewSide, heading};
 use crate::report::figures;
 use gcode_inspect::verify::Answer;
 
-/// The answer in one or two lines.
+/// Returns the answer in one or two lines.
 pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let difference = page.old.map(|(_, difference)| difference);
     html! {
@@ -45,7 +45,7 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     }
 }
 
-/// Both runs in numbers.
+/// Returns the table of both runs in numbers.
 pub(super) fn summary(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let row = |name: &str, value: &dyn Fn(&ReviewSide<'_>) -> String| {
         html! {
@@ -89,7 +89,7 @@ pub(super) fn summary(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     }
 }
 
-/// `Φ0.0012 of Φ0.1, hole 3`.
+/// Returns `Φ0.0012, tolerance Φ0.1: hole 3`.
 fn worst(side: &ReviewSide<'_>) -> String {
     let Some(verdict) = side.observed.verdict else { return String::new() };
     let Some(worst) = verdict.worst else { return "no hole found".to_owned() };

@@ -1,4 +1,4 @@
-//! The table of holes: each with its deviations where there is a reference, else with what has become of it.
+//! The table of holes, with deviations if there is a reference, else with changes.
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
@@ -7,19 +7,19 @@ use super::rows::{HoleRowState, HoleTableRow, found_rows, judged_rows, paired_ro
 use super::words::count;
 use super::{Page, ReviewSide};
 
-/// So many rows of holes that are as they should be are shown at first, and printed; the others at a button.
+/// Number of unremarkable rows that are shown and printed at first; a button shows the others.
 const SHOWN: usize = 200;
-/// More rows than this aren't printed, in the order in which they stand then; page.css counts them as well.
+/// Number of printed rows, in the order on screen; page.css uses the same number.
 const PRINTED: usize = 300;
-/// More rows than this aren't on the page.
+/// Number of rows on the page.
 const MOST_ROWS: usize = 5_000;
 
-/// The table, and what the drawing says of each hole.
+/// The table and the states of its holes for the drawing.
 #[derive(Debug)]
 pub(super) struct HoleTable {
     columns: Vec<String>,
     rows: Vec<HoleTableRow>,
-    /// Rows that aren't on the page.
+    /// Number of rows omitted from the page.
     cut: usize,
 }
 
@@ -36,14 +36,14 @@ impl HoleTable {
         };
         let cut = rows.len().saturating_sub(MOST_ROWS);
         if cut > 0 {
-            // Those worth a look first, else in their order.
+            // Remarkable rows come first, each group in its own order.
             rows.sort_by_key(|row| !row.state.needs_attention());
             rows.truncate(MOST_ROWS);
         }
         Self { columns, rows, cut }
     }
 
-    /// Which row a hole of a side stands in, its name and its state.
+    /// Returns row, name and state of each hole of a side.
     pub(super) fn of_side(&self, place: usize) -> BTreeMap<usize, (usize, &str, HoleRowState)> {
         let rows = self.rows.iter().enumerate();
         rows.filter_map(|(number, row)| Some((row.holes[place]?, (number, row.id.as_str(), row.state))))

@@ -1,4 +1,4 @@
-//! The texts of one run by line, and what a link to a line is called.
+//! The texts of one run by line, and the anchors of lines.
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::words::shown;
@@ -6,17 +6,17 @@ use gcode_lang::source::{SourceId, Span};
 use gcode_review::BlockLocation;
 use gcode_session::Run;
 
-/// One text.
+/// One file of programs.
 #[derive(Clone, Debug)]
 pub(super) struct Text {
     pub source: SourceId,
     pub name: String,
-    /// The programs in it.
+    /// Labels of the programs in it.
     pub programs: Vec<String>,
     pub lines: Vec<String>,
 }
 
-/// The texts of one side.
+/// The files of one side.
 #[derive(Debug)]
 pub(super) struct Lines {
     word: &'static str,
@@ -45,7 +45,7 @@ impl Lines {
         Self { word, texts: texts.collect(), by_program }
     }
 
-    /// The name of a line as a place to go to: `new-1-51`. Lines count from 1.
+    /// Returns the anchor of a line: `new-1-51`. Lines count from 1.
     pub(super) fn anchor(&self, source: SourceId, line: u32) -> String {
         format!("{}-{}-{line}", self.word, source.0)
     }
@@ -54,7 +54,8 @@ impl Lines {
         self.anchor(span.source, run.control.memory().sources().line_column(span).line)
     }
 
-    /// The line that a place means, and whose text holds the block: two files without an O number are both `MAIN`.
+    /// Returns the line of a place whose text contains the block: two files without an O number are both
+    /// `MAIN`.
     pub(super) fn of_place(&self, place: &BlockLocation) -> Option<(SourceId, u32)> {
         let block = shown(&place.block);
         let holds = |source: &&SourceId| {

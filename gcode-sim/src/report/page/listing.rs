@@ -1,5 +1,4 @@
-//! The programs, line by line, those of two revisions side by side: which blocks were executed, how often, and what the
-//! variables in them were.
+//! The programs line by line, two revisions side by side, with execution counts and the values of variables.
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
@@ -13,22 +12,22 @@ use gcode_lang::source::SourceId;
 use gcode_review::common_lines;
 use gcode_session::{ExecutedBlock, VariableRole, VariableValues};
 
-/// So many rows of all programs together; of longer ones those lines as well that something on the page leads to.
+/// Number of rows of all programs together; beyond it only lines that the page links to are kept.
 const MAX_ROWS: usize = 5_000;
 
-/// What was executed of one side, by text and line.
+/// Executed blocks of one side, by file and line.
 struct ExecutedLines<'a> {
     blocks: BTreeMap<(SourceId, u32), Vec<&'a ExecutedBlock>>,
-    /// Operator stops that the other side doesn't make in the same way: how, and how many.
+    /// Operator stops that the other side makes differently: the mark, and their number.
     stops: BTreeMap<(SourceId, u32), (&'static str, u64)>,
-    /// Lines that holes, findings and those stops lead to.
+    /// Lines that holes, findings and those stops link to.
     linked_lines: BTreeSet<(SourceId, u32)>,
 }
 
-/// One text of each side, where it is there.
+/// One file of each side, if present.
 type TextPair<'a> = Vec<Option<&'a Text>>;
 
-/// One line of each side, by its place from 0.
+/// One line of each side, counted from 0.
 type LinePair = Vec<Option<usize>>;
 
 pub(super) fn listing(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
@@ -73,7 +72,7 @@ fn executed<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> ExecutedLines<'a> {
     ExecutedLines { blocks, stops: marked, linked_lines: wanted }
 }
 
-/// The texts that belong together: those with the same programs in them, the main programs in any case.
+/// Pairs the files that contain the same programs; the main programs always form a pair.
 fn pairs<'a>(sides: &[ReviewSide<'a>]) -> Vec<TextPair<'a>> {
     let [old, new] = sides else {
         return sides.iter().flat_map(|side| side.lines.texts.iter().map(|text| vec![Some(text)])).collect();
@@ -124,13 +123,13 @@ fn program(
     }
 }
 
-/// A line, or how many are left out.
+/// A line, or the number of omitted lines.
 enum ListingRow {
     Line(LinePair),
     Gap(u64),
 }
 
-/// As many lines as are left, and those behind them that something leads to.
+/// Returns the remaining number of lines, and the linked lines after them.
 fn listed_rows(
     lines: Vec<LinePair>,
     pair: &TextPair<'_>,
@@ -156,7 +155,7 @@ fn is_linked(at: Option<usize>, text: Option<&Text>, done: &ExecutedLines<'_>) -
     at.zip(text).is_some_and(|(at, text)| done.linked_lines.contains(&(text.source, at as u32 + 1)))
 }
 
-/// The lines of both texts so that equal ones stand side by side, and between them those that changed.
+/// Aligns the lines of both files: equal ones side by side, changed ones between them.
 fn lines(pair: &TextPair<'_>) -> Vec<LinePair> {
     let [Some(old), Some(new)] = pair.as_slice() else {
         let most = pair.iter().flatten().map(|text| text.lines.len()).max().unwrap_or(0);
@@ -180,7 +179,7 @@ fn lines(pair: &TextPair<'_>) -> Vec<LinePair> {
     all
 }
 
-/// What stands in one half of a row.
+/// Contents of one half of a row.
 struct ListingCell<'a> {
     text: &'a str,
     count: u64,
@@ -205,7 +204,7 @@ fn cell<'a>(at: usize, text: &'a Text, done: &ExecutedLines<'_>) -> ListingCell<
     ListingCell { text: &text.lines[at], count: times, values, stop }
 }
 
-/// What is read, what is assigned, what is passed.
+/// Sorts the values by role: read, assigned, passed.
 fn in_order(values: &[VariableValues]) -> Vec<VariableValues> {
     let mut values = values.to_vec();
     values.sort_by_key(|values| values.role);

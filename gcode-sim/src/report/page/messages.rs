@@ -1,4 +1,4 @@
-//! What the operator and the control have to say: stops, alarms, findings and printed lines of each run.
+//! Messages of each run: operator stops, alarms, findings and printed lines.
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::StopKind;
 use gcode_review::BlockLocation;
 
-/// More of a kind than this aren't listed.
+/// Number of messages of one kind that are listed.
 const MAX_LISTED: usize = 200;
 
 pub(super) fn messages(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
@@ -31,7 +31,7 @@ pub(super) fn messages(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     }
 }
 
-/// What a run or its verdict has to say, the worst first.
+/// Returns the findings of a run or of its verdict, most severe first.
 fn findings_of<'a>(side: &ReviewSide<'a>) -> Vec<&'a Diagnostic> {
     let of_run = &side.observed.revision.simulation.extracted.findings;
     let mut all: Vec<&Diagnostic> = match side.observed.verdict {
@@ -88,7 +88,7 @@ fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     }
 }
 
-/// Warnings and notes of one code together, where the first of them is; what is worse stands alone.
+/// Groups warnings and notes of one code at the first of them; errors stay separate.
 fn groups<'a>(all: &[&'a Diagnostic]) -> Vec<Vec<&'a Diagnostic>> {
     let mut groups: Vec<Vec<&Diagnostic>> = Vec::new();
     for finding in all {

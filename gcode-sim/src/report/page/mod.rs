@@ -1,5 +1,5 @@
-//! The review page: one HTML file that shows what a program does, or two revisions of it side by side, and needs nothing
-//! but itself: no network, no library.
+//! The review page: one HTML file that shows a program's effect, or two revisions side by side. It needs
+//! neither network nor libraries.
 mod changed;
 mod document;
 mod facts;
@@ -24,29 +24,29 @@ use gcode_session::{Request, Trace};
 use holes::HoleTable;
 use lines::Lines;
 
-/// More changes than this aren't listed; `--format json` has them all.
+/// Number of changes that are listed; `--format json` lists all.
 const MOST_CHANGES: usize = 500;
 
-/// One program with all that was seen of its run.
+/// One program with the results of its run.
 #[derive(Clone, Copy, Debug)]
 pub struct ObservedProgram<'a> {
     pub request: &'a Request,
     pub revision: &'a Revision,
     pub trace: &'a Trace,
-    /// Where there is a reference.
+    /// Verdict; `None` without a reference.
     pub verdict: Option<&'a Verdict>,
 }
 
-/// A file that the result depends on, besides the programs.
+/// An input file besides the programs.
 #[derive(Clone, Debug)]
 pub struct Document {
-    /// What it is: `machine file`.
+    /// Kind of file, such as `machine file`.
     pub role: &'static str,
     pub name: String,
     pub bytes: Vec<u8>,
 }
 
-/// What two revisions do differently, and what counts as the same, mm or degrees.
+/// The comparison of two revisions, and its tolerance, mm or degrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Difference<'a> {
     pub compared: &'a RevisionDiff,
@@ -54,15 +54,15 @@ pub struct Difference<'a> {
     pub tolerance: f64,
 }
 
-/// All that stands on a page.
+/// Contents of a page.
 #[derive(Clone, Copy, Debug)]
 pub struct Page<'a> {
-    /// The old revision, where two are compared.
+    /// The old revision, if two are compared.
     pub old: Option<(ObservedProgram<'a>, Difference<'a>)>,
     pub new: ObservedProgram<'a>,
     pub machine: &'a Machine,
     pub reference: Option<&'a Reference>,
-    /// The flags that the run depends on, as they were given.
+    /// Flags that the run depends on, as given.
     pub conditions: &'a [String],
     pub documents: &'a [Document],
 }
@@ -70,17 +70,17 @@ pub struct Page<'a> {
 /// One side of the page.
 #[derive(Clone, Copy, Debug)]
 struct ReviewSide<'a> {
-    /// `old` and `new`; a program alone is `new`.
+    /// `old` or `new`; a single program is `new`.
     word: &'static str,
     observed: ObservedProgram<'a>,
     lines: &'a Lines,
 }
 
 impl Page<'_> {
-    /// The page as a text.
+    /// Returns the page as HTML.
     ///
     /// # Errors
-    /// Data that can't be written as JSON.
+    /// The error of serde_json if the data cannot be written as JSON.
     pub fn html(&self) -> Result<String, serde_json::Error> {
         let mut lines: Vec<Lines> = Vec::new();
         for (word, seen) in self.observed_programs() {
@@ -157,7 +157,7 @@ fn section(id: &str, name: &str, inside: Markup) -> Markup {
     }
 }
 
-/// What the columns of two sides are called.
+/// Returns the heading of a side's column.
 fn heading(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> &'static str {
     match (sides.len(), side.word) {
         (1, _) => "Program",
@@ -166,7 +166,7 @@ fn heading(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> &'static str {
     }
 }
 
-/// The changes that are listed.
+/// Returns the changes that are listed.
 fn listed<T>(changes: &[T]) -> &[T] {
     &changes[..changes.len().min(MOST_CHANGES)]
 }

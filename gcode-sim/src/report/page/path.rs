@@ -13,42 +13,42 @@ use gcode_inspect::machine::HeadKind;
 use gcode_part::Hole;
 use gcode_review::BlockLocation;
 
-/// More moves than this aren't drawn, nor more points: the page must turn without a wait.
+/// Numbers of moves and points drawn; the page must rotate without delay.
 const MOST_MOVES: usize = 40_000;
 const MOST_POINTS: usize = 160_000;
-/// More holes than this aren't drawn.
+/// Number of holes drawn.
 const MOST_HOLES: usize = 10_000;
 
-/// What the script reads.
+/// The data for the script.
 #[derive(Debug, Serialize)]
 pub(super) struct Data {
-    /// Which axis of the part points up.
+    /// Axis of the part that points up.
     up: char,
     sides: Vec<SidePath>,
 }
 
-/// One side. Lists of moves have one entry a move.
+/// One side; lists of moves have one entry per move.
 #[derive(Debug, Serialize)]
 struct SidePath {
     word: &'static str,
-    /// `r`apid, `f`eed, `a`rc, `p`robing move.
+    /// Kinds of moves: `r`apid, `f`eed, `a`rc, `p`robing move.
     kinds: String,
-    /// How many points a move has.
+    /// Number of points of each move.
     counts: Vec<u32>,
-    /// x y z of all points, in thousandths of a millimetre.
+    /// Coordinates x y z of all points, in thousandths of a millimetre.
     points: Vec<i64>,
-    /// mm/min; 0 for a rapid.
+    /// Feed rates, mm/min; 0 for a rapid.
     feeds: Vec<f64>,
-    /// Which of `places`.
+    /// Index of each move's place in `places`.
     at: Vec<usize>,
-    /// The moves that the other side doesn't make.
+    /// Moves that the other side does not make.
     changed: Vec<usize>,
-    /// Anchor, name and text of every line that a move comes from or is called from.
+    /// Anchor, name and text of every line with a move or a call.
     lines: Vec<(Option<String>, String, String)>,
-    /// The block and the calls, innermost first, as places in `lines`.
+    /// Block and calls of each place, innermost first, as indices into `lines`.
     places: Vec<Vec<usize>>,
     holes: Vec<DrawnHole>,
-    /// How many moves and holes there are in all.
+    /// Total number of moves, drawn or not.
     moves: usize,
     all_holes: usize,
 }
@@ -60,9 +60,9 @@ struct DrawnHole {
     diameter: f64,
     id: String,
     state: &'static str,
-    /// The row of the table.
+    /// Row of the hole in the table.
     row: Option<usize>,
-    /// As in [`SidePath::lines`], the block and the call.
+    /// Block and call, as indices into [`SidePath::lines`].
     lines: Vec<usize>,
 }
 
@@ -75,7 +75,7 @@ pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable)
     Data { up, sides: drawn.collect() }
 }
 
-/// Lines by what they are, each once.
+/// Index of lines, each stored once.
 #[derive(Default)]
 struct LineIndex {
     lines: Vec<(Option<String>, String, String)>,
@@ -235,7 +235,7 @@ fn label(action: &str) -> Option<&'static str> {
     }
 }
 
-/// What isn't in the drawing.
+/// Returns notes on omitted moves and holes.
 fn left_out(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>], drawn: &SidePath) -> Markup {
     let shown = drawn.counts.len();
     html! {

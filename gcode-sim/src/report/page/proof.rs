@@ -1,4 +1,4 @@
-//! What the result rests on: the conditions of the run, the digests of all files, and who answers for it.
+//! Basis of the result: conditions of the run, digests of all files, and lines for signatures.
 use maud::{Markup, html};
 
 use super::words::{count, shown};
@@ -39,7 +39,7 @@ pub(super) fn proof(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     }
 }
 
-/// Every file that was read, once for each side.
+/// Returns every file that was read, once for each side.
 fn files<'a>(page: &'a Page<'_>, sides: &'a [ReviewSide<'_>]) -> Vec<(String, String, &'a [u8])> {
     let mut files = Vec::new();
     for side in sides {
@@ -55,7 +55,7 @@ fn files<'a>(page: &'a Page<'_>, sides: &'a [ReviewSide<'_>]) -> Vec<(String, St
     files
 }
 
-/// Lines to sign on paper.
+/// Returns the lines to be signed on paper.
 pub(super) fn signatures() -> Markup {
     html! {
         table.signatures {

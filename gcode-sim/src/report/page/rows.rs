@@ -1,4 +1,4 @@
-//! The rows of the table of holes: of a reference, of two revisions, or of what one program makes.
+//! Rows of the table of holes: against a reference, of two revisions, or of one program.
 use std::collections::BTreeMap;
 
 use super::words::shown;
@@ -10,14 +10,14 @@ use gcode_inspect::verify::{ExtraHole, HoleVerdict, Verdict};
 use gcode_part::Reference;
 use gcode_review::Paired;
 
-/// What is to be said of a hole.
+/// State of a hole, most important first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum HoleRowState {
     Bad,
     Missing,
     Extra,
     Changed,
-    /// Within tolerance, and something about it is different.
+    /// In tolerance, but changed.
     Altered,
     Good,
     Same,
@@ -25,7 +25,7 @@ pub(super) enum HoleRowState {
 }
 
 impl HoleRowState {
-    /// As a class of the page's style and a word of its data.
+    /// Returns the CSS class of the state, also used in the script's data.
     pub(super) fn class(self) -> &'static str {
         match self {
             Self::Bad => "bad",
@@ -44,12 +44,12 @@ impl HoleRowState {
     }
 }
 
-/// One cell: a text, what it is sorted by, and where it leads.
+/// One cell: text, sort value and links.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cell {
     pub text: String,
     pub value: Option<f64>,
-    /// Anchor and name.
+    /// Anchor and name of each link.
     pub links: Vec<(String, String)>,
 }
 
@@ -73,11 +73,11 @@ pub(super) struct HoleTableRow {
     pub state: HoleRowState,
     pub words: String,
     pub cells: Vec<Cell>,
-    /// The hole of each side, counted from 0.
+    /// Index of the hole on each side.
     pub holes: Vec<Option<usize>>,
 }
 
-/// The block that finished a hole and the one that called its program.
+/// Returns links to the block that finished a hole and to the call of its program.
 fn block_cell(side: &ReviewSide<'_>, found: &DrilledHole) -> Cell {
     let run = &side.observed.revision.simulation.run;
     let mut links = Vec::new();
@@ -94,7 +94,7 @@ fn drilled_hole<'a>(side: &ReviewSide<'a>, hole: usize) -> &'a DrilledHole {
     &side.observed.revision.simulation.extracted.holes[hole]
 }
 
-/// `Block`, or `Old block` and `New block`.
+/// Returns `Block`, or `Old block` and `New block`.
 fn side_title(name: &str, side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> String {
     if sides.len() == 1 {
         name.to_owned()
@@ -103,7 +103,7 @@ fn side_title(name: &str, side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> St
     }
 }
 
-/// The tools that make each hole of each side; where one only makes another again, its own.
+/// Returns the tools of each hole of each side; a repeated pass on another hole has its own tool.
 pub(super) fn tools_of(sides: &[ReviewSide<'_>]) -> Vec<Vec<Vec<u32>>> {
     let of = |side: &ReviewSide<'_>| {
         let holes = &side.observed.revision.simulation.extracted.holes;
@@ -114,7 +114,7 @@ pub(super) fn tools_of(sides: &[ReviewSide<'_>]) -> Vec<Vec<Vec<u32>>> {
     sides.iter().map(of).collect()
 }
 
-/// What a hole is: where, how deep, how wide, by which tools.
+/// Returns the cells for position, depth, diameter and tools of a hole.
 fn description_cells(found: Option<&DrilledHole>, tools: &[u32]) -> Vec<Cell> {
     let entry = |axis: usize| Cell::optional(found.map(|found| found.entry[axis]), 3);
     vec![
@@ -133,7 +133,7 @@ fn description_cells(found: Option<&DrilledHole>, tools: &[u32]) -> Vec<Cell> {
 
 const DESCRIPTION_COLUMNS: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tools"];
 
-/// Which of them are the tools.
+/// Index of the tools among these cells.
 const TOOL: usize = 5;
 
 pub(super) fn found_rows(
@@ -157,7 +157,7 @@ pub(super) fn found_rows(
     (DESCRIPTION_COLUMNS.map(str::to_owned).into_iter().chain(["Block".to_owned()]).collect(), rows.collect())
 }
 
-/// Two revisions against one another.
+/// Returns the rows of two revisions.
 pub(super) fn paired_rows(
     pairs: &[Paired],
     sides: &[ReviewSide<'_>],
@@ -202,7 +202,7 @@ pub(super) fn paired_rows(
     (columns, pairs.iter().map(row).collect())
 }
 
-/// Each wanted hole with the deviations on each side, and the holes nobody asked for.
+/// Returns a row for each nominal hole with its deviations on each side, and the rows of extra holes.
 pub(super) fn judged_rows(
     reference: &Reference,
     judged: &[(ReviewSide<'_>, &Verdict)],
@@ -211,7 +211,7 @@ pub(super) fn judged_rows(
 ) -> (Vec<String>, Vec<HoleTableRow>) {
     let changed: BTreeMap<usize, &Paired> =
         pairs.iter().filter(|pair| pair.changed).filter_map(|pair| Some((pair.new?, pair))).collect();
-    // What is different about a hole of the new side.
+    // Returns the changes of a hole on the new side.
     let different = |hole: &HoleVerdict| {
         let pair = changed.get(&hole.drilled_index)?;
         let [old, new] = sides else { return None };
@@ -264,7 +264,7 @@ pub(super) fn judged_rows(
     (columns, rows)
 }
 
-/// The holes nobody asked for.
+/// Returns the rows of extra holes.
 fn extra_rows(
     place: usize,
     side: &ReviewSide<'_>,

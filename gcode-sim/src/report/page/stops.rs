@@ -1,15 +1,15 @@
-//! The operator stops of a side, those marked that the other side doesn't make in the same way.
+//! The operator stops of a side, with a mark if the other side makes them differently.
 use super::{Page, ReviewSide};
 use gcode_review::BlockLocation;
 
-/// Where a program waited for the operator.
+/// An operator stop.
 pub(super) struct Stop<'a> {
     pub place: &'a BlockLocation,
-    /// What the other program does instead.
+    /// Difference in the other program, if any.
     pub mark: Option<&'static str>,
 }
 
-/// In the order in which they were made.
+/// Returns the stops in the order of execution.
 pub(super) fn stops<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> Vec<Stop<'a>> {
     let compared = page.old.map(|(_, difference)| difference.compared);
     let (place, [alone, changed]) = match side.word {

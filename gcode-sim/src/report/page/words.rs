@@ -1,7 +1,8 @@
 //! Numbers and texts as the page writes them.
 use crate::report::figures::rounded;
 
-/// A text from a program or a file name: what isn't to be seen, or turns the reading direction, becomes a mark.
+/// Replaces invisible characters and those that change the reading direction in a text from a program or a
+/// file name.
 pub(super) fn shown(text: &str) -> String {
     let hidden = |c: char| matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
     text.chars()
@@ -13,7 +14,7 @@ pub(super) fn shown(text: &str) -> String {
         .collect()
 }
 
-/// A variable's value: up to six decimals, as many as it has.
+/// Formats a variable's value with up to six decimals.
 pub(super) fn value(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-6 || 1e12 <= value.abs() {
         return format!("{value:.3e}");
@@ -22,7 +23,7 @@ pub(super) fn value(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// `1 h 18 min 3 s`, `18.2 s`.
+/// Formats `1 h 18 min 3 s`, `18.2 s`.
 pub(super) fn duration(seconds: f64) -> String {
     if seconds < 60.0 {
         return format!("{seconds:.1} s");
@@ -32,7 +33,7 @@ pub(super) fn duration(seconds: f64) -> String {
     if hours == 0 { format!("{minutes} min {rest} s") } else { format!("{hours} h {minutes} min {rest} s") }
 }
 
-/// `12 345`, with spaces that don't break.
+/// Formats `12 345`, with no-break spaces.
 pub(super) fn count(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();

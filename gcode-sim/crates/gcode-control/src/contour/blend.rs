@@ -1,18 +1,20 @@
-//! A corner rounded or cut off: what `,R` and `,C` put between two segments.
+//! Rounding and chamfering of a corner: the element that `,R` and `,C` insert between two segments.
 use super::crossing::nearest_crossing;
 use super::{Point, Segment, cross, left_normal};
 use gcode_lang::units::Deg;
 
-/// What takes the place of a corner.
+/// Element that replaces a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Blend {
-    /// An arc of this radius that touches both segments.
+    /// Arc of this radius, tangent to both segments.
     Round(f64),
-    /// A straight line between the points at this distance from the corner.
+    /// Straight line between the points at this distance from the corner.
     Chamfer(f64),
 }
 
-/// Two segments with what has taken the place of their corner. A segment that was used up has no length.
+/// Two segments with the element that replaces their corner.
+///
+/// A segment that is used up completely has length 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BlendedCorner {
     pub before: Segment,
@@ -20,15 +22,15 @@ pub(crate) struct BlendedCorner {
     pub after: Segment,
 }
 
-/// A segment is too short for what is to be put at its end.
+/// Error: a segment is too short for the element at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooShort;
 
-/// Within a degree of going straight on a corner is none (operator's manual, optional chamfering and corner R).
+/// Largest change of direction that is not a corner (operator's manual, optional chamfering and corner R).
 const MIN_CORNER_ANGLE: Deg = Deg(1.0);
 
 impl Blend {
-    /// Puts itself between two segments; `None` where they hardly make a corner.
+    /// Inserts the element between two segments; `None` if they do not form a corner.
     pub(crate) fn blend_between(self, a: &Segment, b: &Segment) -> Result<Option<BlendedCorner>, TooShort> {
         let (arriving, leaving) = (a.end_direction(), b.start_direction());
         let rotation = Deg::atan2(cross(arriving, leaving), arriving.dot(leaving));
@@ -63,7 +65,7 @@ impl Blend {
     }
 }
 
-/// The point of a segment nearest to another point; `end` is the end that counts for the radius.
+/// Returns the point of a segment nearest to another point; `end` determines the radius of an arc.
 fn nearest_point(segment: &Segment, end: Point, of: Point) -> Point {
     match *segment {
         Segment::Line { from, .. } => {
@@ -74,12 +76,12 @@ fn nearest_point(segment: &Segment, end: Point, of: Point) -> Point {
     }
 }
 
-/// The point of a segment at a distance from one of its ends, forwards or, where it is negative, backwards.
+/// Returns the point of a segment at a distance from one of its ends, negative for backwards.
 fn point_along(segment: &Segment, end: Point, distance: f64) -> Result<Point, TooShort> {
     match *segment {
         Segment::Line { .. } => Ok(end + segment.start_direction() * distance),
         Segment::Arc { centre, sweep, .. } => {
-            // The chord is the distance: from the corner to the end of the chamfer.
+            // The distance is a chord: from the corner to the end of the chamfer.
             let radius_vector = end - centre;
             let half = distance / (2.0 * radius_vector.norm());
             if half.abs() > 1.0 {
@@ -120,12 +122,13 @@ mod tests {
 
     #[test]
     fn the_arc_touches_a_line_and_an_arc() {
-        // East to (20, 0), then the circle about (20, 10) would be a tangent; about (10, 0) it is a right angle.
+        // East to (20, 0), then the circle about (20, 10) would be a tangent; about (10, 0) it is a right
+        // angle.
         let east = line((0.0, 0.0), (20.0, 0.0));
         let (from, centre) = (Point::new(20.0, 0.0), Point::new(10.0, 0.0));
         let arc = Segment::Arc { from, to: Point::new(0.0, 0.0), centre, sweep: Deg(180.0) };
         let round = Blend::Round(2.0).blend_between(&east, &arc).unwrap().unwrap();
-        // The middle is 2 above the line and 10 − 2 from the centre: (10 + √(64 − 4), 2).
+        // The centre is 2 above the line and 10 − 2 from the arc's centre: (10 + √(64 − 4), 2).
         let x = 10.0 + 60.0_f64.sqrt();
         let Segment::Arc { centre: middle, from, to, .. } = round.between else { panic!("{round:?}") };
         close(middle, (x, 2.0));

@@ -1,12 +1,12 @@
-//! The way of the tool's centre round a corner: from the parallel of one segment to the parallel of the next.
+//! Path of the tool centre around a corner, from the parallel of one segment to that of the next.
 use super::crossing::{Curve, nearest_crossing};
 use super::{Point, SAME_DIRECTION, Segment, cross, left_normal};
 
-/// Inside a corner the two parallels don't meet.
+/// Error: the two parallels do not intersect inside a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NoCrossing;
 
-/// Whether the tool goes round the outside of a corner, at a distance to the left.
+/// Returns true if the tool passes outside the corner, at a distance to the left.
 pub(crate) fn is_outside(a: &Segment, b: &Segment, distance: f64) -> bool {
     let (before, after) = (a.end_direction(), b.start_direction());
     let cross_product = cross(before, after);
@@ -17,12 +17,13 @@ pub(crate) fn is_outside(a: &Segment, b: &Segment, distance: f64) -> bool {
     }
 }
 
-/// The points that the centre goes through at the corner between two segments, one to four. The first is the end of
-/// `a`'s parallel, the last the start of `b`'s; distances are to the left.
+/// Returns the one to four points of the tool centre path at the corner between two segments.
 ///
-/// Outside, straight lines are drawn on to where they meet; where the corner is sharper than 90° they go on by the
-/// radius and a straight line joins them (operator's manual, tool movement in the offset mode: at arcs the tangent
-/// takes the place of the line). Inside, the parallels meet.
+/// The first point is the end of `a`'s parallel, the last the start of `b`'s; distances are to the left.
+///
+/// Outside, the parallel lines are extended to their intersection. At a corner sharper than 90° they are
+/// extended by the radius and joined by a straight line (operator's manual, tool movement in the offset
+/// mode). At an arc the tangent replaces the line. Inside, the parallels intersect.
 pub(crate) fn corner_points(
     a: &Segment,
     b: &Segment,
@@ -60,8 +61,10 @@ pub(crate) fn corner_points(
     Ok(points)
 }
 
-/// The tool changes sides: by way of where the parallels meet, straight lines drawn on, unless that would reverse a
-/// segment or lengthen an arc; then from beside the end of one to beside the start of the other.
+/// Returns the points of a corner at which the tool changes sides.
+///
+/// The path passes the intersection of the extended parallels, unless that reverses a segment or lengthens an
+/// arc. Otherwise it goes from the end of one parallel to the start of the other.
 fn side_change_points(a: &Segment, b: &Segment, before: f64, after: f64) -> Vec<Point> {
     let (end, start) = (a.parallel_end(before), b.parallel_start(after));
     let meets = nearest_crossing(a.curve_at_end(before), b.curve_at_start(after), a.end()).filter(|point| {
@@ -74,7 +77,7 @@ fn side_change_points(a: &Segment, b: &Segment, before: f64, after: f64) -> Vec<
     meets.map_or_else(|| vec![end, start], |point| vec![point])
 }
 
-/// Where `a`'s parallel meets the parallel of a straight line from `a`'s end in a direction: G40 with I J K.
+/// Returns the intersection of `a`'s parallel with that of a line from `a`'s end: G40 with I J K.
 pub(crate) fn wall_corner(a: &Segment, direction: Point, distance: f64) -> Point {
     let direction = direction.normalize();
     let along = Curve::Line { point: a.end() + left_normal(direction) * distance, direction };
@@ -139,7 +142,7 @@ mod tests {
         // North after east, from the left to the right: the parallels y = 5 and x = 25.
         let north = line((20.0, 0.0), (20.0, 20.0));
         close(&corner_points(&east, &north, 5.0, -5.0).unwrap(), &[(25.0, 5.0)]);
-        // Drawn back to there a line of 4 would be reversed.
+        // An intersection behind the start would reverse a line of length 4.
         let south = line((20.0, 0.0), (20.0, -20.0));
         let short = line((16.0, 0.0), (20.0, 0.0));
         close(&corner_points(&east, &south, 5.0, -5.0).unwrap(), &[(15.0, 5.0)]);

@@ -1,12 +1,12 @@
-//! Where lines and circles cross.
+//! Intersections of lines and circles.
 use super::{Point, cross, left_normal};
 
-/// A whole line or a whole circle.
+/// Infinite line or full circle.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Curve {
     Line {
         point: Point,
-        /// Of length 1.
+        /// Unit vector.
         direction: Point,
     },
     Circle {
@@ -15,10 +15,10 @@ pub(super) enum Curve {
     },
 }
 
-/// What is missing to a crossing and is still taken for rounding: the two only touch.
+/// Largest gap at which two curves still touch: rounding of the computation.
 const TOUCH_TOLERANCE: f64 = 1e-9;
 
-/// The crossing nearest to a point, if there is one.
+/// Returns the intersection nearest to a point; `None` without an intersection.
 pub(super) fn nearest_crossing(a: Curve, b: Curve, to: Point) -> Option<Point> {
     let all = crossings(a, b);
     let distance = |p: &Point| (*p - to).norm();
@@ -46,7 +46,7 @@ fn crossings(a: Curve, b: Curve) -> [Option<Point>; 2] {
                 return [None, None];
             }
             let axis = centre_offset / centre_distance;
-            // The line through both crossings is this far from the first centre.
+            // Distance from the first centre to the line through both intersections.
             let along = (centre_distance * centre_distance + radius * radius - second * second)
                 / (2.0 * centre_distance);
             chord_points(centre + axis * along, left_normal(axis), radius, along.abs())
@@ -54,7 +54,9 @@ fn crossings(a: Curve, b: Curve) -> [Option<Point>; 2] {
     }
 }
 
-/// The points of a circle on a line at `height` from its centre, `foot` being the centre's foot on the line.
+/// Returns the points of a circle on a line at distance `height` from its centre.
+///
+/// `foot` is the foot of the perpendicular from the centre.
 fn chord_points(foot: Point, direction: Point, radius: f64, height: f64) -> [Option<Point>; 2] {
     if height > radius + TOUCH_TOLERANCE {
         return [None, None];

@@ -1,8 +1,8 @@
-//! Plane geometry of a contour: its segments, the parallels a tool's centre runs on, and what happens where two
-//! segments meet.
+//! Plane geometry of a contour: its segments, the parallels of the tool centre, and the corners between
+//! segments.
 //!
-//! Knows nothing of blocks, modes or axes. Lengths are mm; left and right are those of somebody who walks along the
-//! segment, seen from the plane's positive third axis; a distance is positive to the left.
+//! The module knows no blocks, modes or axes. Lengths are mm. Left and right refer to the direction of
+//! travel, seen from the positive third axis of the plane; a distance is positive to the left.
 mod blend;
 mod corner;
 mod crossing;
@@ -15,16 +15,17 @@ pub(crate) use segment::Segment;
 
 pub(crate) use point::Point;
 
-/// A quarter turn counterclockwise.
+/// Returns the vector rotated by 90° counterclockwise.
 fn left_normal(direction: Point) -> Point {
     Point::new(-direction.y, direction.x)
 }
 
-/// Positive where `b` turns left of `a`.
+/// Returns the cross product, positive if `b` points to the left of `a`.
 fn cross(a: Point, b: Point) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Two directions that differ by less are one: a point that is wrong by this part of the radius along the path is
-/// wrong by half its square across it.
+/// Largest sine between directions that count as equal.
+///
+/// An error of this fraction of the radius along the path is an error of half its square across it.
 const SAME_DIRECTION: f64 = 1e-6;

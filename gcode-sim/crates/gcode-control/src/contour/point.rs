@@ -1,7 +1,7 @@
-//! A point or a direction in the plane of a contour.
+//! Point or direction in the plane of a contour.
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// The plane's first axis, its second axis; mm.
+/// Coordinates along the first and second axis of the plane, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Point {
     pub x: f64,
@@ -17,17 +17,17 @@ impl Point {
         Self::new(0.0, 0.0)
     }
 
-    /// The scalar product.
+    /// Returns the scalar product.
     pub(crate) fn dot(self, other: Self) -> f64 {
         self.x * other.x + self.y * other.y
     }
 
-    /// The length, from 0 0.
+    /// Returns the Euclidean length.
     pub(crate) fn norm(self) -> f64 {
         self.dot(self).sqrt()
     }
 
-    /// The same direction, of length 1.
+    /// Returns the unit vector of the same direction.
     pub(crate) fn normalize(self) -> Self {
         self / self.norm()
     }

@@ -1,12 +1,12 @@
-//! Straight lines and arcs, and the points beside them.
+//! Straight lines and arcs of a contour, with their parallels.
 use super::crossing::Curve;
 use super::{Point, cross, left_normal};
 use gcode_lang::units::Deg;
 
-/// Less than this is no length.
+/// Shortest length that counts, mm.
 const MIN_LENGTH: f64 = 1e-9;
 
-/// A piece of a contour. An arc's end may be a little off its radius, as an arc's end may be on a control.
+/// Element of a contour. The end of an arc may deviate slightly from its radius, as on a control.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Segment {
     Line {
@@ -17,7 +17,7 @@ pub(crate) enum Segment {
         from: Point,
         to: Point,
         centre: Point,
-        /// Positive is counterclockwise.
+        /// Angle swept; positive is counterclockwise.
         sweep: Deg,
     },
 }
@@ -39,12 +39,12 @@ impl Segment {
         matches!(self, Self::Arc { .. })
     }
 
-    /// The direction in which it begins, of length 1.
+    /// Returns the unit vector of the direction at the start.
     pub(crate) fn start_direction(&self) -> Point {
         self.direction(self.start())
     }
 
-    /// The direction in which it ends.
+    /// Returns the unit vector of the direction at the end.
     pub(crate) fn end_direction(&self) -> Point {
         self.direction(self.end())
     }
@@ -56,23 +56,23 @@ impl Segment {
         }
     }
 
-    /// The point at a distance to the left of where it begins.
+    /// Returns the point at a distance to the left of the start.
     pub(crate) fn parallel_start(&self, distance: f64) -> Point {
         self.start() + left_normal(self.start_direction()) * distance
     }
 
-    /// The point at a distance to the left of where it ends.
+    /// Returns the point at a distance to the left of the end.
     pub(crate) fn parallel_end(&self, distance: f64) -> Point {
         self.end() + left_normal(self.end_direction()) * distance
     }
 
-    /// Whether the arc is too small for a parallel at this distance.
+    /// Returns true for an arc that is too small for a parallel at this distance.
     pub(crate) fn is_too_small(&self, distance: f64) -> bool {
         let Self::Arc { from, to, centre, sweep } = *self else { return false };
         [from, to].into_iter().any(|at| parallel_radius(centre, sweep, at, distance) < -MIN_LENGTH)
     }
 
-    /// Whether a point lies on the parallel of an arc where the arc begins; all points do for a line.
+    /// Returns true if a point lies on the parallel of an arc at its start; always true for a line.
     pub(crate) fn is_parallel_start(&self, point: Point, distance: f64) -> bool {
         match *self {
             Self::Line { .. } => true,
@@ -83,11 +83,12 @@ impl Segment {
         }
     }
 
-    /// The whole line or circle that the parallel is a part of, where the segment begins.
+    /// Returns the line or circle that contains the parallel at the start of the segment.
     pub(super) fn curve_at_start(&self, distance: f64) -> Curve {
         self.curve(self.start(), distance)
     }
 
+    /// Returns the line or circle that contains the parallel at the end of the segment.
     pub(super) fn curve_at_end(&self, distance: f64) -> Curve {
         self.curve(self.end(), distance)
     }
@@ -98,7 +99,7 @@ impl Segment {
                 let direction = self.start_direction();
                 Curve::Line { point: at + left_normal(direction) * distance, direction }
             }
-            // No arc that is followed is smaller than that by more than rounding: see [`Segment::is_too_small`].
+            // A followed arc has a negative radius by rounding only: see [`Segment::is_too_small`].
             Self::Arc { centre, sweep, .. } => {
                 let radius = parallel_radius(centre, sweep, at, distance).max(0.0);
                 Curve::Circle { centre, radius }
@@ -106,7 +107,7 @@ impl Segment {
         }
     }
 
-    /// Whether the way from `start` to `end` runs against the segment, of which it is to be the parallel.
+    /// Returns true if the path from `start` to `end` on the parallel runs against the segment.
     pub(crate) fn is_reversed(&self, start: Point, end: Point, distance: f64) -> bool {
         match *self {
             Self::Line { .. } => self.start_direction().dot(end - start) < -MIN_LENGTH,
@@ -114,11 +115,11 @@ impl Segment {
         }
     }
 
-    /// The sweep of an arc's parallel that begins and ends elsewhere than beside the arc's own ends; a line has none.
+    /// Returns the sweep of an arc's parallel between two points of it; 0 for a line.
     pub(crate) fn sweep_between(&self, start: Point, end: Point, distance: f64) -> Deg {
         let Self::Arc { centre, sweep, from, to } = *self else { return Deg::ZERO };
         let lost = |own: Point, new: Point| {
-            // A parallel that is a point turns through the angle of its arc.
+            // A parallel of radius 0 rotates through the angle of its arc.
             if parallel_radius(centre, sweep, own, distance) < MIN_LENGTH {
                 return 0.0;
             }
@@ -130,7 +131,8 @@ impl Segment {
         Deg(sweep.0 - first + last)
     }
 
-    /// The segment up to a point on it, or `None` where that is not within it. A length of 0 is within it.
+    /// Returns the segment up to a point on it; `None` if the point is outside the segment. A length of 0 is
+    /// allowed.
     pub(super) fn ending_at(&self, end: Point) -> Option<Self> {
         match *self {
             Self::Line { from, to } => {
@@ -146,7 +148,7 @@ impl Segment {
         }
     }
 
-    /// The segment from a point on it.
+    /// Returns the segment from a point on it; `None` if the point is outside the segment.
     pub(super) fn beginning_at(&self, start: Point) -> Option<Self> {
         self.reversed().ending_at(start).map(|segment| segment.reversed())
     }
@@ -158,7 +160,7 @@ impl Segment {
         }
     }
 
-    /// Whether it leads anywhere.
+    /// Returns true if the segment is longer than [`MIN_LENGTH`].
     pub(crate) fn has_length(&self) -> bool {
         match *self {
             Self::Line { from, to } => (to - from).norm() > MIN_LENGTH,
@@ -169,7 +171,7 @@ impl Segment {
     }
 }
 
-/// The radius of an arc's parallel where it begins or ends: negative where the arc is too small to have one.
+/// Returns the radius of an arc's parallel at one of its ends; negative if the arc is too small.
 fn parallel_radius(centre: Point, sweep: Deg, at: Point, distance: f64) -> f64 {
     (at - centre).norm() - distance * sweep.0.signum()
 }

@@ -1,8 +1,9 @@
 //! The development: a cylinder about x, cut open along one line and unrolled.
 //!
-//! It is seen from outside: the azimuth (from z towards y) grows to the right, from 0 to 360, and x goes down. The cut
-//! is the seam: its left and its right edge are the same line of the part. What is long round and short along x is cut
-//! into strips, one below the other, so that holes are as large as the sheet allows.
+//! It is seen from outside: the azimuth (from z towards y) increases to the right, from 0 to 360, and x
+//! increases downwards. The cut is the seam: its left and right edges are the same line of the part. A
+//! development much longer round than along x is cut into strips, one below the other, so that holes are as
+//! large as the sheet allows.
 use super::super::measure::{bar_length, plain};
 use super::super::role::{Pen, Point};
 use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title, ZoneDeviation};
@@ -13,7 +14,7 @@ use super::top::{
 use gcode_lang::units::Deg;
 use gcode_part::Hole;
 
-/// The scene of a development; `None` of a part that is no cylinder.
+/// Builds the scene of a development; `None` if the part is not a cylinder.
 pub fn development(view: &TopView) -> Option<Scene> {
     let sheet = UnrolledCylinder::of(view.cylinder?, view);
     let mut marks: Vec<Mark> = view.holes.iter().filter_map(|hole| sheet.mark(hole, view)).collect();
@@ -32,28 +33,28 @@ pub fn development(view: &TopView) -> Option<Scene> {
     Some(Scene { title, axes, strokes, marks, zone: view.tolerance, legend, chart: None })
 }
 
-/// Into how many strips a cylinder may be cut: each begins at a whole number of degrees and a half.
+/// Possible numbers of strips: every strip spans a whole number of degrees.
 const STRIPS: [u32; 7] = [1, 2, 3, 4, 6, 8, 12];
-/// Width over height of a sheet's drawing, about.
+/// Approximate width over height of a sheet's drawing.
 const SHEET: f64 = 1.05;
-/// More strips only where holes come out larger by this.
+/// Least gain in hole size that justifies more strips.
 const WORTH: f64 = 1.15;
 
-/// Places of the cylinder on the sheet, mm.
+/// Maps the cylinder to the sheet, mm.
 struct UnrolledCylinder {
     cylinder: Cylinder,
     strips: u32,
-    /// From where to where along x there are holes, wanted or found.
+    /// Range of x with nominal or actual holes.
     low: f64,
     high: f64,
-    /// Radius of a hole by a tool of unknown diameter.
+    /// Radius of a hole drilled by a tool of unknown diameter.
     usual: f64,
-    /// The holes are so few that each may have a dial: scales keep off them.
+    /// Whether the holes are few enough for dials, from which the scales keep clear.
     few: bool,
 }
 
 impl UnrolledCylinder {
-    /// Cut into as many strips as draw its holes largest.
+    /// Chooses the number of strips that draws the holes largest.
     fn of(cylinder: Cylinder, view: &TopView) -> Self {
         let places = view.holes.iter().filter_map(|hole| hole.nominal.as_ref().or(hole.actual.as_ref()));
         let reach = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
@@ -78,28 +79,29 @@ impl UnrolledCylinder {
         format!("rows r0 to r{}, x 0 to {}", self.cylinder.rows.max(1) - 1, plain(self.cylinder.length))
     }
 
-    /// Of one strip.
+    /// Returns the width of one strip.
     fn width(&self) -> f64 {
         std::f64::consts::TAU * self.cylinder.radius / f64::from(self.strips)
     }
 
-    /// How long ticks are, which their numbers stand on.
+    /// Returns the length of the ticks that carry numbers.
     fn tick(&self) -> f64 {
         0.05 * self.width()
     }
 
-    /// From the holes to their scales: no dial reaches farther, see `Frame::largest_dial`.
+    /// Returns the distance from the holes to their scales, which no dial exceeds (see
+    /// `Frame::largest_dial`).
     fn margin(&self) -> f64 {
         if self.few { 0.065 * self.width() } else { 0.01 * self.width() }
     }
 
-    /// From one strip to the next: the holes, numbers above and below them, a gap.
+    /// Returns the pitch of the strips: holes, numbers above and below, and a gap.
     fn height(&self) -> f64 {
         self.high - self.low + 2.0 * self.margin() + 2.4 * self.tick()
     }
 
-    /// Which strip an azimuth lies on, and how far from its left edge. What stands on the seam or a cut, whichever way
-    /// rounding goes, stands at the left.
+    /// Returns the strip of an azimuth and its distance from the left edge. A hole on the seam or on a cut
+    /// lies at the left, whatever the rounding.
     fn right(&self, azimuth: Deg) -> (u32, f64) {
         let turn = azimuth.0.rem_euclid(360.0);
         let turn = if turn > 360.0 - 1e-3 { turn - 360.0 } else { turn };
@@ -108,7 +110,7 @@ impl UnrolledCylinder {
         (strip as u32, Deg(turn - strip * span).to_rad() * self.cylinder.radius)
     }
 
-    /// Where x is on a strip: 0 − x, no negative zeros.
+    /// Returns the ordinate of x on a strip; 0 − x avoids negative zeros.
     fn down(&self, strip: u32, x: f64) -> f64 {
         0.0 - (f64::from(strip) * self.height() + x)
     }
@@ -132,7 +134,8 @@ impl UnrolledCylinder {
         })
     }
 
-    /// Of every strip its edges, the ends of the pattern, and scales round it: rows above, degrees below, x at the left.
+    /// Draws the edges of every strip, the ends of the pattern, and scales: rows above, degrees below, x at
+    /// the left.
     fn strokes(&self) -> Vec<Stroke> {
         let (width, length, tick) = (self.width(), self.cylinder.length, self.tick());
         let mut strokes = Vec::new();
@@ -169,8 +172,9 @@ impl UnrolledCylinder {
         strokes
     }
 
-    /// The rows of a strip that have a tick above it, where they stand, and whether they have their number there: all of
-    /// them if there is room, else every fifth, tenth and so on. Where ticks would run into each other, those alone.
+    /// Returns the rows of a strip with a tick: row, position, and whether it is numbered. All rows are
+    /// numbered if there is room, else every fifth, tenth and so on; ticks that would collide are limited to
+    /// the numbered rows.
     fn rows(&self, strip: u32) -> impl Iterator<Item = (u32, f64, bool)> {
         let apart = self.width() * f64::from(self.strips) / f64::from(self.cylinder.rows);
         let least = 0.09 * self.width() / apart;
@@ -201,15 +205,15 @@ impl UnrolledCylinder {
     }
 }
 
-/// Multiples of a round number, `least` or more apart, from 0 on; and the end.
+/// Returns the multiples of a round number from 0 on, at least `least` apart, and the end.
 fn marks_along(end: f64, least: f64) -> Vec<f64> {
-    // A bar is never shorter than a 2.5th of the longest it may be.
+    // A bar is at least 1/2.5 of its largest length.
     let step = bar_length(2.5 * least);
     let all = (0u32..).map(|n| f64::from(n) * step).take_while(|at| *at < end - least);
     all.chain([end]).collect()
 }
 
-/// Actual − nominal along the circumference and along x.
+/// Returns actual − nominal along the circumference and along x.
 fn zone_deviation(nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
     let azimuth = Deg::atan2(nominal.axis[1], nominal.axis[2]);
     let end = |depth: f64| {
@@ -251,7 +255,7 @@ mod tests {
         development(&TopView { cylinder, holes: vec![hole], ..TopView::default() }).unwrap()
     }
 
-    /// A quarter turn of radius 100 is 157.08 mm, on whichever diameter the hole begins.
+    /// A quarter turn of radius 100 is 157.08 mm, whatever the diameter on which the hole begins.
     #[test]
     fn azimuth_goes_right_as_an_arc_and_x_down() {
         let mark = scene(drawn(hole(20.0, 90.0, 110.0), hole(20.0, 90.0, 112.0))).marks.remove(0);
@@ -268,7 +272,7 @@ mod tests {
         assert!((mark.position[0] - 359.0 * 100.0 * std::f64::consts::PI / 180.0).abs() < 1e-6);
     }
 
-    /// 0.02 mm towards larger azimuth at 90°, where that is −z, and 0.03 mm in x.
+    /// 0.02 mm towards larger azimuth at 90°, which is −z there, and 0.03 mm in x.
     #[test]
     fn a_misfit_points_where_the_hole_is() {
         let mut found = hole(20.03, 90.0, 100.0);
@@ -277,7 +281,7 @@ mod tests {
         assert!((misfit.entry[0] - 0.02).abs() < 1e-9 && (misfit.entry[1] + 0.03).abs() < 1e-9, "{misfit:?}");
     }
 
-    /// 628 round and 30 long: three strips, 120° each.
+    /// 628 mm round and 30 mm long: three strips of 120°.
     #[test]
     fn a_long_way_round_is_cut_into_strips_and_nothing_lies_across_a_cut() {
         let at = |azimuth: f64| {
@@ -300,7 +304,7 @@ mod tests {
         }
     }
 
-    /// A rotary that counts the other way brings a hole up with minus its azimuth.
+    /// A rotary axis of opposite sign presents a hole at minus its azimuth.
     #[test]
     fn the_axis_is_named_as_the_rotary_counts() {
         let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length: 60.0, rows: 8 });
@@ -316,7 +320,8 @@ mod tests {
         assert_eq!((name(false), name(true)), ("A".to_owned(), "−A".to_owned()));
     }
 
-    /// Of 100 rows on one strip every tenth has its number, the others a tick to count by; of 8 all have.
+    /// Of 100 rows on one strip every tenth is numbered and the others have a tick; of 8 rows all are
+    /// numbered.
     #[test]
     fn odd_rows_have_a_tick_too() {
         let of = |rows: u32| {

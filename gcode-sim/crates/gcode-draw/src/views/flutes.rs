@@ -1,50 +1,15 @@
-//! A burr from the side and from its tip: its outline and the flutes on the side towards the reader.
+//! A burr from the side and from its tip: its outline and the flutes on the near side.
 //!
-//! From the side x points to the right and y up, so the tip is at the left, as on the machine. From the tip z points to
-//! the right and y up.
+//! In the side view x points to the right and y up, so the tip is at the left, as on the machine. In the tip
+//! view z points to the right and y up.
 use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
-use super::helix::HelixCourses;
+use super::flute_view::{Fault, FlutePoint, FluteView};
 
-/// What pictures of a burr are made of; mm and degrees.
-#[derive(Clone, Debug)]
-pub struct FluteView {
-    /// Of the program.
-    pub name: String,
-    pub verdict: (HoleStatus, String),
-    /// Further lines of the title block.
-    pub lines: Vec<String>,
-    /// Along the axis and away from it, from the shank's end of the flutes to the pole.
-    pub outline: Vec<[f64; 2]>,
-    /// Of the circle at which the flutes end.
-    pub tip_radius: f64,
-    /// Of each pass, in the order in which they are ground.
-    pub flutes: Vec<Vec<FlutePoint>>,
-    pub faults: Vec<Fault>,
-    pub helix: HelixCourses,
-}
-
-/// Where something is wrong.
-#[derive(Clone, Debug)]
-pub struct Fault {
-    pub point: FlutePoint,
-    /// Counted from 0; none where no pass is.
-    pub pass: Option<usize>,
-    pub status: HoleStatus,
-    /// What is wrong there, each in few words; empty where another mark of the same finding says it.
-    pub labels: Vec<&'static str>,
-}
-
-/// A point of a flute in the part's frame, and the direction out of the surface there.
-#[derive(Clone, Copy, Debug)]
-pub struct FlutePoint {
-    pub position: [f64; 3],
-    pub normal: [f64; 3],
-}
-
-/// Edge-on is not seen.
+/// Least component of a normal towards the reader at which the surface counts as visible.
 const FACING: f64 = 1e-6;
 
+/// Builds the scene of a burr seen from +z, the tip to the left.
 pub fn side_view(view: &FluteView) -> Scene {
     let seen = Viewpoint { place: |[x, y, _]| [x, y], towards: |[_, _, z]| z };
     let mut strokes = seen.flutes(view);
@@ -57,6 +22,7 @@ pub fn side_view(view: &FluteView) -> Scene {
     Scene { axes, marks: seen.faults(view), ..scene(view, what, strokes) }
 }
 
+/// Builds the scene of a burr seen from −x along its axis.
 pub fn tip_view(view: &FluteView) -> Scene {
     let seen = Viewpoint { place: |[_, y, z]| [z, y], towards: |[x, _, _]| -x };
     let mut strokes = seen.flutes(view);
@@ -78,17 +44,17 @@ fn axis(name: &str, direction: Point) -> Axis {
     Axis { name: name.to_owned(), direction }
 }
 
-/// From where the burr is looked at.
+/// A viewing direction on the burr.
 struct Viewpoint {
-    /// A point of the part on the sheet.
+    /// Projects a point of the part to the sheet.
     place: fn([f64; 3]) -> Point,
-    /// How much of a direction comes towards the reader.
+    /// Returns the component of a direction towards the reader.
     towards: fn([f64; 3]) -> f64,
 }
 
 impl Viewpoint {
-    /// The stretches of the flutes whose surface faces the reader, and all of a flute with a fault; the longest that is
-    /// seen of each pass has its number.
+    /// Returns the sections of the flutes on the near side, and all sections of a faulty pass. The longest visible
+    /// section of each pass has its number.
     fn flutes(&self, view: &FluteView) -> Vec<Stroke> {
         let mut strokes = Vec::new();
         for (pass, flute) in view.flutes.iter().enumerate() {
@@ -142,7 +108,7 @@ fn item(sample: Sample, text: &str) -> LegendItem {
     LegendItem { sample, text: text.to_owned() }
 }
 
-/// All but the axes and the marks.
+/// Builds the scene except its axes and marks.
 fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
     let is_there = |standing: HoleStatus| view.faults.iter().any(|fault| fault.status == standing);
     let signs = [
@@ -178,6 +144,7 @@ fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
 
 #[cfg(test)]
 mod tests {
+    use super::super::flute_view::HelixCourses;
     use super::*;
 
     fn view(out: [[f64; 3]; 4]) -> FluteView {
@@ -209,7 +176,7 @@ mod tests {
         let (front, back) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
         let seen = paths(&side_view(&view([front, front, back, front])));
         assert_eq!(seen, [vec![[0.0, 1.0], [1.0, 1.0]]]);
-        // On the cylinder the surface is seen edge-on from the tip.
+        // From the tip, the surface of the cylinder is edge-on.
         assert!(paths(&tip_view(&view([front, front, front, front]))).is_empty());
         let nose = [-0.5, 0.0, 0.8];
         assert_eq!(paths(&tip_view(&view([front, nose, nose, nose]))), [vec![[2.0, 1.0]; 3]]);

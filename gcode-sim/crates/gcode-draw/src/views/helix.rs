@@ -1,48 +1,15 @@
-//! The helix angle along the flutes: as ground, as asked for with what is allowed, and how far off that.
+//! Graphs of the helix angle along the flutes: actual, nominal with tolerance, and deviation.
 use super::super::chart::{Chart, ChartMarker, Curve, Graph};
 use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{LegendItem, Sample, Scene, Title};
-use super::flutes::FluteView;
+use super::flute_view::{FluteView, HelixCourses, HelixPoint};
 
-/// Helix angles along the flutes, left-hand ones below 0. The way is that along the tooth bottom's outline from the shank's
-/// end, mm; angles are degrees.
-#[derive(Clone, Debug, Default)]
-pub struct HelixCourses {
-    /// Of each pass, in the order in which they are ground.
-    pub passes: Vec<Vec<HelixPoint>>,
-    /// The pass that is farthest from the law, counted from 0.
-    pub worst_pass: usize,
-    /// Either way.
-    pub tolerance: f64,
-    /// Names of the law asked for and of the other one.
-    pub laws: [&'static str; 2],
-    /// What both laws have, where nothing is ground.
-    pub nominal: Vec<HelixPoint>,
-    /// Places along the nose, with the polar angle there.
-    pub nose: Vec<(f64, String)>,
-}
-
-/// At one place of the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HelixPoint {
-    pub path_length: f64,
-    pub actual: f64,
-    /// By the law asked for, and by the other one.
-    pub nominal: f64,
-    pub other_law: f64,
-}
-
-impl HelixPoint {
-    fn error(&self) -> f64 {
-        self.actual - self.nominal
-    }
-}
-
-/// A band of less than this part of a graph's height is a mere line.
+/// Height of a tolerance band, in parts of the graph's height, below which it is drawn as a line.
 const MIN_BAND_SHARE: f64 = 0.1;
-/// Deviations have a graph of their own where it enlarges them by more than this.
+/// Least enlargement of deviations that justifies a separate graph.
 const MIN_MAGNIFICATION: f64 = 2.0;
 
+/// Builds the scene with the graphs of the helix angle.
 pub fn helix_graph(view: &FluteView) -> Scene {
     let helix = &view.helix;
     let mut graphs = vec![helix.angles()];
@@ -71,12 +38,12 @@ pub fn helix_graph(view: &FluteView) -> Scene {
 }
 
 impl HelixCourses {
-    /// The pass that is farthest from the law; the laws alone where there is none.
+    /// Returns the pass with the largest deviation from the law; the laws alone if no pass is ground.
     fn shown(&self) -> &[HelixPoint] {
         self.passes.get(self.worst_pass).filter(|pass| !pass.is_empty()).unwrap_or(&self.nominal)
     }
 
-    /// What is drawn of every pass: the worst last, on top.
+    /// Returns the curves of all passes, the worst last, on top.
     fn curves(&self, value: impl Fn(&HelixPoint) -> f64) -> Vec<Curve> {
         let others = self.passes.iter().enumerate().filter(|(pass, _)| *pass != self.worst_pass);
         let all = others.map(|(_, pass)| (pass, Pen::Others));
@@ -84,7 +51,7 @@ impl HelixCourses {
         all.chain(worst).map(|(pass, pen)| curve(pass, pen, &value)).collect()
     }
 
-    /// Whether what is allowed would be a mere line among the angles, and can be shown better.
+    /// Returns true if the tolerance band is too thin in the graph of angles and a separate graph enlarges it.
     fn needs_deviations(&self) -> bool {
         let all = || self.passes.iter().flatten();
         let angles = spread(all().flat_map(|at| [at.actual, at.nominal]));
@@ -120,7 +87,7 @@ impl HelixCourses {
         }
     }
 
-    /// Where a pass is farthest from the law, if that is more than allowed.
+    /// Returns the largest deviation of a pass if it exceeds the tolerance.
     fn fault(&self, pass: &[HelixPoint]) -> Option<HelixPoint> {
         let worst = pass.iter().copied().max_by(|a, b| a.error().abs().total_cmp(&b.error().abs()))?;
         (self.tolerance < worst.error().abs()).then_some(worst)
@@ -158,7 +125,7 @@ impl HelixCourses {
     }
 }
 
-/// From the least to the greatest; below 0 of none.
+/// Returns the difference of the greatest and the least value; negative without values.
 fn spread(values: impl Iterator<Item = f64>) -> f64 {
     let reach = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), reach);
@@ -190,7 +157,7 @@ mod tests {
         HelixCourses { passes, worst_pass: worst, tolerance: 0.3, laws, ..HelixCourses::default() }
     }
 
-    /// 0.6° of 40° of angles can't be seen; a fault of 30° is seen there as well as in a graph of its own.
+    /// A band of 0.6° in 40° of angles is too thin; a fault of 30° is as visible there as in a separate graph.
     #[test]
     fn deviations_have_a_graph_of_their_own_where_the_law_turns_far() {
         let turning = |off: f64| {

@@ -1,5 +1,6 @@
-//! What can be shown of a part, one view a file: each turns holes and paths into a scene.
+//! Views of a part, one per file: each turns holes and paths into a scene.
 pub(super) mod development;
+pub(super) mod flute_view;
 pub(super) mod flutes;
 pub(super) mod helix;
 pub(super) mod purpose;

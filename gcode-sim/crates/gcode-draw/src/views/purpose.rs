@@ -1,18 +1,18 @@
-//! What a picture of holes answers: are they where the drawing wants them, or where they were before?
+//! Purpose of a picture of holes, a verdict or a comparison of revisions, and its wording.
 use super::super::role::HoleStatus;
 
-/// The question, and with it the words of the title block and the legend.
+/// Purpose of a picture, which selects the words of the title block and the legend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PicturePurpose {
-    /// Held against a reference.
+    /// Comparison with a reference.
     #[default]
     Verdict,
-    /// Held against another revision of the program.
+    /// Comparison with another revision of the program.
     Change,
 }
 
 impl PicturePurpose {
-    /// Beside a hole, where it isn't there or shouldn't be.
+    /// Returns the word beside a hole that is missing or extra, and in the headline.
     pub(super) fn status_word(self, standing: HoleStatus) -> &'static str {
         match (self, standing) {
             (Self::Verdict, HoleStatus::Good) => "in tolerance",
@@ -27,7 +27,7 @@ impl PicturePurpose {
         }
     }
 
-    /// In the legend.
+    /// Returns the legend text of a status.
     pub(super) fn legend(self, standing: HoleStatus) -> &'static str {
         match (self, standing) {
             (Self::Verdict, HoleStatus::Good) => "in tolerance",
@@ -42,7 +42,7 @@ impl PicturePurpose {
         }
     }
 
-    /// Before the largest deviation.
+    /// Returns the text before the largest deviation.
     pub(super) fn worst_label(self) -> &'static str {
         match self {
             Self::Verdict => "worst position",
@@ -50,12 +50,12 @@ impl PicturePurpose {
         }
     }
 
-    /// Whether a position is told, written with so many places: of two revisions a change that there is.
+    /// Returns true if a position is shown with this many decimals; a change is shown only if it is not 0.
     pub(super) fn shows_deviation(self, phi: f64, places: i32) -> bool {
         self == Self::Verdict || 0.5 <= phi * libm::pow(10.0, f64::from(places))
     }
 
-    /// At a line to where a hole stands in truth.
+    /// Returns the legend text of the line to a hole's actual position.
     pub(super) fn displacement_label(self) -> &'static str {
         match self {
             Self::Verdict => "to the actual position",
@@ -63,7 +63,7 @@ impl PicturePurpose {
         }
     }
 
-    /// Before the diameter of the circle that a misfit is drawn in.
+    /// Returns the legend text before the diameter of the deviation circle.
     pub(super) fn deviation_label(self) -> &'static str {
         match self {
             Self::Verdict => "deviation in the tolerance zone",
@@ -71,8 +71,8 @@ impl PicturePurpose {
         }
     }
 
-    /// `PASS: 5 of 5 holes`, `3 of 5 unchanged, 2 lost`; `counts` are the holes that are good, bad, missing, extra, and
-    /// `others` the differences that no hole shows.
+    /// Returns status and headline: `PASS: 5 of 5 holes in tolerance`, `3 of 5 unchanged, 2 lost`. `counts`
+    /// are the good, bad, missing and extra holes, `others` the differences that no hole shows.
     pub(super) fn headline(self, counts: [usize; 4], others: usize) -> Option<(HoleStatus, String)> {
         let [good, bad, missing, extra] = counts;
         let all = good + bad + missing;

@@ -1,18 +1,18 @@
-//! From where a part is looked at: which of its directions are right and up on the sheet.
+//! Viewing direction: the part's directions that point right and up on the sheet.
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::super::role::Point;
 use super::super::scene::{Axis, ZoneDeviation};
 use gcode_part::Hole;
 
-/// The direction that comes towards the reader.
+/// The part's direction that points to the reader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// From +y: x to the right and z down, so that the picture is right-handed, and azimuths (x = r·cos α,
-    /// z = r·sin α) grow clockwise.
+    /// From +y: x to the right and z down, so that the picture is right-handed and azimuths (x = r·cos α, z =
+    /// r·sin α) increase clockwise.
     #[default]
     Y,
-    /// From +z, along a spindle that stands: x to the right and y up.
+    /// From +z, along an upright spindle: x to the right and y up.
     Z,
     /// From +x: y to the right and z up.
     X,
@@ -27,17 +27,17 @@ impl Side {
         }
     }
 
-    /// The part's (x, y, z) on the sheet: right and up.
+    /// Projects (x, y, z) of the part to the sheet: right and up.
     pub(super) fn project(self, [x, y, z]: [f64; 3]) -> Point {
         match self {
-            // 0 − z and not −z: no negative zeros in what is compared and printed.
+            // 0 − z instead of −z avoids negative zeros in compared and printed values.
             Self::Y => [x, 0.0 - z],
             Self::Z => [x, y],
             Self::X => [y, z],
         }
     }
 
-    /// Of the reader.
+    /// Returns the unit vector to the reader.
     pub fn towards(self) -> Vector3<f64> {
         match self {
             Self::Y => Vector3::y(),
@@ -46,7 +46,7 @@ impl Side {
         }
     }
 
-    /// The two of the part's axes that lie in the sheet.
+    /// Returns the two axes of the part that lie in the sheet.
     pub(super) fn axes(self) -> Vec<Axis> {
         let (x, y, z) = (("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0]));
         let shown = match self {
@@ -57,11 +57,12 @@ impl Side {
         shown.map(|(name, axis)| Axis { name: name.to_owned(), direction: self.project(axis) }).into()
     }
 
-    /// Actual − nominal across the nominal axis, which is turned the shortest way into the line of sight: so a
-    /// deviation keeps its length, and the zone is a circle for steep holes too.
+    /// Returns actual − nominal perpendicular to the nominal axis, which is rotated the shortest way into the
+    /// line of sight: a deviation keeps its length, and the zone is a circle for steep holes too.
     pub(super) fn zone_deviation(self, nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
         let (axis, towards) = (Vector3::from(nominal.axis), self.towards());
-        // A hole drilled from behind is looked at through the part: turned round, it would be off to the wrong side.
+        // A hole drilled from behind is seen through the part: reversed, its deviation would point the wrong
+        // way.
         let towards = if axis.dot(&towards) < 0.0 { -towards } else { towards };
         let turn = UnitQuaternion::rotation_between(&axis, &towards).unwrap_or_default();
         let end = |depth: f64| Some(self.project((turn * displacement(nominal, found, depth)?).into()));
@@ -69,8 +70,8 @@ impl Side {
     }
 }
 
-/// Actual − nominal where the actual axis crosses the plane `depth` below the nominal entry, perpendicular to the
-/// nominal axis.
+/// Returns actual − nominal where the actual axis crosses the plane `depth` below the nominal entry,
+/// perpendicular to the nominal axis; `None` if the axes are nearly perpendicular.
 pub(super) fn displacement(nominal: &Hole, found: &Hole, depth: f64) -> Option<Vector3<f64>> {
     let (axis, along) = (Vector3::from(nominal.axis), Vector3::from(found.axis));
     let exact = Vector3::from(nominal.entry) - axis * depth;
@@ -87,7 +88,7 @@ mod tests {
         Hole { id: None, entry, axis, depth: 10.0, diameter: None, from: None }
     }
 
-    /// Right × up is the direction that comes towards the reader: nothing is mirrored.
+    /// Right × up points to the reader: nothing is mirrored.
     #[test]
     fn every_side_is_right_handed() {
         for side in [Side::X, Side::Y, Side::Z] {

@@ -8,30 +8,32 @@ use super::purpose::PicturePurpose;
 use super::side::Side;
 use gcode_part::Hole;
 
-/// What a top view is made of. Everything but the holes may be unknown.
+/// Contents of a top view; everything but the holes may be unknown.
 #[derive(Clone, Debug, Default)]
 pub struct TopView {
-    /// Of the part or the programme.
+    /// Name of the part or the program.
     pub name: String,
-    /// From where it is looked at.
+    /// Viewing direction.
     pub side: Side,
     /// Radius of the part's outline seen along y, mm.
     pub outline: Option<f64>,
-    /// Of a part that is a cylinder about x.
+    /// Dimensions of a part that is a cylinder about x.
     pub cylinder: Option<Cylinder>,
     /// Diameter of the position tolerance zone, mm.
     pub tolerance: Option<f64>,
-    /// The letter of the axis that `DrawnHole::turn` is about.
+    /// Letter of the rotary axis of `DrawnHole::turn`.
     pub rotary: String,
-    /// That axis' angle grows while the azimuth it brings up (from z towards y) falls.
+    /// Whether the rotary axis increases as the presented azimuth (from z towards y) decreases.
     pub is_rotary_reversed: bool,
+    /// The holes, nominal and actual.
     pub holes: Vec<DrawnHole>,
-    /// What the holes are held against.
+    /// Purpose of the comparison, which selects the wording.
     pub purpose: PicturePurpose,
-    /// How many differences of two revisions no hole shows.
+    /// Number of differences between two revisions that no hole shows.
     pub other_differences: usize,
-    /// That they end differently.
+    /// Sentence on a different end of the two revisions.
     pub ending: Option<String>,
+    /// Tool path.
     pub path: Vec<PathPiece>,
     /// Further lines of the title block.
     pub lines: Vec<String>,
@@ -40,48 +42,56 @@ pub struct TopView {
 /// A cylinder about x, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
-    /// Of its surface.
+    /// Radius of its surface.
     pub outer: f64,
-    /// On which distances count: it is unrolled there.
+    /// Radius on which distances are measured and at which it is unrolled.
     pub radius: f64,
-    /// Holes stand at 0 ≤ x ≤ length.
+    /// Length of the pattern: holes lie at 0 ≤ x ≤ length.
     pub length: f64,
-    /// Round it.
+    /// Number of rows round the circumference.
     pub rows: u32,
 }
 
-/// One hole: as wanted, as made, and what was said about it.
+/// One hole: nominal, actual and verdict.
 #[derive(Clone, Debug)]
 pub struct DrawnHole {
+    /// Number or name in the label.
     pub id: String,
+    /// Nominal hole; `None` for an extra one.
     pub nominal: Option<Hole>,
+    /// Actual hole; `None` for a missing one.
     pub actual: Option<Hole>,
+    /// Result of the comparison.
     pub status: HoleStatus,
-    /// Position as ISO 1101 has it (diameter), mm.
+    /// Position deviation by ISO 1101 (a diameter), mm.
     pub position_deviation: Option<f64>,
-    /// Where the rotary axis stands while the hole is made, degrees.
+    /// Angle of the rotary axis during drilling, degrees.
     pub rotary_angle: Option<f64>,
-    /// What is wrong where it isn't the position: a few words each.
+    /// Faults other than position, a few words each.
     pub remarks: Vec<String>,
 }
 
-/// A piece of the tool's path in the part's frame, mm.
+/// A piece of the tool path in the part's frame, mm.
 #[derive(Clone, Debug)]
 pub struct PathPiece {
+    /// Points of the polyline.
     pub points: Vec<[f64; 3]>,
+    /// Kind of motion.
     pub kind: PathKind,
 }
 
-/// Of one program a feed or a rapid; of two the cuts, in the order in which they are drawn.
+/// Kind of a path piece, in drawing order: feed or rapid of one program, or the cuts of two revisions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PathKind {
+    /// Feed move.
     Feed,
+    /// Rapid move.
     Rapid,
-    /// Made by both.
+    /// Cut that both programs make.
     Kept,
-    /// By the new program only, or otherwise.
+    /// Cut of the new program that differs from the old one or is added.
     New,
-    /// By the old program only, or otherwise.
+    /// Cut of the old program that differs from the new one or is removed.
     Gone,
 }
 
@@ -109,13 +119,14 @@ impl PathKind {
     }
 }
 
-/// Of more holes on a cylinder those that are as wanted have neither number nor dial: they would hide each other.
+/// Largest number of numbered holes; beyond it good holes have neither number nor dial, which would hide each
+/// other.
 pub(super) const MAX_NUMBERED: usize = 60;
 
-/// More circles than this would hide the holes.
+/// Largest number of construction circles; more would hide the holes.
 const MAX_CIRCLES: usize = 12;
 
-/// The scene of a top view.
+/// Builds the scene of a top view.
 pub fn top_view(view: &TopView) -> Scene {
     let (near, far): (Vec<_>, Vec<_>) = view.holes.iter().partition(|hole| faces_reader(hole, view));
     let mut marks: Vec<Mark> = near.into_iter().filter_map(|hole| mark(hole, view)).collect();
@@ -151,7 +162,7 @@ pub fn top_view(view: &TopView) -> Scene {
     Scene { title, axes: view.side.axes(), strokes, marks, zone: view.tolerance, legend, chart: None }
 }
 
-/// Leaves out the numbers and dials that would hide the holes of a dense pattern.
+/// Removes the numbers and dials that would hide the holes of a dense pattern.
 pub(super) fn number_few(marks: &mut [Mark]) {
     if MAX_NUMBERED < marks.len() {
         for mark in marks.iter_mut().filter(|mark| mark.status.is_good()) {
@@ -164,19 +175,19 @@ pub(super) fn number_few(marks: &mut [Mark]) {
     }
 }
 
-/// The azimuth as the rotary axis counts it.
+/// Returns the name of the azimuth axis, with a minus sign if the rotary axis runs the other way.
 pub(super) fn turn_name(view: &TopView) -> String {
     if view.is_rotary_reversed { format!("−{}", view.rotary) } else { view.rotary.clone() }
 }
 
-/// Of a cylinder only the holes on this side are seen.
+/// Returns false for holes on the far side of a cylinder.
 fn faces_reader(hole: &DrawnHole, view: &TopView) -> bool {
     let shown = hole.nominal.as_ref().or(hole.actual.as_ref());
     let away = |hole: &Hole| Vector3::from(hole.axis).dot(&view.side.towards()) < -1e-6;
     view.cylinder.is_none() || !shown.is_some_and(away)
 }
 
-/// Nothing of a piece that runs straight towards the reader.
+/// Projects a path piece; `None` if it runs straight towards the reader.
 fn path(piece: &PathPiece, side: Side) -> Option<Stroke> {
     let points: Vec<Point> = piece.points.iter().map(|p| side.project(*p)).collect();
     let first = *points.first()?;
@@ -184,7 +195,7 @@ fn path(piece: &PathPiece, side: Side) -> Option<Stroke> {
     goes.then(|| Stroke { shape: Shape::Line(points), pen: piece.kind.pen(), caption: None })
 }
 
-/// A hole's number, and what is to be said of it.
+/// Returns the label of a hole: number, remarks, rotary angle and deviation.
 pub(super) fn label(hole: &DrawnHole, view: &TopView) -> Vec<String> {
     let mut label = vec![hole.id.clone()];
     let turn = hole.rotary_angle.map(|turn| format!("{} {}°", view.rotary, signed(turn, 3)));
@@ -220,7 +231,7 @@ fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark> {
     })
 }
 
-/// The circles on which holes lie, each with its radius; holes less than 0.05 mm apart share one.
+/// Returns the circles on which holes lie, with their radii; radii less than 0.05 mm apart are merged.
 fn circles(holes: &[DrawnHole]) -> Vec<Stroke> {
     let any_nominal = holes.iter().any(|h| h.nominal.is_some());
     let of = |h: &DrawnHole| if any_nominal { h.nominal.clone() } else { h.actual.clone() };
@@ -240,7 +251,7 @@ fn circles(holes: &[DrawnHole]) -> Vec<Stroke> {
     radii.into_iter().map(circle).collect()
 }
 
-/// A number without needless zeros and with a true minus sign.
+/// Formats a number without trailing zeros and with a true minus sign.
 fn signed(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -269,7 +280,7 @@ pub(super) fn worst(view: &TopView) -> Option<String> {
         .then(|| format!("{}: Φ{phi:.4} (hole\u{a0}{id})", view.purpose.worst_label()))
 }
 
-/// The signs that are drawn, for the legend.
+/// Returns the legend lines of the symbols that are drawn.
 pub(super) fn standings(view: &TopView) -> Vec<LegendItem> {
     let all =
         [HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra, HoleStatus::Unjudged];
@@ -352,7 +363,8 @@ mod tests {
         }
     }
 
-    /// A hole leaning 60° out to +x: 0.05 mm along its own meridian looks like 0.025 from above, and is 0.05.
+    /// A hole tilted 60° outwards to +x: 0.05 mm along its own meridian projects to 0.025 mm and is drawn as
+    /// 0.05 mm.
     #[test]
     fn a_steep_hole_keeps_the_length_of_its_misfit() {
         let axis = [0.75f64.sqrt(), 0.5, 0.0];

@@ -1,6 +1,6 @@
-//! What stops a control: each alarm a fact, its number and wording in one table (`table.rs`).
+//! Alarms that stop a control: each variant holds the facts, `table.rs` the number and wording.
 //!
-//! Numbers and triggers follow the alarm list of the 30i / 0i-F class; the wording is ours.
+//! Numbers and triggers follow the alarm list of the 30i / 0i-F class; the wording is this project's own.
 mod table;
 mod typos;
 
@@ -8,17 +8,22 @@ use crate::source::{Span, Spanned};
 
 pub use typos::remedy;
 
-/// The control's own name for an alarm: `PS0112`, `MC3001`, `OT0500`; `SIM…` where the simulator, not the
-/// control, cannot go on.
+/// Designation of an alarm: `PS0112`, `MC3001`, `OT0500`; `SIM…` where the simulator, not the control, cannot
+/// continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AlarmCode {
+    /// Program error.
     Ps(u16),
+    /// Alarm raised by a macro (`#3000`).
     Mc(u16),
+    /// Overtravel.
     Ot(u16),
+    /// Limit of the simulator.
     Sim(u16),
 }
 
 impl AlarmCode {
+    /// Returns the number without its letters.
     pub fn number(self) -> u32 {
         match self {
             Self::Ps(n) | Self::Mc(n) | Self::Ot(n) | Self::Sim(n) => u32::from(n),
@@ -37,299 +42,438 @@ impl std::fmt::Display for AlarmCode {
     }
 }
 
-/// Why the control stops. Variants carry facts; `table.rs` has the sentences.
+/// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Alarm {
+    /// A number has too many digits.
     TooManyDigits,
-    /// Text that is neither address and number nor a macro word.
+    /// Text is neither a word nor a macro statement.
     NotAWord {
+        /// First characters of the text.
         text: String,
     },
-    /// Letters in lower case, where the control takes capitals only.
+    /// The block has lower-case letters, which the control refuses.
     LowerCase,
-    /// `WH`, `GO`, where the control wants the whole word.
+    /// A keyword is abbreviated (`WH`, `GO`), which the control refuses.
     ShortWord,
-    /// A `;`, and behind it what could be a block or a remark.
+    /// The text after a `;` may be a block or a comment.
     TwoBlocksInOneLine,
+    /// An address has no number.
     NoDataAfterAddress {
+        /// Letter of the address.
         letter: char,
     },
-    /// A code without a word that it needs.
+    /// A code lacks a word that it requires.
     MissingWord {
+        /// The code.
         code: &'static str,
+        /// Letter of the missing word.
         letter: char,
     },
-    /// A pattern of holes without a drilling cycle.
+    /// A pattern of holes has no drilling cycle.
     NoCycle {
+        /// Code of the pattern.
         code: &'static str,
     },
+    /// An address does not allow a minus sign.
     IllegalMinus {
+        /// Letter of the address.
         letter: char,
     },
+    /// An address does not allow a decimal point, or a number has two.
     IllegalPoint {
+        /// Letter of the address; `None` for a number with two points.
         letter: Option<char>,
     },
+    /// An address is not allowed in its block.
     ImproperAddress {
+        /// Letter of the address.
         letter: char,
     },
+    /// The control has no such G code.
     ImproperGCode {
+        /// Code without its letter.
         code: String,
     },
+    /// A cutting feed has no feed rate.
     FeedZero,
-    /// F is per revolution, and S is 0.
+    /// F is per revolution and S is 0.
     NoSpeedForFeed,
-    /// R of an arc against half the distance of its ends, mm.
+    /// R of an arc is less than half the distance of its ends.
     RadiusTooSmall {
+        /// Specified radius, mm.
         radius: f64,
+        /// Half the distance of the ends, mm.
         half_chord: f64,
     },
+    /// The radii at the start and end of an arc differ too much.
     RadiusTolerance {
+        /// Radius at the start, mm.
         start: f64,
+        /// Radius at the end, mm.
         end: f64,
+        /// Permitted difference, mm.
         tolerance: f64,
     },
+    /// The centre of an arc is not in the selected plane.
     PlaneSelect,
+    /// An arc has neither R nor I, J, K.
     NoRadiusOrCentre,
+    /// An arc has no feed rate.
     ArcFeedZero,
+    /// An offset number is out of range.
     OffsetNumber {
+        /// Offset number.
         number: i64,
     },
+    /// The value of an offset is out of range.
     OffsetValue {
+        /// Value.
         value: f64,
     },
-    /// G41, G42: inside a corner the two paths of the tool's centre don't meet.
+    /// In G41 or G42 the tool centre paths inside a corner do not intersect.
     NoIntersection,
+    /// Cutter compensation starts or ends with an arc.
     ArcAtStartOrEnd,
+    /// G31 is commanded in cutter compensation.
     SkipInCompensation,
-    /// G31 without a signal, where the control is set to mind.
+    /// G31 ended without a signal, and the setting makes that an alarm.
     SkipMissed,
-    /// How far a probe is pushed, and how far it gives, in mm.
+    /// The stylus is deflected beyond its overtravel.
     StylusBroken {
+        /// Deflection, mm.
         deflection: f64,
+        /// Largest permitted deflection, mm.
         overtravel_limit: f64,
     },
-    /// G31 P or G04 Q other than 1 to 4.
+    /// G31 P or G04 Q is not 1 to 4.
     SkipSignals {
+        /// Letter of the word.
         letter: char,
     },
-    /// G31 Q other than 1 to 99.
+    /// G31 Q is not 1 to 99.
     SkipTorque,
-    /// G93 wants F in every cutting block.
+    /// A cutting block in G93 has no F.
     NoInverseTime,
-    /// A code that changes the coordinate system or goes to the reference position, in G51.
+    /// A code in G51 changes the coordinate system or moves to the reference position.
     CodeInScaling {
+        /// Code without its letter.
         code: String,
     },
+    /// The plane changes in cutter compensation.
     PlaneInCompensation,
-    /// `,R` or `,C` where cutter compensation starts, ends or changes sides.
+    /// `,R` or `,C` is in a block where cutter compensation starts, ends or changes sides.
     CornerInStartUp,
+    /// The tool centre path runs against the programmed path.
     Interference,
-    /// G45 to G48.
+    /// G45 to G48 are commanded in cutter compensation.
     ToolOffsetInCompensation,
-    /// `,R` or `,C` in a block of G33.
+    /// `,R` or `,C` is in a block of G33.
     CornerInThread,
-    /// Behind `,R` or `,C`.
+    /// No move in the plane follows `,R` or `,C`.
     NoMoveAfterCorner,
+    /// The move after `,R` or `,C` is not G01, G02 or G03.
     NoCutAfterCorner,
-    /// Two corner words, or another letter behind a comma.
+    /// A block has two corner words, or another letter follows a comma.
     CornerWords,
-    /// A move is shorter than what `,R` or `,C` takes of it.
+    /// A move is shorter than the part that `,R` or `,C` replaces.
     CornerTooLarge,
+    /// An axis is not at the reference position at G27.
     NotAtReference {
+        /// Letter of the axis.
         letter: char,
     },
+    /// T is in a block with G04, G10 or G50.
     TNotAllowed,
+    /// The scaling factor is out of range.
     ScaleRate {
+        /// Factor.
         value: f64,
     },
+    /// The plane changes in coordinate system rotation.
     PlaneInRotation,
+    /// No G28 with an intermediate point precedes G29.
     NoIntermediatePoint,
-    /// M00, M01, M02 or M30, and behind it another M code that takes its place.
+    /// Another M code follows M00, M01, M02 or M30 and replaces it.
     PluralM {
+        /// Code that is replaced.
         first: u32,
+        /// Code that replaces it.
         second: u32,
     },
+    /// A program is not found by its name.
     FileNotFound {
+        /// Name.
         name: String,
-        /// What couldn't be read while it was looked for.
+        /// Failure to read a file during the search.
         read_error: Option<String>,
     },
+    /// A block of G10 has an error.
     G10Format {
+        /// Description of the error.
         what: String,
     },
+    /// G27 to G30 are commanded in a drilling cycle.
     ReferenceReturnInCycle,
+    /// G73 or G83 has no peck depth Q.
     NoPeckDepth,
+    /// P of G30 is not 2, 3 or 4.
     ReferenceReturnP {
+        /// Value of P.
         p: i64,
     },
+    /// A program number is not 1 to 99999999.
     ProgramNumber,
-    /// A call without P.
+    /// A call has no P.
     ProgramNotNamed,
-    /// M98 without P, where the control takes that for a bad name.
+    /// M98 has no P, and the control reports an invalid name.
     NoNameInCall,
+    /// A program is not found by its number.
     ProgramNotFound {
+        /// O number.
         number: u32,
-        /// What couldn't be read while it was looked for.
+        /// Failure to read a file during the search.
         read_error: Option<String>,
     },
-    /// M198 of a file that isn't there.
+    /// The file of M198 is not found.
     DeviceFileNotFound {
+        /// O number.
         number: u32,
-        /// What couldn't be read while it was looked for.
+        /// Failure to read a file during the search.
         read_error: Option<String>,
     },
-    /// M198 in a program that M198 called.
+    /// M198 is commanded in a program that M198 called.
     DeviceCallInDeviceCall,
+    /// Calls are nested too deeply.
     TooManyCalls {
+        /// Permitted levels.
         limit: usize,
     },
+    /// The sequence number of a return or call is not found.
     SequenceNumberNotFound {
+        /// Sequence number.
         number: u32,
     },
-    /// G08 with another P than 0 and 1.
+    /// P of G08 is neither 0 nor 1.
     LookAheadFormat,
+    /// A whole number is out of range.
     IntegerOverflow,
+    /// The result of arithmetic is out of range.
     FloatOverflow,
+    /// A divisor is 0.
     DivideByZero,
+    /// An expression has an error.
     Expression {
+        /// First characters from the error on.
         text: String,
     },
+    /// The control has no such variable.
     NoSuchVariable {
+        /// Number of the variable.
         number: i64,
     },
+    /// A variable cannot be written.
     WriteProtected {
+        /// Number of the variable.
         number: u32,
     },
+    /// A variable cannot be read.
     ReadProtected {
+        /// Number of the variable.
         number: u32,
     },
+    /// Brackets are nested too deeply.
     TooManyBrackets,
+    /// A function is undefined for its argument.
     OutOfRange {
+        /// Name of the function.
         function: String,
+        /// Argument.
         value: f64,
     },
+    /// A program name has an error.
     NameFormat,
-    /// AXNUM of what is no axis.
+    /// The argument of AXNUM is not an axis.
     AxisAddress {
+        /// Argument as written.
         text: String,
     },
-    /// A number that no axis has.
+    /// No axis has this number.
     AxisNumber {
+        /// Axis number.
         number: i64,
     },
-    /// A block between G10 L52 and G11.
+    /// A block between G10 L52 and G11 has an error.
     ParameterFormat {
+        /// Description of the error.
         what: String,
     },
+    /// The drilling axis is ambiguous.
     DrillingAxis,
+    /// Macro calls are nested too deeply.
     TooManyMacroCalls {
+        /// Permitted levels.
         limit: usize,
     },
+    /// A DO or WHILE has no END.
     MissingEnd {
+        /// Loop number.
         number: u8,
     },
+    /// An END has no DO.
     MissingDo {
+        /// Loop number.
         number: u8,
     },
+    /// A macro statement has an error.
     MacroFormat {
+        /// Description of the error.
         what: String,
     },
+    /// The number of a loop is not 1, 2 or 3.
     LoopNumber {
+        /// Loop number.
         number: i64,
     },
+    /// Words and a macro statement are in one block.
     MixedStatements,
+    /// The target of a GOTO is not found.
     JumpTargetNotFound {
+        /// Sequence number.
         number: u32,
     },
+    /// A macro call has a G code among its arguments.
     GAsArgument,
+    /// A block has two subprogram calls.
     TwoSubprogramCalls,
+    /// A block has two macro calls.
     TwoMacroCalls,
-    /// Words beside M99 while a modal macro call waits.
+    /// M99 has other words in its block while a modal macro call is pending.
     WordsWithReturn {
+        /// Letter of the first such word.
         letter: char,
     },
+    /// I, J, K occur more than ten times in a macro call.
     TooManyArgumentSets,
+    /// G67 is commanded without G66.
     CancelWithoutModalCall,
-    /// A name that another tool offset memory has.
+    /// A variable name belongs to another type of tool offset memory.
     VariableName {
+        /// Name.
         name: String,
     },
-    /// The number in brackets behind a variable's name.
+    /// The suffix in brackets after a variable name is missing, superfluous or out of range.
     Suffix {
+        /// Name.
         name: String,
     },
+    /// No variable has this name.
     NoVariableName {
+        /// Name.
         name: String,
     },
+    /// An address is repeated in a block.
     RepeatedAddress {
+        /// Letter of the address.
         letter: char,
     },
+    /// The arguments of a function have an error.
     ArgumentFormat {
+        /// Name of the function.
         function: String,
     },
+    /// A computed sequence number is out of range.
     SequenceNumberRange {
+        /// Sequence number.
         number: i64,
     },
+    /// An opening bracket is missing.
     MissingOpenBracket,
-    /// A comment stands where a value or `[` must, after an address or in an expression.
+    /// A comment takes the place of a value or `[`, after an address or in an expression.
     RoundBrackets {
+        /// Letter of the address; `None` in an expression.
         letter: Option<char>,
     },
-    /// `<=` and the like.
+    /// A condition has a relation sign that the control refuses, such as `<=`.
     RelationSymbol,
+    /// A closing bracket is missing.
     MissingCloseBracket,
+    /// An equals sign is missing.
     MissingEquals,
+    /// A comma between two arguments is missing.
     MissingComma,
+    /// An IF statement has an error.
     IfFormat,
+    /// A WHILE statement has an error.
     WhileFormat,
+    /// A SETVN statement has an error.
     SetNamesFormat,
+    /// A variable name has an invalid character.
     NameCharacter,
+    /// A variable name is too long.
     NameTooLong {
+        /// Name.
         name: String,
     },
+    /// A DPRNT or BPRNT statement has an error.
     PrintFormat,
+    /// A position is out of range.
     PositionOverflow {
+        /// Letter of the axis.
         letter: char,
+        /// Position.
         value: f64,
     },
+    /// The program ends without M02, M30 or M99.
     EndOfRecord,
-    /// A move beyond a stroke limit.
+    /// A move ends beyond a stroke limit.
     Overtravel {
+        /// Letter of the axis.
         letter: char,
+        /// True for the limit on the plus side.
         is_plus: bool,
+        /// Machine coordinate of the end point.
         value: f64,
+        /// Limit.
         limit: f64,
     },
-    /// `#3000=n(TEXT)`: the program stops itself.
+    /// `#3000=n(TEXT)` stops the program.
     UserAlarm {
+        /// The n of the statement.
         number: u16,
+        /// Text of the comment.
         text: String,
-        /// MCA 6008#1: shown as MC n instead of MC 3000 + n.
+        /// MCA 6008#1: the alarm is shown as MC n, not as MC 3000 + n.
         has_no_base: bool,
     },
-    /// A code or function that a control may have and this simulator does not execute.
+    /// The simulator does not execute a code or function that a control may have.
     NotSimulated {
+        /// The code or function.
         what: String,
     },
 }
 
-/// An alarm with its place. Nearly every step of a run hands on that there is none, so it takes no more than a pointer.
+/// Alarm with its place. Boxed, because almost every step of a run returns a result without an alarm.
 pub type LocatedAlarm = Box<Spanned<Alarm>>;
 
-/// What the table says about an alarm.
+/// Designation, wording and remedy of an alarm.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AlarmRow {
+    /// Designation.
     pub code: AlarmCode,
+    /// Wording.
     pub message: String,
-    /// One thing to do.
+    /// Remedy: one instruction.
     pub help: Option<String>,
 }
 
 impl Alarm {
+    /// Returns the designation.
     pub fn code(&self) -> AlarmCode {
         self.row().code
     }
 
+    /// Attaches the place.
     #[cold]
     pub fn located_at(self, span: Span) -> LocatedAlarm {
         Box::new(Spanned::new(self, span))

@@ -1,7 +1,8 @@
-//! The one table of alarm numbers, wordings and remedies.
+//! Table of alarm numbers, wordings and remedies.
 use super::{Alarm, AlarmCode, AlarmRow};
 
 impl Alarm {
+    /// Returns designation, wording and remedy.
     pub fn row(&self) -> AlarmRow {
         let (code, message, help) = self.parts();
         AlarmRow { code, message, help: help.map(str::to_owned) }
@@ -131,7 +132,7 @@ impl Alarm {
     }
 }
 
-/// A program that was looked for, and what may have held it.
+/// Returns the message for a missing program, with the failure to read a file if there is one.
 fn not_here(what: String, unread: &Option<String>) -> String {
     match unread {
         Some(unread) => format!("{what} is not found: {unread}"),

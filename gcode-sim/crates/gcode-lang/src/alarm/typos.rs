@@ -1,8 +1,8 @@
-//! The slip behind an alarm, where its text shows one: a letter O for a zero, a comma for a point, a sign from a PDF.
+//! Typing errors behind alarms: a letter O for a zero, a comma for a point, a sign copied from a PDF.
 use super::Alarm;
 use crate::source::{Sources, Span};
 
-/// One thing to do about an alarm at a place: what its text suggests, else what the table says.
+/// Returns the remedy for an alarm: the one its text suggests, otherwise the one in the table.
 pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
     let source = sources.get(span.source);
     let at = source.line_column(span.start);
@@ -27,13 +27,13 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
     rules.into_iter().find_map(|rule| rule(alarm, &place)).or_else(|| alarm.row().help)
 }
 
-/// The line of an alarm without its comments.
+/// Line of an alarm, without its comments.
 struct AlarmLine<'a> {
-    /// Up to where the alarm is.
+    /// Text before the alarm.
     before: &'a str,
-    /// From there to the end of the line.
+    /// Text from the alarm to the end of the line.
     rest: &'a str,
-    /// What the alarm is about.
+    /// Text at the place of the alarm.
     text: &'a str,
 }
 
@@ -46,7 +46,7 @@ fn without_comments(text: &str) -> String {
     text.chars().filter(is_kept).collect()
 }
 
-/// Whether the alarm is about how something is written.
+/// Returns true for an alarm about notation.
 fn is_read_failure(alarm: &Alarm) -> bool {
     matches!(
         alarm,
@@ -62,11 +62,11 @@ fn is_read_failure(alarm: &Alarm) -> bool {
     )
 }
 
-/// A character that looks like one of a control's and comes from a word processor, a PDF or another keyboard.
+/// Detects a character that resembles one of a control: from a word processor, a PDF or another keyboard.
 fn foreign_character(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let found = alarm_line.rest.chars().find(|c| !c.is_ascii()).filter(|_| is_read_failure(alarm))?;
     let replacement = match found {
-        // Bytes of another encoding: nobody knows what they show.
+        // Bytes of another encoding; the character is unknown.
         '\u{fffd}' => return None,
         '\u{2010}'..='\u{2015}' | '\u{2212}' => "the minus '-'".to_owned(),
         '\u{a0}' | '\u{2000}'..='\u{200b}' | '\u{202f}' | '\u{3000}' | '\u{feff}' => "a space".to_owned(),
@@ -87,7 +87,7 @@ fn foreign_character(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String
     ))
 }
 
-/// `GO1`, `M3O`, `X1O.`: a letter O in a number.
+/// Detects a letter O in a number: `GO1`, `M3O`, `X1O.`.
 fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     if !is_read_failure(alarm) && !matches!(alarm, Alarm::ImproperGCode { .. }) {
         return None;
@@ -103,7 +103,7 @@ fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
         let number: String = chars[at + 1..].iter().take_while(is_number).collect();
         let behind = chars.get(at + 1 + number.len());
         let is_word = behind.is_none_or(|c| !c.is_ascii_alphabetic());
-        // DO1 and GO TO 10 are words of statements.
+        // DO1 and GO TO 10 are statements.
         let is_statement =
             letter == 'D' && number.starts_with('O') || matches!(letter, 'G' | 'T') && number == "O";
         (number.contains('O') && is_word && !is_statement).then(|| {
@@ -113,7 +113,7 @@ fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     })
 }
 
-/// `GOTO N10`.
+/// Detects `GOTO N10`.
 fn number_with_n(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let number =
         alarm_line.rest.strip_prefix('N').filter(|_| matches!(alarm, Alarm::Expression { .. }))?.trim_start();
@@ -122,7 +122,7 @@ fn number_with_n(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
         .then(|| format!("write GOTO {digits}, without N"))
 }
 
-/// `X10,5` and `X10., Y5.`.
+/// Detects `X10,5` and `X10., Y5.`.
 fn misplaced_comma(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let behind = alarm_line
         .rest
@@ -139,7 +139,7 @@ fn misplaced_comma(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> 
     is_word.then(|| "remove the comma: words are not separated by commas".to_owned())
 }
 
-/// `1E3`.
+/// Detects `1E3`.
 fn exponent(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     if !matches!(alarm, Alarm::MixedStatements | Alarm::ImproperAddress { letter: 'E' }) {
         return None;
@@ -157,7 +157,7 @@ fn exponent(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     })
 }
 
-/// `#1=5#2`.
+/// Detects `#1=5#2`.
 fn missing_operator(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     if *alarm != Alarm::MissingEquals {
         return None;
@@ -170,7 +170,7 @@ fn missing_operator(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String>
         .then(|| format!("check for a missing + - * or / before {}", &line[at..]))
 }
 
-/// `IF[…]THEN #1=2 ELSE #1=3`.
+/// Detects `IF[…]THEN #1=2 ELSE #1=3`.
 fn else_case(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let is_else =
         matches!(alarm, Alarm::NoDataAfterAddress { letter: 'E' }) && alarm_line.rest.starts_with("ELSE");
@@ -179,7 +179,7 @@ fn else_case(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     })
 }
 
-/// `Z--5`.
+/// Detects `Z--5`.
 fn two_signs(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::IllegalMinus { letter } = alarm else { return None };
     let value = alarm_line.rest.strip_prefix('-').filter(|_| alarm_line.before.trim_end().ends_with('-'))?;
@@ -187,14 +187,14 @@ fn two_signs(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     Some(format!("write one sign: {letter}-{value}, or {letter}-[-{value}]"))
 }
 
-/// `10/0`.
+/// Detects a written zero divisor, `10/0`.
 fn zero_divisor(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let (_, divisor) = alarm_line.text.rsplit_once('/').filter(|_| *alarm == Alarm::DivideByZero)?;
     let is_zero = divisor.chars().all(|c| matches!(c, '0' | '.' | ' ')) && divisor.contains('0');
     is_zero.then(|| "correct the divisor: it is written as 0".to_owned())
 }
 
-/// `R5` where `R5.` was meant.
+/// Detects `R5` instead of `R5.`.
 fn radius_without_point(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::RadiusTooSmall { radius, .. } = alarm else { return None };
     let number = alarm_line.text.strip_prefix('R')?.trim();
@@ -203,7 +203,7 @@ fn radius_without_point(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<Str
     is_other.then(|| format!("write R{number}.: R{number} without a decimal point is {radius} mm here"))
 }
 
-/// `G04 X1.5 P500`.
+/// Detects two times in one dwell, `G04 X1.5 P500`.
 fn dwell_with_two_times(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::NotSimulated { what } = alarm else { return None };
     let line = format!("{}{}", alarm_line.before, alarm_line.rest);
@@ -216,7 +216,7 @@ fn dwell_with_two_times(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<Str
 mod tests {
     use super::*;
 
-    /// The remedy for an alarm at the first place where `at` stands in the line.
+    /// Returns the remedy for an alarm at the first occurrence of `at` in the line.
     fn told(alarm: Alarm, line: &str, at: &str) -> String {
         let mut sources = Sources::default();
         let text = format!("O1\n{line}\nM30\n");
@@ -261,7 +261,7 @@ mod tests {
         assert!(told(not_a_word(), "G00\u{a0}X1.", "\u{a0}X").contains("type a space"));
         assert!(told(not_a_word(), "G00 \u{ff38}10.", "\u{ff38}").contains("type 'X' in half width"));
         assert!(told(not_a_word(), "G00 é", "é").contains("'é' (U+00E9)"));
-        // In a comment anything may stand.
+        // A comment may contain any text.
         assert!(!told(no_number('X'), "G00 X (é)", "X").contains("character"));
     }
 
@@ -298,7 +298,7 @@ mod tests {
             told(small(0.004), "G02 X10. R4", "R4"),
             "write R4.: R4 without a decimal point is 0.004 mm here"
         );
-        // Where numbers are calculator's, the point is not what is wrong.
+        // With calculator input a missing point is not the error.
         assert!(!told(small(4.0), "G02 X10. R4", "R4").contains("without"));
         let alarm = Alarm::NotSimulated { what: "X in this block".into() };
         assert!(told(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));

@@ -1,41 +1,49 @@
-//! Calls by codes: the G, M, T, S and B codes and the addresses that call a program, by the parameters that say so.
+//! Calls by codes: the G, M, T, S and B codes and the addresses that parameters make call programs.
 
 use std::ops::RangeInclusive;
 
-/// What a code calls, and as what.
+/// Program called by a code, and the kind of call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CalledProgram {
+    /// Program number.
     pub program: u32,
+    /// Kind of call.
     pub kind: CodeCallKind,
 }
 
+/// Kind of a call by a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeCallKind {
-    /// As G65: the other words are arguments.
+    /// Macro call like G65: the other words are arguments.
     Macro,
-    /// As G66 or, with MGE 6007#3, as G66.1.
+    /// Modal call like G66, or like G66.1 with MGE 6007#3.
     Modal,
-    /// As M98: the other words act first.
+    /// Subprogram call like M98: the other words act first.
     Subprogram,
 }
 
-/// Parameters that hold one code each: the first of them calls `program`, the next the program after it.
+/// Parameters that hold one code each: the first calls `program`, each next one the next program.
 #[derive(Debug)]
 pub struct SequentialCodes {
+    /// Letter of the codes.
     pub letter: u8,
+    /// First parameter.
     pub first: u16,
+    /// Last parameter.
     pub last: u16,
+    /// Program called by the first parameter's code.
     pub program: u32,
+    /// Kind of call.
     pub kind: CodeCallKind,
 }
 
 impl SequentialCodes {
-    /// What each of its parameters may hold: a G code below 0 is a modal call.
+    /// Returns the range of a parameter's value; a negative G code makes a modal call.
     pub fn codes(&self) -> RangeInclusive<i64> {
         if self.letter == b'G' { -9999..=9999 } else { 0..=99_999_999 }
     }
 
-    /// The parameter that makes a code of this letter such a call.
+    /// Returns the parameter that makes a code of this letter such a call.
     fn parameter(&self, letter: u8, called: CalledProgram) -> Option<u16> {
         let same = (self.kind == CodeCallKind::Subprogram) == (called.kind == CodeCallKind::Subprogram);
         let place = u16::try_from(called.program.checked_sub(self.program)?).ok()?;
@@ -54,46 +62,52 @@ const fn sequential_codes(
     SequentialCodes { letter, first, last, program, kind }
 }
 
+/// Parameters with one code each.
 pub const SEQUENTIAL_CODES: [SequentialCodes; 3] = [
     sequential_codes(b'G', 6050, 6059, 9010, CodeCallKind::Macro),
     sequential_codes(b'M', 6071, 6079, 9001, CodeCallKind::Subprogram),
     sequential_codes(b'M', 6080, 6089, 9020, CodeCallKind::Macro),
 ];
 
-/// Three parameters that make calls of a range of codes: the first code, its program, how many.
+/// Three parameters that make a range of codes calls: first code, first program, number of codes.
 #[derive(Debug)]
 pub struct CodeRange {
+    /// Letter of the codes.
     pub letter: u8,
+    /// First of the three parameters.
     pub first: u16,
+    /// Kind of call.
     pub kind: CodeCallKind,
 }
 
+/// Parameters with ranges of codes.
 pub const CODE_RANGES: [CodeRange; 3] = [
     CodeRange { letter: b'G', first: 6038, kind: CodeCallKind::Macro },
     CodeRange { letter: b'M', first: 6044, kind: CodeCallKind::Subprogram },
     CodeRange { letter: b'M', first: 6047, kind: CodeCallKind::Macro },
 ];
 
-/// A subprogram call by an address whatever its number, which a common variable gets.
+/// Subprogram call by an address with any number; a common variable receives the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AddressCall {
+    /// Program number.
     pub program: u32,
-    /// The common variable that holds the number.
+    /// Common variable that receives the number.
     pub variable: u32,
 }
 
 const T_CALL: AddressCall = AddressCall { program: 9000, variable: 149 };
 const S_CALL: AddressCall = AddressCall { program: 9029, variable: 147 };
 const B_CALL: AddressCall = AddressCall { program: 9028, variable: 146 };
-/// 6090 and 6091, which hold the character code of an address.
+/// Calls of the addresses whose character codes 6090 and 6091 hold.
 const ADDRESS_CALLS: [AddressCall; 2] =
     [AddressCall { program: 9004, variable: 146 }, AddressCall { program: 9005, variable: 147 }];
 const FIRST_ADDRESS_PARAMETER: u16 = 6090;
 
-/// Addresses that 6090 and 6091 may name.
+/// Addresses that 6090 and 6091 may hold.
 pub const ADDRESSES: &[u8] = b"ABDFHIJKMPQRSTVXYZ";
 
-/// Codes that are calls or ends themselves.
+/// Codes × 10 that are calls or program ends themselves.
 const RESERVED_CODES: [(u8, u32); 13] = [
     (b'G', 650),
     (b'G', 660),
@@ -112,34 +126,35 @@ const RESERVED_CODES: [(u8, u32); 13] = [
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CodeCall {
-    /// The parameter of [`FAMILIES`] that holds it, if one does.
+    /// Parameter of [`SEQUENTIAL_CODES`] that holds the code; `None` for a call without a parameter.
     parameter: Option<u16>,
     letter: u8,
-    /// × 10, as G codes are counted everywhere.
+    /// Code × 10, as in the G code table.
     code: u32,
     target: CalledProgram,
 }
 
-/// Every code that calls. `Default` is none.
+/// All codes that call programs. `Default` has none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CodeCalls {
     codes: Vec<CodeCall>,
-    /// The values of the parameters of [`RANGES`].
+    /// Values of the parameters of [`CODE_RANGES`].
     ranges: [[i64; 3]; 3],
     addresses: [Option<u8>; 2],
-    /// TCS 6001#5.
+    /// TCS 6001#5: T calls O9000.
     pub t_calls_program: bool,
     /// S calls O9029.
     pub s_calls_program: bool,
-    /// B, where it is no axis, calls O9028.
+    /// B calls O9028 unless it is an axis.
     pub b_calls_program: bool,
     /// MGE 6007#3: a modal call by a G code is G66.1 instead of G66.
     pub modal_is_every_block: bool,
-    /// GMP 6008#6: G codes call in programs that other codes called, and the other way round.
+    /// GMP 6008#6: G codes call in programs that other codes called, and vice versa.
     pub allows_nested_calls: bool,
 }
 
 impl CodeCalls {
+    /// Returns true if no code calls a program.
     pub fn is_empty(&self) -> bool {
         let Self {
             codes,
@@ -151,14 +166,15 @@ impl CodeCalls {
             modal_is_every_block: _,
             allows_nested_calls: _,
         } = self;
-        // Every block asks: one answer instead of nine.
+        // Evaluated for every block, so one test instead of nine.
         let [g, m, t] = ranges.map(|[.., count]| count);
         let [one, other] = addresses.map(|address| address.is_some());
         codes.is_empty() & (g | m | t == 0) & !(one | other | by_t | by_s | by_b)
     }
 
-    /// What a G or M code × 10 calls. A code of its own goes before a range, and of several parameters with the same
-    /// code the first.
+    /// Returns the call that a G or M code × 10 makes.
+    ///
+    /// A single code takes precedence over a range, and the lowest parameter over others with the same code.
     pub fn find_call(&self, letter: u8, code: u32) -> Option<CalledProgram> {
         let same = self.codes.iter().filter(|call| (call.letter, call.code) == (letter, code));
         let own = same.min_by_key(|call| call.parameter);
@@ -180,7 +196,7 @@ impl CodeCalls {
         })
     }
 
-    /// What an address calls whatever its number.
+    /// Returns the call that an address makes with any number.
     pub fn address_call(&self, letter: u8) -> Option<AddressCall> {
         let place = self.addresses.iter().position(|address| *address == Some(letter));
         match letter {
@@ -191,7 +207,7 @@ impl CodeCalls {
         }
     }
 
-    /// The value of one of the parameters here; `None` for any other number.
+    /// Returns the value of a parameter of this table; `None` for any other number.
     pub fn parameter(&self, number: u16) -> Option<i64> {
         if sequential_codes_of(number).is_some() {
             let own = self.codes.iter().rfind(|call| call.parameter == Some(number));
@@ -207,12 +223,12 @@ impl CodeCalls {
         self.addresses.get(place).map(|address| address.map_or(0, i64::from))
     }
 
-    /// The codes of a letter that no parameter makes calls: they are calls or ends themselves.
+    /// Iterates over the codes of a letter that cannot be made calls.
     pub fn reserved_codes(letter: u8) -> impl Iterator<Item = u32> {
         RESERVED_CODES.iter().filter(move |(taken, _)| *taken == letter).map(|(_, code)| code / 10)
     }
 
-    /// The programs that an address may call, its own and those of 6090 and 6091.
+    /// Iterates over the programs that an address may call: its own and those of 6090 and 6091.
     pub fn address_programs(letter: u8) -> impl Iterator<Item = u32> {
         let own = [(b'T', T_CALL), (b'S', S_CALL), (b'B', B_CALL)]
             .into_iter()
@@ -220,7 +236,7 @@ impl CodeCalls {
         own.map(|(_, call)| call).chain(ADDRESS_CALLS).map(|call| call.program)
     }
 
-    /// Sets one of the parameters here; `None` where it is none of them, or can't have this value.
+    /// Sets a parameter of this table; `None` for any other number and for an invalid value.
     pub fn set_parameter(&mut self, number: u16, value: i64) -> Option<()> {
         if let Some(family) = sequential_codes_of(number) {
             if !family.codes().contains(&value) {
@@ -257,9 +273,11 @@ impl CodeCalls {
         Some(())
     }
 
-    /// `G201=9010`, `M50=9020`, `M6=9001`, `G-201=9010` for a modal call, `T=9000`, `S=9029`, `B=9028`, `V=9004`: a
-    /// program O9001 to O9009 is a subprogram where M calls it, any other a macro.
-    pub fn set_code(&mut self, key: &str, program: u32) -> Option<()> {
+    /// Sets a call by its code: `G201=9010`, `M50=9020`, `M6=9001`, `T=9000`, `S=9029`, `B=9028`, `V=9004`.
+    ///
+    /// `G-201=9010` is a modal call. M codes call O9001 to O9009 as subprograms and any other program as a
+    /// macro. `None` for an invalid code or program.
+    pub(super) fn set_code(&mut self, key: &str, program: u32) -> Option<()> {
         let letter = key.bytes().next()?.to_ascii_uppercase();
         let number = key.get(1..)?.trim();
         if number.is_empty() {
@@ -303,12 +321,12 @@ impl CodeCalls {
     }
 }
 
-/// The family that a parameter belongs to.
+/// Returns the row with this parameter.
 fn sequential_codes_of(number: u16) -> Option<&'static SequentialCodes> {
     SEQUENTIAL_CODES.iter().find(|family| (family.first..=family.last).contains(&number))
 }
 
-/// The family of a range's parameter, and which of its three it is.
+/// Returns the row of [`CODE_RANGES`] with this parameter, and its place among the three.
 fn range_parameter(number: u16) -> Option<(usize, usize)> {
     CODE_RANGES.iter().enumerate().find_map(|(range, family)| {
         let place = usize::from(number.checked_sub(family.first)?);

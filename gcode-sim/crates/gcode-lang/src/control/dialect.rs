@@ -1,24 +1,24 @@
-//! The families of controls as data: what choosing one sets, in the words of `--control`.
+//! Families of controls as data: the settings that `--control` selects.
 use super::{Dialect, Settings};
 
-/// What a family of controls has by itself; a setting named after the dialect still changes it.
+/// Settings of a family of controls; a later setting overrides them.
 #[derive(Debug)]
-pub struct DialectRow {
-    pub dialect: Dialect,
-    pub name: &'static str,
-    /// The family it is like but for what it sets itself.
-    pub base: Option<Dialect>,
+struct DialectRow {
+    /// Family.
+    dialect: Dialect,
+    /// Family whose settings apply first.
+    base: Option<Dialect>,
     /// Keys of [`super::ROWS`] with their values.
-    pub settings: &'static [(&'static str, &'static str)],
+    settings: &'static [(&'static str, &'static str)],
 }
 
-/// Settings not named here are those of every control of the class.
+/// All families; settings that a row omits have their default.
 ///
-/// What a 31i and a 0i-F have: operator's manuals B-64484EN and B-64604EN. What a Haas has: Mill Operator's Manual
-/// 96-8210 (its predecessor 96-8000 where that says nothing).
+/// Sources: 31i and 0i-F, operator's manuals B-64484EN and B-64604EN; Haas, Mill Operator's Manual 96-8210,
+/// and its predecessor 96-8000 where that is silent.
 #[rustfmt::skip]
-pub const DIALECTS: &[DialectRow] = &[
-    DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", base: None, settings: &[
+const DIALECTS: &[DialectRow] = &[
+    DialectRow { dialect: Dialect::Fanuc31i, base: None, settings: &[
         ("CODES", "fanuc-31i"), ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("OFFSETS", "400"), ("WORK-SYSTEMS", "300"),
         ("MORE-COMMONS", "98000-98499"), ("ALIASED-COMMONS", "0"), ("VARIABLE-BITS", "0"), ("OFFSET-VARIABLES", "fanuc"),
         ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"),
@@ -27,13 +27,13 @@ pub const DIALECTS: &[DialectRow] = &[
         ("CYCLE-REPEATS", "K"), ("K0-MOVES", "0"), ("HOME-ALL", "0"), ("DWELL-SECONDS", "0"), ("FEED-INCREMENTS", "0"), ("PECK-IJK", "0"),
         ("TAP-DWELL-R", "1"),
     ] },
-    // Four axes move at once, so nothing for five; 48 additional work coordinate systems, 300 by option.
-    DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", base: Some(Dialect::Fanuc31i), settings: &[
+    // Four simultaneous axes, so no five-axis codes; 48 additional work coordinate systems, 300 by option.
+    DialectRow { dialect: Dialect::Fanuc0iF, base: Some(Dialect::Fanuc31i), settings: &[
         ("CODES", "fanuc-0i-f"), ("WORK-SYSTEMS", "48"),
     ] },
-    // Nine macro levels in all; offsets as #2001 and #2201 length and its wear, #2401 and #2601 diameter and its wear;
-    // #3000=n shows 1000 + n; DPRNT prints all digits, seven at most are asked for; IF without THEN.
-    DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", base: None, settings: &[
+    // Nine macro levels in all; offsets: #2001 length and #2201 its wear, #2401 diameter and #2601 its wear;
+    // #3000=n shows 1000 + n; DPRNT prints all digits, its format has at most seven; IF without THEN.
+    DialectRow { dialect: Dialect::HaasNgc, base: None, settings: &[
         ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
         ("MORE-COMMONS", "10000-10999"), ("ALIASED-COMMONS", "1"), ("VARIABLE-BITS", "1"), ("OFFSET-VARIABLES", "haas"),
         ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"),
@@ -45,14 +45,14 @@ pub const DIALECTS: &[DialectRow] = &[
 ];
 
 impl Settings {
-    /// Makes the control one of a family: sets all that the family's row names.
+    /// Applies all settings of a family.
     pub fn apply_dialect(&mut self, dialect: Dialect) {
         self.dialect = dialect;
         let row = |dialect: Dialect| DIALECTS.iter().find(|row| row.dialect == dialect);
         let own = row(dialect);
         let like = own.and_then(|own| own.base).and_then(row);
         for (key, value) in like.into_iter().chain(own).flat_map(|row| row.settings) {
-            // A test holds that every row can be set.
+            // A test ensures that every row can be set.
             let result = self.set(key, value);
             debug_assert_eq!(result, Ok(()));
         }
@@ -63,7 +63,7 @@ impl Settings {
 mod tests {
     use super::*;
 
-    /// 48 additional work coordinate systems and its own codes; what it doesn't name is as on a 31i.
+    /// The 0i-F has 48 additional work coordinate systems and its own codes; the rest is that of a 31i.
     #[test]
     fn a_0i_f_is_a_31i_with_fewer_work_systems() {
         let mut wanted = Settings::default();
@@ -86,13 +86,13 @@ mod tests {
             let like = row.base.and_then(|like| DIALECTS.iter().find(|other| other.dialect == like));
             assert!(
                 like.is_none_or(|like| like.base.is_none()),
-                "{}: like one that is like another",
-                row.name
+                "{:?}: like one that is like another",
+                row.dialect
             );
             settings.apply_dialect(row.dialect);
             assert_eq!(settings.dialect, row.dialect);
             settings.apply_dialect(Dialect::default());
-            assert_eq!(settings, Settings::default(), "{} leaves something behind", row.name);
+            assert_eq!(settings, Settings::default(), "{:?} leaves something behind", row.dialect);
         }
     }
 }

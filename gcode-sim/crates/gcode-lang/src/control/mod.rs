@@ -1,4 +1,4 @@
-//! The settings of a control that a program's meaning depends on, in one struct: never an `if` in the reader.
+//! Settings of a control that the meaning of a program depends on, in one struct.
 mod code_calls;
 mod dialect;
 mod parameters;
@@ -11,12 +11,11 @@ use crate::units::{MmPerMin, round_scaled};
 pub use code_calls::{
     ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
 };
-pub use dialect::{DIALECTS, DialectRow};
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues};
 pub use undocumented::{ArgumentScale, UndocumentedChoices};
 
-/// The least input increment (parameter 1013).
+/// Least input increment (parameter 1013).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Increment {
     /// 0.01 mm and degrees.
@@ -29,14 +28,16 @@ pub enum Increment {
 }
 
 impl Increment {
+    /// All increments with their names on the command line.
     pub const ALL: [(&'static str, Self); 3] =
         [("IS-A", Self::IsA), ("IS-B", Self::IsB), ("IS-C", Self::IsC)];
 
+    /// Returns the name, `IS-B`.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, increment)| *increment == self).map_or("", |(name, _)| name)
     }
 
-    /// How many increments make a millimetre or a degree.
+    /// Returns the number of increments in a millimetre or a degree.
     pub fn per_unit(self) -> f64 {
         match self {
             Self::IsA => 100.0,
@@ -45,56 +46,68 @@ impl Increment {
         }
     }
 
-    /// The multiple of the increment nearest to `value`, half away from zero.
+    /// Rounds `value` to the nearest multiple of the increment, halves away from zero.
     pub fn round(self, value: f64) -> f64 {
         round_scaled(value, self.per_unit()) / self.per_unit()
     }
 
-    /// The increment itself in mm or degrees.
+    /// Returns the increment in mm or degrees.
     pub fn size(self) -> f64 {
         1.0 / self.per_unit()
     }
 }
 
-/// Which family of controls; its limits and differences are data.
+/// Family of controls. Its limits and differences are rows of a table in `dialect`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Dialect {
+    /// Fanuc 31i, the default.
     #[default]
     Fanuc31i,
+    /// Fanuc 0i-F.
     Fanuc0iF,
+    /// Haas NGC.
     HaasNgc,
 }
 
 impl Dialect {
+    /// All families with their names on the command line.
     pub const ALL: [(&'static str, Self); 3] =
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
 
+    /// Returns the name, `fanuc-31i`.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, dialect)| *dialect == self).map_or("", |(name, _)| name)
     }
 }
 
-/// Whose G and M codes a control has.
+/// Set of G and M codes of a control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CodeSet {
+    /// Codes of a 31i.
     #[default]
     Fanuc31i,
+    /// Codes of a 0i-F.
     Fanuc0iF,
+    /// Codes of a Haas.
     Haas,
 }
 
 impl CodeSet {
+    /// All code sets with their names on the command line.
     pub const ALL: [(&'static str, Self); 3] =
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::Haas)];
 
-    /// Groups for the rows of code tables.
-    pub const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
-    pub const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
-    pub const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
-    pub const HAAS: &'static [Self] = &[Self::Haas];
+    /// Code sets of a row that applies to every control.
+    pub(crate) const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
+    /// Code sets of the Fanuc controls.
+    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
+    /// Code sets of the controls with five simultaneous axes.
+    pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
+    /// Code set of the Haas controls.
+    pub(crate) const HAAS: &'static [Self] = &[Self::Haas];
 }
 
-/// Which variables the tool offsets have.
+/// Numbering of the tool offset variables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OffsetVariables {
     /// #10001 wear and #11001 geometry of H, #12001 and #13001 of D; #2001 and #2201 for the first 200 of H.
@@ -105,9 +118,10 @@ pub enum OffsetVariables {
 }
 
 impl OffsetVariables {
+    /// All numberings with their names on the command line.
     pub const ALL: [(&'static str, Self); 2] = [("fanuc", Self::Fanuc), ("haas", Self::Haas)];
 
-    /// The variable of the geometry offset H of a tool, if it has one.
+    /// Returns the variable of the geometry offset H of a tool; `None` beyond the last tool.
     pub fn length(self, tool: u32) -> Option<u32> {
         match self {
             Self::Fanuc => (tool <= 999).then_some(11_000 + tool),
@@ -116,139 +130,149 @@ impl OffsetVariables {
     }
 }
 
-/// Stroke limits in machine coordinates; an axis without one has no end there.
+/// Stroke limits in machine coordinates, mm or degrees; `None` for an axis without a limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrokeLimits {
+    /// Upper limits.
     pub max: [Option<f64>; MAX_AXES],
+    /// Lower limits.
     pub min: [Option<f64>; MAX_AXES],
 }
 
-/// Everything a run depends on besides the programs. `Default` is a 30i / 0i-F class mill, metric, IS-B.
+/// Everything that a run depends on besides the programs.
+///
+/// `Default` is a mill of the 30i / 0i-F class, metric, IS-B.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
+    /// Family of the control.
     pub dialect: Dialect,
+    /// Set of G and M codes.
     pub codes: CodeSet,
+    /// Least input increment.
     pub increment: Increment,
+    /// Axes in the order of their numbers.
     pub axes: Axes,
-    /// ROA 1008#0: the axes whose work coordinate runs from 0 to 360 and that turn the shorter way.
+    /// ROA 1008#0: axes whose work coordinate rolls over from 360 to 0 and that take the shorter rotation.
     pub rolls_over: [bool; MAX_AXES],
-    /// DPI 3401#0: a number without a point is mm, degrees, seconds instead of increments.
+    /// DPI 3401#0: a number without a point is mm, degrees or seconds, not increments.
     pub uses_calculator_input: bool,
-    /// NAT 6004#0: ASIN and ATAN answer −90…90 and −180…180 instead of 270…90 and 0…360.
+    /// NAT 6004#0: ASIN returns −90 to 90 and ATAN −180 to 180, not 270 to 90 and 0 to 360.
     pub returns_signed_angles: bool,
     /// MFZ 6004#1: sines, cosines and tangents below 1e-8 become 0.
     pub zeroes_residues: bool,
     /// IJK 6008#7: I J K in G65 are always specification I.
     pub reads_ijk_plainly: bool,
-    /// CVA 6007#4: arguments of macro calls are converted when they are passed, so that ADP finds nothing to do.
+    /// CVA 6007#4: arguments of macro calls are converted when they are passed; ADP then has no effect.
     pub converts_arguments: bool,
-    /// FXY 5101#0: cycles drill along the normal of the plane, or along the axis that their block names, instead of Z.
+    /// FXY 5101#0: cycles drill along the normal of the plane or the axis in their block, not always Z.
     pub drills_by_plane: bool,
-    /// V15 6000#3: geometry and wear change places in the variables of tool offsets.
+    /// V15 6000#3: geometry and wear are exchanged in the tool offset variables.
     pub series_15_offsets: bool,
-    /// AD2 3403#6: an address twice in a block raises PS5074.
+    /// AD2 3403#6: a repeated address in a block raises PS5074.
     pub alarms_on_repeated_address: bool,
-    /// More M codes in a block than it may have raise PS0335; otherwise the last counts.
+    /// Too many M codes in a block raise PS0335; otherwise the last counts.
     pub plural_m_alarms: bool,
     /// M3B 3404#7: up to three M codes in a block.
     pub allows_three_m_codes: bool,
-    /// `#3000=n` shows MC with this number added; MCA 6008#1 makes it 0.
+    /// Number added to n by `#3000=n`; MCA 6008#1 makes it 0.
     pub macro_alarm_base: u16,
-    /// The largest n that the manual names for `#3000=n`.
+    /// Largest n that the manual gives for `#3000=n`.
     pub macro_alarm_max: u16,
-    /// `IF[…]` is followed by an assignment or by words without THEN.
+    /// `IF[…]` accepts an assignment or words without THEN.
     pub allows_plain_if: bool,
-    /// `IF[…]THEN` takes words.
+    /// `IF[…]THEN` accepts words.
     pub then_takes_words: bool,
-    /// Common variables beyond #999.
+    /// First and last common variable beyond #999; `None` without any.
     pub extra_commons: Option<(u32, u32)>,
+    /// Numbering of the tool offset variables.
     pub offset_variables: OffsetVariables,
-    /// PRT 6001#1: DPRNT leaves the blanks before a number out.
+    /// PRT 6001#1: DPRNT omits the blanks before a number.
     pub omits_print_blanks: bool,
-    /// A number with more digits than DPRNT's format is printed whole instead of its lower digits only.
+    /// DPRNT prints all digits of a number with more digits than its format, not only the lower ones.
     pub print_expands: bool,
-    /// DPRNT and BPRNT alarm unless POPEN came before.
+    /// DPRNT and BPRNT raise an alarm without a preceding POPEN.
     pub print_needs_open: bool,
-    /// How many digits DPRNT's format may ask for.
+    /// Most digits that the format of DPRNT allows.
     pub print_digits: usize,
     /// ODI 5004#2: the offsets of D are diameters.
     pub offsets_are_diameters: bool,
-    /// EVR 5001#4: a changed offset of D counts from the next block on, not from the next D.
+    /// EVR 5001#4: a changed offset of D applies from the next block, not from the next D.
     pub applies_radius_at_once: bool,
     /// SUP 5003#0: cutter compensation starts and ends by type B.
     pub starts_up_by_type_b: bool,
-    /// 19625: blocks read in cutter compensation; two of them have to move.
+    /// 19625: number of lookahead blocks in cutter compensation; two of them must move.
     pub lookahead_blocks: usize,
-    /// SCR 5400#7: G51 counts its factors in 0.001 instead of 0.00001.
+    /// SCR 5400#7: factors of G51 count in 0.001, not 0.00001.
     pub has_coarse_scaling: bool,
-    /// Block-skip switches that are on, by number 1 to 9.
+    /// Block skip switches 1 to 9 that are on.
     pub skip_switches: [bool; 9],
     /// M01 stops.
     pub stops_at_m01: bool,
-    /// The inputs #1000 to #1031 that are 1, as bits.
+    /// Inputs #1000 to #1031 that are 1, as bits.
     pub inputs: u32,
-    /// The skip signal comes after this part of a G31 path; without it, never.
+    /// Fraction of a G31 path after which the skip signal comes; `None` for no signal.
     pub skip_signal: Option<f64>,
-    /// A G31 that ends without its signal alarms.
+    /// A G31 that ends without its signal raises an alarm.
     pub missed_skip_alarms: bool,
-    /// The main program's M99 of this number ends the run.
+    /// Number of M99 in the main program that ends the run; `None` for no limit.
     pub main_program_cycles: Option<u32>,
     /// Codes and addresses that call programs.
     pub code_calls: CodeCalls,
-    /// 1420: rapid rate of the axes that slide.
+    /// 1420: rapid rate of the linear axes.
     pub rapid: MmPerMin,
-    /// 1420: rapid rate of the axes that turn, degrees a minute.
+    /// 1420: rapid rate of the rotary axes, degrees per minute.
     pub rapid_rotary: f64,
-    /// 3410: how far an arc's end may be off its radius, mm.
+    /// 3410: largest difference between the radii at start and end of an arc, mm.
     pub arc_tolerance: f64,
-    /// 5440: the way that G60 leaves to its end, in the direction it comes from.
+    /// 5440: final approach of G60 with its direction, mm or degrees.
     pub one_side_overrun: Position,
-    /// M97 P calls the subprogram that begins at a sequence number of its own program.
+    /// M97 P calls the subprogram at a sequence number of its own program.
     pub has_local_calls: bool,
-    /// 5114: the retract of G73, mm.
+    /// 5114: retract of G73, mm.
     pub g73_retract: f64,
-    /// 5115: the clearance of G83 above the last depth, mm.
+    /// 5115: clearance of G83 above the last depth, mm.
     pub g83_clearance: f64,
-    /// 1241 to 1243: the second, third and fourth reference position, in machine coordinates.
+    /// 1241 to 1243: second, third and fourth reference position, in machine coordinates.
     pub reference_positions: [Position; 3],
-    /// 1320 and 1321: stroke limits; without any, axes have no ends.
+    /// 1320 and 1321: stroke limits; `None` for unlimited axes.
     pub stroke_limits: Option<StrokeLimits>,
-    /// Additional work coordinate systems: G54.1 P1…, G154 P1….
+    /// Number of additional work coordinate systems: G54.1 P1…, G154 P1….
     pub work_systems: usize,
-    /// `#10100` is `#100`, `#10500` to `#10999` are `#500` to `#999`.
+    /// `#10100` is `#100`; `#10500` to `#10999` are `#500` to `#999`.
     pub aliases_commons: bool,
     /// `#n.m` is bit m of #n.
     pub has_variable_bits: bool,
-    /// Programs and variables have names; PRM, AX and AXNUM are known.
+    /// Programs and variables may have names; PRM, AX and AXNUM are available.
     pub has_named_variables: bool,
-    /// FUP, LN, EXP, BIN, BCD, POW, ADP and ATAN with a comma are known.
+    /// FUP, LN, EXP, BIN, BCD, POW, ADP and ATAN with a comma are available.
     pub has_extended_functions: bool,
-    /// G10 takes parameters, variables and tool life.
+    /// G10 accepts parameters, variables and tool life.
     pub allows_parameter_input: bool,
-    /// Five digits and more behind `M98 P` are repeats and a program.
+    /// `M98 P` with five digits or more is repeats and program.
     pub reads_repeats_in_p: bool,
-    /// The letter that repeats a drilling block, K or L.
+    /// Letter that repeats a drilling block, K or L.
     pub cycle_repeat_letter: u8,
-    /// G28 without an axis sends all of them home.
+    /// G28 without an axis moves all axes to the reference position.
     pub homes_all_axes: bool,
     /// P of a dwell with a point is seconds.
     pub dwell_in_seconds: bool,
     /// F without a point counts increments.
     pub feed_in_increments: bool,
-    /// G73 and G83 take I, J and K for pecks that become smaller.
+    /// G73 and G83 accept I, J and K for decreasing pecks.
     pub has_shrinking_pecks: bool,
-    /// How far above R G83 retracts, mm.
+    /// Height above R to which G83 retracts, mm.
     pub g83_above_r: f64,
-    /// Pairs of tool offsets.
+    /// Number of tool offset pairs.
     pub tool_offsets: usize,
-    /// Macro calls inside one another.
+    /// Deepest nesting of macro calls.
     pub macro_levels: usize,
-    /// Calls of all kinds inside one another.
+    /// Deepest nesting of calls of all kinds.
     pub call_levels: usize,
-    /// #3011 as yyyymmdd: a run never reads a clock.
+    /// #3011 as yyyymmdd; a run never reads a clock.
     pub date: u32,
     /// #3012 as hhmmss at the start of the run.
     pub time: u32,
+    /// Behaviour on which the manuals are silent.
     pub undocumented: UndocumentedChoices,
 }
 
@@ -325,7 +349,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The axes that roll over: mostly none.
+    /// Iterates over the axes that roll over; usually none.
     pub fn rollover_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
         let some = self.rolls_over != [false; MAX_AXES];
         (0..if some { self.axes.len() } else { 0 }).filter(|axis| self.rolls_over[*axis])

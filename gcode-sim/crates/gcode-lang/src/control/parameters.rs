@@ -1,40 +1,43 @@
-//! Parameters by their numbers: what PRM reads and G10 L52 writes of the settings.
+//! Parameters by number: values that PRM reads and G10 L52 writes.
 use super::{Increment, Settings};
 use crate::motion::AxisIndex;
 
-/// Why a parameter can't be read or written.
+/// Reason why a parameter cannot be read or written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterError {
-    /// Nothing here depends on it, or nothing is known of it.
+    /// No setting depends on the parameter, or nothing is known about it.
     Unknown,
-    /// It has one value for each axis.
+    /// The parameter has one value per axis.
     MissingAxis,
-    /// It has one value for all axes.
+    /// The parameter has one value for all axes.
     UnexpectedAxis,
-    /// It is a byte of which not every bit is known.
+    /// The parameter is a byte of which not all bits are known.
     MissingBit,
-    /// It is a number.
+    /// The parameter is a number without bits.
     UnexpectedBit,
-    /// It can't have this value.
+    /// The value is out of range.
     InvalidValue,
-    /// Here it can't change in a run.
+    /// The parameter cannot change during a run.
     ReadOnly,
 }
 
-/// Which parameter: a bit of a byte or all of a number, of an axis or of all.
+/// Parameter, bit and axis of one value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ParameterId {
+    /// Parameter number.
     pub number: u16,
+    /// Bit number; `None` for the whole parameter.
     pub bit: Option<u8>,
+    /// Axis; `None` for a parameter that is the same for all axes.
     pub axis: Option<AxisIndex>,
 }
 
 type SetAxis = fn(&mut Settings, AxisIndex, f64) -> Option<()>;
 
 enum ParameterAccess {
-    /// A setting by its key.
+    /// Value of a named setting.
     Key(&'static str, fn(&Settings) -> f64),
-    /// A value for each axis, and how it is set; without that, it is fixed.
+    /// Value per axis and its setter; `None` makes it read-only.
     PerAxis(fn(&Settings, AxisIndex) -> f64, Option<SetAxis>),
     Fixed(fn(&Settings) -> f64),
 }
@@ -42,7 +45,7 @@ enum ParameterAccess {
 struct ParameterRow {
     number: u16,
     bit: Option<u8>,
-    /// A length in mm, which a point has to say.
+    /// True for a length in mm, which must be written with a decimal point.
     is_length: bool,
     access: ParameterAccess,
 }
@@ -59,10 +62,10 @@ const fn number_row(number: u16, access: ParameterAccess) -> ParameterRow {
     ParameterRow { number, bit: None, is_length: false, access }
 }
 
-/// What a stroke limit reads that isn't there, mm.
+/// Value of a missing stroke limit, mm.
 const NO_STROKE_LIMIT: f64 = 99_999.999;
 
-/// What the parameters are here, by number and bit. Those of calls by codes are in [`super::CodeCalls`].
+/// Parameters by number and bit. Those of calls by codes are in [`super::CodeCalls`].
 #[rustfmt::skip]
 const ROWS: &[ParameterRow] = &[
     bit_row(1008, 0, ParameterAccess::PerAxis(|s, axis| f64::from(s.rolls_over[axis]), Some(set_roll_over))),
@@ -102,19 +105,20 @@ const ROWS: &[ParameterRow] = &[
     number_row(19625, ParameterAccess::Key("19625", |s| s.lookahead_blocks as f64)),
 ];
 
-/// Parameters that nothing a run shows depends on: what is written to them can be read again. Only those that are
-/// known to be so; any other may be one that moves the machine elsewhere.
+/// Parameters that can be written and read back but have no effect on a run.
+///
+/// Only parameters known to be so are listed; any other one may change the motion.
 #[rustfmt::skip]
 const WITHOUT_EFFECT: &[u16] = &[
-    // Input and output devices: the channel, and of each channel its bits, its device and its baud rate.
+    // Input and output devices: the channel, and for each channel its bits, device and baud rate.
     20, 101, 102, 103, 111, 112, 113, 121, 122, 123,
-    // What the screens show.
+    // Contents of the screens.
     3105, 3106, 3107, 3108, 3111, 3112, 3281,
-    // Protection of programs and offsets against the keyboard, their password, sequence numbers while editing.
+    // Protection of programs and offsets against editing, their password, sequence numbers while editing.
     3202, 3210, 3211, 3216, 3290,
 ];
 
-/// Whether a parameter changes nothing that a run shows.
+/// Returns true if a parameter has no effect on a run.
 pub fn is_without_effect(number: u16) -> bool {
     WITHOUT_EFFECT.contains(&number)
 }
@@ -146,7 +150,7 @@ fn find_row(id: ParameterId) -> Result<&'static ParameterRow, ParameterError> {
 }
 
 impl Settings {
-    /// The value of a parameter; lengths in mm.
+    /// Returns the value of a parameter; lengths in mm.
     pub fn parameter(&self, id: ParameterId) -> Result<f64, ParameterError> {
         if let Some(code) = self.code_calls.parameter(id.number) {
             return check_code_call_id(id).map(|()| code as f64);
@@ -159,7 +163,7 @@ impl Settings {
         })
     }
 
-    /// Sets a parameter; a length in mm.
+    /// Sets a parameter; lengths in mm.
     pub fn set_parameter(&mut self, id: ParameterId, value: f64) -> Result<(), ParameterError> {
         if id.bit.is_some() && value != 0.0 && value != 1.0 {
             return Err(ParameterError::InvalidValue);
@@ -180,13 +184,13 @@ impl Settings {
         set.ok_or(ParameterError::InvalidValue)
     }
 
-    /// Whether a parameter is a length, of which a point must say the unit.
+    /// Returns true for a length, whose unit a decimal point must decide.
     pub fn is_length_parameter(id: ParameterId) -> bool {
         find_row(id).is_ok_and(|row| row.is_length)
     }
 }
 
-/// The parameters of calls by codes are numbers for all axes.
+/// Rejects bit and axis: parameters of calls by codes are numbers for all axes.
 fn check_code_call_id(id: ParameterId) -> Result<(), ParameterError> {
     match (id.bit, id.axis) {
         (None, None) => Ok(()),

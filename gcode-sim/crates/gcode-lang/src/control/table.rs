@@ -1,48 +1,63 @@
-//! The settings by their names: the parameter a manual names, its key on the command line, how it is read.
+//! Named settings: the parameter in the manual, the key on the command line, and how the value is read.
 use super::{ArgumentScale, CodeSet, Dialect, Increment, OffsetVariables, Settings};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
-/// Why a setting can't be taken.
+/// Reason why a setting is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingError {
+    /// No setting has this key.
     #[error("no setting '{key}': see `gcode-sim settings`")]
-    Unknown { key: String },
+    Unknown {
+        /// Key as given.
+        key: String,
+    },
+    /// The value is outside the permitted values.
     #[error("setting {key} is '{value}': {allowed}")]
-    Value { key: String, value: String, allowed: String },
+    Value {
+        /// Key as given.
+        key: String,
+        /// Value as given.
+        value: String,
+        /// Permitted values.
+        allowed: String,
+    },
 }
 
-/// One setting that has a name.
+/// Named setting.
 pub struct SettingRow {
+    /// Key on the command line.
     pub key: &'static str,
-    /// Its meaning, with the parameter's number where a control has one.
+    /// Its meaning in one line, with the number of the parameter if a control has one.
     pub meaning: &'static str,
+    /// Permitted values.
     pub values: SettingValues,
     set: fn(&mut Settings, &str) -> Option<()>,
 }
 
-/// What values a setting takes.
+/// Permitted values of a setting.
 #[derive(Clone, Copy)]
 pub enum SettingValues {
-    /// On or off, 1 or 0.
+    /// 1 for on, 0 for off.
     Switch,
     /// One of a few words.
     Words(fn() -> Vec<&'static str>),
-    /// A whole number from one to the other.
+    /// Whole number between two bounds.
     Whole(usize, usize),
-    /// A number from one to the other, and how that is said.
+    /// Number between two bounds, with their description.
     Number(f64, f64, &'static str),
-    /// What a regular expression describes, and how that is said.
+    /// Text that matches a regular expression, with its description.
     Text(&'static str, &'static str),
 }
 
 impl SettingRow {
+    /// Returns true for a setting that is on or off.
     pub fn is_switch(&self) -> bool {
         matches!(self.values, SettingValues::Switch)
     }
 }
 
-/// As a message and the list of settings say it.
+/// Writes the permitted values as in messages and in the list of settings.
 impl std::fmt::Display for SettingValues {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -61,7 +76,7 @@ impl std::fmt::Display for SettingValues {
 const SWITCH: &str = "0 or 1";
 const LENGTH: &str = "a length in mm, 0 or more";
 
-/// `X10,Z-5.5`.
+/// Pattern of `X10,Z-5.5`.
 const POINT: &str = "^ *[A-Ca-cU-Zu-z][+-]?([0-9]+[.]?[0-9]*|[.][0-9]+)( *, *[A-Ca-cU-Zu-z][+-]?([0-9]+[.]?[0-9]*|[.][0-9]+))* *$";
 const MACHINE_POSITION: SettingValues =
     SettingValues::Text(POINT, "axes and their machine coordinates, as in X10,Z-5");
@@ -123,7 +138,7 @@ macro_rules! row {
 
 const REPEAT_LETTERS: [(&str, u8); 2] = [("K", b'K'), ("L", b'L')];
 
-/// Every setting with a name, in the order they are listed.
+/// All named settings in the order of their list.
 #[rustfmt::skip]
 pub const ROWS: &[SettingRow] = &[
     choice!("DIALECT", "the family of controls", Dialect::ALL, |s, v| s.apply_dialect(v)),

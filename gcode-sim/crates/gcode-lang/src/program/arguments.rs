@@ -1,27 +1,28 @@
-//! Which local variable each letter of a macro call sets: specification I, and II for I J K.
+//! Local variables of a macro call's letters: argument specification I, and II for I J K.
 use crate::alarm::Alarm;
 
-/// Deals out the locals of one call, letter by letter in the order they stand in.
+/// Assigns local variables to the letters of one call, in the order written.
 #[derive(Debug)]
 pub struct ArgumentLocals {
     /// IJK 6008#7: I J K are always specification I.
     plain_ijk: bool,
-    /// G66.1, a call by every block: G, L, N and P are arguments too.
+    /// G66.1, call in every block: G, L, N and P are arguments too.
     is_every_block: bool,
     set: usize,
     last: u8,
 }
 
 impl ArgumentLocals {
+    /// Starts with the first argument of a call.
     pub fn new(plain_ijk: bool, is_every_block: bool) -> Self {
         Self { plain_ijk, is_every_block, set: 0, last: 0 }
     }
 
-    /// The local that the next letter sets; `None` for L and P, which set none.
+    /// Returns the local that the next letter sets; `None` for L and P, which set none.
     pub fn next(&mut self, letter: u8) -> Result<Option<usize>, Alarm> {
         match letter {
             b'I' | b'J' | b'K' if !self.plain_ijk => {
-                // I J K open the next set unless they follow in the alphabet.
+                // I J K begin the next set unless they are in alphabetical order.
                 if letter <= self.last {
                     self.set += 1;
                 }
@@ -44,7 +45,7 @@ impl ArgumentLocals {
     }
 }
 
-/// Argument specification I.
+/// Returns the local of a letter in argument specification I.
 fn plain_argument(letter: u8) -> Option<usize> {
     Some(match letter {
         b'A' => 1,
@@ -63,7 +64,7 @@ fn plain_argument(letter: u8) -> Option<usize> {
     })
 }
 
-/// The letter that sets a local in specification I; `None` where no letter does.
+/// Returns the letter that sets a local in argument specification I; `None` if no letter does.
 pub fn argument_letter(local: usize) -> Option<char> {
     (b'A'..=b'Z').find(|letter| plain_argument(*letter) == Some(local)).map(char::from)
 }

@@ -1,5 +1,6 @@
-//! The blocks of a program, lowered when they are asked for and kept for a while: a loop lowers its blocks once, and a
-//! long file never has all of its blocks lowered at a time.
+//! Blocks of a program, lowered on demand and kept for a while.
+//!
+//! A loop lowers its blocks once, and a long file never has all of its blocks lowered at the same time.
 use std::collections::BTreeMap;
 
 use super::loops::Loops;
@@ -9,15 +10,15 @@ use crate::alarm::Alarm;
 use crate::source::{Bytes, SourceId};
 use crate::syntax::{ast, block_at, sequence_number_at};
 
-/// As many operations are kept. Loops are shorter; some megabytes at most.
+/// Number of operations kept. Most loops are shorter; the operations take a few megabytes at most.
 const KEPT_OPERATIONS: usize = 8192;
 
-/// The text that a program stands in.
+/// Text that contains a program.
 #[derive(Clone, Debug)]
 pub(super) struct ProgramText {
     pub(super) source: SourceId,
     pub(super) bytes: Bytes,
-    /// How much of it is written on.
+    /// Length without the trailer.
     pub(super) length: usize,
 }
 
@@ -27,18 +28,20 @@ impl ProgramText {
     }
 }
 
-/// All blocks of a program, and the operations of some.
+/// Blocks of a program, and the operations of some.
 #[derive(Debug)]
 pub(super) struct Blocks {
     text: ProgramText,
-    /// Where each block begins.
+    /// Offsets of the block starts.
     starts: Vec<u32>,
-    /// The trees of blocks that don't begin their line.
+    /// Trees of the blocks that do not begin their line.
     separate_trees: BTreeMap<u32, ast::Block>,
-    /// Operations. A block has one place for its own, which it shares with those a multiple of [`KEPT`] away: the list of
-    /// words of the one that was there is filled again.
+    /// Operations by slot.
+    ///
+    /// A block's slot is its index modulo the number of slots; blocks with the same slot replace one another,
+    /// and the list of words is reused.
     ops: Vec<Op>,
-    /// A block's place for its operation is its own within these bits: all of them where every block is kept.
+    /// Bit mask from block index to slot; all ones if every block is kept.
     index_mask: usize,
     lowering: Lowering,
 }
@@ -55,7 +58,7 @@ impl Blocks {
         }
     }
 
-    /// The tree of a block, read anew.
+    /// Returns the tree of a block, read again from the text.
     pub(super) fn tree(&self, index: OpIndex) -> Option<ast::Block> {
         let start = *self.starts.get(index)?;
         match self.separate_trees.get(&(index as u32)) {
@@ -64,7 +67,7 @@ impl Blocks {
         }
     }
 
-    /// The sequence numbers with their blocks, by number, then by place.
+    /// Returns the sequence numbers with their blocks, sorted.
     pub(super) fn sequence_numbers(&self) -> Vec<(u32, u32)> {
         let mut numbers = Vec::new();
         for (index, start) in (0..).zip(&self.starts) {
@@ -78,19 +81,21 @@ impl Blocks {
         numbers
     }
 
-    /// The operation of a block, if it is lowered.
+    /// Returns the operation of a block if it is lowered.
     #[inline(always)]
     pub(super) fn op(&self, index: OpIndex) -> Option<&Op> {
         self.ops.get(index & self.index_mask).filter(|op| op.ordinal as usize == index + 1)
     }
 
-    /// All operations; to ask before all are lowered, in order, is a mistake of ours.
+    /// Returns all operations.
+    ///
+    /// Requires a preceding [`Blocks::lower_all`]; the slice is empty otherwise.
     pub(super) fn lowered_ops(&self) -> &[Op] {
         debug_assert_eq!(self.index_mask, usize::MAX, "all blocks are lowered");
         if self.index_mask == usize::MAX { &self.ops } else { &[] }
     }
 
-    /// Lowers a block in the place of another; `None` behind the last block.
+    /// Lowers a block into its slot; `None` after the last block.
     #[inline(never)]
     pub(super) fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
         let start = *self.starts.get(place)?;
@@ -107,7 +112,7 @@ impl Blocks {
         Some(())
     }
 
-    /// Lowers all blocks, in order.
+    /// Lowers all blocks in order.
     pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.ops.clear();
         self.index_mask = usize::MAX;
@@ -116,7 +121,7 @@ impl Blocks {
         }
     }
 
-    /// Lowers a block that is more than numbers.
+    /// Lowers a block that has more than numbers.
     #[inline(never)]
     fn lower_tree(&mut self, index: OpIndex, loops: &Loops) -> Option<Op> {
         let tree = self.tree(index)?;
@@ -127,8 +132,9 @@ impl Blocks {
     }
 }
 
-/// Writes into a WHILE, DO or END where its partner stands. What has none becomes the alarm that a control raises when
-/// it gets there.
+/// Links a WHILE, DO or END with its partner.
+///
+/// Without a partner the operation becomes the alarm that a control raises when it reaches it.
 fn link_loop(op: &mut Op, place: OpIndex, loops: &Loops) {
     let kind = match &mut op.body {
         OpBody::Plain(kind) => kind,
@@ -160,7 +166,7 @@ mod tests {
     use super::super::{Assign, Memory, OperandSource, Operation};
     use super::*;
 
-    /// Every third block is an assignment with code of its own.
+    /// Returns the text of a block; every third one is an assignment with its own code.
     fn line(place: usize) -> String {
         if place.is_multiple_of(3) { format!("#1={place}+#2") } else { format!("N{place} X{place}.") }
     }

@@ -1,30 +1,35 @@
-//! What expressions are to a run: postfix code, so that evaluating one needs neither recursion nor memory of its own.
+//! Bytecode of expressions: postfix instructions, evaluated without recursion and without allocation.
 use super::names::NameRow;
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function, Relation};
 
-/// A value: known, one variable, or code to evaluate. The first two are most of what programs contain.
+/// Value of an expression: a number, one variable, or code. Most expressions are one of the first two.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operand {
+    /// Number.
     Number(f64),
     /// `#n` with a literal n.
     Variable {
+        /// Variable.
         slot: Slot,
+        /// Place of the expression.
         span: Span,
     },
+    /// Code that computes the value.
     Code(Bytecode),
 }
 
-/// A variable whose number is written out, found as far as no setting of the control decides.
+/// Variable with a literal number, classified as far as no setting decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
-    /// #1 to #33, #100 to #199 and #500 to #999: what every control lets a program use freely.
+    /// #1 to #33, #100 to #199 and #500 to #999: readable and writable on every control.
     Free(u16),
-    /// #0, system variables, and commons that not every control has.
+    /// #0, system variables, and commons that only some controls have.
     Other(u32),
 }
 
 impl Slot {
+    /// Classifies a variable number.
     pub fn of(number: u32) -> Self {
         match number {
             1..=33 | 100..=199 | 500..=999 => Self::Free(number as u16),
@@ -32,6 +37,7 @@ impl Slot {
         }
     }
 
+    /// Returns the variable number.
     pub fn number(self) -> u32 {
         match self {
             Self::Free(number) => u32::from(number),
@@ -40,98 +46,123 @@ impl Slot {
     }
 }
 
-/// The variable that an assignment writes.
+/// Variable that an assignment writes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssignmentTarget {
+    /// Variable with a literal number.
     Slot(Slot),
-    /// Its number is computed, or no variable's.
+    /// Variable whose number is computed or out of range.
     Computed(Operand),
 }
 
 impl AssignmentTarget {
-    /// Whether it is the variable of this number, written out.
+    /// Returns true for the literal variable with this number.
     pub fn is_variable(&self, number: u32) -> bool {
         *self == Self::Slot(Slot::of(number))
     }
 }
 
-/// What computes a value: the last of its instructions gives it.
+/// Code of an expression; its last instruction leaves the value.
 pub type Bytecode = Box<[Instruction]>;
 
+/// Operation with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruction {
+    /// Operation.
     pub operation: Operation,
+    /// Place of the expression that the operation computes.
     pub span: Span,
 }
 
-/// Where an operator finds a value that it needs. Most are numbers and variables, which then needn't wait on the stack.
+/// Source of an operand. Most operands are numbers and variables, which need no place on the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OperandSource {
-    /// A variable of [`Slot::Free`].
+    /// Variable of [`Slot::Free`].
     Free(u16),
+    /// Number.
     Number(f64),
+    /// Computed value.
     Computed(ComputedSource),
 }
 
+/// Location of a computed value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ComputedSource {
-    /// What the instruction before has given.
+    /// Result of the preceding instruction.
     Last,
-    /// The last of the values that wait, which it takes away.
+    /// Top of the stack, which is popped.
     Waiting,
 }
 
-/// Gives a value, mostly of the one that the instruction before has given; where that is needed later it waits on a stack.
-/// Conditions are numbers here, 0 or 1; the tree keeps them apart. Which one it is stands in a byte of its own, for it is
-/// asked at every step.
+/// Operation of the bytecode.
+///
+/// Most operations use the result of the preceding instruction; a result that is needed later is pushed.
+/// Conditions are the numbers 0 and 1; the tree keeps them apart. The discriminant has a byte of its own,
+/// because it is read at every step.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(u8)]
 pub enum Operation {
+    /// Sum.
     Add([OperandSource; 2]),
+    /// Difference.
     Subtract([OperandSource; 2]),
+    /// Product.
     Multiply([OperandSource; 2]),
+    /// Quotient.
     Divide([OperandSource; 2]),
+    /// Comparison; leaves 1 if true, 0 otherwise.
     Compare(Relation, [OperandSource; 2]),
+    /// Function of one value.
     Function(Function, OperandSource),
     /// ATAN of two values.
     Atan2([OperandSource; 2]),
+    /// Operation outside the common path.
     Uncommon(UncommonOp),
 }
 
-/// What only some expressions contain.
+/// Operation that only some expressions contain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UncommonOp {
+    /// Loads an operand.
     Load(OperandSource),
-    /// Lets the last value wait for its operator.
+    /// Pushes the result of the preceding instruction for a later operator.
     Push,
-    /// A variable that may not be read.
+    /// Reads a variable that may be unreadable.
     Read(u32),
-    /// Takes a variable's number, gives its value.
+    /// Reads the variable whose number is the last result.
     LoadIndirect,
+    /// Changes the sign.
     Negate,
-    /// The sign between an address and its value: `X-#1`. Unlike a minus in an expression it keeps vacancy.
+    /// Changes the sign between an address and its value, `X-#1`; unlike a minus in an expression it keeps
+    /// vacancy.
     NegateWord,
+    /// Plus sign.
     Plus,
+    /// Brackets, which decide whether vacancy is kept.
     Bracket,
-    /// An operator on whole numbers.
+    /// Operator on whole numbers.
     Whole(BinaryOp, [OperandSource; 2]),
+    /// POW of two values.
     Power([OperandSource; 2]),
-    /// ROUND in a word: to the increment of that address.
+    /// ROUND in a word: rounds to the increment of this address.
     RoundTo(u8),
-    /// Of the value that waits and the last one.
+    /// Combines the top of the stack and the last result, both conditions.
     Logic(BinaryOp),
-    /// PRM: the number, the bit and the axis, of which the last is the last value and those before it wait.
+    /// PRM of number, bit and axis: the last of them is the last result, the others are on the stack.
     Parameter {
+        /// True if the stack holds a bit number.
         bit: bool,
+        /// True if the stack holds an axis number.
         axis: bool,
     },
     /// `AXNUM[X]`.
     AxisNumber(u8),
-    /// ADP: takes a variable's number, gives its value as if it had been passed with a point.
+    /// ADP: reads the variable whose number is the last result as if it had been passed with a decimal point.
     AddPoint,
-    /// The number of a variable named by SETVN.
+    /// Number of a variable named by SETVN.
     NameNumber(Box<str>),
-    /// Takes a suffix, gives the number of the system variable; of `[#_NAME]` without a suffix it takes nothing.
+    /// Number of a system variable; its suffix is the last result. Without a suffix, `[#_NAME]`, there is no
+    /// operand.
     SystemNumber(NameRow),
 }
 
@@ -155,5 +186,5 @@ impl Operation {
     }
 }
 
-/// What an expression can need on the stack: five brackets, each with a sum, a product and an index pending.
+/// Size of the stack: five brackets, each with a sum, a product and an index pending.
 pub const STACK: usize = 32;

@@ -1,49 +1,54 @@
-//! The drilling cycles G73 to G89: each a row of steps that the control expands.
+//! Drilling cycles G73 to G89, each a sequence of steps that the control expands.
 
-/// What a cycle does at a hole after the tool has come to the R level.
+/// Step of a cycle at a hole, after the tool has reached the R level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleStep {
     /// Feed to the bottom.
     FeedToBottom,
-    /// G83: feed by Q, rapid back to R, rapid down to the clearance above the last depth.
+    /// G83: feed by Q, rapid back to R, rapid to the clearance above the last depth.
     PeckFull,
     /// G73: feed by Q, rapid back by the retract.
     PeckShort,
     /// Dwell P.
     Dwell,
-    /// Dwell P at the R level, where the setting says so.
+    /// Dwell P at the R level if the setting requires it.
     DwellAtR,
     /// Feed back to R.
     FeedToR,
-    /// Rapid to R, or to the initial level under G98.
+    /// Rapid to R, or to the initial level in G98.
     RapidBack,
-    /// After [`Step::FeedToR`]: rapid on to the initial level under G98.
+    /// After [`CycleStep::FeedToR`]: rapid on to the initial level in G98.
     RapidToInitial,
-    /// Rapid to the initial level whatever G98/G99 say.
+    /// Rapid to the initial level in both G98 and G99.
     RapidToInitialAlways,
     /// Rapid by Q in the plane, away from the wall.
     Shift,
-    /// Rapid back to the hole's axis.
+    /// Rapid back to the axis of the hole.
     ShiftBack,
-    /// G87: rapid to R while shifted.
+    /// G87: rapid to R in the shifted position.
     RapidToR,
+    /// Spindle stop.
     SpindleStop,
+    /// Spindle clockwise.
     SpindleForward,
+    /// Spindle counterclockwise.
     SpindleReverse,
-    /// G88: the operator retracts by hand.
+    /// G88: retract by hand.
     ManualRetract,
 }
 
-/// One drilling cycle.
+/// Drilling cycle.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Cycle {
     /// G code × 10.
     pub code: u32,
-    /// G87 goes to R from below, after its shift; all others rapid to R first.
+    /// False for G87, which reaches R from below after its shift; all others rapid to R first.
     pub starts_at_r: bool,
-    /// G73 and G83 can't do without Q.
+    /// True for G73 and G83, which require Q.
     pub needs_q: bool,
+    /// Steps in order.
     pub steps: &'static [CycleStep],
+    /// Description in a few words.
     pub help: &'static str,
 }
 
@@ -56,7 +61,7 @@ const fn row(code: u32, steps: &'static [CycleStep], help: &'static str) -> Cycl
     Cycle { code, starts_at_r: true, needs_q: false, steps, help }
 }
 
-/// All drilling cycles, by code.
+/// All drilling cycles, sorted by code.
 #[rustfmt::skip]
 pub const CYCLES: [Cycle; 12] = [
     Cycle { needs_q: true, ..row(730, &[PeckShort, RapidBack], "drill in pecks, short retract") },
@@ -73,7 +78,7 @@ pub const CYCLES: [Cycle; 12] = [
     row(890, &[FeedToBottom, Dwell, FeedToR, RapidToInitial], "bore, dwell, feed back"),
 ];
 
-/// The row of a cycle by its place in [`CYCLES`].
+/// Returns the cycle of a G code × 10.
 pub fn find(code: u32) -> Option<&'static Cycle> {
     CYCLES.iter().find(|cycle| cycle.code == code)
 }

@@ -1,20 +1,19 @@
-//! Ways of writing that not every control takes: noted in a block when it is lowered, held against the control's
-//! settings when a run gets there.
+//! Syntax that only some controls accept, recorded at lowering and checked against the settings at run time.
 use crate::alarm::Alarm;
 use crate::control::Settings;
 
 use super::g_codes;
 
-/// One way of writing.
+/// Syntax element that some controls refuse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DialectSyntax {
     /// Letters in lower case.
     LowerCase,
-    /// `WH[…]DO1`, `GO 5`.
+    /// Abbreviated keyword: `WH[…]DO1`, `GO 5`.
     ShortWord,
-    /// `=`, `<>`, `<`, `&` and the like in a condition.
+    /// Relation signs in a condition: `=`, `<>`, `<`, `&`.
     RelationSigns,
-    /// `#1=1 #2=2`.
+    /// Several assignments in a block: `#1=1 #2=2`.
     SeveralAssignments,
     /// `IF[…]` before words or an assignment, without THEN.
     PlainIf,
@@ -22,20 +21,20 @@ pub enum DialectSyntax {
     ThenWords,
     /// `IF[…]THEN GOTO 5`.
     ThenGoto,
-    /// POW, MOD, ATAN with a comma: by its name.
+    /// POW, MOD or ATAN with a comma.
     NewFunction(&'static str),
-    /// FUP, LN and others that controls with few functions lack.
+    /// FUP, LN and other functions outside the basic set.
     MoreFunction(&'static str),
     /// `<NAME>`, SETVN, `[#NAME]`, PRM and the like.
     NewWord(&'static str),
-    /// A G code × 10 that lowering takes for a call.
+    /// G code × 10 that lowering interprets as a call.
     GCodeCall(u32),
-    /// `#30057.21`: a bit of a variable, or the variable of the nearest number.
+    /// `#30057.21`: bit of a variable, or the variable with the rounded number.
     FractionalNumber,
 }
 
 impl DialectSyntax {
-    /// Whether a control takes it.
+    /// Returns true if a control with these settings accepts the syntax.
     pub fn is_accepted(self, settings: &Settings) -> bool {
         let undocumented = &settings.undocumented;
         match self {
@@ -54,7 +53,7 @@ impl DialectSyntax {
         }
     }
 
-    /// What a control raises that doesn't take it.
+    /// Returns the alarm of a control that refuses the syntax.
     pub fn alarm(self) -> Alarm {
         match self {
             Self::LowerCase => Alarm::LowerCase,

@@ -1,4 +1,4 @@
-//! The table of G codes: one row per code. A code without a row is an alarm, never skipped.
+//! Table of G codes, one row per code. A code without a row raises an alarm and is never skipped.
 use super::cycles::{self, Cycle};
 use super::modes::{
     CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, Motion, Plane, Polar, ReturnTo, Rotation,
@@ -6,47 +6,63 @@ use super::modes::{
 };
 use crate::control::CodeSet;
 
-/// What a G code does.
+/// Effect of a G code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Effect {
+    /// Group 01: motion mode.
     Motion(Motion),
+    /// Group 02: plane.
     Plane(Plane),
+    /// Group 03: absolute or incremental.
     Distance(Distance),
+    /// Group 04: stored stroke check.
     StrokeCheck(StrokeCheck),
+    /// Group 05: feed mode.
     FeedMode(FeedMode),
+    /// Group 06: inch or metric.
     Unit(Unit),
+    /// Group 07: cutter compensation.
     Cutter(CutterSide),
+    /// Group 08: tool length compensation.
     Length(Length),
-    /// `None` is G80.
+    /// Group 09: drilling cycle; `None` is G80.
     Cycle(Option<&'static Cycle>),
+    /// Group 10: return level of cycles.
     ReturnTo(ReturnTo),
+    /// Group 11: scaling.
     Scaling(Scaling),
+    /// Group 13: spindle speed mode.
     SpindleMode(SpindleMode),
-    /// G54 to G59 as 1 to 6.
+    /// Group 14: G54 to G59 as 1 to 6.
     Work(u8),
-    /// G54.1 and G154 with their P.
+    /// Group 14: G54.1 and G154 with their P.
     AdditionalWork,
-    /// G110 to G129 of a Haas: G154 P1 to P20.
+    /// Group 14: G110 to G129 of a Haas, which are G154 P1 to P20.
     NumberedWork(u16),
+    /// Group 15: cutting mode.
     Cutting(CuttingMode),
+    /// Group 16: rotation or tilted plane.
     Rotation(Rotation),
+    /// Group 17: polar coordinates.
     Polar(Polar),
+    /// Group 22: mirror image.
     Mirror(Mirror),
+    /// Group 00: effect in its own block only.
     OneShot(OneShot),
-    /// Feed and look-ahead control that moves nothing elsewhere.
+    /// Feed and lookahead control without an effect on the path.
     NoEffect,
-    /// G08: as [`Effect::NoEffect`], with a P.
+    /// G08: [`Effect::NoEffect`] with a P.
     LookAhead,
     /// G187 of a Haas, with P and E.
     Smoothness,
-    /// Calls, which lowering has taken out of the words where the code is a literal.
+    /// Call; lowering has separated it unless the code is computed.
     Call,
-    /// A control may have it; this one does not execute it.
+    /// A control may have the code; the simulator does not execute it.
     NotSimulated,
 }
 
 impl Effect {
-    /// The group of a code that stays in force.
+    /// Returns the modal group of a code that stays in force; `None` for any other.
     pub fn group(self) -> Option<u32> {
         Some(match self {
             Self::Motion(_) => 1,
@@ -75,7 +91,9 @@ impl Effect {
         })
     }
 
-    /// Reference returns and what changes the coordinate system: not while G51 is on (operator's manual, scaling).
+    /// Returns true for reference returns and changes of the coordinate system.
+    ///
+    /// A control refuses them while G51 is on (operator's manual, scaling).
     pub fn needs_plain_coordinates(self) -> bool {
         use OneShot::{DataInput, DataInputEnd, Dwell, Skip};
         match self {
@@ -86,22 +104,36 @@ impl Effect {
     }
 }
 
-/// Group 00: acts in its own block only.
+/// Group 00: code that acts in its own block only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OneShot {
+    /// G04: dwell.
     Dwell,
+    /// G10: data input.
     DataInput,
+    /// G11: end of data input.
     DataInputEnd,
+    /// G27: reference position check.
     CheckReference,
+    /// G28: move to the reference position.
     Reference,
+    /// G29: move from the reference position.
     FromReference,
+    /// G30: move to the second, third or fourth reference position.
     SecondReference,
+    /// G31: skip.
     Skip,
+    /// G52: local coordinate system.
     LocalSystem,
+    /// G53: machine coordinates.
     MachineSystem,
+    /// G92: set the coordinate system.
     SetSystem,
+    /// G39: corner arc in cutter compensation.
     CornerArc,
+    /// G92.1: preset the coordinate system.
     PresetSystem,
+    /// G60: positioning from one side.
     OneSide,
     /// G12 and G13 of a Haas.
     CirclePocket(Motion),
@@ -109,42 +141,44 @@ pub enum OneShot {
     BoltHoles(HolePattern),
 }
 
-/// How a pattern places its holes.
+/// Arrangement of a pattern's holes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HolePattern {
-    /// All round.
+    /// Evenly spaced on the full circle.
     Circle,
-    /// By a given angle from hole to hole.
+    /// Spaced by a specified angle.
     Arc,
 }
 
-/// A row of the table.
+/// Row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct GCodeRow {
     /// G code × 10: 541 is G54.1.
     pub code: u32,
+    /// Effect.
     pub effect: Effect,
+    /// Description in a few words.
     pub help: &'static str,
-    /// The controls that have it so.
+    /// Controls with this meaning of the code.
     pub code_sets: &'static [CodeSet],
 }
 
-/// A code that all controls have.
+/// Returns a row that applies to all controls.
 const fn row(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
     GCodeRow { code, effect, help, code_sets: CodeSet::ALL_CONTROLS }
 }
 
-/// A code that a Haas hasn't, or has as something else.
+/// Returns a row that does not apply to a Haas.
 const fn fanuc(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
     GCodeRow { code, effect, help, code_sets: CodeSet::FANUC }
 }
 
-/// A code of controls that move five axes at once: the 0i-F moves four.
+/// Returns a row for controls with five simultaneous axes; the 0i-F has four.
 const fn five_axis(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
     GCodeRow { code, effect, help, code_sets: CodeSet::FIVE_AXES }
 }
 
-/// A code of a Haas alone.
+/// Returns a row for a Haas alone.
 const fn haas(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
     GCodeRow { code, effect, help, code_sets: CodeSet::HAAS }
 }
@@ -158,7 +192,7 @@ const fn fanuc_cycle(index: usize) -> GCodeRow {
     GCodeRow { code_sets: CodeSet::FANUC, ..cycle(index) }
 }
 
-/// All codes in ascending order; a code that is another thing on another control has a row for each.
+/// All codes in ascending order; a code with several meanings has one row per meaning.
 #[rustfmt::skip]
 pub const CODES: &[GCodeRow] = &[
     row(0, Effect::Motion(Motion::Rapid), "rapid"),
@@ -351,7 +385,7 @@ pub const CODES: &[GCodeRow] = &[
     haas(2690, Effect::NotSimulated, "feature coordinate system off"),
 ];
 
-/// What a code × 10 is on each group of controls: the place of its row; 255 where they don't have it.
+/// Rows of a code × 10 by code set, as indices; 255 for a code that the controls lack.
 #[derive(Clone, Copy, Debug)]
 pub struct RowLookup([u8; CodeSet::ALL_CONTROLS.len()]);
 
@@ -359,20 +393,20 @@ impl RowLookup {
     const NONE: u8 = u8::MAX;
     const NOT_FOUND: Self = Self([Self::NONE; CodeSet::ALL_CONTROLS.len()]);
 
-    /// What the code is on a control.
+    /// Returns the row of the code on a control.
     #[inline]
     pub fn row_for(&self, set: CodeSet) -> Option<&'static GCodeRow> {
         CODES.get(usize::from(self.0[set as usize]))
     }
 }
 
-/// What is known of a code × 10.
+/// Returns the rows of a code × 10.
 #[inline]
 pub fn find(code: u32) -> RowLookup {
     LOOKUP.get(code as usize).copied().unwrap_or(RowLookup::NOT_FOUND)
 }
 
-/// The same of each code × 10 up to the last one.
+/// Rows of every code × 10 up to the last one.
 const LOOKUP: [RowLookup; LAST_CODE + 1] = {
     assert!(CODES.len() <= RowLookup::NONE as usize);
     let mut all = [RowLookup::NOT_FOUND; LAST_CODE + 1];
@@ -391,7 +425,7 @@ const LOOKUP: [RowLookup; LAST_CODE + 1] = {
 
 const LAST_CODE: usize = CODES[CODES.len() - 1].code as usize;
 
-/// A code × 10 as it is written: `54.1`.
+/// Returns the number of a code × 10 as written, `54.1`.
 pub fn spelled(code: u32) -> String {
     if code.is_multiple_of(10) { format!("{}", code / 10) } else { format!("{}.{}", code / 10, code % 10) }
 }

@@ -1,31 +1,32 @@
-//! Pairs DO and END.
+//! Pairing of DO and END.
 use super::OpIndex;
 
-/// What a block is to a loop.
+/// Role of a block in a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LoopRole {
-    /// DO, or WHILE.
+    /// DO or WHILE.
     Begin,
     End,
 }
 
-/// The loops of a program.
+/// Loops of a program.
 #[derive(Debug, Default)]
 pub(super) struct Loops {
-    /// DO, or WHILE, and END of each loop with its number, in the order of their beginnings.
+    /// DO or WHILE and END of each loop with its number, sorted by the DO or WHILE.
     pairs: Vec<(OpIndex, OpIndex, u8)>,
-    /// END and DO, in the order of their ends.
+    /// END with its DO or WHILE, sorted by the END.
     ends: Vec<(OpIndex, OpIndex)>,
 }
 
 impl Loops {
-    /// Pairs the blocks, given in their order. What has no partner alarms when a run gets there.
+    /// Pairs the loop blocks, given in order. A block without a partner raises an alarm when execution
+    /// reaches it.
     pub(super) fn pair(parts: &[(OpIndex, LoopRole, u8)]) -> Self {
         let mut open: Vec<(u8, OpIndex)> = Vec::new();
         let mut pairs = Vec::new();
         for &(block, part, number) in parts {
-            // Inside a loop of the same number nobody can tell the outer one's END from the inner one's: the outer
-            // one and all that are open in it have none.
+            // A loop inside one of the same number makes the END of the outer loop ambiguous: the outer loop
+            // and all loops open in it have no END.
             let outer = open.iter().position(|(n, _)| *n == number);
             match part {
                 LoopRole::Begin => {
@@ -45,19 +46,19 @@ impl Loops {
         Self { pairs, ends }
     }
 
-    /// Where the END of a DO or WHILE stands.
+    /// Returns the END of a DO or WHILE.
     pub(super) fn end_of(&self, begin: OpIndex) -> Option<OpIndex> {
         let place = self.pairs.binary_search_by_key(&begin, |(first, ..)| *first).ok()?;
         self.pairs.get(place).map(|(_, end, _)| *end)
     }
 
-    /// Where the DO or WHILE of an END stands.
+    /// Returns the DO or WHILE of an END.
     pub(super) fn begin_of(&self, end: OpIndex) -> Option<OpIndex> {
         let place = self.ends.binary_search_by_key(&end, |(last, _)| *last).ok()?;
         self.ends.get(place).map(|(_, begin)| *begin)
     }
 
-    /// The number of a loop that `to` lies in and that isn't among those open.
+    /// Returns the number of a loop that contains `to` and is not among `open`.
     pub(super) fn loop_entered(&self, to: OpIndex, open: &[Option<(OpIndex, OpIndex)>]) -> Option<u8> {
         let entered = |(first, last, _): &&(OpIndex, OpIndex, u8)| {
             *first < to && to <= *last && !open.contains(&Some((*first, *last)))

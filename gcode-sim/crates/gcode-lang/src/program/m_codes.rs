@@ -1,41 +1,55 @@
-//! The table of M codes that the control itself acts on.
+//! Table of the M codes that the control itself executes.
 use crate::control::CodeSet;
 
+/// Effect of an M code on the control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MCodeEffect {
+    /// M00: stop.
     Stop,
+    /// M01: stop if the switch is on.
     OptionalStop,
-    /// M02 and M30.
+    /// M02 and M30: end of the program.
     End,
+    /// Spindle clockwise.
     SpindleForward,
+    /// Spindle counterclockwise.
     SpindleReverse,
+    /// Spindle stop.
     SpindleStop,
-    /// M19, with the angle in P or R: the spindle stands, at which angle moves nothing.
+    /// M19 with the angle in P or R: stop of the spindle. The angle causes no motion.
     Orient,
+    /// M06: tool change.
     ToolChange,
+    /// Mist or coolant on.
     CoolantOn,
+    /// Coolant off.
     CoolantOff,
-    /// Overrides, orientation, rigid tapping: no effect on the path.
+    /// Overrides and rigid tapping: no effect on the path.
     NoEffect,
-    /// M96 and M97: a signal that never comes in a run would call a macro.
+    /// M96: enables a macro interrupt, whose signal never comes in a run.
     InterruptOn,
+    /// M97: disables the macro interrupt.
     InterruptOff,
-    /// M98, M99, M198: taken out of the words when they were lowered.
+    /// M98, M99, M198: lowering has separated the call.
     Call,
-    /// A control may have it; this one does not execute it.
+    /// A control may have the code; the simulator does not execute it.
     NotSimulated,
 }
 
+/// M code with its effect.
 #[derive(Clone, Copy, Debug)]
 pub struct MCodeRow {
+    /// Number.
     pub code: u32,
+    /// Effect.
     pub effect: MCodeEffect,
+    /// Description in a few words.
     pub help: &'static str,
-    /// The controls that have it so.
+    /// Controls with this meaning of the code.
     pub code_sets: &'static [CodeSet],
 }
 
-/// A code that all controls have.
+/// Returns a row that applies to all controls.
 const fn row(code: u32, effect: MCodeEffect, help: &'static str) -> MCodeRow {
     MCodeRow { code, effect, help, code_sets: CodeSet::ALL_CONTROLS }
 }
@@ -48,7 +62,7 @@ const fn haas(code: u32, effect: MCodeEffect, help: &'static str) -> MCodeRow {
     MCodeRow { code, effect, help, code_sets: CodeSet::HAAS }
 }
 
-/// Codes the control acts on. All others go to the machine builder's logic and have no effect on the control.
+/// Codes with an effect on the control. All others go to the machine builder's logic.
 #[rustfmt::skip]
 pub const M_CODES: &[MCodeRow] = &[
     row(0, MCodeEffect::Stop, "program stop"),
@@ -78,7 +92,7 @@ pub const M_CODES: &[MCodeRow] = &[
     fanuc(198, MCodeEffect::Call, "call of an external file"),
 ];
 
-/// Whether the program would run on without this code.
+/// Returns true for a code that stops or ends the program.
 pub fn ends_or_stops(code: u32) -> bool {
     let stops = |row: &&MCodeRow| {
         matches!(row.effect, MCodeEffect::Stop | MCodeEffect::OptionalStop | MCodeEffect::End)
@@ -86,7 +100,7 @@ pub fn ends_or_stops(code: u32) -> bool {
     M_CODES.iter().filter(stops).any(|row| row.code == code)
 }
 
-/// What a control does at an M code; `None` leaves it to the machine builder's logic.
+/// Returns the effect of an M code; `None` if the machine builder's logic executes it.
 pub fn find(code: u32, set: CodeSet) -> Option<MCodeEffect> {
     M_CODES.iter().find(|row| row.code == code && row.code_sets.contains(&set)).map(|row| row.effect)
 }

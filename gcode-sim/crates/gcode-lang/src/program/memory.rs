@@ -1,31 +1,31 @@
-//! A control's program memory: the texts, and the programs in them by number.
+//! Program memory of a control: the texts, and their programs by number and name.
 use std::collections::BTreeMap;
 
 use super::{Op, OpIndex, Program, outline};
 use crate::source::{Bytes, SourceId, Sources, Span};
 use crate::syntax::ast::ProgramName;
 
-/// A program in [`Memory`].
+/// Index of a program in its [`Memory`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ProgramId(pub u32);
 
-/// Where a called program comes from that isn't in memory. The command line looks in folders, tests in a map.
+/// Source of called programs that are not in memory: folders for the command line, a map in tests.
 pub trait Library {
-    /// The file that holds program O`number`: its name and its bytes.
+    /// Returns name and content of the file that holds program O`number`.
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)>;
 
-    /// The file that holds the program `<name>`.
+    /// Returns name and content of the file that holds program `<name>`.
     fn named(&mut self, _: &str) -> Option<(String, Vec<u8>)> {
         None
     }
 
-    /// What couldn't be read while a program was looked for.
+    /// Returns the failure to read a file during the last search.
     fn read_error(&self) -> Option<String> {
         None
     }
 }
 
-/// Nothing but what is in memory.
+/// Library without programs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoLibrary;
 
@@ -56,13 +56,15 @@ pub struct Memory {
     programs: Vec<Program>,
     numbers: BTreeMap<u32, ProgramId>,
     names: BTreeMap<String, ProgramId>,
-    /// Programs whose number was taken already.
+    /// Programs whose number or name an earlier program has.
     duplicates: Vec<ProgramId>,
 }
 
 impl Memory {
-    /// Reads the outline of a file. Of two programs with one number the first stays, as on a control, which refuses
-    /// the second: see [`Memory::refused`].
+    /// Loads a file and outlines its programs.
+    ///
+    /// Of two programs with one number the first stays, as on a control, which refuses the second: see
+    /// [`Memory::duplicates`].
     pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Bytes>) -> SourceId {
         let source = self.sources.add(name, bytes);
         let bytes = &self.sources.get(source).bytes;
@@ -86,40 +88,47 @@ impl Memory {
         source
     }
 
+    /// Returns the loaded texts.
     pub fn sources(&self) -> &Sources {
         &self.sources
     }
 
-    /// Programs that can't be called, because an earlier one has the same number or name.
+    /// Iterates over the programs that cannot be called, because an earlier one has the same number or name.
     pub fn duplicates(&self) -> impl Iterator<Item = &Program> {
         self.duplicates.iter().map(|id| self.get(*id))
     }
 
+    /// Returns the programs in the order loaded.
     pub fn programs(&self) -> &[Program] {
         &self.programs
     }
 
-    /// The programs in the order they were read.
+    /// Iterates over the ids of the programs in the order loaded.
     pub fn ids(&self) -> impl Iterator<Item = ProgramId> + use<> {
         (0..self.programs.len() as u32).map(ProgramId)
     }
 
+    /// Returns the program with this id.
+    ///
+    /// # Panics
+    ///
+    /// If the id comes from another memory.
     pub fn get(&self, id: ProgramId) -> &Program {
         &self.programs[id.0 as usize]
     }
 
-    /// A program whose blocks can be [made ready](Program::ready).
+    /// Returns a program whose blocks can be [lowered](Program::lower_block).
     #[inline]
     pub fn get_mut(&mut self, id: ProgramId) -> Option<&mut Program> {
         self.programs.get_mut(id.0 as usize)
     }
 
-    /// One block of a program, lowered; `None` behind the last.
+    /// Lowers one block of a program; `None` after the last block.
     pub fn lower_block(&mut self, id: ProgramId, index: OpIndex) -> Option<&Op> {
         self.get_mut(id)?.lower_block(index).map(|(_, op)| op)
     }
 
-    /// A program with all of its blocks lowered: [`Program::ops`].
+    /// Lowers all blocks of a program, as [`Program::ops`] requires.
     pub fn lower_program(&mut self, id: ProgramId) -> &Program {
         let program = &mut self.programs[id.0 as usize];
         let Program { blocks, loops, .. } = program;
@@ -127,17 +136,17 @@ impl Memory {
         program
     }
 
-    /// The place of a block, read anew.
+    /// Returns the place of a block, read again from its text.
     pub fn block_span(&self, id: ProgramId, index: OpIndex) -> Option<Span> {
         self.get(id).blocks.tree(index).map(|tree| tree.span)
     }
 
-    /// The program with this O number.
+    /// Returns the program with this O number.
     pub fn find(&self, number: u32) -> Option<ProgramId> {
         self.numbers.get(&number).copied()
     }
 
-    /// The program called `<name>`; `<O0123>` is program O0123.
+    /// Returns the program called `<name>`; `<O0123>` is program O0123.
     pub fn find_name(&self, name: &str) -> Option<ProgramId> {
         match ProgramName::of(name.to_owned()) {
             ProgramName::Number(number) => self.find(number),
@@ -146,7 +155,7 @@ impl Memory {
         }
     }
 
-    /// The program with this O number, asked of the library where it isn't in memory yet.
+    /// Returns the program with this O number, loaded from the library if it is not in memory.
     pub fn fetch(&mut self, number: u32, library: &mut impl Library) -> Option<ProgramId> {
         if let Some(id) = self.find(number) {
             return Some(id);
@@ -155,13 +164,13 @@ impl Memory {
         let first = self.programs.len();
         self.load(name, bytes);
         if self.find(number).is_none() && self.programs.get(first)?.name == ProgramName::Unnamed {
-            // A file named after its program that leaves the O word out.
+            // The file is named after its program and omits the O word.
             self.numbers.insert(number, ProgramId(first as u32));
         }
         self.find(number)
     }
 
-    /// The program called `<name>`, asked of the library where it isn't in memory yet.
+    /// Returns the program called `<name>`, loaded from the library if it is not in memory.
     pub fn fetch_name(&mut self, name: &str, library: &mut impl Library) -> Option<ProgramId> {
         if let Some(id) = self.find_name(name) {
             return Some(id);
@@ -175,15 +184,15 @@ impl Memory {
         let first = self.programs.len();
         self.load(file, bytes);
         if self.find_name(&name).is_none() && self.programs.get(first)?.name == ProgramName::Unnamed {
-            // A file named after its program that leaves the name out.
+            // The file is named after its program and omits the name.
             self.names.insert(name.clone(), ProgramId(first as u32));
         }
         self.find_name(&name)
     }
 
-    /// The program that a place belongs to.
+    /// Returns the program that contains a place.
     pub fn program_at(&self, span: Span) -> Option<&Program> {
-        // They stand in the order of their texts, and in the order of their places there.
+        // Programs are sorted by text, and by place within it.
         let before = |p: &Program| (p.span.source, p.span.end) < (span.source, span.start);
         let found = self.programs.get(self.programs.partition_point(before))?;
         (found.span.source == span.source && found.span.start <= span.start).then_some(found)

@@ -1,8 +1,8 @@
-//! Tree to operations: codes looked up, loops paired, sequence numbers found, expressions in postfix order.
+//! Lowering: tree to operations. Codes are looked up, loops paired, expressions put in postfix order.
 //!
-//! A [`Program`] is what will run. Nothing here depends on a control's settings. When a file is loaded only the places of
-//! its blocks and its loops are found (`outline`); a block is lowered when the run gets there (`blocks`), one of numbers
-//! straight from its text (`numbers`), so that a long file takes little more memory than its text.
+//! A [`Program`] is independent of a control's settings. Loading a file finds only the places of its blocks
+//! and its loops (`outline`). A block is lowered when execution reaches it (`blocks`), a block of numbers
+//! directly from its text (`numbers`), so a long file needs little more memory than its text.
 mod arguments;
 mod blocks;
 mod bytecode;
@@ -36,41 +36,45 @@ use crate::alarm::LocatedAlarm;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{PrintKind, ProgramName};
 
-/// The place of an operation in its program.
+/// Index of an operation in its program.
 pub type OpIndex = usize;
 
-/// One O-program: where its blocks are, and the operations of those that were asked for.
+/// One O-program: the places of its blocks, and the operations of the blocks lowered so far.
 #[derive(Debug)]
 pub struct Program {
+    /// O number or name.
     pub name: ProgramName,
     number: Option<u32>,
-    /// The first sequence number that isn't 0.
+    /// First sequence number other than 0.
     first_number: Option<u32>,
-    /// From the O word, or the first block, to the end of the last block.
+    /// Place from the O word, or the first block, to the end of the last block.
     pub span: Span,
     blocks: Blocks,
-    /// Sequence numbers with their blocks, by number, then by place; looked for when the first jump asks.
+    /// Sequence numbers with their blocks, sorted; computed at the first jump.
     numbers: OnceLock<Vec<(u32, u32)>>,
     loops: Loops,
-    /// Whether `%` or another program stands behind its last block.
+    /// True if `%` or another program follows the last block.
     pub is_closed: bool,
 }
 
 /// One block.
 #[derive(Debug, Default)]
 pub struct Op {
-    /// Which of its program's blocks it is, counted from 1; 0 while it is none.
+    /// Number of the block in its program, counted from 1; 0 for an unused slot.
     ordinal: u32,
+    /// Place of the block.
     pub span: Span,
+    /// Sequence number.
     pub number: Option<u32>,
     body: OpBody,
 }
 
-/// What a block does, and what is asked before.
+/// Operation of a block with its guards.
 #[derive(Debug)]
 pub enum OpBody {
-    /// Nothing is, as of most.
+    /// Operation without guards, as in most blocks.
     Plain(OpKind),
+    /// Operation behind a block skip or a dialect check.
     Guarded(Box<GuardedOp>),
 }
 
@@ -80,18 +84,19 @@ impl Default for OpBody {
     }
 }
 
-/// What a block does that is asked something first.
+/// Operation executed only if its guards allow it.
 #[derive(Debug)]
 pub struct GuardedOp {
-    /// The block skip switch at its start.
+    /// Block skip switch at the start of the block.
     pub skip: Option<u8>,
-    /// What is written in it that not every control takes, in the order it is held against the settings.
+    /// Syntax that some controls refuse, in the order of the checks.
     pub dialect_syntax: Box<[Spanned<DialectSyntax>]>,
+    /// Guarded operation.
     pub kind: OpKind,
 }
 
 impl Op {
-    /// What the block does, once nothing is asked any more.
+    /// Returns the operation of the block, its guards disregarded.
     pub fn kind(&self) -> &OpKind {
         match &self.body {
             OpBody::Plain(kind) => kind,
@@ -99,6 +104,7 @@ impl Op {
         }
     }
 
+    /// Returns the operation with its guards.
     #[inline(always)]
     pub fn body(&self) -> &OpBody {
         &self.body
@@ -108,111 +114,159 @@ impl Op {
         if let OpBody::Guarded(asked) = &self.body { Some(asked) } else { None }
     }
 
-    /// The block skip switch at its start.
+    /// Returns the block skip switch at the start of the block.
     pub fn skip(&self) -> Option<u8> {
         self.guarded_op()?.skip
     }
 
-    /// What is written in it that not every control takes.
+    /// Returns the syntax of the block that some controls refuse.
     pub fn dialect_syntax(&self) -> &[Spanned<DialectSyntax>] {
         self.guarded_op().map_or(&[], |asked| &asked.dialect_syntax)
     }
 }
 
-/// What a block does. Which of these it is stands in a byte of its own, for it is asked at every block.
+/// Operation of a block.
+///
+/// The discriminant has a byte of its own, because it is read for every block.
 #[derive(Debug, Default)]
 #[repr(u8)]
 pub enum OpKind {
-    /// A block without words: an empty line, a comment, a sequence number alone.
+    /// Block without words: an empty line, a comment, a sequence number alone.
     #[default]
     Empty,
+    /// Words: codes, moves, calls.
     Words(Words),
+    /// Macro statement, except a single [`Statement::AssignFree`].
     Statement(Statement),
-    /// A block of one [`Statement::Assign`]: who asks for statements has to ask for it as well.
+    /// A block that is one [`Statement::AssignFree`]. Code that matches statements must match this variant
+    /// too.
     AssignFree(Assign),
-    /// `IF[…]` before words or a statement, with THEN or without.
+    /// `IF[…]`, with or without THEN, before words or an assignment.
     If {
+        /// Condition.
         condition: Bytecode,
+        /// Conditional operation.
         then: Box<Self>,
     },
-    /// The control stops here if it gets here.
+    /// Alarm raised when the block is reached.
     Alarm(LocatedAlarm),
 }
 
-/// A macro statement. Which one it is stands in a byte of its own, as in [`OpKind`].
+/// Macro statement. The discriminant has a byte of its own, as in [`OpKind`].
 #[derive(Debug)]
 #[repr(u8)]
 pub enum Statement {
-    /// Any assignment that is no [`Statement::Assign`].
+    /// Assignment that is not an [`Statement::AssignFree`].
     Assign {
+        /// Assigned variable.
         target: AssignmentTarget,
+        /// Place of the variable.
         target_span: Span,
+        /// Value.
         value: Operand,
-        /// The first comment of the block: the text of `#3000=` and `#3006=`.
+        /// Comment after the statement: the text of `#3000=` and `#3006=`.
         text: Option<Box<[u8]>>,
     },
-    /// `#1=1 #2=2`: assignments, one after the other.
+    /// Assignments of one block in order, `#1=1 #2=2`.
     Assignments(Vec<Self>),
+    /// `GOTO n`.
     Goto(Spanned<Operand>),
+    /// `IF[…]GOTO n`.
     IfGoto {
+        /// Condition of the jump.
         condition: Bytecode,
+        /// Sequence number of the target.
         to: Spanned<Operand>,
     },
+    /// `IF[…]THEN statement`.
     IfThen {
+        /// Condition of the statement.
         condition: Bytecode,
+        /// Conditional statement.
         then: Box<Self>,
     },
-    /// `end` is the operation of the END.
+    /// `WHILE[…]DOn`.
     While {
+        /// Condition of the next iteration.
         condition: Bytecode,
+        /// Loop number.
         number: u8,
+        /// Operation of the END.
         end: OpIndex,
     },
+    /// `DOn`.
     Do {
+        /// Loop number.
         number: u8,
+        /// Operation of the END.
         end: OpIndex,
     },
-    /// `start` is the operation of the WHILE or DO.
+    /// `ENDn`.
     End {
+        /// Loop number.
         number: u8,
+        /// Operation of the WHILE or DO.
         start: OpIndex,
     },
+    /// `SETVN`.
     SetNames {
+        /// Number of the first variable.
         first: Operand,
+        /// Names of consecutive variables.
         names: Vec<String>,
     },
+    /// `DPRNT` or `BPRNT`.
     Print {
+        /// Output format.
         kind: PrintKind,
+        /// Texts and values in the order printed.
         parts: Vec<PrintPart>,
     },
+    /// `POPEN`.
     OpenOutput,
+    /// `PCLOS`.
     CloseOutput,
-    /// `IF[…]THEN` of something that must not stand there.
+    /// Invalid statement after `IF[…]THEN`; raises its alarm if the condition is true.
     Alarm(LocatedAlarm),
+    /// Assignment of computed code to a free variable.
     AssignFree(Assign),
 }
 
-/// An assignment of what code gives to a variable of [`Slot::Free`], as most are.
+/// Assignment of computed code to a variable of [`Slot::Free`], the most common kind.
 #[derive(Debug)]
 pub struct Assign {
+    /// Number of the variable.
     pub variable: u16,
+    /// Code that computes the value.
     pub code: Bytecode,
 }
 
+/// Part of a print statement.
 #[derive(Debug)]
 pub enum PrintPart {
+    /// Literal text.
     Text(String),
-    Value { value: Operand, whole: u8, decimals: u8 },
+    /// Value with its format.
+    Value {
+        /// Printed value.
+        value: Operand,
+        /// Digits before the decimal point; 0 for BPRNT.
+        whole: u8,
+        /// Digits after the decimal point.
+        decimals: u8,
+    },
 }
 
 impl Program {
-    /// The O number; of a program without any the first sequence number, which a control takes for it. `None` for a
-    /// program with a name.
+    /// Returns the O number; for a program without O word, the first sequence number, as a control does.
+    ///
+    /// `None` for a program with a name.
     pub fn number(&self) -> Option<u32> {
         self.number
     }
 
-    /// The number as #4115 shows it: a program without O has that of its first N; a name has none, 0.
+    /// Returns the number that #4115 reads: the O number, the first N of a program without O, 0 for a named
+    /// program.
     pub fn shown_number(&self) -> u32 {
         match self.name {
             ProgramName::Number(number) => number,
@@ -221,17 +275,19 @@ impl Program {
         }
     }
 
-    /// The name as a control shows it: `O8101`, `<BRACKET-OP1>`; `MAIN` where there is none.
+    /// Returns the label that a control displays: `O8101`, `<BRACKET-OP1>`; `MAIN` for an unnamed program.
     pub fn label(&self) -> String {
         self.name.label()
     }
 
-    /// Its operations in order, of a program that `Memory::lowered` gave.
+    /// Returns all operations in order.
+    ///
+    /// The program must come from [`Memory::lower_program`]; the slice is empty otherwise.
     pub fn ops(&self) -> &[Op] {
         self.blocks.lowered_ops()
     }
 
-    /// Lowers one block, so that it can be executed; `None` behind the last.
+    /// Lowers one block for execution and returns it; `None` after the last block.
     #[inline(always)]
     pub fn lower_block(&mut self, index: OpIndex) -> Option<(&Self, &Op)> {
         if self.blocks.op(index).is_none() {
@@ -241,7 +297,7 @@ impl Program {
         program.blocks.op(index).map(|op| (program, op))
     }
 
-    /// An operation that was made ready: see [`Program::ready`].
+    /// Returns an operation lowered by [`Program::lower_block`]; `None` if it is not, or no longer, lowered.
     pub fn op(&self, index: OpIndex) -> Option<&Op> {
         self.blocks.op(index)
     }
@@ -250,24 +306,24 @@ impl Program {
         self.numbers.get_or_init(|| self.blocks.sequence_numbers())
     }
 
-    /// Whether several blocks have this sequence number.
+    /// Returns true if several blocks have this sequence number.
     pub fn is_duplicate_number(&self, number: u32) -> bool {
         let first = self.numbers().partition_point(|entry| *entry < (number, 0));
         self.numbers().get(first + 1).is_some_and(|(n, _)| *n == number)
     }
 
-    /// The number of a loop that `to` lies in and that isn't among those open.
+    /// Returns the number of a loop that contains `to` and is not among `open`, the loops that are open.
     pub fn loop_entered(&self, to: OpIndex, open: &[Option<(OpIndex, OpIndex)>]) -> Option<u8> {
         self.loops.loop_entered(to, open)
     }
 
-    /// The last block with this sequence number before `from`.
+    /// Returns the last block before `from` with this sequence number.
     pub fn find_number_above(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
         let next = self.numbers().partition_point(|entry| *entry < (number, from as u32));
         self.numbers().get(next.checked_sub(1)?).filter(|(n, _)| *n == number).map(|(_, op)| *op as OpIndex)
     }
 
-    /// The block with this sequence number: the next one from `from` on, else the first of the program.
+    /// Returns the first block from `from` on with this sequence number, otherwise the first of the program.
     pub fn find_number(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
         let first = self.numbers().partition_point(|entry| *entry < (number, 0));
         let next = self.numbers().partition_point(|entry| *entry < (number, from as u32));

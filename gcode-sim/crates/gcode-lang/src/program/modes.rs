@@ -1,15 +1,15 @@
-//! The states of the modal groups: one type per group, each state with its G code × 10 as #4001… shows it.
+//! States of the modal groups: one type per group, each state with its G code × 10 as #4001… reads it.
 
 macro_rules! group {
     ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $state:ident = $code:literal,)+ }) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub enum $name {
-            $($(#[$default])? $state,)+
+            $(#[doc = concat!("State of G code × 10 ", $code, ".")] $(#[$default])? $state,)+
         }
 
         impl $name {
-            /// The G code × 10 that this state stands for.
+            /// Returns the G code × 10 of the state.
             pub fn code(self) -> u32 {
                 match self {
                     $(Self::$state => $code,)+
@@ -19,43 +19,45 @@ macro_rules! group {
     };
 }
 
-group!(/// Group 01.
+group!(/// Group 01: motion.
     Motion { #[default] Rapid = 0, Linear = 10, Clockwise = 20, Counterclockwise = 30, Thread = 330, });
-group!(/// Group 02: the plane of arcs and drilling.
+group!(/// Group 02: plane of arcs and drilling.
     Plane { #[default] Xy = 170, Zx = 180, Yz = 190, });
-group!(/// Group 03.
+group!(/// Group 03: absolute or incremental.
     Distance { #[default] Absolute = 900, Incremental = 910, });
 group!(/// Group 04: stored stroke check.
     StrokeCheck { #[default] On = 220, Off = 230, });
-group!(/// Group 05.
+group!(/// Group 05: feed mode.
     FeedMode { InverseTime = 930, #[default] PerMinute = 940, PerRevolution = 950, });
-group!(/// Group 06.
+group!(/// Group 06: inch or metric.
     Unit { Inch = 200, #[default] Metric = 210, });
 group!(/// Group 07: cutter compensation.
     CutterSide { #[default] Off = 400, Left = 410, Right = 420, });
 group!(/// Group 08: tool length compensation.
     Length { Plus = 430, Minus = 440, #[default] Off = 490, });
-group!(/// Group 10: where a drilling cycle returns to.
+group!(/// Group 10: return level of drilling cycles.
     ReturnTo { #[default] Initial = 980, R = 990, });
-group!(/// Group 11.
+group!(/// Group 11: scaling.
     Scaling { #[default] Off = 500, On = 510, });
 group!(/// Group 12: modal macro calls.
     ModalCall { #[default] Off = 670, AfterMoves = 660, EveryBlock = 661, });
-group!(/// Group 13.
+group!(/// Group 13: spindle speed mode.
     SpindleMode { SurfaceSpeed = 960, #[default] Speed = 970, });
-group!(/// Group 15.
+group!(/// Group 15: cutting mode.
     CuttingMode { ExactStop = 610, CornerOverride = 620, Tapping = 630, #[default] Cutting = 640, });
-group!(/// Group 16.
+group!(/// Group 16: coordinate system rotation.
     Rotation { On = 680, #[default] Off = 690, Tilted = 682, });
-group!(/// Group 17.
+group!(/// Group 17: polar coordinates.
     Polar { #[default] Off = 150, On = 160, });
-group!(/// Group 22.
+group!(/// Group 22: mirror image.
     Mirror { #[default] Off = 501, On = 511, });
 
-/// Group 14: G54 to G59 as 1 to 6, or G54.1 with its P.
+/// Group 14: work coordinate system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorkSystem {
+    /// G54 to G59 as 1 to 6.
     Standard(u8),
+    /// G54.1 with its P.
     Additional(u16),
 }
 
@@ -66,6 +68,7 @@ impl Default for WorkSystem {
 }
 
 impl WorkSystem {
+    /// Returns the G code × 10.
     pub fn code(self) -> u32 {
         match self {
             Self::Standard(number) => 530 + 10 * u32::from(number),

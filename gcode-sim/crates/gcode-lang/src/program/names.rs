@@ -1,14 +1,15 @@
-//! The names of system variables: `[#_ABSMT[1]]` is #5021.
+//! Names of system variables: `[#_ABSMT[1]]` is #5021.
 
-/// A name, the number of its first variable, and the suffixes it takes.
+/// Name with the number of its first variable and its suffixes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NameRow {
+    /// Name without `#`.
     pub name: &'static str,
-    /// The variable of the lowest suffix, or the one variable.
+    /// Variable of the lowest suffix, or the only variable.
     pub number: u32,
-    /// The lowest and the highest suffix; `None` where the name takes none.
+    /// Lowest and highest suffix; `None` for a name without suffix.
     pub suffix: Option<(u32, u32)>,
-    /// V15 6000#3 gives geometry and wear each other's numbers: the number with V15 set.
+    /// Number with V15 6000#3, which exchanges the numbers of geometry and wear.
     pub series_15: u32,
 }
 
@@ -24,9 +25,9 @@ const fn offset(name: &'static str, number: u32, series_15: u32) -> NameRow {
     NameRow { name, number, suffix: Some((1, 999)), series_15 }
 }
 
-/// All names but those of the additional work coordinate systems, [`find`] has them.
+/// All names except those of the additional work coordinate systems, which [`find`] computes.
 #[rustfmt::skip]
-pub const NAMES: &[NameRow] = &[
+const NAMES: &[NameRow] = &[
     numbered("_UI", 1000, 0, 31), numbered("_UIL", 1032, 0, 3), numbered("_UO", 1100, 0, 31), numbered("_UOL", 1132, 0, 3),
     single("_ALM", 3000), single("_CLOCK1", 3001), single("_CLOCK2", 3002), single("_CNTL1", 3003), single("_CNTL2", 3004),
     single("_SETDT", 3005), single("_MSGSTP", 3006), single("_MRIMG", 3007), single("_PRSTR", 3008),
@@ -48,10 +49,10 @@ pub const NAMES: &[NameRow] = &[
     offset("_OFSDG", 13001, 12001), offset("_OFSDW", 12001, 13001),
 ];
 
-/// Names of the tool offset memories A and B, where this control has C.
-pub const OTHER_MEMORIES: [&str; 3] = ["_OFS", "_OFSG", "_OFSW"];
+/// Names of the tool offset memories A and B; the simulated control has memory C.
+pub(super) const OTHER_MEMORIES: [&str; 3] = ["_OFS", "_OFSG", "_OFSW"];
 
-/// The variable that a name and its suffix stand for, or the bounds of what would be one.
+/// Returns the variables that a name stands for.
 pub fn find(name: &str) -> Option<NameRow> {
     let system =
         |text: &str| text.parse().ok().filter(|p: &u32| (1..=300).contains(p) && !text.starts_with('0'));

@@ -1,4 +1,4 @@
-//! Blocks of numbers, lowered straight from their text.
+//! Lowering of blocks of numbers directly from their text.
 use super::g_codes;
 use super::words::{LoweredWord, WordOperand, Words, g_code};
 use super::{Op, OpBody, OpKind};
@@ -6,8 +6,10 @@ use crate::source::{SourceId, Span};
 use crate::syntax::{NumberWord, NumberWords};
 
 impl Op {
-    /// Becomes the block that begins at `start`; not where more stands in it than numbers, or a call: then it may have
-    /// become anything, and its tree must be lowered.
+    /// Replaces the operation by the block at `start` and returns true.
+    ///
+    /// Returns false if the block has anything but numbers, or a call. The content is then undefined, and the
+    /// block must be lowered from its tree.
     #[inline]
     pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
         self.ordinal = 0;
@@ -27,7 +29,8 @@ impl Op {
     }
 }
 
-/// Puts the words of a line into an empty list, and tells where the last one ends; not where the line has others.
+/// Appends the words of a line to an empty list and returns the end of the last one; `None` for any other
+/// line.
 #[inline(never)]
 fn fill(list: &mut Vec<LoweredWord>, mut numbers: NumberWords<'_>) -> Option<u32> {
     let mut end = numbers.words_start;
@@ -55,13 +58,13 @@ mod tests {
     use super::*;
     use crate::syntax::block_at;
 
-    /// An operation that was another block before.
+    /// Returns an operation left over from a different block.
     fn another() -> Op {
         let tree = block_at(SourceId(0), b"/N5 gO04 M30 /2 X1 (0123456789ABCDEF)", 0).unwrap();
         Lowering::default().lower_block(&tree, None)
     }
 
-    /// A long file goes on behind a line.
+    /// Text after the line, as in a long file.
     const BEHIND: &str = "\nX1.\nG4 (AND SO FORTH) X1.\n";
 
     proptest! {

@@ -1,4 +1,4 @@
-//! What is known of a program when its file is loaded: where its blocks begin, its first sequence number, its loops.
+//! Facts about a program known once its file is loaded: its blocks' places, first sequence number and loops.
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -12,11 +12,11 @@ use crate::syntax::{
     BlockOutline, ProgramParts, end_without_spaces, outline, sequence_number_at, without_trailer,
 };
 
-/// What grows while a program is outlined.
+/// State while a program is outlined.
 #[derive(Default)]
 struct OutlineBuilder {
     blocks: u32,
-    /// Where the last block ends, perhaps with spaces behind it.
+    /// End of the last block, with or without trailing spaces.
     end: u32,
     first_number: Option<u32>,
     loops: Vec<(OpIndex, LoopRole, u8)>,
@@ -31,7 +31,7 @@ pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
 }
 
 impl OutlineBuilder {
-    /// Notes a block.
+    /// Records a block and returns its start.
     #[inline(always)]
     fn block(&mut self, block: BlockOutline, text: &ProgramText) -> u32 {
         let span = block.span();
@@ -43,7 +43,7 @@ impl OutlineBuilder {
         span.start
     }
 
-    /// Notes what is in a block besides words.
+    /// Records the loops, the sequence number and the separate tree of a block.
     #[inline(never)]
     fn record_block(&mut self, block: BlockOutline, text: &ProgramText) {
         let place = self.blocks;
@@ -59,12 +59,12 @@ impl OutlineBuilder {
         }
     }
 
-    /// Notes the sequence number of a block.
+    /// Records the sequence number of a block.
     fn record_number(&mut self, number: Option<u32>) {
         self.first_number = self.first_number.or(number.filter(|number| *number > 0));
     }
 
-    /// Notes a block that had to be read.
+    /// Records a block that had to be read.
     fn record_tree(&mut self, place: u32, block: &ast::Block) {
         self.record_number(block.number.map(|number| number.node));
         if !block.items.iter().any(is_loop_item) {
@@ -81,7 +81,7 @@ impl OutlineBuilder {
     }
 }
 
-/// WHILE, DO or END.
+/// Returns true for WHILE, DO and END.
 fn is_loop_item(item: &ast::Item) -> bool {
     use ast::Statement::{Do, End, While};
     matches!(item, ast::Item::Statement(found) if matches!(found.node, While { .. } | Do(_) | End(_)))

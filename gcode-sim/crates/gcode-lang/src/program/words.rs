@@ -1,4 +1,4 @@
-//! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
+//! Lowering of blocks of words: codes are looked up, calls separated, values left for the run.
 use super::DialectSyntax;
 use super::bytecode::{Bytecode, Instruction, Operand, Slot};
 use super::g_codes::{self, RowLookup};
@@ -7,91 +7,109 @@ use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::Span;
 use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};
 
-/// The words of one block.
+/// Words of one block.
 #[derive(Debug, Default)]
 pub struct Words {
+    /// Words in the order written, without those of a call.
     pub list: Vec<LoweredWord>,
-    /// What blocks of numbers don't have, so that the next one needs only its list.
+    /// Content that blocks of numbers lack, so that their reuse only clears the list.
     uncommon: Option<Box<UncommonWords>>,
 }
 
-/// What few blocks of words have.
+/// Content that few blocks of words have.
 #[derive(Debug, Default)]
 struct UncommonWords {
     call: Option<CallOp>,
-    /// `/n` inside the block: what is left of it while switch n is on.
+    /// Switch of `/n` inside the block, and the words left while it is on.
     skipped_form: Option<(u8, Words)>,
     punched_value: Option<u64>,
-    /// What [`WordOperand::Code`] counts.
+    /// Code of the words, indexed by [`WordOperand::Code`].
     codes: Vec<Bytecode>,
-    /// The numbers of axes that [`LoweredWord::axis`] counts.
+    /// Axis numbers, indexed by [`LoweredWord::axis`].
     axes: Vec<Operand>,
 }
 
-/// A word ready to be evaluated.
+/// Word ready for evaluation.
 #[derive(Clone, Copy, Debug)]
 pub struct LoweredWord {
+    /// Letter in upper case.
     pub letter: u8,
-    /// `AX[…]`: where the number of the axis is among those of its block, see [`Words::axis`].
+    /// Index of the axis number of `AX[…]`, see [`Words::axis`].
     pub axis: Option<u32>,
-    /// `,R` and `,C`.
+    /// True for `,R` and `,C`.
     pub comma: bool,
+    /// Value.
     pub value: WordOperand,
+    /// Place of the word.
     pub span: Span,
 }
 
+/// Value of a word.
 #[derive(Clone, Copy, Debug)]
 pub enum WordOperand {
-    /// Its meaning depends on the increment and on units: decided when it runs.
+    /// Number as written; increment and unit are applied at run time.
     Literal(Decimal),
-    /// A G code × 10 written as a number, with what it is on each control.
+    /// G code × 10 written as a number, with its meaning on each control.
     G(u32, RowLookup),
-    /// Known, and computed for the control: it rounds.
+    /// Constant expression; the control rounds it.
     Number(f64),
     /// `#n` with a literal n.
-    Variable { slot: Slot, span: Span },
-    /// Its place among those of its block, see [`Words::code`].
+    Variable {
+        /// Variable.
+        slot: Slot,
+        /// Place of the expression.
+        span: Span,
+    },
+    /// Index of the code in its block, see [`Words::code`].
     Code(u32),
 }
 
+/// Kind of a call or return.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CallCode {
-    /// G65.
+    /// G65, macro call.
     Macro,
-    /// G66.
+    /// G66, modal macro call after moves.
     AfterMoves,
-    /// G66.1.
+    /// G66.1, modal macro call by every block.
     EveryBlock,
-    /// G67.
+    /// G67, end of a modal call.
     Cancel,
-    /// M98.
+    /// M98, subprogram call.
     Subprogram,
-    /// M198: a file of the device.
+    /// M198, call of a file on the device.
     File,
-    /// M97 P: a part of the same program.
+    /// M97 P, call of a part of the same program.
     Local,
-    /// M99.
+    /// M99, return.
     Return,
 }
 
+/// Program or block that a call goes to.
 #[derive(Clone, Debug)]
 pub enum CallTarget {
+    /// Number in P.
     Number(LoweredWord),
+    /// Program name.
     Name(String),
+    /// No P.
     None,
 }
 
-/// A call or a return.
+/// Call or return.
 #[derive(Debug)]
 pub struct CallOp {
+    /// Kind of call.
     pub kind: CallCode,
     /// P: the program, or the sequence number of `M99 P`.
     pub target: CallTarget,
     /// L.
     pub repeats: Option<LoweredWord>,
-    /// Q of M98, H where M98 has neither P nor Q, P of M97: the sequence number to start at.
+    /// Sequence number to start at: Q of M98, H of M98 without P and Q, or P of M97.
     pub start: Option<LoweredWord>,
+    /// Arguments of a macro call in the order written.
     pub arguments: Vec<LoweredWord>,
+    /// Place of the call's code.
     pub span: Span,
 }
 
@@ -101,7 +119,7 @@ impl Words {
         Self { list, uncommon: rest }
     }
 
-    /// Its list, emptied for the words of another block.
+    /// Returns the list, emptied for the words of another block.
     #[inline]
     pub(super) fn cleared_list(&mut self) -> &mut Vec<LoweredWord> {
         self.uncommon = None;
@@ -113,44 +131,46 @@ impl Words {
         self.uncommon.get_or_insert_default()
     }
 
-    /// Keeps sixteen hexadecimal digits of the block's comment.
+    /// Keeps the sixteen hexadecimal digits in the comment of the block.
     pub(super) fn set_punched_value(&mut self, value: u64) {
         self.uncommon_mut().punched_value = Some(value);
     }
 
-    /// Whether the block has neither a call nor `/n` inside.
+    /// Returns true if the block has neither a call nor an inner skip.
     #[inline]
     pub fn is_plain(&self) -> bool {
         self.uncommon.as_ref().is_none_or(|rest| rest.call.is_none() && rest.skipped_form.is_none())
     }
 
+    /// Returns the call of the block.
     pub fn call(&self) -> Option<&CallOp> {
         self.uncommon.as_ref()?.call.as_ref()
     }
 
-    /// `/n` inside the block: n, and what is left of the block while switch n is on.
+    /// Returns the switch of `/n` inside the block, and the words left while it is on.
     pub fn skipped_form(&self) -> Option<&(u8, Self)> {
         self.uncommon.as_ref()?.skipped_form.as_ref()
     }
 
-    /// Sixteen hexadecimal digits in the block's comment: the value behind `G10 L85 P500`, as controls punch it.
+    /// Returns the value of the sixteen hexadecimal digits in the comment: the data of a punched `G10 L85
+    /// P500`.
     pub fn punched_value(&self) -> Option<u64> {
         self.uncommon.as_ref()?.punched_value
     }
 
-    /// What computes the value of a word.
+    /// Returns the code of a word's value.
     pub fn code(&self, place: u32) -> &[Instruction] {
         self.uncommon.as_ref().map_or(&[], |rest| &rest.codes[place as usize])
     }
 
-    /// The number of the axis that a word is for.
+    /// Returns the axis number of a word.
     pub fn axis(&self, place: u32) -> Option<&Operand> {
         self.uncommon.as_ref()?.axes.get(place as usize)
     }
 }
 
 impl Lowering {
-    /// A block of words; `skips` are the switches inside it with their places among the items.
+    /// Lowers a block of words; `skips` are its inner switches with their positions among the items.
     pub(super) fn lower_words(
         &mut self,
         items: &[Item],
@@ -180,7 +200,7 @@ impl Lowering {
         let words =
             items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
         let mut list = Vec::with_capacity(items.len());
-        // Macro calls begin with a G code, all others with an M code; names stand in calls.
+        // Macro calls begin with a G code, all other calls with an M code; names occur in calls only.
         let (mut by_g, mut by_m) = (false, false);
         for word in words.clone() {
             let coded = self.lower_word(word)?;
@@ -223,10 +243,10 @@ impl Lowering {
             WordValue::Literal(number) => literal(letter, *number).ok_or_else(|| {
                 Alarm::ImproperGCode { code: number.value().to_string() }.located_at(word.span)
             })?,
-            // Axes have one increment.
+            // All axes have the same increment.
             WordValue::Expr(expr) if letter == AX => self.lower_computed_word(expr, b'X')?,
             WordValue::Expr(expr) => self.lower_computed_word(expr, letter)?,
-            // Taken up by the call in the same block.
+            // The call in the same block uses the name.
             WordValue::Name(_) => {
                 self.record_syntax(DialectSyntax::NewWord("<NAME>"), word.span);
                 WordOperand::Literal(Decimal { negative: false, digits: 0, places: None })
@@ -255,7 +275,7 @@ impl Lowering {
     }
 }
 
-/// What a number is behind its address; `None` for a G code that none can be.
+/// Returns the operand of a literal; `None` for an impossible G code.
 fn literal(letter: u8, number: Decimal) -> Option<WordOperand> {
     if letter == b'G' {
         let code = g_code(number)?;
@@ -264,7 +284,7 @@ fn literal(letter: u8, number: Decimal) -> Option<WordOperand> {
     Some(WordOperand::Literal(number))
 }
 
-/// G code × 10 of a literal with at most one decimal.
+/// Returns G code × 10 of a literal; `None` with more than one decimal.
 #[inline]
 pub(super) fn g_code(number: Decimal) -> Option<u32> {
     let tenths = match number.places {
@@ -281,7 +301,7 @@ pub(super) fn g_code(number: Decimal) -> Option<u32> {
     if number.negative { None } else { u32::try_from(tenths).ok() }
 }
 
-/// G65, G66, G66.1: everything behind the code is for the macro.
+/// Separates the call of G65, G66 or G66.1; all words after the code are its arguments.
 fn macro_call<'a>(
     mut list: Vec<LoweredWord>,
     at: usize,
@@ -319,7 +339,7 @@ fn macro_call<'a>(
     Ok(Words::new(Vec::new(), Some(call)))
 }
 
-/// M97 P, M98, M99 and M198 with their P, L and Q; the other words act first.
+/// Separates the call of M97 P, M98, M99 or M198 with its P, L and Q; the other words act first.
 fn subprogram<'a>(
     list: Vec<LoweredWord>,
     words: impl Iterator<Item = &'a Word> + Clone,
@@ -334,7 +354,7 @@ fn subprogram<'a>(
     };
     let has = |letter: u8| words.clone().any(|word| word.address.letter == letter);
     let kind = |word: &Word| match code(word)? {
-        // Without P it ends a macro interrupt.
+        // M97 without P ends a macro interrupt.
         97 if has(b'P') => Some(CallCode::Local),
         98 => Some(CallCode::Subprogram),
         99 => Some(CallCode::Return),
@@ -371,7 +391,7 @@ fn subprogram<'a>(
             (b'P', _) => call_op.target = CallTarget::Number(coded),
             (b'L', _) if calling != CallCode::Return => call_op.repeats = Some(coded),
             (b'Q', _) if calling == CallCode::Subprogram => call_op.start = Some(coded),
-            // M98 H alone: some controls call the subprogram at this N of the same program.
+            // M98 with H alone: some controls call the subprogram at this N of the same program.
             (b'H', _) if calling == CallCode::Subprogram && !has(b'P') && !has(b'Q') => {
                 call_op.start = Some(coded)
             }

@@ -1,32 +1,35 @@
-//! What stands in the file: programs, blocks, words and macro statements, each with its place.
+//! Syntax tree: programs, blocks, words and macro statements, each with its place.
 //!
-//! Nothing is interpreted here. A number keeps its point, because whether `X1` is 1 mm or 0.001 mm is a setting
-//! of the control; a block that can't be read keeps its alarm, because a control raises it when it gets there.
+//! The tree is not interpreted. A number keeps its decimal point, because the unit of `X1` (1 mm or 0.001 mm)
+//! is a setting of the control. An unreadable block keeps its alarm, because a control raises it when it
+//! reaches the block.
 use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
 
 /// One O-program of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
+    /// O number or name.
     pub name: ProgramName,
-    /// The place of the O word, or of the first block where there is none.
+    /// Place of the O word, or of the first block of a program without one.
     pub span: Span,
-    /// The blocks after the O word; words on the line of the O word are the first block.
+    /// Blocks after the O word; words on the line of the O word form the first block.
     pub blocks: Vec<Block>,
 }
 
+/// Number or name of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ProgramName {
-    /// `O0001`, `:0007`; also `<O0123>`.
+    /// `O0001`, `:0007` or `<O0123>`.
     Number(u32),
     /// `<BRACKET-OP1>`.
     Name(String),
-    /// A main program without an O word.
+    /// Main program without an O word.
     Unnamed,
 }
 
 impl ProgramName {
-    /// As a control shows it: `O8101`, `<BRACKET-OP1>`; `MAIN` where there is none.
+    /// Returns the label that a control displays: `O8101`, `<BRACKET-OP1>`; `MAIN` for an unnamed program.
     pub fn label(&self) -> String {
         match self {
             Self::Number(number) => format!("O{number:04}"),
@@ -37,7 +40,7 @@ impl ProgramName {
 }
 
 impl ProgramName {
-    /// The program that `<text>` names: O and a number is that number.
+    /// Interprets the text of `<text>`: O and digits are a number, any other text is a name.
     pub fn of(text: String) -> Self {
         let digits = text.strip_prefix('O').filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()));
         match digits.and_then(|digits| digits.parse().ok()) {
@@ -47,53 +50,62 @@ impl ProgramName {
     }
 }
 
-/// One line.
+/// One line of a program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Block {
+    /// Place of the block.
     pub span: Span,
-    /// `/` or `/n` at the start: the switch, 1 to 9.
+    /// Block skip switch of `/` or `/n` at the start, 1 to 9.
     pub skip: Option<Spanned<u8>>,
-    /// `N10`.
+    /// Sequence number, `N10`.
     pub number: Option<Spanned<u32>>,
-    /// The first statement with a word cut short: `WH[…]DO1`, `GO 5`.
+    /// First statement with an abbreviated keyword: `WH[…]DO1`, `GO 5`.
     pub short_word: Option<Span>,
+    /// Words, statements and inner skips, in the order written.
     pub items: Vec<Item>,
-    /// Comments in the order they stand in.
+    /// Comments in the order written.
     pub comments: Vec<Comment>,
 }
 
-/// What a block is made of. Most are words, so what is larger lies apart. A control takes either words or one statement; that is checked when it is lowered.
+/// Component of a block.
+///
+/// Most components are words, so larger ones are boxed. A control accepts either words or one statement;
+/// lowering checks this.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
+    /// Address with its value.
     Word(Word),
+    /// Macro statement.
     Statement(Box<Spanned<Statement>>),
-    /// `/n` inside a block: the rest is skipped when the switch is on.
+    /// `/n` inside a block: the rest of the block is skipped while the switch is on.
     Skip(Spanned<u8>),
-    /// The rest of the line can't be read.
+    /// Rest of a line that cannot be read.
     Unreadable(Box<Unreadable>),
 }
 
-/// The rest of a line from the word or statement that can't be read.
+/// Rest of a line, from the word or statement that cannot be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unreadable {
-    /// Raised if the block is reached; its place is where reading failed.
+    /// Alarm raised when the block is reached, at the place where reading failed.
     pub alarm: Spanned<Alarm>,
+    /// Place of the text.
     pub span: Span,
-    /// As written, comments included.
+    /// Text as written, comments included.
     pub text: Vec<u8>,
 }
 
-/// A comment: its bytes, whatever their encoding.
+/// Comment; its bytes are kept in their encoding.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comment {
-    /// Brackets included.
+    /// Place, brackets included.
     pub span: Span,
-    /// What stands between the brackets or after the sign.
+    /// Text between the brackets or after the sign.
     pub text: Vec<u8>,
+    /// Notation of the comment.
     pub mark: CommentMark,
 }
 
-/// What makes a comment one.
+/// Notation of a comment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CommentMark {
     /// `(TEXT)`.
@@ -106,48 +118,57 @@ pub enum CommentMark {
     Slashes,
 }
 
-/// Stands for the letter of an axis that only a run knows.
+/// Letter of a word whose axis is known only at run time.
 pub const AX: u8 = b'@';
 
-/// An address and its value: `X10.`, `X-#1`, `F[#7/3.]`, `,R10.`
+/// Address with its value: `X10.`, `X-#1`, `F[#7/3.]`, `,R10.`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Word {
+    /// Letter of the word.
     pub address: Address,
-    /// `AX[1]=10.`: the axis by its number; the letter is [`AX`].
+    /// Axis number of `AX[1]=10.`; the letter is [`AX`].
     pub axis: Option<Box<Expr>>,
+    /// Value as written.
     pub value: WordValue,
+    /// Place of the word.
     pub span: Span,
 }
 
+/// Letter of a word, with or without a comma.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Address {
-    /// `A` to `Z`, upper case, or [`AX`].
+    /// `A` to `Z` in upper case, or [`AX`].
     pub letter: u8,
-    /// `,R` and `,C`: corner rounding and chamfer.
+    /// True for `,R` and `,C`: corner rounding and chamfer.
     pub comma: bool,
 }
 
+/// Value of a word.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WordValue {
+    /// Number.
     Literal(Decimal),
-    /// `#1`, `[…]`, and `-#1`, `-[…]` as a negation of it. The bracket itself is kept as [`ExprKind::Bracket`].
+    /// `#1`, `[…]`, or a negation of either for `-#1` and `-[…]`.
+    ///
+    /// The bracket is kept as [`ExprKind::Bracket`].
     Expr(Box<Expr>),
-    /// `G65 P<NAME>` or `M98 <NAME>`.
+    /// Program name of `G65 P<NAME>` or `M98 <NAME>`.
     Name(String),
 }
 
-/// A literal as written: `-12.50` is digits 1250, places 2, negative.
+/// Number as written: `-12.50` has digits 1250 and places 2 and is negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decimal {
-    /// A minus sign stands before it; kept apart, so that -0 prints as written.
+    /// True after a minus sign; separate from the digits, so that -0 prints as written.
     pub negative: bool,
+    /// All digits as one whole number.
     pub digits: u64,
-    /// Digits behind the point; `None` where there is no point.
+    /// Number of digits after the decimal point; `None` without a point.
     pub places: Option<u8>,
 }
 
 impl Decimal {
-    /// The number that the digits spell, point or not.
+    /// Returns the value that the digits spell, with or without a point.
     pub fn value(self) -> f64 {
         const POWERS: [f64; 20] = [
             1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17,
@@ -159,46 +180,60 @@ impl Decimal {
     }
 }
 
-/// An expression with its place.
+/// Expression with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
+    /// Expression.
     pub kind: ExprKind,
+    /// Place of the expression.
     pub span: Span,
 }
 
+/// Variants of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
+    /// Number.
     Literal(Decimal),
-    /// `#n`, `#[…]`, `#[#…]`: the number is an expression.
+    /// Variable by its number, itself an expression: `#n`, `#[…]`, `#[#…]`.
     Variable(Box<Expr>),
-    /// `[#_ABSMT[1]]`, `[#TOOL_NO]`: a variable by its name.
+    /// Variable by its name: `[#_ABSMT[1]]`, `[#TOOL_NO]`.
     Named(Name),
+    /// Value with a minus sign.
     Negate(Box<Expr>),
-    /// A sign `+` before a value.
+    /// Value with a plus sign.
     Plus(Box<Expr>),
-    /// `[…]`: brackets keep vacancy, and a control counts them.
+    /// Value in brackets; they keep vacancy and count towards the nesting limit.
     Bracket(Box<Expr>),
+    /// Operator with its two operands.
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
-    /// `SIN[…]`, `ATAN[a]/[b]`, `ATAN[a,b]`, `POW[a,b]`.
+    /// Function call: `SIN[…]`, `ATAN[a]/[b]`, `ATAN[a,b]`, `POW[a,b]`.
     Call(Function, CallForm),
-    /// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
+    /// Parameter: `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
     Parameter {
+        /// Parameter number.
         number: Box<Expr>,
+        /// Bit number.
         bit: Option<Box<Expr>>,
+        /// Axis number.
         axis: Option<Box<Expr>>,
     },
-    /// `AXNUM[X]`: the number of an axis by its letter.
+    /// `AXNUM[X]`: axis number of a letter.
     AxisNumber(u8),
 }
 
+/// Name of a variable, with its suffix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
+    /// Name without `#`, in upper case.
     pub text: String,
+    /// Suffix in brackets.
     pub index: Option<Box<Expr>>,
 }
 
+/// Notation of a function's arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CallForm {
+    /// `SIN[a]`.
     One(Box<Expr>),
     /// `ATAN[a]/[b]`.
     Slash(Box<Expr>, Box<Expr>),
@@ -206,127 +241,201 @@ pub enum CallForm {
     Comma(Box<Expr>, Box<Expr>),
 }
 
+/// Operator between two numbers or two conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BinaryOp {
+    /// `+`.
     Add,
+    /// `-`.
     Sub,
+    /// `*`.
     Mul,
+    /// `/`.
     Div,
+    /// `MOD`: remainder.
     Mod,
+    /// `AND` of bits or conditions.
     And,
+    /// `OR` of bits or conditions.
     Or,
+    /// `XOR` of bits or conditions.
     Xor,
 }
 
+/// Function of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
+    /// Sine of degrees.
     Sin,
+    /// Cosine of degrees.
     Cos,
+    /// Tangent of degrees.
     Tan,
+    /// Arc sine in degrees.
     Asin,
+    /// Arc cosine in degrees.
     Acos,
+    /// Arc tangent in degrees, of one value or of two.
     Atan,
+    /// Square root.
     Sqrt,
+    /// Absolute value.
     Abs,
+    /// Rounding, to the nearest whole number or to the increment of an address.
     Round,
+    /// Rounding towards zero.
     Fix,
+    /// Rounding away from zero.
     Fup,
+    /// Natural logarithm.
     Ln,
+    /// Exponential function.
     Exp,
+    /// Power, of two arguments.
     Pow,
+    /// Conversion from binary-coded decimal.
     Bin,
+    /// Conversion to binary-coded decimal.
     Bcd,
+    /// Argument with a decimal point added.
     Adp,
 }
 
-/// What stands in the brackets of IF and WHILE. A condition is not a number, and a number is not a condition.
+/// Condition in the brackets of IF and WHILE.
+///
+/// A condition is not a number, and a number is not a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Condition {
+    /// Comparison of two values.
     Compare {
+        /// Left operand.
         left: Expr,
+        /// Relation.
         relation: Relation,
+        /// Notation of the relation.
         spelling: OperatorSpelling,
+        /// Right operand.
         right: Expr,
+        /// Place of the comparison without its brackets.
         span: Span,
     },
-    /// `[c1] AND [c2]`; [`BinaryOp::And`], [`BinaryOp::Or`] or [`BinaryOp::Xor`].
+    /// `[c1] AND [c2]`, with [`BinaryOp::And`], [`BinaryOp::Or`] or [`BinaryOp::Xor`].
     Logic(BinaryOp, OperatorSpelling, Box<Condition>, Box<Condition>),
+    /// Condition in brackets.
     Bracket(Box<Condition>),
 }
 
-/// How an operator of a condition is written.
+/// Notation of an operator in a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OperatorSpelling {
-    /// `EQ`, `AND`: what every control takes.
+    /// `EQ`, `AND`: accepted by every control.
     Letters,
     /// `=`, `&`.
     Sign,
 }
 
+/// Relation between two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
+    /// Equal.
     Eq,
+    /// Not equal.
     Ne,
+    /// Greater.
     Gt,
+    /// Greater or equal.
     Ge,
+    /// Less.
     Lt,
+    /// Less or equal.
     Le,
 }
 
-/// A macro statement.
+/// Macro statement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Statement {
-    /// `#n=value`; `#3000=1(TEXT)` finds its text among the block's comments.
+    /// `#n=value`. The text of `#3000=1(TEXT)` is among the comments of the block.
     Assign {
+        /// Assigned variable.
         target: Expr,
+        /// Value.
         value: Expr,
     },
+    /// `GOTO n`.
     Goto(Expr),
+    /// `IF[…]GOTO n`.
     IfGoto {
+        /// Condition of the jump.
         condition: Condition,
+        /// Sequence number of the target.
         to: Expr,
     },
     /// `IF[…]THEN statement`.
     IfThen {
+        /// Condition of the statement.
         condition: Condition,
+        /// Conditional statement.
         then: Box<Statement>,
     },
-    /// `IF[…]` or `IF[…]THEN` before words, or `IF[…]` before an assignment: the block's other items are what it
-    /// decides about.
+    /// `IF[…]` or `IF[…]THEN` before words, or `IF[…]` before an assignment.
+    ///
+    /// The condition applies to the other items of the block.
     If {
+        /// Condition of the other items.
         condition: Condition,
+        /// True if THEN is written.
         has_then: bool,
     },
+    /// `WHILE[…]DOn`.
     While {
+        /// Condition of the next iteration.
         condition: Condition,
+        /// Loop number.
         number: Spanned<i64>,
     },
+    /// `DOn`, a loop without condition.
     Do(Spanned<i64>),
+    /// `ENDn`.
     End(Spanned<i64>),
-    /// `SETVN 510[TOOL_NO, WORK]`.
+    /// `SETVN 510[TOOL_NO, WORK]`: names for consecutive variables.
     SetNames {
+        /// Number of the first variable.
         first: Expr,
+        /// Names in upper case.
         names: Vec<String>,
     },
-    /// `DPRNT[TEXT#1[44]*]`.
+    /// `DPRNT[TEXT#1[44]*]` or `BPRNT[…]`.
     Print {
+        /// Output format.
         kind: PrintKind,
+        /// Texts and values in the order printed.
         parts: Vec<PrintPart>,
     },
+    /// `POPEN`.
     OpenOutput,
+    /// `PCLOS`.
     CloseOutput,
 }
 
+/// Output format of a print statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrintKind {
-    /// DPRNT: text, each variable with digits before and after the point.
+    /// DPRNT: text; each variable with digits before and after the decimal point.
     Decimal,
-    /// BPRNT: binary, each variable with its digits after the point.
+    /// BPRNT: binary; each variable with its digits after the decimal point.
     Binary,
 }
 
+/// Part of a print statement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PrintPart {
+    /// Literal text.
     Text(String),
-    Value { variable: Expr, format: String },
+    /// Variable with its format.
+    Value {
+        /// Printed variable.
+        variable: Expr,
+        /// Digits of the format, as written.
+        format: String,
+    },
 }

@@ -1,4 +1,4 @@
-//! One line: skip, sequence number, words and statements in the order they stand in.
+//! Reader of one line: skip, sequence number, words and statements in the order written.
 use nom::Err;
 
 use super::ast::{Address, Block, Item, Unreadable, Word, WordValue};
@@ -11,9 +11,10 @@ use super::word::{name_word, word};
 use crate::alarm::Alarm;
 use crate::source::Spanned;
 
-/// Reads one line, its end not included, into an empty block. What can't be read is the block's last item.
+/// Reads one line without its end into an empty block; an unreadable rest becomes the last item.
 ///
-/// `%`, and an O word after M02, M30 or M99 (`M99O0810(TEXT)`), end the block; they and the rest are handed back.
+/// `%`, and an O word after M02, M30 or M99 (`M99O0810(TEXT)`), end the block. Returns the input from there
+/// on.
 pub(super) fn read_block<'a>(line: LineInput, input: Input<'a>, block: &mut Block) -> Input<'a> {
     let mut rest = spaces(input);
     while !rest.is_empty() && !ends_block(rest, block) {
@@ -42,7 +43,7 @@ fn ends_program(item: &Item) -> bool {
     address.letter == b'M' && matches!(number.digits, 2 | 30 | 99)
 }
 
-/// `O0001` or `:0001`.
+/// Returns true at `O0001` or `:0001`.
 pub(super) fn begins_program(input: Input<'_>) -> bool {
     match input.split_first() {
         Some((b'O' | b'o' | b':', rest)) => matches!(next(rest), Some((b'0'..=b'9', _))),
@@ -50,6 +51,7 @@ pub(super) fn begins_program(input: Input<'_>) -> bool {
     }
 }
 
+/// Converts a read failure to the unreadable rest of the line; its text is filled in later.
 fn unreadable(line: LineInput, from: Input<'_>, error: Err<ReadFailure>) -> Unreadable {
     let (alarm, left) = match error {
         Err::Error(fault) | Err::Failure(fault) => {
@@ -117,7 +119,7 @@ fn read_item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> ReadResul
     Ok((rest, ()))
 }
 
-/// `/` or `/n`: the number of the switch.
+/// Reads `/` or `/n` and returns the switch number.
 fn skip(line: LineInput, at: Input<'_>) -> ReadResult<'_, Spanned<u8>> {
     let after = &at[1..];
     match next(after) {
@@ -129,7 +131,7 @@ fn skip(line: LineInput, at: Input<'_>) -> ReadResult<'_, Spanned<u8>> {
     }
 }
 
-/// `N10`. The input begins with the letter.
+/// Reads a sequence number, `N10`. The input begins with the letter.
 pub(super) fn sequence_number(line: LineInput, at: Input<'_>) -> ReadResult<'_, Spanned<u32>> {
     let start = spaces(&at[1..]);
     let (rest, number) = match integer(start) {

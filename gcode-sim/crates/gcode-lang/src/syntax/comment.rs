@@ -1,13 +1,14 @@
-//! Comments: found in a line before anything else of it is read, kept byte for byte, and blanked in its code.
+//! Comments: located before the rest of a line is read, kept byte for byte and blanked in the code.
 use std::collections::VecDeque;
 
 use super::ast::{Comment, CommentMark};
 use super::token::{COMMENT, is_space};
 use crate::source::{SourceId, Span};
 
-/// Copies a line into `code` with its comments overwritten by [`COMMENT`], and appends them to `comments`. Remarks at
-/// the end, `; TEXT` and `// TEXT`, are cut off. `reads` tells whether a text reads as a block: where a `;` is followed
-/// by one, nobody can tell a remark from a second block, and the `;` stays in the code for the reader to refuse.
+/// Copies a line into `code` with its comments overwritten by [`COMMENT`], and appends them to `comments`.
+///
+/// Remarks at the end, `; TEXT` and `// TEXT`, are cut off. If the text after a `;` is a block according to
+/// `is_block`, it may be a remark or a second block; the `;` then stays in the code and raises an alarm.
 pub(super) fn blank_out_comments(
     source: SourceId,
     start: u32,
@@ -19,7 +20,7 @@ pub(super) fn blank_out_comments(
     code.clear();
     code.extend_from_slice(line);
     let mut push_comment = |from: usize, to: usize, text: &[u8], mark| {
-        // At the end of a line nobody means spaces.
+        // Spaces at the end of a line are not part of a comment.
         let kept =
             text.iter().rposition(|b| mark == CommentMark::Round || !is_space(*b)).map_or(0, |last| last + 1);
         let text = &text[..kept];
@@ -60,7 +61,7 @@ pub(super) fn blank_out_comments(
             }
             b'[' => brackets += 1,
             b']' => brackets = brackets.saturating_sub(1),
-            // In brackets they compare.
+            // Inside brackets `<` and `>` are comparisons.
             b'<' if brackets == 0 => names += 1,
             b'>' if brackets == 0 => names = names.saturating_sub(1),
             _ => {}
@@ -69,14 +70,15 @@ pub(super) fn blank_out_comments(
     }
 }
 
-/// `// TEXT`. Before a number or a variable the second `/` could be a division or a skip gone wrong.
+/// Returns true at `// TEXT`. Before a number or a variable the second `/` may be a faulty division or skip.
 fn begins_remark(rest: &[u8]) -> bool {
     rest.get(1) == Some(&b'/') && !matches!(rest.get(2), Some(b'0'..=b'9' | b'#' | b'['))
 }
 
-/// Where the comment that opens at `open` ends. A control ends it at the first `)`. Programs also nest round brackets
-/// in a text, `(O9804: D (RING ID) REQUIRED)`, where a control would alarm at the `)` too many: there the comment ends
-/// at its own `)`.
+/// Returns the position of the bracket that closes the comment at `open`.
+///
+/// A control ends a comment at the first `)`. Some programs nest round brackets, `(O9804: D (RING ID)
+/// REQUIRED)`, where a control raises an alarm at the last `)`; such a comment ends at its matching `)`.
 fn closing(line: &[u8], open: usize, pairs: &mut Option<Vec<usize>>) -> Option<usize> {
     let first = line[open + 1..].iter().position(|b| matches!(b, b'(' | b')')).map(|i| open + 1 + i)?;
     if line[first] == b')' {
@@ -89,7 +91,7 @@ fn closing(line: &[u8], open: usize, pairs: &mut Option<Vec<usize>>) -> Option<u
     }
 }
 
-/// For each `(` where the `)` of its own stands, 0 where there is none.
+/// Returns the position of the matching `)` for each `(`, 0 if there is none.
 fn matching_brackets(line: &[u8]) -> Vec<usize> {
     let mut closes = vec![0; line.len()];
     let mut open = Vec::new();

@@ -1,10 +1,10 @@
-//! Digits that stand in a row, four looked at together.
+//! Reader of consecutive digits, four bytes at a time.
 
-/// What is looked at of a text for one word. Longer ones, with more than eight digits before the point or behind it, are
+/// Bytes examined for one word. A longer number, with more than eight digits on one side of the point, is
 /// left to `number`.
 pub(super) type Window = [u8; 24];
 
-/// The window at the beginning of a text that ends somewhere; behind its end it has what no number has.
+/// Returns the first bytes of a text, padded with zeros.
 pub(super) fn window(text: &[u8]) -> Window {
     let mut window = Window::default();
     let length = text.len().min(window.len());
@@ -12,8 +12,9 @@ pub(super) fn window(text: &[u8]) -> Window {
     window
 }
 
-/// An unsigned number that stands at a place: its digits as if it had no point, how many of them stand behind one, and
-/// where it ends. Behind spaces it may go on.
+/// Reads an unsigned number at `first`: its digits without the point, its decimal places and its end.
+///
+/// The number may continue after spaces.
 #[inline(always)]
 pub(super) fn number(window: &Window, first: usize) -> Option<(u64, Option<u8>, usize)> {
     let (whole, point) = digits(0, window, first)?;
@@ -22,17 +23,18 @@ pub(super) fn number(window: &Window, first: usize) -> Option<(u64, Option<u8>, 
     (end > first + 1).then_some((digits, Some((end - point - 1) as u8), end))
 }
 
-/// A number that goes on with the digits at a place, and where they end; `None` where they are more than eight.
+/// Appends the digits at `place` to `number` and returns their end; `None` for more than eight digits.
 #[inline(always)]
 fn digits(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
     let bytes = u32::from_le_bytes(*window.get(place..)?.first_chunk()?);
-    // Each digit is its value; the top bit tells a byte that is none. Behind the first of those it may be wrong.
+    // Each digit becomes its value; the top bit marks other bytes. Bytes after the first such byte may be
+    // wrong.
     let values = bytes ^ 0x3030_3030;
     let others = (values.wrapping_add(0x7676_7676) | bytes) & 0x8080_8080;
     if others == 0 {
         return four_and_more(number, values, window, place + 4).filter(|(_, end)| *end <= place + 8);
     }
-    // The digits end where the four bytes do, zeros before them.
+    // Moves the digits to the top bytes, with zeros before them.
     let top = others.trailing_zeros();
     let (digits, count) = (values << (31 - top) << 8, top as usize / 8);
     Some((number * POWERS[count] + value(digits), place + count))
@@ -40,14 +42,14 @@ fn digits(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
 
 const POWERS: [u64; 4] = [1, 10, 100, 1_000];
 
-/// The number of four digits, the first of them the lowest byte: pairs, then all.
+/// Returns the number of four digits, the first in the lowest byte, by combining pairs.
 #[inline(always)]
 fn value(digits: u32) -> u64 {
     let pairs = digits.wrapping_mul(10 << 8 | 1) >> 8 & 0x00ff_00ff;
     u64::from(pairs.wrapping_mul(100 << 16 | 1) >> 16)
 }
 
-/// The same with four digits that are known, and those behind them.
+/// Appends four known digits and those that follow; `None` for more than four further digits.
 #[inline(never)]
 fn four_and_more(number: u64, values: u32, window: &Window, place: usize) -> Option<(u64, usize)> {
     let text = window.get(place..)?;

@@ -1,8 +1,10 @@
-//! Bytes without which a line is one block and has no comment: most lines of long files needn't be read to know that.
+//! Search for bytes that may divide a line into several blocks. Lines without one need not be read.
 
-/// Whether a line with this byte may be more than one block without comments: it may begin a comment or a remark, end a
-/// block before its line does (`%`, `O`, `:`, `<`), or be of DO, END or EN, or of a folder line (`&`). Written so that many
-/// bytes are looked at together, and so shortly that a few others count as such.
+/// Returns true for a byte of a line that may be more than one block without comments.
+///
+/// The byte may begin a comment or a remark, end a block before its line does (`%`, `O`, `:`, `<`), or belong
+/// to DO, END or EN or to a folder line (`&`). The test is branch-free, so that many bytes are tested at
+/// once; a few other bytes match too.
 const fn divides(byte: u8) -> bool {
     let of_words = byte & 0xde == b'D';
     let slash_or_o = byte & 0x9f == b'/' & 0x9f;
@@ -12,7 +14,7 @@ const fn divides(byte: u8) -> bool {
         | (byte.wrapping_sub(b':') <= b'<' - b':')
 }
 
-/// The same for single bytes, looked up.
+/// Lookup table of [`divides`] for single bytes.
 const DIVIDES: [bool; 256] = {
     let mut all = [false; 256];
     let mut byte = 0;
@@ -23,7 +25,7 @@ const DIVIDES: [bool; 256] = {
     all
 };
 
-/// How far a text has no byte, from a place on, that [`divides`] its line.
+/// Returns the offset of the next byte from `from` on that [`divides`] its line, or the length of the text.
 #[inline(never)]
 pub(super) fn find_divider(bytes: &[u8], from: usize) -> usize {
     let text = &bytes[from..];

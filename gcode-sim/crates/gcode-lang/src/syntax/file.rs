@@ -1,20 +1,24 @@
-//! A whole file: the programs in it.
+//! Programs of a complete file.
 use super::ast::{Block, Program, ProgramName};
 use super::file_items::{FileItem, FileItems, is_unreadable_block};
 use crate::source::{SourceId, Span};
 
-/// One program, its blocks in the form that was asked for.
+/// One program of a file, with its blocks in the form of the caller.
 #[derive(Debug)]
-pub struct ProgramParts<C, B> {
+pub(crate) struct ProgramParts<C, B> {
+    /// O number or name.
     pub name: ProgramName,
+    /// Place of the O word, or of the first block.
     pub span: Span,
+    /// State that the caller keeps for the program.
     pub context: C,
+    /// Blocks in order.
     pub blocks: Vec<B>,
-    /// Whether `%` or another program follows, and not just the end of the text.
+    /// True if `%` or another program follows, false if the text ends.
     pub is_closed: bool,
 }
 
-/// All programs of a file.
+/// Reads all programs of a file.
 pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
     let mut programs = Programs::<(), Block>::default();
     for piece in FileItems::new(source, bytes) {
@@ -31,12 +35,12 @@ pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
     parts.map(|ProgramParts { name, span, blocks, .. }| Program { name, span, blocks }).collect()
 }
 
-/// The programs that pieces make up. Each has a context of its own.
+/// Collects items into programs, each with its own context.
 #[derive(Debug)]
 pub(super) struct Programs<C, B> {
-    /// Each with whether nothing in it can be read.
+    /// Programs; the flag is true while nothing in the program is readable.
     list: Vec<(ProgramParts<C, B>, bool)>,
-    /// Whether a block that comes now belongs to the last one.
+    /// True if the next block belongs to the last program.
     is_open: bool,
 }
 
@@ -47,7 +51,7 @@ impl<C, B> Default for Programs<C, B> {
 }
 
 impl<C: Default, B> Programs<C, B> {
-    /// Another program follows.
+    /// Begins another program.
     pub(super) fn begin(&mut self, name: ProgramName, span: Span) {
         self.close();
         let silent = name == ProgramName::Unnamed;
@@ -56,7 +60,7 @@ impl<C: Default, B> Programs<C, B> {
         self.is_open = true;
     }
 
-    /// Something follows the last program.
+    /// Ends the last program because another item follows.
     pub(super) fn close(&mut self) {
         if let Some((program, _)) = self.list.last_mut() {
             program.is_closed = true;
@@ -64,8 +68,9 @@ impl<C: Default, B> Programs<C, B> {
         self.is_open = false;
     }
 
-    /// The program that a block belongs to, `silent` if nothing in it can be read. Blocks before the first O word of a
-    /// section are a program without a name.
+    /// Returns the program of the next block.
+    ///
+    /// Blocks before the first O word of a section form an unnamed program.
     pub(super) fn program_for_block(&mut self, span: Span, is_unreadable: bool) -> &mut ProgramParts<C, B> {
         if !self.is_open {
             self.begin(ProgramName::Unnamed, span);
@@ -76,7 +81,8 @@ impl<C: Default, B> Programs<C, B> {
         program
     }
 
-    /// All of them. One in which nothing can be read is the text around a tape and left out where the file has others.
+    /// Returns all programs. A program without readable content is leader text and is dropped unless it is
+    /// the only one.
     pub(super) fn finish(self) -> Vec<ProgramParts<C, B>> {
         let is_only_program = self.list.len() == 1;
         self.list

@@ -1,4 +1,4 @@
-//! A file piece by piece: `%`, the beginnings of programs, and blocks.
+//! Stream of a file's items: `%`, program names and blocks.
 use std::collections::VecDeque;
 
 use super::ast::{Block, Comment, Item, ProgramName, Unreadable};
@@ -11,47 +11,52 @@ use super::word::program_name;
 use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, end_of_line, line_length};
 
-/// What a file is made of, line by line, so that nobody has to hold all of it.
+/// Item of a file. Items are read one at a time, so that a long file is never held as a tree.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileItem<B = Block> {
-    /// `%`: what follows belongs to no program yet.
+    /// `%`: the following blocks belong to no program yet.
     Section,
-    /// `O0001`, `:0007`, `<NAME>`; words on its line are the next piece.
+    /// `O0001`, `:0007` or `<NAME>`; words on its line form the next item.
     Program {
+        /// O number or name.
         name: ProgramName,
+        /// Place of the O word.
         span: Span,
     },
+    /// Block in the form that the reader of the file produces.
     Block(B),
 }
 
-/// Reads the pieces of a file in order. Lines without anything in them are left out.
+/// Iterator over the items of a file. Empty lines are omitted.
 #[derive(Debug)]
 pub struct FileItems<'a> {
     source: SourceId,
     bytes: &'a [u8],
-    /// Where the next line begins.
+    /// Offset of the next line.
     next_line_start: usize,
-    /// The line in hand: where it begins, what is left to read, and where the line itself and its code end.
+    /// Offsets in the current line: its start, the next unread byte, the end of the line and the end of its
+    /// code.
     line_start: usize,
     position: usize,
     line_end: usize,
     code_end: usize,
-    /// How far nothing divides the lines behind the one in hand.
+    /// Offset up to which the bytes contain no divider.
     undivided_end: usize,
-    /// The line's code where comments had to be blanked, and where it begins.
+    /// Offset of `code` in the file, if the current line has blanked comments.
     blanked: Option<usize>,
     code: Vec<u8>,
-    /// The line's comments that no piece has taken yet.
+    /// Comments of the current line that belong to no item yet.
     comments: VecDeque<Comment>,
 }
 
 impl<'a> FileItems<'a> {
+    /// Starts at the beginning of a file, after byte order marks and the leader.
     pub fn new(source: SourceId, bytes: &'a [u8]) -> Self {
         let bytes = without_trailer(bytes);
         Self::starting(source, bytes, byte_order_marks(bytes)).skip_leader()
     }
 
-    /// The pieces from a place on where a line begins, spaces before it left out; of a text as [`written`].
+    /// Starts at the line start `place` of a text without its trailer; spaces before the code are skipped.
     pub(super) fn starting_at(source: SourceId, bytes: &'a [u8], place: u32) -> Self {
         Self::starting(source, bytes, place as usize)
     }
@@ -73,9 +78,9 @@ impl<'a> FileItems<'a> {
         }
     }
 
-    /// What stands before the first `%` is a leader, which a control ignores, if nothing in it can be read.
+    /// Skips the leader: text before the first `%`, ignored by a control if nothing in it is readable.
     fn skip_leader(mut self) -> Self {
-        // Nearly every file begins with what can be read.
+        // Nearly every file begins with a readable item.
         let first = FileItems::starting(self.source, self.bytes, self.next_line_start).next();
         let text = &self.bytes[self.next_line_start..];
         if !first.as_ref().is_some_and(has_nothing_readable) || !text.contains(&b'%') {
@@ -95,7 +100,7 @@ impl<'a> FileItems<'a> {
         self
     }
 
-    /// Takes the next line in hand. Folder lines of memory dumps, `&F=//CNC_MEM/…`, say nothing to the control.
+    /// Advances to the next line. Folder lines of memory dumps, `&F=//CNC_MEM/…`, are skipped.
     pub(super) fn next_line(&mut self) -> Option<()> {
         loop {
             let text = self.bytes.get(self.next_line_start..).filter(|text| !text.is_empty())?;
@@ -128,7 +133,7 @@ impl<'a> FileItems<'a> {
         self.blanked = Some(*at);
     }
 
-    /// Reads the next piece of the line in hand; `None` at its end.
+    /// Reads the next item of the current line; `None` at its end.
     pub(super) fn next_item(&mut self) -> Option<FileItem> {
         if self.position == self.code_end && self.comments.is_empty() {
             return None;
@@ -149,7 +154,7 @@ impl<'a> FileItems<'a> {
             return None;
         }
         if let Some(behind) = at.strip_prefix(b"%") {
-            // `%O0003(…)` goes on with the program; any other text behind the sign is a leader.
+            // `%O0003(…)` continues with the program; any other text after `%` is a leader.
             let behind = spaces(behind);
             let goes_on = begins_program(behind) || behind.first() == Some(&b'<');
             self.position = if goes_on { left(behind) } else { self.code_end };
@@ -172,8 +177,9 @@ impl<'a> FileItems<'a> {
         Some(FileItem::Block(block))
     }
 
-    /// The lines behind the one in hand without spaces before them, as long as each is one block whatever stands in it:
-    /// nothing divides it and nothing in it is a remark. They count as read then.
+    /// Passes the following lines to `each`, as long as each is exactly one block without comments.
+    ///
+    /// The spans exclude leading spaces. The lines count as read.
     #[inline]
     pub(super) fn plain_lines(&mut self, mut each: impl FnMut(Span)) {
         let mut text = &self.bytes[self.next_line_start..];
@@ -196,12 +202,12 @@ impl<'a> FileItems<'a> {
         self.next_line_start = self.bytes.len() - text.len();
     }
 
-    /// Whether nothing of the line in hand has been read.
+    /// Returns true if nothing of the current line has been read.
     pub(super) fn begins_line(&self) -> bool {
         self.position == self.line_start
     }
 
-    /// Gives the block its comments and its place, and what can't be read its text as written.
+    /// Sets the comments and place of a block, and the text of its unreadable rest.
     fn attach_comments(&mut self, block: &mut Block, from: usize, to: usize) {
         let is_last = to == self.code_end;
         let end = if is_last { self.line_end } else { to };
@@ -233,18 +239,18 @@ impl Iterator for FileItems<'_> {
     }
 }
 
-/// The text without what senders end a file with: 0x1A or blank tape.
-pub fn without_trailer(bytes: &[u8]) -> &[u8] {
+/// Returns the text without the trailer of a sender: 0x1A or blank tape.
+pub(crate) fn without_trailer(bytes: &[u8]) -> &[u8] {
     let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
     &bytes[..kept.map_or(0, |last| last + 1)]
 }
 
-/// The length of the byte order mark; an editor that doesn't know it puts another before it.
+/// Returns the length of the byte order marks; an editor that does not recognise one adds another.
 fn byte_order_marks(bytes: &[u8]) -> usize {
     3 * bytes.chunks(3).take_while(|mark| mark == b"\xef\xbb\xbf").count()
 }
 
-/// The place of what stands between two offsets, spaces around it left out.
+/// Returns the span between two offsets without leading and trailing spaces.
 fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
     let text = &bytes[from..to];
     let start = from + text.len() - unspaced(text).len();
@@ -252,13 +258,13 @@ fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
     Span { source, start: start as u32, end: end as u32 }
 }
 
-/// Where what stands before a place ends, spaces left out.
-pub fn end_without_spaces(bytes: &[u8], place: u32) -> u32 {
+/// Returns the end of the text before `place`, without its trailing spaces.
+pub(crate) fn end_without_spaces(bytes: &[u8], place: u32) -> u32 {
     let text = &bytes[..place as usize];
     text.iter().rposition(|b| !is_space(*b)).map_or(0, |last| last as u32 + 1)
 }
 
-/// Fills in what is shown of a text that can't be read.
+/// Fills in the text that an alarm shows of the unreadable rest.
 fn fill_alarm_text(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
     let Unreadable { alarm, span, text } = unreadable;
     *span = trimmed(span.source, bytes, span.start as usize, end);
@@ -281,12 +287,12 @@ fn has_nothing_readable(piece: &FileItem) -> bool {
     matches!(piece, FileItem::Block(block) if is_unreadable_block(block))
 }
 
-/// No word and no statement that can be read: a comment, or text that was never meant for a control.
+/// Returns true for a comment or for text that is not meant for a control: no readable word or statement.
 pub(super) fn is_unreadable_block(block: &Block) -> bool {
     block.items.iter().all(is_unreadable) && block.number.is_none() && block.skip.is_none()
 }
 
-/// `O0001`, `:0007`, `<NAME>`, `O9123<NAME>`, where the number is the name and the rest a title.
+/// Reads `O0001`, `:0007`, `<NAME>` or `O9123<NAME>`; in the last the name is only a title.
 fn program_word(at: Input<'_>) -> Option<(Input<'_>, ProgramName)> {
     if begins_program(at) {
         let (rest, number) = integer(spaces(&at[1..])).ok()?;

@@ -1,8 +1,9 @@
-//! Text to tree: reading never fails, and nothing but this module knows the parser library.
+//! Reader: text to tree. Reading never fails, and only this module uses the parser library.
 //!
-//! A file is read line by line ([`FileItems`]): the line's comments are found and blanked (`comment`), then its
-//! block is read (`block`) from words (`word`, `numbers`) and statements (`statement`, `output`), which hold expressions
-//! (`expr`, `function`) and numbers (`number`). What can't be read stays in its block as text with its alarm.
+//! A file is read line by line ([`FileItems`]). The comments of a line are found and blanked (`comment`),
+//! then its block is read (`block`): words (`word`, `numbers`) and statements (`statement`, `output`), which
+//! contain expressions (`expr`) and numbers (`number`). Unreadable text stays in its block
+//! together with its alarm.
 pub mod ast;
 mod block;
 mod comment;
@@ -15,15 +16,17 @@ mod number;
 mod numbers;
 mod outline;
 mod output;
-pub mod print;
+mod print;
 #[cfg(test)]
 mod property_tests;
 mod statement;
 mod token;
 mod word;
 
-pub use file::{ProgramParts, parse};
-pub use file_items::{FileItem, FileItems, end_without_spaces, without_trailer};
-pub use numbers::{NumberWord, NumberWords};
-pub use outline::{BlockOutline, block_at, outline, sequence_number_at};
-pub use print::print;
+pub(crate) use file::ProgramParts;
+pub use file::parse;
+pub use file_items::{FileItem, FileItems};
+pub(crate) use file_items::{end_without_spaces, without_trailer};
+pub(crate) use numbers::{NumberWord, NumberWords};
+pub(crate) use outline::{BlockOutline, block_at, outline, sequence_number_at};
+pub use print::{print, print_decimal};

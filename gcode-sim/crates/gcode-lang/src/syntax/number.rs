@@ -1,15 +1,17 @@
-//! Literal numbers: digits with at most one point, spaces anywhere between them.
+//! Reader of literal numbers: digits with at most one decimal point, with spaces anywhere between them.
 use super::ast::Decimal;
 use super::token::{Input, ReadResult, fail, is_space, no_match, unspaced};
 use crate::alarm::Alarm;
 
-/// A literal in a macro expression has twelve digits at most, and nine after an address: what has more.
+/// First number with too many digits: a literal in a macro expression has at most twelve.
 pub(super) const EXPRESSION_LIMIT: u64 = 1_000_000_000_000;
+/// First number with too many digits after an address: at most nine are allowed.
 pub(super) const WORD_LIMIT: u64 = 1_000_000_000;
-/// Zeros behind the point don't count as digits; beyond this many no control has a use for them.
+/// Most digits after the decimal point. Zeros do not count as digits, so the digit limit alone does not bound
+/// them.
 const MAX_DECIMAL_PLACES: usize = 18;
 
-/// An unsigned literal below `limit`, were its point left out.
+/// Reads an unsigned literal whose digits, taken as a whole number, are below `limit`.
 pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> ReadResult<'_, Decimal> {
     let (mut digits, mut count, mut rest) = (0u64, 0, input);
     let mut before_point = None;
@@ -30,10 +32,10 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> ReadResul
         match rest {
             [b'.', ..] if before_point.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
             [b'.', after @ ..] => (before_point, rest) = (Some(count), after),
-            // The commonest end of a number.
+            // The most common end of a number.
             [b' ', b'A'..=b'Z', ..] => break,
             [byte, ..] if is_space(*byte) => match unspaced(rest) {
-                // Spaces behind the number aren't its own.
+                // Spaces after the number are not part of it.
                 behind @ [b'0'..=b'9' | b'.', ..] => rest = behind,
                 _ => break,
             },
@@ -48,7 +50,7 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> ReadResul
     if count > 0 { Ok((rest, Decimal { negative, digits, places })) } else { no_match(input) }
 }
 
-/// A whole number without a point, as after N, O, DO and `/`.
+/// Reads a whole number without a decimal point, as after N, O, DO and `/`.
 pub(super) fn integer(input: Input<'_>) -> ReadResult<'_, u64> {
     let (rest, number) = decimal(input, false, EXPRESSION_LIMIT)?;
     match number.places {

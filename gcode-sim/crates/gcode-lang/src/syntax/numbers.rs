@@ -1,43 +1,48 @@
-//! Blocks of nothing but numbers behind their addresses, `N10 G1 X1.5 Y-2.`: most of what long files consist of.
+//! Reader of blocks that consist of numbers after addresses, `N10 G1 X1.5 Y-2.`, the bulk of long files.
 //!
-//! They are handed out word by word, so that nobody who only wants the words has to build a tree of them.
+//! The words are read one at a time, without a tree.
 use super::ast::Decimal;
 use super::digits::{Window, number};
 use super::number::WORD_LIMIT;
 use super::token::{Input, is_space, unspaced};
 use crate::source::{SourceId, Span};
 
-/// The largest sequence number.
+/// Largest sequence number.
 pub(super) const MAX_SEQUENCE_NUMBER: u32 = 99_999_999;
 
-/// An address and the number right behind it.
+/// Address followed immediately by its number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NumberWord {
-    /// `A` to `Z` but O.
+pub(crate) struct NumberWord {
+    /// `A` to `Z` except O.
     pub letter: u8,
+    /// Number as written.
     pub number: Decimal,
+    /// Place of the word.
     pub span: Span,
 }
 
-/// The words of one line, from where its block begins. They end where the line does, or before the first thing that is
-/// something else: a comment, a statement, a letter in lower case, more digits of the last word's number; and shortly before
-/// the end of the text.
+/// Iterator over the words of one line.
+///
+/// It ends with the line or before the first other element: a comment, a statement, a lower-case letter or
+/// further digits of the last number. It also ends shortly before the end of the text.
 #[derive(Debug)]
-pub struct NumberWords<'a> {
+pub(crate) struct NumberWords<'a> {
     source: SourceId,
     text: Input<'a>,
-    /// Where the sequence number ends, or the block begins where there is none.
+    /// Offset after the sequence number, or of the block start without one.
     pub words_start: u32,
-    /// Where the next word may begin, spaces before it.
+    /// Offset of the next word or of the spaces before it.
     position: usize,
-    /// `N10` at its beginning.
+    /// Sequence number at the start of the block.
     pub sequence_number: Option<u32>,
 }
 
 impl<'a> NumberWords<'a> {
-    /// `text` may go on behind the line. `None` where it begins with an N that is no plain sequence number.
+    /// Starts at the block at `start`; `text` may continue after the line.
+    ///
+    /// `None` if the block begins with an N that is not a plain sequence number.
     #[inline]
-    pub fn new(source: SourceId, text: Input<'a>, start: u32) -> Option<Self> {
+    pub(crate) fn new(source: SourceId, text: Input<'a>, start: u32) -> Option<Self> {
         let mut numbers =
             Self { source, text, words_start: start, position: start as usize, sequence_number: None };
         if text.get(start as usize) == Some(&b'N') {
@@ -52,12 +57,12 @@ impl<'a> NumberWords<'a> {
         Some(numbers)
     }
 
-    /// Whether the line ends here, so that nothing else stands in it.
-    pub fn is_at_end(&self) -> bool {
+    /// Returns true at the end of the line.
+    pub(crate) fn is_at_end(&self) -> bool {
         matches!(self.behind_spaces(), [] | [b'\n' | b'\r', ..])
     }
 
-    /// Whether a word, or what else begins with a capital, comes next.
+    /// Returns true if the next byte after spaces is a capital.
     pub(super) fn is_at_letter(&self) -> bool {
         self.behind_spaces().first().is_some_and(u8::is_ascii_uppercase)
     }
@@ -74,7 +79,7 @@ impl<'a> NumberWords<'a> {
     }
 }
 
-/// What is behind a word of some bytes that stands at a place: mostly a single space, and then the next one.
+/// Returns the offset after a word of `length` bytes and one space, the usual separator.
 #[inline(always)]
 fn word_end(window: &Window, length: usize, place: usize) -> usize {
     place + length + usize::from(window.get(length) == Some(&b' '))
@@ -101,7 +106,7 @@ impl Iterator for NumberWords<'_> {
     }
 }
 
-/// Whether a word may begin with a byte: it is a capital, and no O, which begins a program.
+/// Bytes that may begin a word: capitals except O, which begins a program.
 const BEGINS_WORD: [bool; 256] = {
     let mut all = [false; 256];
     let mut byte = b'A';
@@ -112,8 +117,9 @@ const BEGINS_WORD: [bool; 256] = {
     all
 };
 
-/// A capital, perhaps a sign, and the number right behind them, and how long they are; `None` where something else stands at
-/// the beginning. Behind it the number may go on: `X1 0.5`, `X1..5`.
+/// Reads a capital, an optional sign and the number after them, with their length; `None` for anything else.
+///
+/// The number may continue afterwards: `X1 0.5`, `X1..5`.
 #[inline(always)]
 pub(super) fn number_word(window: &Window) -> Option<(u8, Decimal, usize)> {
     let [letter, sign, ..] = *window;
@@ -125,7 +131,7 @@ pub(super) fn number_word(window: &Window) -> Option<(u8, Decimal, usize)> {
     (digits < WORD_LIMIT).then_some((letter, Decimal { negative, digits, places }, length))
 }
 
-/// Whether a number goes on at the beginning of a text.
+/// Returns true if the text begins with further digits or a point of the same number.
 pub(super) fn continues_number(text: Input<'_>) -> bool {
     matches!(unspaced(text), [b'0'..=b'9' | b'.', ..])
 }

@@ -1,25 +1,27 @@
-//! Where the blocks of a file begin, and single blocks from there: a long file is read as it is executed.
+//! Outline of a file: the places of its blocks, and single blocks read from there during execution.
 //!
-//! Most lines of long files are one block of words. That much is seen without reading them; the others are read, so that
-//! an outline has the same programs and blocks as the tree.
+//! Most lines of a long file are one block of words, which is recognised without reading them. The other
+//! lines are read, so an outline has the same programs and blocks as the tree.
 use super::ast::Block;
 use super::file::{ProgramParts, Programs};
 use super::file_items::{FileItem, FileItems, is_unreadable_block};
 use super::numbers::NumberWords;
 use crate::source::{SourceId, Span};
 
-/// A block as its outline has it.
+/// Block of an outline.
 #[derive(Debug)]
-pub enum BlockOutline {
-    /// Not looked at: neither DO nor END. Spaces behind it belong to its place.
+pub(crate) enum BlockOutline {
+    /// Block that is not read; it is neither DO nor END. The span includes trailing spaces.
     Words(Span),
+    /// Block that begins its line.
     Tree(Box<Block>),
-    /// Something else stands before it in its line: it can't be read from its own beginning on.
+    /// Block after another item of its line; it cannot be read again from its own start.
     WithinLine(Box<Block>),
 }
 
 impl BlockOutline {
-    pub fn span(&self) -> Span {
+    /// Returns the place of the block.
+    pub(crate) fn span(&self) -> Span {
         match self {
             Self::Words(span) => *span,
             Self::Tree(block) | Self::WithinLine(block) => block.span,
@@ -27,16 +29,17 @@ impl BlockOutline {
     }
 }
 
-/// The programs of a file as [`super::parse`] finds them; each block becomes at once what `each` makes of it, so that
-/// neither the trees of a long file are ever held nor its lines.
-pub fn outline<C: Default, B>(
+/// Returns the programs of a file as [`super::parse`] finds them, each block converted by `convert`.
+///
+/// Neither the trees nor the lines of a long file are kept.
+pub(crate) fn outline<C: Default, B>(
     source: SourceId,
     bytes: &[u8],
     mut convert: impl FnMut(&mut C, BlockOutline) -> B,
 ) -> Vec<ProgramParts<C, B>> {
     let mut programs = Programs::default();
     let mut pieces = FileItems::new(source, bytes);
-    // Whether it is known that the program at hand is one: it has a name, or a block that says something.
+    // True once the current program has a name or a readable block.
     let mut is_program_known = false;
     loop {
         let begins_line = pieces.begins_line();
@@ -72,19 +75,19 @@ pub fn outline<C: Default, B>(
     }
 }
 
-/// The block at the beginning of a line, from where an outline has it, of a text as [`super::written`].
-pub fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
+/// Reads the block at the line start `start`, taken from an outline, of a text without its trailer.
+pub(crate) fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
     FileItems::starting_at(source, bytes, start).find_map(|piece| match piece {
         FileItem::Block(block) => Some(block),
         _ => None,
     })
 }
 
-/// The sequence number of that block.
-pub fn sequence_number_at(source: SourceId, bytes: &[u8], start: u32) -> Option<u32> {
+/// Returns the sequence number of the block at `start`, `None` without one.
+pub(crate) fn sequence_number_at(source: SourceId, bytes: &[u8], start: u32) -> Option<u32> {
     match bytes.get(start as usize)? {
         b'N' => {
-            // A comment may go on with the number, and only the whole block tells.
+            // A comment may interrupt the number; only the complete block settles it.
             if let Some(numbers) = NumberWords::new(source, bytes, start)
                 && (numbers.is_at_end() || numbers.is_at_letter())
             {

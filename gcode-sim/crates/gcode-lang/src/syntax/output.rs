@@ -1,4 +1,4 @@
-//! Statements that name variables and print them: SETVN, DPRNT, BPRNT.
+//! Reader of the statements that name variables and print them: SETVN, DPRNT, BPRNT.
 use super::ast::{PrintKind, PrintPart, Statement};
 use super::expr::{close, is_name, single_value};
 use super::number::{EXPRESSION_LIMIT, decimal};
@@ -6,10 +6,10 @@ use super::token::{COMMENT, Input, LineInput, ReadResult, fail, is_space, next, 
 use crate::alarm::Alarm;
 use crate::syntax::ast::{Expr, ExprKind};
 
-/// The longest name that SETVN gives.
+/// Longest name that SETVN assigns.
 const MAX_NAME_LENGTH: usize = 8;
 
-/// `SETVN 510[TOOL_NO, WORK]`, after its word.
+/// Reads the rest of `SETVN 510[TOOL_NO, WORK]` after the keyword.
 pub(super) fn set_names(line: LineInput, input: Input<'_>) -> ReadResult<'_, Statement> {
     let at = spaces(input);
     let (rest, first) = match at.first() {
@@ -34,7 +34,7 @@ pub(super) fn set_names(line: LineInput, input: Input<'_>) -> ReadResult<'_, Sta
     }
 }
 
-/// Letters, digits and underscores.
+/// Reads a name of letters, digits and underscores.
 fn name(input: Input<'_>) -> ReadResult<'_, String> {
     let mut name = String::new();
     let mut rest = spaces(input);
@@ -56,7 +56,8 @@ fn name(input: Input<'_>) -> ReadResult<'_, String> {
     }
 }
 
-/// `DPRNT[TEXT#1[44]*#[#2][30]]`, after its word. Spaces print nothing; `*` prints a space.
+/// Reads the rest of `DPRNT[TEXT#1[44]*#[#2][30]]` after the keyword. Spaces print nothing; `*` prints a
+/// space.
 pub(super) fn print(line: LineInput, input: Input<'_>, kind: PrintKind) -> ReadResult<'_, Statement> {
     let (mut rest, ()) = require(sign(b'['), || Alarm::PrintFormat)(input)?;
     let mut parts = Vec::new();
@@ -86,7 +87,7 @@ pub(super) fn print(line: LineInput, input: Input<'_>, kind: PrintKind) -> ReadR
     }
 }
 
-/// `#1[44]`: a variable and how many digits are printed before and after the point.
+/// Reads `#1[44]`: a variable with its digits before and after the decimal point.
 fn printed_value(line: LineInput, input: Input<'_>) -> ReadResult<'_, PrintPart> {
     let (rest, variable) = require(|input| single_value(line, input), || Alarm::PrintFormat)(input)?;
     let (mut rest, ()) = require(sign(b'['), || Alarm::PrintFormat)(rest)?;

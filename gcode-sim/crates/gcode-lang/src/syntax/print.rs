@@ -1,10 +1,12 @@
-//! Tree to text: one block a line, words a space apart, comments byte for byte. Reading the text gives the same tree.
+//! Printer: tree to text, one block per line, words separated by a space, comments byte for byte.
+//!
+//! Reading the text gives the same tree.
 use super::ast::{
     BinaryOp, Block, CallForm, Comment, CommentMark, Condition, Decimal, Expr, ExprKind, Item,
     OperatorSpelling, PrintKind, PrintPart, Program, ProgramName, Relation, Statement, Word, WordValue,
 };
 
-/// The program as text, its O word first and a line feed after each block.
+/// Prints a program, its O word first and a line feed after each block.
 pub fn print(program: &Program) -> Vec<u8> {
     let mut out = Vec::new();
     match &program.name {
@@ -12,7 +14,7 @@ pub fn print(program: &Program) -> Vec<u8> {
         ProgramName::Name(name) => out.extend(format!("<{name}>").bytes()),
         ProgramName::Unnamed => {}
     }
-    // A comment behind the O word is the program's title.
+    // A comment after the O word is the title of the program.
     let titled =
         program.blocks.first().is_some_and(|b| b.items.is_empty() && b.number.is_none() && b.skip.is_none());
     if program.name != ProgramName::Unnamed && !titled {
@@ -28,8 +30,8 @@ pub fn print(program: &Program) -> Vec<u8> {
     out
 }
 
-/// One block without the end of its line. Its comments stand before the words they stood before.
-pub fn print_block(block: &Block, out: &mut Vec<u8>) {
+/// Appends a block without its line end. Comments keep their positions between the words.
+fn print_block(block: &Block, out: &mut Vec<u8>) {
     let begin = out.len();
     let mut comments = block.comments.iter().peekable();
     if let Some(switch) = &block.skip {
@@ -45,7 +47,7 @@ pub fn print_block(block: &Block, out: &mut Vec<u8>) {
             Item::Skip(switch) => switch.span.start,
             Item::Unreadable(unreadable) => unreadable.span.start,
         };
-        // Only round brackets end before the line does.
+        // Only comments in round brackets end before the line does.
         while let Some(comment) = comments.next_if(|c| c.span.start < place && c.mark == CommentMark::Round) {
             print_comment(comment, begin, out);
         }
@@ -92,14 +94,14 @@ fn print_word(word: &Word) -> String {
         None => char::from(word.address.letter).to_string(),
     };
     match &word.value {
-        WordValue::Literal(number) => format!("{comma}{letter}{}", decimal(*number)),
+        WordValue::Literal(number) => format!("{comma}{letter}{}", print_decimal(*number)),
         WordValue::Expr(value) => format!("{comma}{letter}{}", expr(value)),
         WordValue::Name(name) => format!("{comma}{letter}<{name}>"),
     }
 }
 
-/// `12.5`, `.5` as `0.5`, `5.`: as many digits behind the point as there were.
-pub fn decimal(number: Decimal) -> String {
+/// Prints a number with its digits after the point: `12.5`, `5.`; `.5` becomes `0.5`.
+pub fn print_decimal(number: Decimal) -> String {
     let sign = if number.negative { "-" } else { "" };
     match number.places {
         None => format!("{sign}{}", number.digits),
@@ -112,10 +114,10 @@ pub fn decimal(number: Decimal) -> String {
     }
 }
 
-/// An expression as a control reads it.
-pub fn expr(value: &Expr) -> String {
+/// Prints an expression in the notation of a control.
+fn expr(value: &Expr) -> String {
     match &value.kind {
-        ExprKind::Literal(number) => decimal(*number),
+        ExprKind::Literal(number) => print_decimal(*number),
         ExprKind::Variable(index) => format!("#{}", expr(index)),
         ExprKind::Named(name) => match &name.index {
             Some(index) => format!("[#{}[{}]]", name.text, expr(index)),
@@ -152,8 +154,8 @@ fn operator(op: BinaryOp) -> &'static str {
     }
 }
 
-/// A condition without the bracket that IF and WHILE put around it.
-pub fn condition(value: &Condition) -> String {
+/// Prints a condition without the brackets of its IF or WHILE.
+fn condition(value: &Condition) -> String {
     match value {
         Condition::Compare { left, relation, spelling: written, right, .. } => {
             let relation = match (relation, written) {
@@ -184,12 +186,7 @@ pub fn condition(value: &Condition) -> String {
     }
 }
 
-/// A statement as a control reads it.
-pub fn print_statement(statement: &Statement) -> String {
-    statement_text(statement, false)
-}
-
-/// A statement with its words in full, or cut to the two letters that some controls take.
+/// Prints a statement with its keywords in full, or abbreviated to two letters if `short`.
 fn statement_text(statement: &Statement, short: bool) -> String {
     let word = |text: &'static str| if short { &text[..2] } else { text };
     match statement {

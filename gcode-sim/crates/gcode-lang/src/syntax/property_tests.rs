@@ -1,4 +1,4 @@
-//! Laws of the reader: every tree survives being printed and read, every text gives a tree, in linear time.
+//! Properties of the reader: printing and reading keeps every tree, every text gives a tree, in linear time.
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
@@ -10,7 +10,7 @@ use crate::source::{SourceId, Span, Spanned};
 
 const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
 
-/// The tree without its places, as text.
+/// Returns the tree as text without its places.
 fn unplaced(programs: &[Program]) -> String {
     let shown = format!("{programs:?}");
     let mut pieces = shown.split("Span {");
@@ -41,7 +41,7 @@ fn name() -> impl Strategy<Value = String> {
     "[A-Z_][A-Z0-9_]{0,7}"
 }
 
-/// A value without a sign that needs at most `levels` brackets inside one another.
+/// Generates an unsigned value with at most `levels` nested brackets.
 fn primary(levels: u32) -> BoxedStrategy<Expr> {
     let literal = decimal().prop_map(|d| expr(ExprKind::Literal(d)));
     let numbered = (0..=99_999u64).prop_map(|n| {
@@ -197,7 +197,7 @@ fn word() -> impl Strategy<Value = Item> {
     prop_oneof![9 => word, 1 => call]
 }
 
-/// Comments in round brackets, and one at the end that goes on to the end of the line.
+/// Generates comments in round brackets, and one at the end that extends to the end of the line.
 fn comments() -> impl Strategy<Value = Vec<Comment>> {
     let bytes = || vec(any::<u8>().prop_filter("no end", |b| !b"()\r\n".contains(b)), 0..6);
     let comment = |mark| {
@@ -307,7 +307,7 @@ proptest! {
     }
 }
 
-/// Each of these takes hours if any of its bytes is looked at again for each other one.
+/// Each piece takes hours if the reader examines any byte again for each other byte.
 #[test]
 fn long_lines_are_read_in_linear_time() {
     for piece in [

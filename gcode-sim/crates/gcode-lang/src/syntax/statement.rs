@@ -1,4 +1,4 @@
-//! Macro statements: assignment, GOTO, IF, WHILE, DO, END.
+//! Reader of macro statements: assignment, GOTO, IF, WHILE, DO, END.
 use super::ast::{Condition, Expr, PrintKind, Statement};
 use super::expr::{condition, expr, require_value, variable};
 use super::number::integer;
@@ -10,6 +10,7 @@ use super::token::{
 use crate::alarm::Alarm;
 use crate::source::Spanned;
 
+/// Keyword of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Keyword {
     If,
@@ -25,7 +26,7 @@ pub(super) enum Keyword {
     Close,
 }
 
-/// Statement words. Their first two letters are enough (WH, GO, EN …), and no two begin alike.
+/// Keywords of statements. The first two letters suffice (WH, GO, EN …); they are unique.
 const KEYWORDS: [(&str, Keyword); 11] = [
     ("IF", Keyword::If),
     ("GOTO", Keyword::Goto),
@@ -40,17 +41,18 @@ const KEYWORDS: [(&str, Keyword); 11] = [
     ("PCLOS", Keyword::Close),
 ];
 
-/// The statement word that the input begins with.
+/// Keyword at the start of an input.
 pub(super) struct StatementStart<'a> {
-    /// What is left stands after it.
+    /// Input after the keyword.
     pub rest: Input<'a>,
     pub keyword: Keyword,
-    /// Not all of its letters are there.
+    /// True if the keyword is abbreviated.
     pub is_short: bool,
 }
 
-/// The statement word that the input begins with. Two letters one after the other are never words, so a single look
-/// at the second one settles most blocks.
+/// Reads the keyword at the start of the input; `None` if there is none.
+///
+/// A word never has two consecutive letters, so the second byte decides for most blocks.
 #[inline]
 pub(super) fn keyword(input: Input<'_>) -> Option<StatementStart<'_>> {
     let (_, after) = input.split_first()?;
@@ -68,7 +70,7 @@ fn written_keyword(input: Input<'_>) -> Option<StatementStart<'_>> {
     })
 }
 
-/// The statement after its keyword, and whether one of its words is cut short.
+/// Reads a statement after its keyword; the flag is true if one of its keywords is abbreviated.
 pub(super) fn statement<'a>(
     line: LineInput,
     start: &StatementStart<'a>,
@@ -84,7 +86,7 @@ pub(super) fn statement<'a>(
         Keyword::SetNames => whole_words(set_names(line, rest)?, |names| names),
         Keyword::Decimal => whole_words(print(line, rest, PrintKind::Decimal)?, |print| print),
         Keyword::Binary => whole_words(print(line, rest, PrintKind::Binary)?, |print| print),
-        // `PC LOS`: letters behind a cut word could be its own.
+        // `PC LOS`: letters after an abbreviated keyword may belong to it.
         Keyword::Open | Keyword::Close if short && begins_with_letter(rest) => return no_match(rest),
         Keyword::Open => (rest, (Statement::OpenOutput, false)),
         Keyword::Close => (rest, (Statement::CloseOutput, false)),
@@ -96,7 +98,7 @@ fn begins_with_letter(input: Input<'_>) -> bool {
     next(input).is_some_and(|(byte, _)| byte.is_ascii_alphabetic())
 }
 
-/// A statement without further words in it.
+/// Builds a statement from its only part, without further keywords.
 fn whole_words<'a, T>(
     (rest, part): (Input<'a>, T),
     of: impl FnOnce(T) -> Statement,
@@ -104,7 +106,7 @@ fn whole_words<'a, T>(
     (rest, (of(part), false))
 }
 
-/// `#n=value`; the input begins with `#` or with a name in brackets.
+/// Reads `#n=value`. The input begins with `#` or with a name in brackets.
 pub(super) fn assignment(line: LineInput, input: Input<'_>) -> ReadResult<'_, Statement> {
     let (rest, target) = require(|input| variable(line, input), not_a_word)(input)?;
     let (after, ()) = require(sign(b'='), || Alarm::MissingEquals)(rest)?;
@@ -117,7 +119,7 @@ fn not_a_word() -> Alarm {
     Alarm::NotAWord { text: String::new() }
 }
 
-/// What may not follow an expression: a `]` too many tells that an opening one is missing.
+/// Rejects text that must not follow an expression; an extra `]` means that an opening one is missing.
 fn check_expression_end(rest: Input<'_>) -> ReadResult<'_, ()> {
     match next(rest) {
         Some((b']', _)) => fail(spaces(rest), Alarm::MissingOpenBracket),
@@ -155,13 +157,13 @@ fn if_statement(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Statement,
     }
 }
 
-/// An address and its value, as far as two characters tell.
+/// Returns true if the next two characters look like an address and its value.
 fn begins_word(input: Input<'_>) -> bool {
     let Some((b'A'..=b'Z' | b'a'..=b'z', after)) = next(input) else { return false };
     matches!(next(after), Some((b'0'..=b'9' | b'#' | b'[' | b'.' | b'-' | b'+', _)))
 }
 
-/// One assignment, or a GOTO, which some controls take.
+/// Reads the statement after THEN: an assignment, or a GOTO for the controls that accept one.
 fn then(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Statement, bool)> {
     let at = spaces(input);
     match at.first() {
@@ -187,7 +189,7 @@ fn while_statement(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Stateme
     }
 }
 
-/// `IF(…)` has a comment where its condition should be.
+/// Reads the condition of IF and WHILE; `IF(…)` has a comment in its place and raises its own alarm.
 fn require_condition<'a>(line: LineInput, input: Input<'a>, otherwise: Alarm) -> ReadResult<'a, Condition> {
     match condition(line, input) {
         Err(nom::Err::Error(_)) if comment_before(input) => round_brackets(input, None),

@@ -1,4 +1,4 @@
-//! The smallest pieces of a line: spaces, words of letters, places; and how reading fails.
+//! Smallest elements of a line: spaces, keywords, places; and failures of reading.
 use nom::error::{ErrorKind, ParseError};
 use nom::{Err, IResult, Parser};
 
@@ -8,15 +8,17 @@ use crate::source::{SourceId, Span, Spanned};
 pub(super) type Input<'a> = &'a [u8];
 pub(super) type ReadResult<'a, T> = IResult<Input<'a>, T, ReadFailure>;
 
-/// Every byte of a comment is overwritten with this one before a line is read (see [`super::comment`]), so that a
-/// comment may stand between any two words, numbers and brackets. No other byte of a line's code is a `(`.
+/// Byte that replaces every byte of a comment before a line is read (see [`super::comment`]).
+///
+/// A comment may thus lie between any two words, numbers or brackets. The code of a line has no other `(`.
 pub(super) const COMMENT: u8 = b'(';
 
-/// Why a piece can't be read, and how much of the line was left there. The text that an alarm shows is filled in
-/// once it is known that the line can't be read in another way.
+/// Failure to read an element: its alarm and the position.
+///
+/// The text shown by the alarm is filled in once no other reading of the line is possible.
 #[derive(Debug)]
 pub(super) struct ReadFailure {
-    /// `None` where the text is neither this nor that. Faults are handed on at every step, so they are small.
+    /// `None` if the text matches no alternative. Boxed, because every parser passes failures on.
     alarm: Option<Box<Alarm>>,
     pub(super) remaining: usize,
 }
@@ -41,29 +43,29 @@ impl ParseError<Input<'_>> for ReadFailure {
     }
 }
 
-/// Reading can't go on in any other way.
+/// Fails with an alarm; no other alternative is tried.
 #[cold]
 pub(super) fn fail<T>(input: Input<'_>, alarm: Alarm) -> ReadResult<'_, T> {
     Err(Err::Failure(ReadFailure { alarm: Some(Box::new(alarm)), remaining: input.len() }))
 }
 
-/// Neither a number nor anything else an expression may have here.
+/// Fails where an expression has neither a number nor another valid element.
 pub(super) fn no_expression<T>(input: Input<'_>) -> ReadResult<'_, T> {
     fail(input, Alarm::Expression { text: String::new() })
 }
 
-/// `(` where a value or `[` must stand; [`comment_before`] holds.
+/// Fails at `(` where a value or `[` must follow. The input satisfies [`comment_before`].
 pub(super) fn round_brackets<T>(input: Input<'_>, letter: Option<char>) -> ReadResult<'_, T> {
     let gap = input.iter().take_while(|b| is_space(**b)).count();
     fail(&input[gap..], Alarm::RoundBrackets { letter })
 }
 
-/// This isn't the piece looked for; another may be.
+/// Reports a mismatch; another alternative may match.
 pub(super) fn no_match<T>(input: Input<'_>) -> ReadResult<'_, T> {
     Err(Err::Error(ReadFailure::from_error_kind(input, ErrorKind::Alt)))
 }
 
-/// What must follow: where it isn't there, the line can't be read.
+/// Wraps a parser so that a mismatch is an alarm instead.
 pub(super) fn require<'a, T>(
     mut parser: impl Parser<Input<'a>, Output = T, Error = ReadFailure>,
     alarm: impl Fn() -> Alarm,
@@ -74,11 +76,11 @@ pub(super) fn require<'a, T>(
     }
 }
 
-/// Where the line stands, so that what is left of it tells a place.
+/// Position of the current line: converts remaining input to places.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineInput {
     pub source: SourceId,
-    /// The offset of the byte after the last one of the line's code.
+    /// Offset after the last byte of the line's code.
     pub end: u32,
 }
 
@@ -92,34 +94,36 @@ impl LineInput {
     }
 }
 
-/// A space; also the feed and the rub-out of paper tape, which controls read over, and the sign that senders end a
-/// file with, which stands inside one where files were put together.
+/// Returns true for a space.
+///
+/// Includes the feed and rub-out of paper tape, which controls ignore, and the end-of-file sign 0x1A, which
+/// occurs inside joined files.
 pub(super) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | 0 | 0x1a | 0x7f)
 }
 
-/// Spaces, but no comment, left out.
+/// Skips spaces but no comment.
 pub(super) fn unspaced(text: Input<'_>) -> Input<'_> {
     &text[text.iter().take_while(|b| is_space(**b)).count()..]
 }
 
-/// What is left after spaces and comments.
+/// Skips spaces and comments.
 pub(super) fn spaces(input: Input<'_>) -> Input<'_> {
     let count = input.iter().take_while(|b| is_space(**b) || **b == COMMENT).count();
     &input[count..]
 }
 
-/// Whether a comment stands before the next piece: round brackets where square ones may have been meant.
+/// Returns true if a comment comes next: round brackets, possibly meant as square ones.
 pub(super) fn comment_before(input: Input<'_>) -> bool {
     input.iter().find(|b| !is_space(**b)) == Some(&COMMENT)
 }
 
-/// The next byte after spaces, and what is left after it.
+/// Returns the next byte after spaces and comments, and the input after it.
 pub(super) fn next(input: Input<'_>) -> Option<(u8, Input<'_>)> {
     spaces(input).split_first().map(|(byte, rest)| (*byte, rest))
 }
 
-/// One sign such as `[`, spaces before it.
+/// Matches one sign such as `[` after spaces.
 pub(super) fn sign<'a>(expected: u8) -> impl Fn(Input<'a>) -> ReadResult<'a, ()> {
     move |input| match next(input) {
         Some((byte, rest)) if byte == expected => Ok((rest, ())),
@@ -127,7 +131,7 @@ pub(super) fn sign<'a>(expected: u8) -> impl Fn(Input<'a>) -> ReadResult<'a, ()>
     }
 }
 
-/// A word of letters in either case, spaces before and between them.
+/// Matches a keyword in either case, with spaces before and between its letters.
 pub(super) fn word<'a>(text: &'static str) -> impl Fn(Input<'a>) -> ReadResult<'a, ()> {
     move |input| match letters(spaces(input), text) {
         (rest, count) if count == text.len() => Ok((rest, ())),
@@ -135,7 +139,7 @@ pub(super) fn word<'a>(text: &'static str) -> impl Fn(Input<'a>) -> ReadResult<'
     }
 }
 
-/// How many letters of `text` the input begins with, and what is left after them.
+/// Returns the number of leading letters that match `text`, and the input after them.
 pub(super) fn letters<'a>(input: Input<'a>, text: &str) -> (Input<'a>, usize) {
     let mut rest = input;
     for (count, wanted) in text.bytes().enumerate() {

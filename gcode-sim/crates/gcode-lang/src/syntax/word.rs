@@ -1,4 +1,4 @@
-//! Words: an address and its value.
+//! Reader of words: an address and its value.
 use super::ast::{AX, Address, Expr, ExprKind, Word, WordValue};
 use super::expr::{close, expr, require_value, single_value};
 use super::number::{WORD_LIMIT, decimal};
@@ -7,10 +7,10 @@ use super::token::{
 };
 use crate::alarm::Alarm;
 
-/// The longest program name.
+/// Longest program name.
 const MAX_PROGRAM_NAME_LENGTH: usize = 32;
 
-/// `X10.`, `X-#1`, `F[#7/3.]`, `,R10.`, `P<NAME>`. The input begins with the letter or the comma.
+/// Reads `X10.`, `X-#1`, `F[#7/3.]`, `,R10.` or `P<NAME>`. The input begins with the letter or the comma.
 #[inline]
 pub(super) fn word(line: LineInput, input: Input<'_>) -> ReadResult<'_, Word> {
     let (comma, from) = match input {
@@ -25,7 +25,7 @@ pub(super) fn word(line: LineInput, input: Input<'_>) -> ReadResult<'_, Word> {
         return axis_word(line, input, inside);
     }
     let letter = match from.first() {
-        // O stands first in its line (see `file`) and takes no variable.
+        // O comes first in its line (see `file_items`) and takes no variable.
         Some(byte) if byte.is_ascii_alphabetic() && !matches!(byte, b'O' | b'o') => byte.to_ascii_uppercase(),
         _ => return no_match(input),
     };
@@ -34,7 +34,7 @@ pub(super) fn word(line: LineInput, input: Input<'_>) -> ReadResult<'_, Word> {
     Ok((rest, Word { address, axis: None, value, span: line.span(input, rest) }))
 }
 
-/// `AX[1]=10.`, `AX[#1]10.`: what stands behind `[`.
+/// Reads the rest of `AX[1]=10.` or `AX[#1]10.` after the `[`.
 fn axis_word<'a>(line: LineInput, input: Input<'a>, inside: Input<'a>) -> ReadResult<'a, Word> {
     let (rest, axis) = require_value(expr(line, inside, 1), inside)?;
     let (rest, ()) = close(rest)?;
@@ -47,7 +47,7 @@ fn axis_word<'a>(line: LineInput, input: Input<'a>, inside: Input<'a>) -> ReadRe
     Ok((rest, Word { address, axis: Some(Box::new(axis)), value, span: line.span(input, rest) }))
 }
 
-/// What stands behind an address.
+/// Reads the value after an address.
 #[inline]
 fn word_value<'a>(
     line: LineInput,
@@ -87,14 +87,14 @@ fn word_value<'a>(
     }
 }
 
-/// `M98 <NAME>`: the name stands for the word P.
+/// Reads `<NAME>` of `M98 <NAME>` as a word P.
 pub(super) fn name_word(line: LineInput, input: Input<'_>) -> ReadResult<'_, Word> {
     let (rest, name) = program_name(input)?;
     let address = Address { letter: b'P', comma: false };
     Ok((rest, Word { address, axis: None, value: WordValue::Name(name), span: line.span(input, rest) }))
 }
 
-/// `<NAME>`: letters, digits and `+ - _ .`; with folders in a call also `/`.
+/// Reads `<NAME>`: letters, digits and `+ - _ .`, in a call also `/` between folders.
 pub(super) fn program_name(input: Input<'_>) -> ReadResult<'_, String> {
     let Some(inside) = input.strip_prefix(b"<") else { return no_match(input) };
     let fits = |b: &u8| b.is_ascii_alphanumeric() || matches!(b, b'+' | b'-' | b'_' | b'.' | b'/');

@@ -1,4 +1,4 @@
-//! Arithmetic of numbers written out that always alarms: `SQRT[-4]`, `5/0`, `ACOS[1.5]`.
+//! Rule: arithmetic on constants that always raises an alarm, `SQRT[-4]`, `5/0`, `ACOS[1.5]`.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::expressions;
 use gcode_control::static_eval::{atan2, binary, function, power};
@@ -22,14 +22,14 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     found
 }
 
-/// Computes what needs no variable, and keeps the alarms.
+/// Evaluates constant expressions and collects their alarms.
 struct ConstantEvaluator<'a> {
     settings: &'a Settings,
     alarms: Vec<LocatedAlarm>,
 }
 
 impl ConstantEvaluator<'_> {
-    /// `None` where it needs a variable, or has raised an alarm.
+    /// Returns the value; `None` if it depends on a variable or has raised an alarm.
     fn value(&mut self, expr: &Expr) -> Option<f64> {
         let computed = match &expr.kind {
             ExprKind::Literal(number) => Ok(number.value()),
@@ -37,7 +37,7 @@ impl ConstantEvaluator<'_> {
             ExprKind::Negate(inner) => Ok(-self.value(inner)?),
             ExprKind::Binary(op, left, right) => {
                 let (left, right) = (self.value(left), self.value(right)?);
-                // Whatever is divided by 0, it alarms.
+                // Division by 0 raises an alarm for any dividend.
                 let is_division = matches!(op, BinaryOp::Div | BinaryOp::Mod);
                 let value =
                     binary(*op, left.or(is_division.then_some(1.0))?, right, &self.settings.undocumented);
@@ -60,7 +60,7 @@ impl ConstantEvaluator<'_> {
         match form {
             CallForm::One(inner) => {
                 let x = self.value(inner)?;
-                // ADP wants a variable and POW two numbers: such a block can't be read.
+                // ADP requires a variable and POW two numbers; such a block is unreadable.
                 (!matches!(name, Function::Adp | Function::Pow)).then(|| function(name, x, self.settings))
             }
             CallForm::Slash(one, other) | CallForm::Comma(one, other) => {

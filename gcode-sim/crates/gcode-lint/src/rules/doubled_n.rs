@@ -1,5 +1,6 @@
-//! A sequence number that stands twice: which of the two a jump takes depends on the control's parameters and on
-//! what it has read already.
+//! Rule: a sequence number that is defined twice.
+//!
+//! The target of a jump then depends on the control's parameters and on the blocks read so far.
 use std::collections::BTreeMap;
 
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};

@@ -1,4 +1,4 @@
-//! Two programs of one number or name: a control refuses the second when it reads it, and a run doesn't begin.
+//! Rule: two programs with the same number or name. A control refuses the second and does not start.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 
 pub(super) const NAME: &str = "doubled-program";

@@ -1,4 +1,4 @@
-//! A loop that never ends: nothing in it changes what its exits ask, or it has no exit.
+//! Rule: a loop that never ends, because no block changes its exit conditions or because it has no exit.
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::components::strongly_connected_components;
@@ -12,7 +12,7 @@ use gcode_lang::syntax::ast::{Condition, Statement};
 
 pub(super) const NAME: &str = "endless-loop";
 
-/// Variables from here on are the control's own and change by themselves.
+/// First system variable. System variables may change by themselves.
 const FIRST_SYSTEM: u32 = 1000;
 
 pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
@@ -34,7 +34,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     found
 }
 
-/// Circles that a GOTO closes, each looked at once.
+/// Finds endless cycles closed by a GOTO, each component once.
 fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let backward_target = |jump: &Jump| {
@@ -91,7 +91,7 @@ fn loop_finding(unit: &ProgramUnit<'_>, block: OpIndex) -> RuleFinding {
     }
 }
 
-/// The condition of a WHILE or of an IF … GOTO.
+/// Returns the condition of a WHILE or of an IF … GOTO.
 fn condition<'a>(unit: &'a ProgramUnit<'_>, block: OpIndex) -> Option<&'a Condition> {
     match variables::statement(&unit.blocks, block) {
         Some(Statement::While { condition, .. } | Statement::IfGoto { condition, .. }) => Some(condition),
@@ -106,7 +106,7 @@ fn never_entered(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     condition(unit, block).is_some_and(|condition| truth(condition, &Locals::ANYTHING) == Some(false))
 }
 
-/// Whether anything in a set of blocks can lead out of it.
+/// Returns true if a block of the set can lead out of it.
 fn has_exit(
     context: &CheckContext<'_>,
     unit: &ProgramUnit<'_>,
@@ -146,7 +146,7 @@ fn is_alarm(kind: &OpKind) -> bool {
     matches!(kind, OpKind::Alarm(_))
 }
 
-/// The operator is asked: M00, M01, `#3006`.
+/// Returns true if the block waits for the operator: M00, M01, `#3006`.
 fn waits_for_operator(kind: &OpKind) -> bool {
     match kind {
         OpKind::Words(words) => {
@@ -157,11 +157,11 @@ fn waits_for_operator(kind: &OpKind) -> bool {
     }
 }
 
-/// The variables that some blocks may write, with those of the programs they call.
+/// Variables that some blocks and the programs they call may write.
 #[derive(Default)]
 struct WrittenVariables {
     numbers: BTreeSet<u32>,
-    /// All from this number on.
+    /// Lowest number from which all variables may be written.
     all_from: Option<u32>,
 }
 
@@ -169,10 +169,10 @@ impl WrittenVariables {
     fn collect(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, blocks: &[OpIndex]) -> Self {
         let mut written = Self::default();
         let mut called = BTreeSet::new();
-        // A modal call acts in any block that moves.
+        // A modal call acts in every block that moves.
         let modal = unit.calls.iter().filter(|call| call.is_modal);
         for call in blocks.iter().filter_map(|block| unit.call_in(*block)).chain(modal) {
-            // A macro has locals of its own; a subprogram has its caller's.
+            // A macro has its own locals; a subprogram has its caller's.
             let first_number = if call.has_own_locals { 100 } else { 0 };
             match context.called_unit(call).map(|place| (place, &context.units[place])) {
                 Some((place, program)) if program.calls.is_empty() => {
@@ -192,7 +192,7 @@ impl WrittenVariables {
             match literal::variable(target) {
                 Some(number) if number >= reach => _ = self.numbers.insert(number),
                 Some(_) => {}
-                // Its number is computed: it may be any.
+                // A computed number may be that of any variable.
                 None => self.all_from(reach),
             }
         }
@@ -202,7 +202,8 @@ impl WrittenVariables {
         self.all_from = Some(self.all_from.map_or(number, |from| from.min(number)));
     }
 
-    /// Whether one of these is what a condition asks, or something that changes by itself.
+    /// Returns true if one of the variables occurs in the condition, or if the condition can change by
+    /// itself.
     fn changes(&self, uses: &VariableUses) -> bool {
         uses.reads_computed
             || uses.reads.iter().map(|read| read.number).any(|number| {

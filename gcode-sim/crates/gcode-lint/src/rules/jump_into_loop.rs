@@ -1,4 +1,4 @@
-//! A jump into a loop from outside: the control finds at END that no DO was passed (PS1124).
+//! Rule: a jump into a loop from outside. At END the control finds no DO and raises PS1124.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::program::{OpIndex, OpKind, Statement};
 
@@ -20,7 +20,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
     found
 }
 
-/// For each block the first and the last block of the loops it stands in, the outer ones first; at most three.
+/// Returns, for each block, the first and last blocks of its loops, outer loops first; at most three.
 fn enclosing_loops(unit: &ProgramUnit<'_>) -> Vec<Vec<(OpIndex, OpIndex)>> {
     let mut around = vec![Vec::new(); unit.program.ops().len()];
     for (first, op) in unit.program.ops().iter().enumerate() {

@@ -1,8 +1,9 @@
-//! What is of the moment, read or written while the machine may still move: macro statements run as soon as they are
-//! read, ahead of the motion before them, and #5021…, #5041…, the clocks, the signals and the codes of the block at
-//! work are those of that instant.
+//! Rule: a momentary value that is read or written while a move may be in progress.
 //!
-//! #5001… (the end of the block before) and #5061… (kept by G31) don't depend on the moment.
+//! Macro statements run as soon as they are read, ahead of the preceding move. #5021…, #5041…, clocks,
+//! signals and the codes of the executing block then have the values of that instant.
+//!
+//! #5001… (end of the preceding block) and #5061… (latched by G31) do not depend on the instant.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal;
 use crate::variables;
@@ -14,11 +15,12 @@ use gcode_lang::program::{OpIndex, OpKind, Statement, WordOperand, Words};
 
 pub(super) const NAME: &str = "live-position";
 
-/// Inputs, clocks, codes of the block at work, positions, position deviations, handle interruption, distance to go.
+/// Inputs, clocks, codes of the executing block, positions, servo deviations, handle interruption, distance
+/// to go.
 const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
     [1000..=1035, 3001..=3002, 4201..=4330, 5021..=5060, 5101..=5140, 5181..=5200];
 
-/// Outputs.
+/// Output signals.
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
 pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
@@ -28,7 +30,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         let Some(motion) = pending[block] else { continue };
         let reads = variables::block_uses(written).reads.into_iter();
         let live = reads.filter(|read| LIVE_VARIABLES.iter().any(|range| range.contains(&read.number)));
-        // One finding a block: a probe reads several axes at once.
+        // One finding per block: a probe reads several axes at once.
         if let Some(read) = live.take(1).next() {
             let number = read.number;
             let message = format!("#{number} is read while the preceding move may still be in progress");
@@ -48,7 +50,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 
 const HELP: &str = "insert a block before it that waits for the move: G53, M00 or G31";
 
-/// For each block a move that may still be under way before it, where there is one.
+/// Returns, for each block, a move that may still be in progress before it.
 fn pending_moves(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {
     let count = unit.flow.block_count();
     let mut moving = vec![None; count];
@@ -73,11 +75,11 @@ fn pending_moves(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIn
     moving
 }
 
-/// Whether a block starts a move (true) or waits for all moves before it (false).
+/// Returns true if a block starts a move, false if it waits for all preceding moves.
 fn move_effect(settings: &Settings, kind: &OpKind) -> Option<bool> {
     match kind {
         OpKind::Words(words) => of_words(settings, words),
-        // A message stops until the operator starts again.
+        // A message stops until the operator restarts.
         OpKind::Statement(Statement::Assign { target, .. }) if target.is_variable(3006) => Some(false),
         _ => None,
     }
@@ -88,17 +90,17 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
     for word in &words.list {
         match (word.letter, word.value) {
             (b'G', WordOperand::G(_, found)) => match found.row_for(settings.codes).map(|row| row.effect) {
-                // G53 waits; G31 ends where its signal comes; G04 and G10 wait on some controls.
+                // G53 waits; G31 ends at its signal; G04 and G10 wait on some controls.
                 Some(Effect::OneShot(
                     OneShot::MachineSystem | OneShot::Skip | OneShot::Dwell | OneShot::DataInput,
                 )) => return Some(false),
-                // Only sets coordinates.
+                // These codes only set coordinates.
                 Some(Effect::OneShot(OneShot::LocalSystem | OneShot::SetSystem | OneShot::PresetSystem)) => {
                     return None;
                 }
                 _ => {}
             },
-            // Coolant and spindle don't wait; what the machine's builder made of other codes nobody knows.
+            // Coolant and spindle codes do not wait; the effect of the machine builder's codes is unknown.
             (b'M', _) if !matches!(literal::word_count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => {
                 return Some(false);
             }

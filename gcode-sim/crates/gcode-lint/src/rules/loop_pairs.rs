@@ -1,5 +1,4 @@
-//! DO and END that don't pair: one of the two is missing, two loops of one number stand in one another, or two loops
-//! overlap.
+//! Rule: DO and END that do not pair: a missing partner, nested loops of one number, or overlapping loops.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Item, Statement};
@@ -14,7 +13,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         let Some((number, begins)) = read.items.iter().find_map(loop_word) else { continue };
         let word = if begins { "DO" } else { "END" };
         if !(1..=3).contains(&number) {
-            // Its DO is the fault.
+            // The fault is in its DO.
             if !begins && unpaired.contains(&number) {
                 continue;
             }
@@ -40,7 +39,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
                 let finding =
                     unit.error(NAME, block, message).label(*begun, format!("DO{inner} begins here"));
                 found.push(finding.help(format!("write END{inner} before END{number}")));
-                // Their ENDs come after this one and are no second fault.
+                // Their ENDs follow this one and are not a second fault.
                 open.extend(crossed.into_iter().skip(1));
             }
         }
@@ -53,11 +52,11 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
     found
 }
 
-/// The number of a loop, and whether it begins here.
+/// Returns the number of a loop and true if it begins in this item.
 fn loop_word(item: &Item) -> Option<(i64, bool)> {
     let statement = match item {
         Item::Statement(statement) => statement,
-        // `WHILE(#1 GT 0)DO1` has a fault of its own; its END has none.
+        // `WHILE(#1 GT 0)DO1` has its own fault; its END has none.
         Item::Unreadable(unreadable) => {
             return unreadable_loop_number(&unreadable.text).map(|number| (number, true));
         }
@@ -70,7 +69,7 @@ fn loop_word(item: &Item) -> Option<(i64, bool)> {
     }
 }
 
-/// The number behind the DO of a WHILE that can't be read.
+/// Returns the number after the DO of an unreadable WHILE.
 fn unreadable_loop_number(text: &[u8]) -> Option<i64> {
     let text: Vec<u8> =
         text.iter().filter(|b| !b.is_ascii_whitespace()).map(u8::to_ascii_uppercase).collect();

@@ -1,5 +1,7 @@
-//! A macro call without a letter that the macro needs: without it every way through the macro ends in its #3000, or
-//! the macro reckons with the vacant variable.
+//! Rule: a macro call without a required argument.
+//!
+//! Without the argument every path through the macro ends in its #3000, or the macro computes with a vacant
+//! variable.
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
@@ -34,15 +36,15 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     found
 }
 
-/// What comes of a letter that isn't there, in a sentence.
+/// Effect of a missing argument, as a sentence.
 enum MissingArgumentEffect {
     /// The macro stops with its alarm.
     Alarm(String),
-    /// The macro reckons with 0, which may even be meant.
+    /// The macro computes with 0, which may be intended.
     DefaultsToZero(String),
 }
 
-/// What a macro lacks, letter by letter.
+/// Returns the effects of a call's missing arguments.
 fn missing_argument_effects(
     context: &CheckContext<'_>,
     called: &ProgramUnit<'_>,
@@ -56,7 +58,7 @@ fn missing_argument_effects(
     missing.iter().for_each(|(local, _)| filled.0[*local] = NUMBER);
     let mut effects = Vec::new();
     let mut reported = BTreeSet::new();
-    // Letters that belong together may all be left out where each alone is refused.
+    // Arguments that depend on each other may be omitted together even if each is required with the others.
     let can_alarm = unavoidable_alarm(context, called, &states(called, entry)).is_some();
     for (local, letter) in missing.iter().filter(|_| can_alarm) {
         let mut without = filled;
@@ -71,7 +73,7 @@ fn missing_argument_effects(
             effects.push(MissingArgumentEffect::Alarm(message));
         }
     }
-    // Beyond a refusal nothing is read, and a modal macro may find what its last pass left.
+    // After a refusal no variable is read, and a modal macro may use values of its last call.
     if !effects.is_empty() || modal {
         return effects;
     }
@@ -88,11 +90,11 @@ fn missing_argument_effects(
     effects
 }
 
-/// The alarm that every way through a program ends in; `None` where it can end otherwise.
+/// Returns the alarm that every path through a program ends in; `None` if one path ends otherwise.
 fn unavoidable_alarm(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, states: &States) -> Option<String> {
     let ops = unit.program.ops();
     let mut first = None;
-    // One past the last block is the program's end.
+    // One past the last block is the end of the program.
     if states[ops.len()].is_some() {
         return None;
     }
@@ -113,7 +115,7 @@ fn unavoidable_alarm(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, states:
     first.map(|block| alarm_text(context, unit, block))
 }
 
-/// `MC3007 (R MISSING)`.
+/// Returns the alarm as in messages, `MC3007 (R MISSING)`.
 fn alarm_text(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> String {
     let written = &unit.blocks[block];
     let number =
@@ -153,7 +155,7 @@ mod tests {
         assert_eq!(call("").len(), 2, "R and D; F is not looked at before they are there");
     }
 
-    /// A ball needs neither K nor Q, a nose of arcs both.
+    /// A ball requires neither K nor Q, a nose of arcs both.
     #[test]
     fn letters_that_belong_together_may_both_be_left_out() {
         let arcs = "O2\nIF[[#6 EQ #0]AND[#17 EQ #0]]GOTO 20\nIF[#6 LE 0]THEN #3000=1(K MISSING)\n\

@@ -1,4 +1,4 @@
-//! A feed move before any F, whichever way the program has taken: PS0011.
+//! Rule: a feed move that no F precedes on any path, PS0011.
 use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::g_codes::Effect;
@@ -12,7 +12,7 @@ pub(super) const NAME: &str = "missing-feed";
 const FEEDS: [u32; 3] = [10, 20, 30];
 
 pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    // Whoever calls a program may have set it before.
+    // The caller of a program may have set the feed.
     if unit.role != Role::Main {
         return Vec::new();
     }
@@ -27,10 +27,10 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     found
 }
 
-/// Whether some way to each block may have passed an F; `None` where no way leads to it.
+/// Returns, for each block, whether some path to it may have an F; `None` for an unreachable block.
 fn feed_before(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<bool>> {
     let mut fed: Vec<Option<bool>> = vec![None; unit.flow.block_count()];
-    // Where a call with Q starts, anything may have been before.
+    // Any block may precede the start of a call with Q.
     let mut open: Vec<(OpIndex, bool)> =
         unit.entry_blocks.iter().enumerate().map(|(nth, start)| (*start, nth > 0)).collect();
     while let Some((block, before)) = open.pop() {
@@ -46,7 +46,7 @@ fn feed_before(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option
     fed
 }
 
-/// Whether a block has an F, or calls what may have one.
+/// Returns true if a block has an F or calls a program that may have one.
 fn may_set_feed(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     let sets_feed = match unit.op(block).kind() {
         OpKind::Words(words) => has_feed_word(words),
@@ -58,7 +58,7 @@ fn may_set_feed(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpInd
         || match called {
             None => false,
             Some(None) => true,
-            // What it calls in its turn is not looked at: it may.
+            // Its own calls are not followed; they may have an F.
             Some(Some(called)) => {
                 let called = &context.units[called];
                 let written =
@@ -72,7 +72,7 @@ fn has_feed_word(words: &Words) -> bool {
     words.list.iter().any(|word| word.letter == b'F')
 }
 
-/// G01, G02 or G03 with an axis, and no other code that would take the axis words.
+/// Returns true for G01, G02 or G03 with an axis, without another code that uses the axis words.
 fn is_feed_move(context: &CheckContext<'_>, words: &Words) -> bool {
     let axis = words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
     let mut feeds = false;

@@ -1,4 +1,4 @@
-//! Jumps to a sequence number that isn't there: PS0128 at GOTO, PS0078 at M99 P.
+//! Rule: a jump to a sequence number that is not defined, PS0128 at GOTO and PS0078 at M99 P.
 use crate::calls::CalledProgramName;
 use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 

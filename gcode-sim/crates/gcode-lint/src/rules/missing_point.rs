@@ -1,7 +1,7 @@
-//! A missing decimal point: on a control without calculator-type input `Z-3` is 0.003 mm.
+//! Rule: a missing decimal point. Without calculator-type input `Z-3` is 0.003 mm.
 //!
-//! Programs that count in increments throughout (`X45000`) are left alone: they have no points, and numbers of 1 mm
-//! and more.
+//! Programs that count in increments throughout (`X45000`) are exempt: they have no decimal point, and a
+//! number of 1 mm or more.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal::without_point;
 use crate::parameters;
@@ -11,9 +11,9 @@ use gcode_lang::syntax::ast::Decimal;
 
 pub(super) const NAME: &str = "missing-point";
 
-/// Cycles whose Q is a length: G73, G76, G83, G87. Older controls take no point there.
+/// Cycles whose Q is a length: G73, G76, G83, G87. Older controls accept no decimal point there.
 const WITH_Q: [u32; 4] = [730, 760, 830, 870];
-/// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
+/// Number of increments from which a peck or a dwell may be intended: many programs write `G4 X500`.
 const MIN_INTENDED_INCREMENTS: u64 = 100;
 
 pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
@@ -54,20 +54,20 @@ fn has(words: &Words, codes: &[u32]) -> bool {
     words.list.iter().any(|word| matches!(word.value, WordOperand::G(code, _) if codes.contains(&code)))
 }
 
-/// The words of a block that are lengths, angles or seconds.
+/// Iterates over the words of a block that are lengths, angles or seconds.
 fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a LoweredWord> {
     let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
-    // The letters of a macro call that a control scales: all but D E F H M S T.
+    // The arguments of a macro call that a control scales: all but D E F H M S T.
     let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
     let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
-    // K of a drilling cycle counts repetitions, and arcs have it with I or J or alone: a small K is left alone.
+    // K of a drilling cycle counts repeats; it is a length only in an arc or with I or J.
     plain.filter(move |word| word.letter != b'K' || !is_drilling(words)).chain(scaled)
 }
 
 fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
     let axis = settings.axes.find(word.letter).is_some();
     match word.letter {
-        // Look-ahead.
+        // G05.1: the words select lookahead functions.
         _ if has(words, &[51]) => false,
         letter if has(words, &[40]) => matches!(letter, b'X' | b'U'),
         letter if has(words, &[100]) => match parameters::data_input_kind(words) {
@@ -89,7 +89,9 @@ fn is_drilling(words: &Words) -> bool {
     !arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'))
 }
 
-/// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
+/// Returns true for a program that counts in increments on purpose.
+///
+/// Such a program has no decimal point and at least one number of 1 mm or more.
 fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
     let mut large = false;
     for words in unit.program.ops().iter().filter_map(|op| block_words(op.kind())) {
@@ -111,7 +113,7 @@ fn spelled(letter: u8, number: Decimal) -> String {
     format!("{}{sign}{}", char::from(letter), number.digits)
 }
 
-/// `0.003 mm`.
+/// Returns the value of a number with its unit, `0.003 mm`.
 fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
     let is_angle = match letter {
         b'A' | b'B' | b'C' => true,

@@ -1,4 +1,4 @@
-//! The rules: a file each, a line each in [`ALL`].
+//! Rules of the checker, one file and one row of [`ALL`] each.
 mod constant_alarm;
 mod doubled_n;
 mod doubled_program;
@@ -31,16 +31,16 @@ use gcode_lang::diag::Diagnostic;
 use super::context::{CheckContext, ProgramUnit, RuleFinding};
 use super::suppression::Suppressions;
 
-/// One thing that can be wrong with a program.
+/// Rule of the checker.
 pub struct Rule {
-    /// The code of its findings, and the name in `(CHECK-OFF NAME)`.
+    /// Code of the findings, and the name in `(CHECK-OFF NAME)`.
     pub name: &'static str,
-    /// What it finds, in a line.
+    /// Fault found by the rule, in one line.
     pub summary: &'static str,
     find: fn(&CheckContext<'_>, &ProgramUnit<'_>) -> Vec<RuleFinding>,
 }
 
-/// All rules in the order their findings of one block are told.
+/// All rules, in the order of their findings for one block.
 #[rustfmt::skip]
 pub const ALL: &[Rule] = &[
     Rule { name: unreadable::NAME, summary: "a block that raises an alarm as it is read", find: unreadable::find },
@@ -71,15 +71,15 @@ pub const ALL: &[Rule] = &[
     Rule { name: unknown_check::NAME, summary: "CHECK-OFF with a name that is not a rule", find: unknown_check::find },
 ];
 
-/// The name of the rule about numbers without a point.
+/// Name of the rule about numbers without a decimal point.
 pub const MISSING_POINT: &str = missing_point::NAME;
 
-/// The names of all rules.
+/// Returns the names of all rules.
 pub(super) fn names() -> Vec<&'static str> {
     ALL.iter().map(|rule| rule.name).collect()
 }
 
-/// What all rules find, the silenced left out: program by program, block by block.
+/// Returns the findings of all rules except the suppressed ones, by program and block.
 pub(super) fn findings(context: &CheckContext<'_>) -> Vec<Diagnostic> {
     let mut all = Vec::new();
     for unit in &context.units {
@@ -94,14 +94,14 @@ pub(super) fn findings(context: &CheckContext<'_>) -> Vec<Diagnostic> {
 
 #[cfg(test)]
 pub(super) mod testing {
-    //! Runs all rules over a program and tells what one of them finds.
+    //! Runs all rules on a program and returns the findings of one.
     use crate::check;
     use gcode_lang::control::Settings;
     use gcode_lang::program::NoLibrary;
 
     pub(crate) const NOWHERE: [u32; 0] = [];
 
-    /// The lines, counted from 1, that a rule finds something in.
+    /// Returns the line numbers of a rule's findings, counted from 1.
     pub(crate) fn lines(rule: &str, text: &str) -> Vec<u32> {
         let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
         let of_rule = checked.findings.iter().filter(|f| f.code == rule);
@@ -110,7 +110,7 @@ pub(super) mod testing {
             .collect()
     }
 
-    /// The messages of a rule.
+    /// Returns the messages of a rule's findings.
     pub(crate) fn messages(rule: &str, text: &str) -> Vec<String> {
         let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
         checked.findings.into_iter().filter(|f| f.code == rule).map(|f| f.message).collect()

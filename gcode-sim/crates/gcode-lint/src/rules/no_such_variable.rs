@@ -1,4 +1,4 @@
-//! A variable that the control doesn't have (PS0115), can't write (PS0116) or can't read (PS1115).
+//! Rule: a variable that does not exist (PS0115) or that cannot be written (PS0116) or read (PS1115).
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::{literal, variables};
 use gcode_control::static_eval::VariableTable;
@@ -13,7 +13,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
         let mut report = |alarm: LocatedAlarm| {
-            // What a run here lacks is no fault of the program.
+            // A limit of the simulator is not a fault of the program.
             if !matches!(alarm.node, Alarm::NotSimulated { .. }) {
                 found.push(finding(context, unit, NAME, index, &alarm));
             }
@@ -39,7 +39,7 @@ mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
     use super::NAME;
 
-    /// Locals are #1 to #33; #5021 on are positions; #3000 is written and not read.
+    /// Locals are #1 to #33; #5021 and up are positions; #3000 is write-only.
     #[test]
     fn what_is_not_there_or_not_for_that() {
         let text = "O1\n#34=1\n#5021=5\n#4001=1\n#0=1\n#1=#99\nG0 X#450\n#1=#3000\n#[30+4]=1\nM30\n";

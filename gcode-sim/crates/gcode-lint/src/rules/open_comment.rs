@@ -1,4 +1,5 @@
-//! A comment that isn't closed: what stands behind it on the line is comment too, and some controls refuse the line.
+//! Rule: a comment that is not closed. The rest of its line is comment too, and some controls refuse the
+//! line.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::syntax::ast::CommentMark;
 

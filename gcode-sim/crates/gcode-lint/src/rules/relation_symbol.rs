@@ -1,4 +1,4 @@
-//! `=`, `<` and `>` in a condition: a control compares with EQ, NE, LT, LE, GT and GE.
+//! Rule: `=`, `<` or `>` in a condition instead of EQ, NE, LT, LE, GT or GE.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 

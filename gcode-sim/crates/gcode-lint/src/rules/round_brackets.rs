@@ -1,4 +1,4 @@
-//! `(` where `[` was meant: to a control round brackets are a comment, and what stands in them is gone.
+//! Rule: `(` instead of `[`. Round brackets are a comment, so their content has no effect.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 

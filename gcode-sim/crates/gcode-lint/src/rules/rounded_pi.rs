@@ -1,4 +1,5 @@
-//! A rounded π as a factor: on the circumference of a cylinder 3.14 leaves half a millimetre in a thousand over.
+//! Rule: a rounded π as a factor. With 3.14 the circumference of a 300 mm cylinder is half a millimetre
+//! short.
 use std::f64::consts::PI;
 
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
@@ -9,9 +10,9 @@ use gcode_lang::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind};
 
 pub(super) const NAME: &str = "rounded-pi";
 
-/// Nobody means a number this near by anything but π: 22/7 is 0.0013 off.
+/// Numbers this close to π are meant as π; 22/7 differs by 0.0013.
 const PI_TOLERANCE: f64 = 0.002;
-/// Six digits behind the point are exact enough: on a metre of diameter 1 µm.
+/// Six decimals are exact enough: 1 µm on a diameter of 1 m.
 const PI_PRECISION: f64 = 1e-6;
 
 pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
@@ -37,7 +38,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
     found
 }
 
-/// The factors and divisors that are nearly π.
+/// Collects the factors and divisors that are nearly π.
 fn collect_factors(expr: &Expr, found: &mut Vec<(f64, Span)>) {
     match &expr.kind {
         ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, left, right) => {

@@ -1,4 +1,5 @@
-//! More M codes in a block than the control takes: the last counts and the others are lost, or it alarms.
+//! Rule: more M codes in a block than the control accepts. Only the last counts, or the block raises an
+//! alarm.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal;
 use gcode_lang::alarm::Alarm;
@@ -16,7 +17,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         let OpKind::Words(words) = op.kind() else { continue };
         let mut kept = Vec::new();
         for word in words.list.iter().filter(|word| word.letter == b'M') {
-            // A code that calls a macro is none of the control's.
+            // A code that calls a macro is not an M code of the control.
             let code =
                 literal::word_count(word).filter(|code| settings.code_calls.find_call(b'M', *code).is_none());
             let Some(code) = code else { continue };

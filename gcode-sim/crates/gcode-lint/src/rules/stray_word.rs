@@ -1,4 +1,5 @@
-//! A word that no block of this control takes: `X10., Y5.` (PS0053), `X1E3` and axes that it doesn't have (PS0009).
+//! Rule: a word that no block of this control accepts: `X10., Y5.` (PS0053), `X1E3` and missing axes
+//! (PS0009).
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::g_codes::{Effect, OneShot};
@@ -41,7 +42,7 @@ fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Optio
         })
     };
     if word.comma {
-        // ,A is for the drawing's angles, which a run here doesn't execute.
+        // `,A` is an angle of direct drawing dimension programming, which the simulator does not execute.
         return (!matches!(word.letter, b'R' | b'C' | b'A')).then_some(Alarm::CornerWords);
     }
     let refused = match word.letter {

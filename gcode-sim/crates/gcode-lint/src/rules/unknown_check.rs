@@ -1,4 +1,4 @@
-//! `(CHECK-OFF NAME)` with a name that no rule has: it silences nothing, and its author believes it does.
+//! Rule: `(CHECK-OFF NAME)` with a name that is not a rule, which suppresses nothing.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::suppression::Suppressions;
 

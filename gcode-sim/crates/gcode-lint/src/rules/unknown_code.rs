@@ -1,5 +1,6 @@
-//! G codes that the control doesn't have; as a note, M codes that only the machine's builder knows and codes that
-//! a run doesn't execute.
+//! Rule: a G code that the control does not have.
+//!
+//! Notes report M codes of the machine builder and codes that are not simulated.
 use std::collections::BTreeSet;
 
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
@@ -35,7 +36,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     found
 }
 
-/// What is wrong with a code, and whether the control would surely alarm.
+/// Returns name, message and certainty of a fault; only a certain one raises an alarm.
 fn describe_code(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, String, bool)> {
     match (word.letter, word.value) {
         (b'G', WordOperand::G(code, found)) => {

@@ -1,4 +1,4 @@
-//! Blocks that nothing reaches: behind M30, M99, GOTO or a #3000 without a number that something jumps to.
+//! Rule: blocks that are never reached: after M30, M99, GOTO or #3000, without a jump to them.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control_flow::raises_alarm;
 use gcode_lang::program::{OpIndex, OpKind, Statement};
@@ -15,8 +15,8 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             continue;
         }
         let end = (block..ops.len()).find(|next| unit.is_reached[*next]).unwrap_or(ops.len());
-        // Comments and numbers alone do nothing, an end behind an end or an alarm neither; an alarm that is lost is
-        // told by its own rule.
+        // Comments and numbers alone have no effect, nor has an end after an end or an alarm; an unreachable
+        // alarm has its own rule.
         let missed: Vec<_> = (block..end).filter(|b| !is_harmless(unit, *b)).collect();
         if let (Some(first), Some(last)) = (missed.first(), missed.last()) {
             let line = |block: usize| context.memory.sources().line_column(ops[block].span).line;
@@ -33,13 +33,13 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     found
 }
 
-/// What isn't missed where nothing reaches it.
+/// Returns true for a block whose loss is no fault.
 fn is_harmless(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     let kind = unit.op(block).kind();
     match kind {
         OpKind::Empty => true,
         OpKind::Words(words) => unit.flow.block_successors[block].is_exit && words.list.len() <= 1,
-        // A loop that is always left on the way needs its END all the same.
+        // A loop that is always left by a jump still requires its END.
         OpKind::Statement(Statement::End { start, .. }) => unit.is_reached[*start],
         _ => raises_alarm(kind),
     }

@@ -1,4 +1,4 @@
-//! A #3000 that can't be reached: the check that its author relies on never happens.
+//! Rule: a #3000 that is never reached, so that the test it belongs to has no effect.
 use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 use crate::control_flow::raises_alarm;
 use crate::vacancy::{Locals, states, truth};
@@ -8,7 +8,7 @@ use gcode_lang::syntax::ast::Statement;
 pub(super) const NAME: &str = "unreachable-alarm";
 
 pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    // A called program must stand for all calls, not only those seen here.
+    // The result must hold for all calls of a program, also those outside the check.
     let entry = if unit.role == Role::Main { Locals::UNSET } else { Locals::ANYTHING };
     let states = states(unit, entry);
     let mut found = Vec::new();

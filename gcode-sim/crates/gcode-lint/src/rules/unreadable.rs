@@ -1,4 +1,4 @@
-//! Blocks that stop the control as soon as it reads them: text it can't read, words that can't stand together.
+//! Rule: a block that raises an alarm as it is read: unreadable text, or words that exclude each other.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control_flow::is_loop_alarm;
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
@@ -15,7 +15,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     found
 }
 
-/// The blocks that something reaches and that are written in a way this control doesn't take.
+/// Iterates over the reachable blocks with syntax that this control refuses.
 pub(super) fn refused_blocks<'a>(
     context: &'a CheckContext<'_>,
     unit: &'a ProgramUnit<'_>,
@@ -27,7 +27,7 @@ pub(super) fn refused_blocks<'a>(
     })
 }
 
-/// The blocks that raise an alarm as they are read and that something reaches.
+/// Iterates over the reachable blocks that raise an alarm as they are read.
 pub(super) fn alarm_blocks<'a>(unit: &'a ProgramUnit<'_>) -> impl Iterator<Item = (usize, &'a LocatedAlarm)> {
     unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]).filter_map(
         |(block, op)| match op.kind() {
@@ -46,7 +46,7 @@ fn has_own_rule(alarm: &Alarm) -> bool {
         || matches!(alarm, Alarm::RoundBrackets { .. } | Alarm::RelationSymbol | Alarm::ImproperGCode { .. })
 }
 
-/// An alarm as a finding: its number, its sentence, its remedy.
+/// Converts an alarm to a finding with its number, sentence and remedy.
 pub(super) fn finding(
     context: &CheckContext<'_>,
     unit: &ProgramUnit<'_>,

@@ -1,4 +1,4 @@
-//! A local variable that is read before anything has set it: its word disappears, or it counts as 0.
+//! Rule: a local variable that is read before it is set. Its word is ignored, or it counts as 0.
 use std::collections::BTreeMap;
 
 use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
@@ -21,12 +21,12 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         Role::Called => {
             for (caller, site) in &unit.callers {
                 let call = &context.units[*caller].calls[*site];
-                // A subprogram has its caller's locals, and a modal call keeps its own from call to call.
+                // A subprogram has its caller's locals, and a modal call keeps its own between calls.
                 if !call.has_own_locals || call.is_modal {
                     return Vec::new();
                 }
                 let states = states(unit, entry_locals(call));
-                // What a letter could have set is told at the call.
+                // The rule `missing-argument` reports locals that an argument can set.
                 unset.extend(
                     unset_reads(unit, &states)
                         .filter(|((_, local), _)| argument_letter(*local as usize).is_none()),

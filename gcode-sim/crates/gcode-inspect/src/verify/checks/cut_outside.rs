@@ -19,7 +19,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             }
             let tool = cut.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
             let message = format!(
-                "hole {}: a pass before the finishing one{tool} is out of position by {aside:.4} mm, limit \
+                "hole {}: an earlier pass{tool} is out of position by {aside:.4} mm, limit \
                  {allowed:.4}",
                 comparison.id(pair.nominal)
             );

@@ -1,4 +1,4 @@
-//! Expressions lowered to postfix code.
+//! Lowering of expressions to bytecode.
 use super::Lowering;
 use crate::alarm::{Alarm, LocatedAlarm};
 use crate::program::DialectSyntax;
@@ -10,20 +10,20 @@ use crate::program::names::{self, OTHER_MEMORIES};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, OperatorSpelling};
 
-/// How deep brackets may stand in one another (operator's manual, custom macro: five levels).
+/// Deepest nesting of brackets (operator's manual, custom macro: five levels).
 pub(in crate::program) const MAX_BRACKETS: usize = 5;
 
 const LAST: OperandSource = OperandSource::Computed(ComputedSource::Last);
 const WAITING: OperandSource = OperandSource::Computed(ComputedSource::Waiting);
 
-/// Beyond it no number is a variable's.
+/// Largest number of a variable.
 const MAX_VARIABLE_NUMBER: f64 = 999_999_999.0;
 
-/// What an expression stands in.
+/// Context of an expression.
 #[derive(Clone, Copy)]
 pub(in crate::program) enum ExprContext {
     Macro,
-    /// The value of an address.
+    /// Value of this address.
     Address(u8),
 }
 
@@ -47,7 +47,7 @@ impl Lowering {
         self.compile(expr.span, |this| this.compile_expr(expr, context, 0)).map(Operand::Code)
     }
 
-    /// The value of a word, whose own sign is no part of an expression.
+    /// Lowers the value of a word; its own sign is not part of the expression.
     pub(in crate::program) fn word_value(&mut self, expr: &Expr, letter: u8) -> LoweringResult<Operand> {
         let context = ExprContext::Address(letter);
         let ExprKind::Negate(inner) = &expr.kind else { return self.operand(expr, context) };
@@ -82,7 +82,7 @@ impl Lowering {
         self.instructions.push(Instruction { operation: operation.into(), span });
     }
 
-    /// Writes the code of `expr`; the answer is how many values it needs on the stack at once.
+    /// Emits the code of `expr` and returns the stack depth it needs.
     fn compile_expr(&mut self, expr: &Expr, context: ExprContext, brackets: usize) -> LoweringResult<usize> {
         let (source, depth) = self.compile_source(expr, context, brackets)?;
         if source != LAST {
@@ -91,8 +91,10 @@ impl Lowering {
         Ok(depth)
     }
 
-    /// Where an operator finds the value of `expr`, and how many places on the stack it needs at once. Only what has
-    /// to be computed gets code, and what may alarm, so that the first alarm stays the first.
+    /// Returns the source of the value of `expr` and the stack depth it needs.
+    ///
+    /// Emits code only for computed values and for reads that may raise an alarm, so that the first alarm
+    /// stays the first.
     fn compile_source(
         &mut self,
         expr: &Expr,
@@ -124,7 +126,7 @@ impl Lowering {
         self.compile_computed(expr, context, brackets).map(|depth| (LAST, depth))
     }
 
-    /// The sources of an operator's two values. The second may have to wait for the first.
+    /// Returns the sources of an operator's two values. The first is pushed if both are computed.
     fn compile_sources(
         &mut self,
         [left, right]: [&Expr; 2],
@@ -142,7 +144,7 @@ impl Lowering {
         Ok(([left_source, right_source], left_depth.max(right_depth + 1)))
     }
 
-    /// Writes the code of what is no number and no variable.
+    /// Emits the code of an expression other than a number or a variable.
     fn compile_computed(
         &mut self,
         expr: &Expr,
@@ -259,11 +261,11 @@ impl Lowering {
         }
     }
 
-    /// The variable that an assignment writes.
+    /// Lowers the left side of an assignment.
     pub(in crate::program) fn compile_target(&mut self, target: &Expr) -> LoweringResult<AssignmentTarget> {
         match &target.kind {
             ExprKind::Variable(index) => match self.operand(index, ExprContext::Macro)? {
-                // The nearest whole number, as of any index.
+                // The nearest whole number, as for any index.
                 Operand::Number(number) if (0.0..=MAX_VARIABLE_NUMBER).contains(&number.round()) => {
                     Ok(AssignmentTarget::Slot(Slot::of(number.round() as u32)))
                 }
@@ -277,7 +279,7 @@ impl Lowering {
         }
     }
 
-    /// The number of a named variable.
+    /// Emits the code for the number of a named variable.
     fn compile_named(&mut self, name: &Name, span: Span, brackets: usize) -> LoweringResult<usize> {
         let text = || name.text.clone();
         self.record_syntax(DialectSyntax::NewWord("[#NAME]"), span);
@@ -302,8 +304,9 @@ impl Lowering {
         Ok(depth)
     }
 
-    /// `#5`: a variable whose number is written out. `#5.4` is #5, as any number used as an integer, unless the control
-    /// means a bit by it.
+    /// Returns the number of a variable with a literal number, `#5`.
+    ///
+    /// `#5.4` is #5, as any number used as an integer is rounded, unless the control reads it as a bit.
     fn literal_index(&mut self, index: &Expr) -> Option<u32> {
         let ExprKind::Literal(number) = index.kind else { return None };
         let value = number.value();
@@ -341,7 +344,7 @@ impl Lowering {
     }
 }
 
-/// Functions that controls with few of them lack.
+/// Returns the name of a function outside the basic set, `None` for any other.
 fn extended_function_name(function: Function) -> Option<&'static str> {
     Some(match function {
         Function::Fup => "FUP",

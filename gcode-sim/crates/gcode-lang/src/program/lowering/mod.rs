@@ -1,4 +1,4 @@
-//! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
+//! Lowering of blocks: tree to operations. A block that cannot run becomes the alarm it raises when reached.
 mod expr;
 
 use super::bytecode::{AssignmentTarget, Bytecode, Instruction, Slot};
@@ -8,30 +8,30 @@ use crate::source::{Span, Spanned};
 use crate::syntax::ast;
 pub(super) use expr::ExprContext;
 
-/// Skips inside one block: as many as there are switches.
+/// Most skips inside one block, one per switch.
 const MAX_INNER_SKIPS: usize = 9;
 
-/// What is at hand while blocks are lowered.
+/// State of lowering.
 #[derive(Debug, Default)]
 pub(super) struct Lowering {
-    /// The code of the expression at hand.
+    /// Code of the current expression.
     pub(super) instructions: Vec<Instruction>,
-    /// What the words of the block at hand compute, and the numbers of their axes.
+    /// Code of the current block's words, and the numbers of their axes.
     pub(super) codes: Vec<Bytecode>,
     pub(super) axes: Vec<Operand>,
-    /// What the block at hand has that not every control takes.
+    /// Syntax of the current block that some controls refuse.
     dialect_syntax: Vec<Spanned<DialectSyntax>>,
 }
 
 type LoweringResult<T> = Result<T, LocatedAlarm>;
 
 impl Lowering {
-    /// Notes a way of writing for the block at hand.
+    /// Records such syntax for the current block.
     pub(super) fn record_syntax(&mut self, form: DialectSyntax, span: Span) {
         self.dialect_syntax.push(Spanned::new(form, span));
     }
 
-    /// A block; `small` is the first of its letters in lower case, as [`lower_case`] finds it.
+    /// Lowers a block; `small` starts at its first lower-case letter, as returned by [`lower_case`].
     pub(super) fn lower_block(&mut self, block: &ast::Block, small: Option<Span>) -> Op {
         if let Some(span) = small {
             self.record_syntax(DialectSyntax::LowerCase, span);
@@ -90,7 +90,7 @@ impl Lowering {
         }
         match (statement, words == 0) {
             (Some(_), false) => Err(Alarm::MixedStatements.located_at(block.span)),
-            // What a control does with a /n behind a statement is not known; it must not be read over.
+            // The effect of /n after a statement on a control is unknown, so it must not be ignored.
             (Some(_), true) if !skips.is_empty() => Err(Alarm::MixedStatements.located_at(block.span)),
             (Some(found), true) => match self.lower_statement(&found.node, found.span, block)? {
                 Statement::AssignFree(compute) => Ok(OpKind::AssignFree(compute)),
@@ -112,7 +112,7 @@ impl Lowering {
         }
     }
 
-    /// A block of nothing but assignments, two or more.
+    /// Lowers a block of two or more assignments and nothing else; `None` for any other block.
     fn lower_assignments(&mut self, block: &ast::Block) -> LoweringResult<Option<Statement>> {
         let [_, second, ..] = &block.items[..] else { return Ok(None) };
         let ast::Item::Statement(second) = second else { return Ok(None) };
@@ -219,20 +219,22 @@ impl Lowering {
     }
 }
 
-/// A double as a control punches it.
+/// Reads sixteen hexadecimal digits, the form in which a control punches a double.
 fn sixteen_digits(text: &[u8]) -> Option<u64> {
     let text = std::str::from_utf8(text).ok()?.trim();
     let hexadecimal = text.len() == 16 && text.bytes().all(|b| b.is_ascii_hexdigit());
     hexadecimal.then(|| u64::from_str_radix(text, 16).ok()).flatten()
 }
 
-/// The first letter in lower case outside comments, and what follows it. What can't be read has an alarm of its own.
+/// Returns the place from the first lower-case letter outside comments to the end of the block.
+///
+/// `None` without one, and for an unreadable block, which has its own alarm.
 pub(super) fn lower_case(block: &ast::Block, bytes: &[u8]) -> Option<Span> {
     if matches!(block.items.last(), Some(ast::Item::Unreadable(_))) {
         return None;
     }
     let written = bytes.get(block.span.start as usize..block.span.end as usize)?;
-    // Most blocks have none at all.
+    // Most blocks have no lower-case letter at all.
     if !written.iter().fold(false, |any, byte| any | byte.is_ascii_lowercase()) {
         return None;
     }

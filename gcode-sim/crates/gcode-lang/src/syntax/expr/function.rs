@@ -1,4 +1,4 @@
-//! Functions and what else has a name: `SIN[…]`, `ATAN[a]/[b]`, `PRM[n,bit]`, `[#_ABSMT[1]]`.
+//! Reader of functions and named values: `SIN[…]`, `ATAN[a]/[b]`, `PRM[n,bit]`, `[#_ABSMT[1]]`.
 use nom::Parser;
 use nom::combinator::opt;
 use nom::sequence::{pair, preceded};
@@ -12,7 +12,7 @@ use crate::syntax::token::{
 };
 
 impl Function {
-    /// Names as written in full; all but POW may be cut to their first two letters or more.
+    /// Full names. All but POW may be abbreviated to two letters or more.
     pub(in crate::syntax) const ALL: [(&'static str, Self); 17] = [
         ("SIN", Self::Sin),
         ("COS", Self::Cos),
@@ -38,7 +38,7 @@ impl Function {
     }
 }
 
-/// A function with its brackets. The input begins with a letter.
+/// Reads a function with its brackets. The input begins with a letter.
 pub(in crate::syntax) fn call(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     if let (rest, 3) = letters(input, "PRM") {
         return parameter(line, input, rest, depth);
@@ -72,7 +72,7 @@ pub(in crate::syntax) fn call(line: LineInput, input: Input<'_>, depth: u8) -> R
 
 type Arguments = (Box<Expr>, Option<Box<Expr>>);
 
-/// `[a]` or `[a,b]`.
+/// Reads `[a]` or `[a,b]`.
 fn arguments(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Arguments> {
     let Some((b'[', inside)) = next(input) else {
         if comment_before(input) {
@@ -87,7 +87,7 @@ fn arguments(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Arg
     Ok((rest, (Box::new(first), second.map(Box::new))))
 }
 
-/// `/[b]`, which belongs to the function before it.
+/// Reads `/[b]`, the second argument of the function before it.
 fn divided_by(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Option<Box<Expr>>> {
     match next(input) {
         Some((b'/', after)) if matches!(next(after), Some((b'[', _))) => {
@@ -100,14 +100,14 @@ fn divided_by(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Op
     }
 }
 
-/// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
+/// Reads the rest of `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]` or `PRM[n,bit]/[axis]`.
 fn parameter<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> ReadResult<'a, Expr> {
     let (rest, (number, bit)) = arguments(line, after, depth)?;
     let (rest, axis) = divided_by(line, rest, depth)?;
     Ok((rest, Expr { kind: ExprKind::Parameter { number, bit, axis }, span: line.span(input, rest) }))
 }
 
-/// `AXNUM[X]`.
+/// Reads the rest of `AXNUM[X]`.
 fn axis_number<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> ReadResult<'a, Expr> {
     let Some((b'[', inside)) = next(after) else {
         return fail(spaces(after), Alarm::MissingOpenBracket);
@@ -123,13 +123,13 @@ fn axis_number<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u
     }
 }
 
-/// `[#_` or `[#A`.
+/// Returns true at `[#_` or `[#A`, the start of a variable name.
 pub(in crate::syntax) fn is_name(input: Input<'_>) -> bool {
     let begins = |rest| next(rest).is_some_and(|(b, _)| b.is_ascii_alphabetic() || b == b'_');
     matches!(next(input), Some((b'[', rest)) if matches!(next(rest), Some((b'#', rest)) if begins(rest)))
 }
 
-/// `[#NAME]`, `[#NAME[n]]`; [`is_name`] holds.
+/// Reads `[#NAME]` or `[#NAME[n]]`. The input satisfies [`is_name`].
 pub(in crate::syntax) fn named(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     let depth = increase_depth(input, depth)?;
     let (start, ()) = preceded(sign(b'['), sign(b'#')).parse(input)?;

@@ -1,7 +1,7 @@
-//! Expressions and conditions in one pass: brackets, and operators in their three levels.
+//! Reader of expressions and conditions in one pass: brackets, and operators in their three levels.
 //!
-//! `[…]` may hold a number or a condition, which only its end tells, so both are read as [`ExprOrCondition`] and told apart
-//! where one of them is wanted. Nothing is read twice.
+//! `[…]` holds a number or a condition; only its end tells which. Both are read as [`ExprOrCondition`] and
+//! separated where one of them is required, so that nothing is read twice.
 mod function;
 
 use nom::Parser;
@@ -18,25 +18,28 @@ use crate::alarm::Alarm;
 pub(super) use function::is_name;
 use function::{call, named};
 
-/// Brackets inside one another, those of functions and of `#[…]` included (manual: at most five).
+/// Deepest nesting of brackets, those of functions and of `#[…]` included (manual: at most five).
 const MAX_BRACKET_DEPTH: u8 = 5;
 
-/// Operators of one level side by side. No control takes a block this long; the limit keeps the tree shallow.
+/// Most operators of one level in a chain. No control accepts so long a block; the limit keeps the tree
+/// shallow.
 const MAX_OPERATORS: usize = 100;
 
+/// Content of brackets.
 enum ExprOrCondition {
     Expr(Expr),
     Condition(Condition),
 }
 
-/// An expression; a condition in its place is an alarm.
+/// Reads an expression; a condition in its place raises an alarm.
 pub(super) fn expr(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     let (rest, mixed) = sum(line, input, depth)?;
     number(rest, input, mixed)
 }
 
-/// `[c]` of IF and WHILE, or `[c1]AND[c2]` as some programs write `[[c1]AND[c2]]`. The bracket around all of it is
-/// not kept.
+/// Reads `[c]` of IF and WHILE, or `[c1]AND[c2]`, which some programs write for `[[c1]AND[c2]]`.
+///
+/// The brackets around the whole condition are not kept.
 pub(super) fn condition(line: LineInput, input: Input<'_>) -> ReadResult<'_, Condition> {
     sign(b'[')(input)?;
     match sum(line, input, 0)? {
@@ -46,7 +49,7 @@ pub(super) fn condition(line: LineInput, input: Input<'_>) -> ReadResult<'_, Con
     }
 }
 
-/// `#n`, `#[…]`, or a variable by its name in brackets: what may stand left of `=`.
+/// Reads the left side of `=`: `#n`, `#[…]`, or a variable name in brackets.
 pub(super) fn variable(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr> {
     let start = spaces(input);
     match start.first() {
@@ -56,7 +59,7 @@ pub(super) fn variable(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr
     }
 }
 
-/// One value: a variable or `[…]`, as after an address.
+/// Reads one value after an address: a variable or `[…]`.
 pub(super) fn single_value(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr> {
     let start = spaces(input);
     match start.first() {
@@ -78,7 +81,7 @@ fn number<'a>(rest: Input<'a>, from: Input<'a>, mixed: ExprOrCondition) -> ReadR
 type OperatorParser = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)>;
 type OperandParser = for<'a> fn(LineInput, Input<'a>, u8) -> ReadResult<'a, ExprOrCondition>;
 
-/// `+ - OR XOR |`, left to right.
+/// Reads a chain of `+ - OR XOR |`, left to right.
 fn sum(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
     let operator: OperatorParser = |input| match next(input)? {
         (b'+', rest) => Some((rest, BinaryOp::Add, OperatorSpelling::Sign)),
@@ -91,7 +94,7 @@ fn sum(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCon
     chain(line, input, depth, operator, term)
 }
 
-/// `* / AND MOD &`, left to right.
+/// Reads a chain of `* / AND MOD &`, left to right.
 fn term(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
     let operator: OperatorParser = |input| match next(input)? {
         (b'*', rest) => Some((rest, BinaryOp::Mul, OperatorSpelling::Sign)),
@@ -152,7 +155,7 @@ fn chain<'a>(
     Ok((rest, left))
 }
 
-/// Where a value must follow, round brackets, which are a comment, get an alarm of their own.
+/// Turns a mismatch into an alarm where a value must follow; round brackets, a comment, have their own alarm.
 pub(super) fn require_value<'a, T>(read: ReadResult<'a, T>, at: Input<'a>) -> ReadResult<'a, T> {
     match read {
         Err(nom::Err::Error(_)) if comment_before(at) => round_brackets(at, None),
@@ -189,7 +192,7 @@ fn primary(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprO
     Ok((rest, ExprOrCondition::Expr(expr)))
 }
 
-/// `[…]` with whatever is in it.
+/// Reads `[…]` with a number or a condition.
 fn bracket(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
     let depth = increase_depth(input, depth)?;
     let start = &input[1..];
@@ -224,7 +227,7 @@ fn bracket(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprO
     Ok((rest, inside))
 }
 
-/// The signs of comparisons, the longer ones first.
+/// Signs of relations, longer ones first.
 const SIGNS: [(&[u8], Relation); 6] = [
     (b"<>", Relation::Ne),
     (b">=", Relation::Ge),
@@ -239,7 +242,7 @@ fn relation(input: Input<'_>) -> ReadResult<'_, (Relation, OperatorSpelling)> {
     if let Some((sign, relation)) = SIGNS.iter().find(|(sign, _)| start.starts_with(sign)) {
         let rest = &start[sign.len()..];
         return match next(rest) {
-            // `==` and `=>` are no control's.
+            // No control has `==` or `=>`.
             Some((b'=' | b'<' | b'>', _)) => fail(start, Alarm::RelationSymbol),
             _ => Ok((rest, (*relation, OperatorSpelling::Sign))),
         };
@@ -255,6 +258,7 @@ fn relation(input: Input<'_>) -> ReadResult<'_, (Relation, OperatorSpelling)> {
     letters.map(|relation| (relation, OperatorSpelling::Letters)).parse(input)
 }
 
+/// Returns the next bracket depth, or fails beyond [`MAX_BRACKET_DEPTH`].
 pub(super) fn increase_depth(input: Input<'_>, depth: u8) -> Result<u8, nom::Err<super::token::ReadFailure>> {
     if depth < MAX_BRACKET_DEPTH {
         Ok(depth + 1)
@@ -263,6 +267,7 @@ pub(super) fn increase_depth(input: Input<'_>, depth: u8) -> Result<u8, nom::Err
     }
 }
 
+/// Reads `]`.
 pub(super) fn close(input: Input<'_>) -> ReadResult<'_, ()> {
     if spaces(input).is_empty() {
         return fail(spaces(input), Alarm::MissingCloseBracket);
@@ -270,7 +275,7 @@ pub(super) fn close(input: Input<'_>) -> ReadResult<'_, ()> {
     require(sign(b']'), || Alarm::Expression { text: String::new() })(input)
 }
 
-/// `#5`, `#-1` (an alarm when it runs), `#[…]`; `##1` is none.
+/// Reads `#5`, `#-1` (an alarm at run time) or `#[…]`; `##1` is invalid.
 fn numbered(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     let (rest, index) = match next(&input[1..]) {
         Some((b'[' | b'0'..=b'9' | b'.' | b'-', _)) => {
