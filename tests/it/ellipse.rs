@@ -5,7 +5,6 @@ use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_inspect::machine::Machine;
-use gcode_lang::alarm::AlarmCode;
 use gcode_lang::motion::{Event, EventKind, EventSink};
 use gcode_lang::units::{Deg, Mm};
 use gcode_part::Surface;
@@ -213,7 +212,7 @@ fn what_can_not_be_followed_is_refused() {
         let mut points = Points::default();
         let ran = run(&request, &mut Programs(&package), &mut points).unwrap();
         let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
-        assert_eq!(stopped.alarm.row().code, AlarmCode::Mc(3000 + number), "{to} in place of {from}");
+        assert_eq!(stopped.alarm.code().raised, Some(3000 + number), "{to} in place of {from}");
         assert!(points.all.is_empty(), "nothing is fed before: {to} in place of {from}");
     }
 }

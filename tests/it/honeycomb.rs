@@ -176,8 +176,8 @@ proptest! {
     }
 }
 
-fn codes(verdict: &Verdict) -> Vec<String> {
-    let mut codes: Vec<_> = verdict.findings.iter().map(|f| f.code.clone()).collect();
+fn codes(verdict: &Verdict) -> Vec<&str> {
+    let mut codes: Vec<_> = verdict.findings.iter().map(|f| &*f.code).collect();
     codes.dedup();
     codes
 }

@@ -187,6 +187,6 @@ fn a_run_ended_from_outside_tells_what_is_known_so_far() {
     assert_eq!(done.control.work_position(0), 10.0);
     assert_eq!(done.control.variable(1).unwrap().number(), 1024.0);
     let finding = done.stop_finding().unwrap();
-    assert_eq!((finding.code.as_str(), progress.blocks.load(Ordering::Relaxed)), ("limit", 4096));
+    assert_eq!((finding.kind.code, progress.blocks.load(Ordering::Relaxed)), ("limit", 4096));
     assert!(finding.message.contains("interrupted after 4096 blocks"), "{}", finding.message);
 }

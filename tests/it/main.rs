@@ -35,6 +35,7 @@ mod honeycomb;
 mod house_rules;
 mod limits;
 mod misplaced;
+mod module_circles;
 mod mutations;
 mod order;
 mod packaging;

@@ -6,7 +6,6 @@ use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_inspect::machine::Machine;
-use gcode_lang::alarm::AlarmCode;
 use gcode_part::job::Job;
 use gcode_session::{Request, Run, run};
 
@@ -99,7 +98,7 @@ fn what_no_table_can_be_set_to_is_refused() {
     for (from, to, tilt, number) in cases {
         let ran = ran((from, to), tilt);
         let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
-        assert_eq!(stopped.alarm.row().code, AlarmCode::Mc(number), "{to} in place of {from}, {tilt:?}");
+        assert_eq!(stopped.alarm.code().raised, Some(number), "{to} in place of {from}, {tilt:?}");
         assert!(ran.control.variable(586).unwrap().is_vacant());
     }
 }
@@ -109,7 +108,7 @@ fn what_no_table_can_be_set_to_is_refused() {
 fn a_tilt_of_no_finished_run_out_is_refused_before_a_stack_is_told() {
     let ran = after(("U1.", "U1."), Some(0.1), None);
     let Outcome::Alarm(stopped) = &ran.outcome else { panic!("it runs") };
-    assert_eq!(stopped.alarm.row().code, AlarmCode::Mc(3167));
+    assert_eq!(stopped.alarm.code().raised, Some(3167));
     assert!(ran.control.stops().is_empty());
     assert!((586..590).all(|number| ran.control.variable(number).unwrap().is_vacant()));
     for (tilt, angle) in [(1.0, 37.5), (-1.0, 39.5)] {

@@ -5,7 +5,6 @@ use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::{Machine, Placement};
-use gcode_lang::alarm::AlarmCode;
 use gcode_lang::units::Deg;
 use gcode_part::Surface;
 use gcode_part::job::{Alignment, Job};
@@ -81,10 +80,10 @@ pub fn placement(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
 /// The number of the macro alarm that ended a run; `None` where it came to its end.
 pub fn alarm(run: &Run) -> Option<u16> {
     match &run.outcome {
-        Outcome::Alarm(stopped) => match stopped.alarm.row().code {
-            AlarmCode::Mc(number) => Some(number),
-            other => panic!("{other}"),
-        },
+        Outcome::Alarm(stopped) => {
+            let code = stopped.alarm.code();
+            Some(code.raised.unwrap_or_else(|| panic!("{code}")))
+        }
         Outcome::End => None,
         Outcome::Limit => panic!("it doesn't end"),
     }

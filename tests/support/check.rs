@@ -19,7 +19,7 @@ pub(crate) fn run(case: &Case) {
         if let Some(place) = &finding.backtrace {
             writeln!(shown, "{}", at(&checked, place.block)).unwrap();
         }
-        writeln!(shown, "  {severity} {}: {}", finding.code, finding.message).unwrap();
+        writeln!(shown, "  {severity} {}: {}", finding.code(), finding.message).unwrap();
         for (span, text) in &finding.labels {
             writeln!(shown, "  {text}: {}", at(&checked, *span)).unwrap();
         }

@@ -111,7 +111,7 @@ impl Ran {
                 return self.not(codes.join(",") == wanted, &format!("passed_on={wanted}"));
             }
             "note" => {
-                let holds = self.control.notes().any(|(note, _)| note.describe().0 == wanted);
+                let holds = self.control.notes().any(|(note, _)| note.describe().0.code == wanted);
                 let holds = if wanted == "none" { self.control.notes().next().is_none() } else { holds };
                 return self.not(holds, &format!("note={wanted}"));
             }

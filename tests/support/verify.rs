@@ -193,7 +193,7 @@ fn known_facts<const N: usize>(facts: [(&'static str, Option<f64>); N]) -> Vec<(
 /// `error hole-depth at O6:13 from O5:6 of r1h0`, and what is said of it.
 fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<FindingLine> {
     let one = |finding: &Diagnostic| {
-        let mut head = format!("{} {}", finding.severity.name(), finding.code);
+        let mut head = format!("{} {}", finding.severity.name(), finding.code());
         if let Some(place) = &finding.backtrace {
             let mut word = " at ";
             for (program, line, _) in places(run, place) {
@@ -201,7 +201,7 @@ fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<Findi
                 word = " from ";
             }
         }
-        let same = |one: &&Finding| one.code == finding.code && one.message == finding.message;
+        let same = |one: &&Finding| one.code == finding.code() && one.message == finding.message;
         if let Some(hole) = data.iter().find(same).and_then(|one| one.hole.as_ref()) {
             write!(head, " of {hole}").unwrap();
         }
@@ -220,7 +220,7 @@ fn place_label(program: &str, line: u32) -> String {
 fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> String {
     for finding in findings {
         let severity = finding.severity.name();
-        write!(shown, "\n{severity} {}: {}\n", finding.code, finding.message).unwrap();
+        write!(shown, "\n{severity} {}: {}\n", finding.code(), finding.message).unwrap();
         if let Some(place) = &finding.backtrace {
             let mut word = "at";
             for (program, line, text) in places(run, place) {

@@ -59,8 +59,11 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "PART", allow_negative_numbers = true)]
     pub(super) skip: Option<f64>,
 
-    /// The part for probing: G31 stops where the ball of the machine's or the job's [probe] touches it
-    #[arg(long, value_name = "JOB.toml")]
+    #[arg(
+        long,
+        value_name = "JOB.toml",
+        help = "The part for probing: G31 stops where the ball of the machine's or the job's [probe] touches it"
+    )]
     pub(super) part: Option<PathBuf>,
 
     /// End the run at the main program's N-th M99

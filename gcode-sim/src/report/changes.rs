@@ -178,7 +178,7 @@ pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, Stri
         also.iter().map(|effect| format!("\nalso {}: {}", effect.code, effect.message)).collect();
     let calls = new.as_ref().map_or(&[][..], |place| &place.calls);
     Finding {
-        code: code.to_string(),
+        code: code.to_string().into(),
         severity: Severity::Error,
         message: format!("{before}{message}{}{also}", was.unwrap_or_default()),
         at: new.as_ref().or(near.as_ref()).and_then(|place| place_in(place, files)),

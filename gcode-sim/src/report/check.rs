@@ -52,7 +52,7 @@ fn report(checked: &CheckResult, finding: &Diagnostic) -> FindingReport {
     let at = finding.span.or(block);
     let file = |span: Span| sources.get(span.source).name.clone();
     FindingReport {
-        code: finding.code.clone(),
+        code: finding.code().into_owned(),
         severity: finding.severity.name(),
         message: finding.message.clone(),
         program: block.and_then(|span| checked.program(span)).map(|program| program.label()),

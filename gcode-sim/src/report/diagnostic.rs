@@ -18,7 +18,7 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     };
     let mut group = level
         .primary_title(escape(&diagnostic.message))
-        .id(diagnostic.code.clone())
+        .id(diagnostic.code())
         .elements(Vec::<Snippet<'_, Annotation<'_>>>::new());
     if let Some(place) = &diagnostic.backtrace {
         group = group.element(snippet(sources, diagnostic.span.unwrap_or(place.block)));
@@ -99,6 +99,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use gcode_lang::alarm::kinds::PS0112;
     use gcode_lang::motion::Call;
 
     #[test]
@@ -108,7 +109,7 @@ mod tests {
         let called = sources.add("O0002.nc", *b"O2(\xb0\xa1)\n#1=#2/0 (\xb0)\nM99\n");
         let from = Span { source: main, start: 3, end: 13 };
         let block = Span { source: called, start: 7, end: 18 };
-        let mut diagnostic = Diagnostic::new(Severity::Alarm, "PS0112", "division by zero")
+        let mut diagnostic = Diagnostic::new(&PS0112, "division by zero")
             .with_backtrace(Backtrace {
                 block,
                 calls: Some(Arc::new(Call { calling_block: from, outer_calls: None })),

@@ -30,7 +30,7 @@ impl ExplainReport {
     pub fn of(code: &str) -> Option<Self> {
         let page = |page: explain::Page| PageReport {
             code: page.code,
-            title: page.title(),
+            title: page.title,
             text: Some(page.text),
             shown: page.plain_text(),
         };
@@ -42,7 +42,7 @@ impl ExplainReport {
     pub fn list() -> Self {
         let page = |page: explain::Page| PageReport {
             code: page.code,
-            title: page.title(),
+            title: page.title,
             text: None,
             shown: String::new(),
         };

@@ -3,9 +3,10 @@ use nalgebra::Point3;
 
 use super::helix_courses;
 use gcode_draw::{Fault, FlutePoint, FluteView, HoleStatus};
+use gcode_inspect::findings::{FLUTE_EXTRA, FLUTE_MISSING};
 use gcode_inspect::flutes::GrindingPass;
 use gcode_inspect::verify::Answer;
-use gcode_inspect::verify::flutes::{FluteVerdict, describe_code};
+use gcode_inspect::verify::flutes::{FluteVerdict, describe_kind};
 use gcode_lang::units::Deg;
 use gcode_part::Profile;
 use gcode_session::GrindingRun;
@@ -66,16 +67,16 @@ fn faults(profile: &Profile, verdict: &FluteVerdict) -> Vec<Fault> {
     let mut faults: Vec<Fault> = Vec::new();
     for finding in &verdict.findings {
         for (index, site) in finding.sites.iter().enumerate() {
-            let what = if index == 0 { describe_code(&finding.code) } else { None };
+            let what = if index == 0 { describe_kind(finding.kind) } else { None };
             let (spot, pass) = (flute_point(profile, site.at.into()), site.pass.map(|pass| pass - 1));
             let is_here = |fault: &&mut Fault| fault.pass == pass && fault.point.position == spot.position;
             if let Some(fault) = faults.iter_mut().find(is_here) {
                 fault.labels.extend(what);
                 continue;
             }
-            let standing = match finding.code.as_str() {
-                "flute-missing" => HoleStatus::Missing,
-                "flute-extra" => HoleStatus::Extra,
+            let standing = match finding.kind {
+                kind if kind == &FLUTE_MISSING => HoleStatus::Missing,
+                kind if kind == &FLUTE_EXTRA => HoleStatus::Extra,
                 _ => HoleStatus::Bad,
             };
             faults.push(Fault { point: spot, pass, status: standing, labels: what.into_iter().collect() });

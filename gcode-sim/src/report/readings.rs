@@ -100,7 +100,7 @@ impl ReadingsReport {
         let told = findings.iter().map(|finding| {
             let at = finding.backtrace.as_ref().map(|place| following.run.locate(place.block));
             let (program, line) = at.unzip();
-            let (code, message) = (finding.code.clone(), finding.message.clone());
+            let (code, message) = (finding.code().into_owned(), finding.message.clone());
             FindingRow { code, severity: finding.severity.name(), message, program, line }
         });
         Self {

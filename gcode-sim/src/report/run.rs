@@ -211,9 +211,9 @@ impl RunReport {
             notes: control
                 .notes()
                 .map(|(note, block)| {
-                    let (code, message, _) = note.describe();
+                    let (kind, message, _) = note.describe();
                     let (program, line) = run.locate(block);
-                    NoteReport { code, message, program, line }
+                    NoteReport { code: kind.code, message, program, line }
                 })
                 .collect(),
             variables: control.variables().collect(),

@@ -1,4 +1,5 @@
 //! Findings as SARIF 2.1.0 for code reviews, each with its rule, its place and the rule's page.
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -11,7 +12,7 @@ use gcode_lang::source::{Sources, Span};
 #[derive(Clone, Debug)]
 pub struct Finding {
     /// Name of its rule: a code that `explain` knows.
-    pub code: String,
+    pub code: Cow<'static, str>,
     pub severity: Severity,
     pub message: String,
     pub at: Option<FileLocation>,
@@ -44,7 +45,7 @@ impl Finding {
         let labels = diagnostic.labels.iter().map(|(span, text)| (at(*span), text.clone()));
         let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
         Self {
-            code: diagnostic.code.clone(),
+            code: diagnostic.code(),
             severity: diagnostic.severity,
             message: format!("{}{help}", diagnostic.message),
             at: diagnostic.span.or(place.map(|place| place.block)).map(at),
@@ -151,7 +152,7 @@ pub fn log(findings: &[Finding], root: &str) -> Log {
     places.values_mut().enumerate().for_each(|(number, place)| *place = number);
     let rules = places.keys().map(|code| rule(code)).collect();
     let outcome = |finding: &Finding| Outcome {
-        rule_id: finding.code.clone(),
+        rule_id: finding.code.to_string(),
         rule_index: places[&*finding.code],
         level: match finding.severity {
             Severity::Note => "note",
@@ -178,7 +179,7 @@ fn rule(code: &str) -> Rule {
     };
     Rule {
         id: code.to_owned(),
-        short_description: pages.first().map(|page| Text { text: page.title().to_owned() }),
+        short_description: pages.first().map(|page| Text { text: page.title.to_owned() }),
         help: (!pages.is_empty()).then(|| Help {
             text: joined(&explain::Page::plain_text),
             markdown: joined(&|page| page.text.to_owned()),

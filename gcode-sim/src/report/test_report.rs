@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::changes::{append_entries, change_found, counted, place_in};
 use super::sarif::{FileLocation, Finding};
+use gcode_lang::alarm::kinds::PS0076;
 use gcode_lang::diag::Severity;
+use gcode_review::alarm_code;
 use gcode_review::{BlockLocation, Change, Totals};
 
 /// The document of `test --format json`, and what `test --merge` reads.
@@ -191,7 +193,7 @@ impl CaseReport {
 
     /// As [`gcode_review::Record::lacks_program`].
     fn lacks_program(&self) -> bool {
-        self.alarm().is_some_and(|words| words.starts_with("alarm PS0076 "))
+        self.alarm().is_some_and(|words| alarm_code(words) == Some(PS0076.code))
     }
 
     /// What isn't as it should be; nothing of a good case.
@@ -230,7 +232,7 @@ impl CaseReport {
         let whole = || self.file.clone().map(|file| FileLocation { file, line: Some(1), column: None });
         let found =
             |code: &str, message: String, at: Option<FileLocation>, calls: &[BlockLocation]| Finding {
-                code: code.to_owned(),
+                code: code.to_owned().into(),
                 severity: Severity::Error,
                 message: format!("{}: {message}", self.name),
                 at: at.or_else(whole),

@@ -65,7 +65,7 @@ pub fn of_verdict(
             .objections
             .first()
             .into_iter()
-            .map(|code| match code.as_str() {
+            .map(|code| match *code {
                 "hole-depth" => format!("depth {}", with_sign(hole.depth_error)),
                 other => other.trim_start_matches("hole-").to_owned(),
             })

@@ -149,7 +149,7 @@ mod tests {
     use gcode_inspect::verify::Answer;
     use gcode_part::Origin;
 
-    fn hole(id: &str, phi: f64, objections: &[&str]) -> HoleVerdict {
+    fn hole(id: &str, phi: f64, objections: &[&'static str]) -> HoleVerdict {
         let placed = |x: f64| HoleGeometry {
             entry: [x, 674.93, 0.0],
             axis: [0.0, 1.0, 0.0],
@@ -172,7 +172,7 @@ mod tests {
             from: Origin { program: "O8101".into(), line: 31, tool: Some(2) },
             calls: vec![Origin { program: "O8100".into(), line: 20, tool: None }],
             neighbours: None,
-            objections: objections.iter().map(|o| (*o).to_owned()).collect(),
+            objections: objections.to_vec(),
         }
     }
 

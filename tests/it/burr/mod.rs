@@ -87,7 +87,7 @@ fn how_the_wheel_turns_and_how_fast_it_runs_counts() {
     ];
     for (from, to, answer, code) in cases {
         let verdict = replaced(from, to);
-        let told: Vec<_> = verdict.findings.iter().map(|finding| finding.code.as_str()).collect();
+        let told: Vec<_> = verdict.findings.iter().map(|finding| &*finding.code).collect();
         assert!(verdict.verdict == answer && told == Vec::from_iter(code), "{to}: {told:?}");
     }
     let slow = replaced("G93\n", "G94\n").speed_min.unwrap();

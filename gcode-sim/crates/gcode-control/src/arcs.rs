@@ -1,8 +1,8 @@
 //! G02 and G03: centre and sweep from I J K or from R, in all planes, with any other axes along.
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
 use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, PlanarArc};
@@ -10,7 +10,7 @@ use gcode_lang::program::modes::{Motion, Plane};
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
 
-impl Executor {
+impl Planner<'_> {
     /// Tells an arc to `goal`.
     pub(super) fn plan_arc(
         &self,
@@ -20,7 +20,7 @@ impl Executor {
         span: Span,
     ) -> ExecResult<()> {
         let state = &plan.state;
-        let plane = locate(self.plane_axes(state.modal.plane), span)?;
+        let plane = locate(self.data.plane_axes(state.modal.plane), span)?;
         let (first, second, stray) = match state.modal.plane {
             Plane::Xy => (b'I', b'J', b'K'),
             Plane::Zx => (b'K', b'I', b'J'),
@@ -29,7 +29,7 @@ impl Executor {
         let start = (state.programmed[plane.0], state.programmed[plane.1]);
         let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
-        let centre = if let Some(radius) = self.dimension(block_words, b'R', state)? {
+        let centre = if let Some(radius) = self.data.dimension(block_words, b'R', state)? {
             // R goes before I J K.
             block_words.mark_read(b"IJK");
             if start == end {
@@ -42,11 +42,11 @@ impl Executor {
             }
             locate(self.centre_by_radius(start, end, radius, clockwise), block_words.span(b'R'))?
         } else {
-            if self.dimension(block_words, stray, state)?.unwrap_or(0.0) != 0.0 {
+            if self.data.dimension(block_words, stray, state)?.unwrap_or(0.0) != 0.0 {
                 return Err(Alarm::PlaneSelect.located_at(block_words.span(stray)));
             }
-            let i = self.dimension(block_words, first, state)?;
-            let j = self.dimension(block_words, second, state)?;
+            let i = self.data.dimension(block_words, first, state)?;
+            let j = self.data.dimension(block_words, second, state)?;
             if i.is_none() && j.is_none() {
                 return Err(Alarm::NoRadiusOrCentre.located_at(span));
             }
@@ -71,9 +71,9 @@ impl Executor {
     ) -> ExecResult<(f64, f64)> {
         let radius = |p: (f64, f64)| libm::hypot(p.0 - centre.0, p.1 - centre.1);
         let (from, to) = (radius(start), radius(end));
-        if (from - to).abs() > self.settings.arc_tolerance + 1e-9 {
+        if (from - to).abs() > self.data.settings.arc_tolerance + 1e-9 {
             let alarm =
-                Alarm::RadiusTolerance { start: from, end: to, tolerance: self.settings.arc_tolerance };
+                Alarm::RadiusTolerance { start: from, end: to, tolerance: self.data.settings.arc_tolerance };
             return Err(alarm.located_at(span));
         }
         Ok(((from + to) / 2.0, sweep(start, end, centre, clockwise)))
@@ -98,7 +98,7 @@ impl Executor {
         }
         let mut centre_point = state.programmed;
         (centre_point[plane.0], centre_point[plane.1]) = centre;
-        let middle = self.to_machine(state, &centre_point);
+        let middle = self.data.to_machine(state, &centre_point);
         let centre = (middle[plane.0], middle[plane.1]);
         let (radius, sweep) = if round {
             let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());
@@ -115,7 +115,7 @@ impl Executor {
         };
         let length = radius * sweep.abs().to_radians();
         // F is along the arc; all other axes follow (1403#5 HTG = 0).
-        let timed = self.path_time(state, length, block_words.has(b'F'));
+        let timed = self.data.path_time(state, length, block_words.has(b'F'));
         let (rate, seconds) = timed.map_err(|alarm| match alarm {
             Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero.located_at(span),
             other => other.located_at(span),
@@ -138,7 +138,8 @@ impl Executor {
         let chord = libm::hypot(dx, dy);
         let short = chord / 2.0 - radius.abs();
         if radius == 0.0
-            || (short > self.settings.arc_tolerance && self.settings.undocumented.small_radius_alarms)
+            || (short > self.data.settings.arc_tolerance
+                && self.data.settings.undocumented.small_radius_alarms)
         {
             return Err(Alarm::RadiusTooSmall { radius: radius.abs(), half_chord: chord / 2.0 });
         }
@@ -151,7 +152,7 @@ impl Executor {
 }
 
 /// Degrees from start to end round the centre, counterclockwise positive; a full turn where they coincide.
-fn sweep(start: (f64, f64), end: (f64, f64), centre: (f64, f64), clockwise: bool) -> f64 {
+pub(super) fn sweep(start: (f64, f64), end: (f64, f64), centre: (f64, f64), clockwise: bool) -> f64 {
     if start == end {
         return if clockwise { -360.0 } else { 360.0 };
     }

@@ -1,7 +1,8 @@
 //! The words of a macro call to the locals they set.
-use super::Executor;
-use super::evaluation::{ExecResult, RoundingTarget};
+use super::checked::ExecResult;
+use super::evaluation::RoundingTarget;
 use super::quantities::POWERS;
+use super::registers::Registers;
 use super::variables::{Locals, VACANT, Value};
 use super::words::WordNumber;
 use gcode_lang::alarm::Alarm;
@@ -9,7 +10,7 @@ use gcode_lang::control::ArgumentScale;
 use gcode_lang::program::{ArgumentLocals, LoweredWord, WordOperand, Words};
 use gcode_lang::syntax::ast::Decimal;
 
-impl Executor {
+impl Registers {
     /// Words of a block, one by one in the order they stand in; a vacant value leaves its local vacant. `every` is
     /// G66.1, which takes G, L, N and P as well.
     pub(super) fn evaluate_arguments(
@@ -19,7 +20,7 @@ impl Executor {
         is_every_block: bool,
     ) -> ExecResult<Locals> {
         let mut locals = VACANT;
-        let mut letters = ArgumentLocals::new(self.settings.reads_ijk_plainly, is_every_block);
+        let mut letters = ArgumentLocals::new(self.data.settings.reads_ijk_plainly, is_every_block);
         for word in list {
             if word.comma {
                 return Err(Alarm::ImproperAddress { letter: char::from(word.letter) }.located_at(word.span));
@@ -56,7 +57,7 @@ impl Executor {
 
     /// The decimals that ADP takes back from an argument: none with CVA 6007#4.
     fn argument_decimals(&self, raw: WordNumber, letter: u8) -> u8 {
-        if self.settings.converts_arguments { 0 } else { self.counted_decimals(raw, letter) as u8 }
+        if self.data.settings.converts_arguments { 0 } else { self.counted_decimals(raw, letter) as u8 }
     }
 
     /// How many decimals an argument without a point has that counts the increments of its address.
@@ -64,15 +65,15 @@ impl Executor {
         let WordNumber::Literal(Decimal { places: None, .. }) = raw else { return 0 };
         let scale = match letter {
             b'D' | b'G' | b'H' | b'L' | b'M' | b'N' | b'P' | b'S' | b'T' => ArgumentScale::Whole,
-            b'E' => self.settings.undocumented.argument_e,
-            b'F' => self.settings.undocumented.argument_f,
+            b'E' => self.data.settings.undocumented.argument_e,
+            b'F' => self.data.settings.undocumented.argument_f,
             _ => ArgumentScale::Increments,
         };
         match scale {
             ArgumentScale::Whole => 0,
-            ArgumentScale::Feed => self.feed_decimals(&self.state),
-            ArgumentScale::Increments if self.settings.uses_calculator_input => 0,
-            ArgumentScale::Increments => self.decimals(letter, self.state.modal.unit),
+            ArgumentScale::Feed => self.data.feed_decimals(&self.state),
+            ArgumentScale::Increments if self.data.settings.uses_calculator_input => 0,
+            ArgumentScale::Increments => self.data.decimals(letter, self.state.modal.unit),
         }
     }
 }

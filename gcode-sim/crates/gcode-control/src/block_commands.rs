@@ -1,7 +1,9 @@
 //! What a block commands that would otherwise be as it was left: modal codes, the places of axes, offsets.
+use super::control::Control;
+use super::registers::Registers;
 use super::words::computed_row;
-use super::{Control, Executor};
-use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
+use gcode_lang::program::code_facts::AxisWords;
+use gcode_lang::program::g_codes::{self, Effect};
 use gcode_lang::program::modes::Distance;
 use gcode_lang::program::{OpKind, Statement, Words};
 
@@ -22,12 +24,12 @@ impl Control {
     /// What [`Control::next_block`] commands; nothing for a block that is skipped.
     pub fn next_commands(&self) -> BlockCommands {
         let mut commands = BlockCommands::default();
-        self.inspect_next(|core, op| {
-            if core.is_skipped(op) {
+        self.inspect_next(|registers, op| {
+            if registers.is_skipped(op) {
                 return;
             }
-            if let OpKind::Words(words) = core.guarded_operation(op.kind()) {
-                core.collect_commands(words, &mut commands);
+            if let OpKind::Words(words) = registers.guarded_operation(op.kind()) {
+                registers.collect_commands(words, &mut commands);
             }
         });
         commands
@@ -35,7 +37,7 @@ impl Control {
 
     /// Whether [`Control::next_block`] will do all that it says: it isn't skipped, and no condition stands in the way.
     pub fn is_next_unconditional(&self) -> bool {
-        let is_unconditional = self.inspect_next(|core, op| {
+        let is_unconditional = self.inspect_next(|registers, op| {
             let condition = match op.kind() {
                 OpKind::If { condition, .. }
                 | OpKind::Statement(
@@ -48,50 +50,55 @@ impl Control {
                 | OpKind::Alarm(_) => None,
             };
             let is_true =
-                condition.is_none_or(|condition| core.evaluate_condition(condition).unwrap_or(true));
-            is_true && !core.is_skipped(op)
+                condition.is_none_or(|condition| registers.evaluate_condition(condition).unwrap_or(true));
+            is_true && !registers.is_skipped(op)
         });
         is_unconditional.unwrap_or(true)
     }
 }
 
-impl Executor {
-    fn collect_commands(&self, words: &Words, commanded: &mut BlockCommands) {
+impl Registers {
+    fn collect_commands(&self, words: &Words, commands: &mut BlockCommands) {
         // Behind G65 and M98 letters are arguments.
         if words.call().is_some() {
             return;
         }
         let words = match words.skipped_form() {
-            Some((switch, short)) if self.is_skip_on(*switch) => short,
+            Some((switch, short)) if self.data.is_skip_on(*switch) => short,
             _ => words,
         };
         let mut distance = self.state.modal.distance;
-        let mut one_shot = None;
+        let mut axis_words = AxisWords::Move;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
             let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
-            let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
-            match row.effect {
-                Effect::OneShot(one) => one_shot = Some(one),
-                Effect::Distance(new) => distance = new,
-                _ => {}
+            let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
+            if let Effect::Distance(new) = row.effect {
+                distance = new;
             }
-            commanded.modes.extend(row.effect.group().map(|group| (group, row.code)));
+            match row.facts.axis_words {
+                AxisWords::Move | AxisWords::Hole => {}
+                own @ (AxisWords::Position
+                | AxisWords::PositionInAbsolute
+                | AxisWords::Tables
+                | AxisWords::Other) => axis_words = own,
+            }
+            commands.modes.extend(row.group().map(|group| (group, row.code)));
         }
         let values = words.list.iter().filter(|word| b"FST".contains(&word.letter) && !word.comma);
         let values = values.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
-        commanded.valued_letters.extend(values.map(|word| char::from(word.letter)));
-        if one_shot == Some(OneShot::DataInput) {
-            self.collect_written_offsets(words, commanded);
-        } else if is_axis_positioned(one_shot, distance) {
+        commands.valued_letters.extend(values.map(|word| char::from(word.letter)));
+        if axis_words == AxisWords::Tables {
+            self.collect_written_offsets(words, commands);
+        } else if is_axis_positioned(axis_words, distance) {
             let letters = words.list.iter().filter(|word| !word.comma && word.axis.is_none());
             let valued = letters.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
-            let axes = valued.filter(|word| self.settings.axes.find(word.letter).is_some());
-            commanded.axes.extend(axes.map(|word| char::from(word.letter)));
+            let axes = valued.filter(|word| self.data.settings.axes.find(word.letter).is_some());
+            commands.axes.extend(axes.map(|word| char::from(word.letter)));
         }
     }
 
     /// `G10 L2 P1 X`, for every value that the block gives.
-    fn collect_written_offsets(&self, words: &Words, commanded: &mut BlockCommands) {
+    fn collect_written_offsets(&self, words: &Words, commands: &mut BlockCommands) {
         let mut table = "G10".to_owned();
         for letter in *b"LP" {
             let word = words.list.iter().find(|word| word.letter == letter && !word.comma);
@@ -101,38 +108,22 @@ impl Executor {
             }
         }
         let values = words.list.iter().filter(|word| !b"GLPN".contains(&word.letter) && !word.comma);
-        commanded.offsets.extend(values.map(|word| format!("{table} {}", char::from(word.letter))));
+        commands.offsets.extend(values.map(|word| format!("{table} {}", char::from(word.letter))));
     }
 }
 
 /// Whether the axes of a block end where it says, wherever they stood.
-fn is_axis_positioned(one_shot: Option<OneShot>, distance: Distance) -> bool {
-    match one_shot {
-        Some(OneShot::Reference | OneShot::SecondReference | OneShot::CheckReference) => true,
-        None
-        | Some(
-            OneShot::MachineSystem
-            | OneShot::OneSide
-            | OneShot::Skip
-            | OneShot::CirclePocket(_)
-            | OneShot::BoltHoles(_),
-        ) => distance == Distance::Absolute,
-        Some(
-            OneShot::Dwell
-            | OneShot::DataInput
-            | OneShot::DataInputEnd
-            | OneShot::FromReference
-            | OneShot::LocalSystem
-            | OneShot::SetSystem
-            | OneShot::PresetSystem
-            | OneShot::CornerArc,
-        ) => false,
+fn is_axis_positioned(axis_words: AxisWords, distance: Distance) -> bool {
+    match axis_words {
+        AxisWords::Position => true,
+        AxisWords::Move | AxisWords::Hole | AxisWords::PositionInAbsolute => distance == Distance::Absolute,
+        AxisWords::Tables | AxisWords::Other => false,
     }
 }
 
 /// A modal code as programs write it: `G90`, `G54.1`, `G00`.
 pub fn modal_code(code: u32) -> String {
-    if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
+    g_codes::name(code)
 }
 
 #[cfg(test)]

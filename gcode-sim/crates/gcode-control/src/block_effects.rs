@@ -2,7 +2,6 @@
 use std::cell::Cell;
 
 use super::notes::Note;
-use super::run::RunEnd;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockEffects {
@@ -48,4 +47,14 @@ impl BlockEffects {
         self.run_end.set(before.2);
         result
     }
+}
+
+/// How a block can end the run without an alarm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RunEnd {
+    ProgramEnd,
+    /// It is in a loop that never ends.
+    EndlessLoop,
+    /// It has made more moves than it may.
+    MoveLimit,
 }

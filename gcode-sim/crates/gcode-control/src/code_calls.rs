@@ -1,34 +1,15 @@
 //! Calls by codes and addresses that parameters make calls of.
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
-use super::frames::CallOrigins;
+use super::checked::{ExecResult, locate};
+use super::flow::CallOrigins;
 use super::plan::{BlockFlow, BlockPlan, CallKind, CallPlan, ProgramRef, TableWrite};
+use super::planner::Planner;
 use super::variables::{VACANT, Value};
-use super::words::{WordNumber, count};
+use super::words::{CallingWord, WordNumber, count};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{CalledProgram, CodeCallKind};
 use gcode_lang::program::{LoweredWord, Words};
 
-/// A word that calls a subprogram, taken out of its block.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CallingWord {
-    /// Its place in the block.
-    index: usize,
-    /// Behind an M code L repeats the call.
-    takes_repeats: bool,
-    program: u32,
-    /// The common variable that gets the word's number.
-    value: Option<(u32, f64)>,
-}
-
-impl CallingWord {
-    /// Whether a word of the block belongs to the call and not to what acts first.
-    pub(super) fn contains(&self, place: usize, word: &LoweredWord) -> bool {
-        place == self.index || self.takes_repeats && word.letter == b'L'
-    }
-}
-
-impl Executor {
+impl Planner<'_> {
     /// A code that calls a macro: it stands first, and the block's other words are the arguments.
     pub(super) fn plan_macro_by_code(&self, words: &Words, plan: &mut BlockPlan) -> ExecResult<bool> {
         for (place, word) in words.list.iter().enumerate() {
@@ -53,7 +34,7 @@ impl Executor {
     fn macro_call(&self, called: CalledProgram, words: &Words, code: &LoweredWord) -> ExecResult<CallPlan> {
         let arguments = &words.list[1..];
         let is_every_block =
-            called.kind == CodeCallKind::Modal && self.settings.code_calls.modal_is_every_block;
+            called.kind == CodeCallKind::Modal && self.data.settings.code_calls.modal_is_every_block;
         for word in arguments.iter().filter(|_| !is_every_block) {
             match word.letter {
                 b'G' => return Err(Alarm::GAsArgument.located_at(word.span)),
@@ -66,10 +47,10 @@ impl Executor {
             }
         }
         let repeats = match arguments.iter().find(|word| word.letter == b'L') {
-            Some(word) => self.count_of_word(words, word)?.unwrap_or(1),
+            Some(word) => self.registers.count_of_word(words, word)?.unwrap_or(1),
             None => 1,
         };
-        let own = self.settings.undocumented.every_block_calls_itself && !arguments.is_empty();
+        let own = self.data.settings.undocumented.every_block_calls_itself && !arguments.is_empty();
         Ok(CallPlan {
             kind: match called.kind {
                 CodeCallKind::Modal if is_every_block => CallKind::EveryBlock,
@@ -79,7 +60,7 @@ impl Executor {
             target: ProgramRef::Number(called.program),
             repeats,
             start: None,
-            locals: self.evaluate_arguments(words, arguments, is_every_block)?,
+            locals: self.registers.evaluate_arguments(words, arguments, is_every_block)?,
             is_immediate: !is_every_block || own,
             origins: call_origins(code.letter),
             is_external: false,
@@ -106,14 +87,14 @@ impl Executor {
         place: usize,
         word: &LoweredWord,
     ) -> ExecResult<Option<CallingWord>> {
-        let by_address = self.settings.code_calls.address_call(word.letter);
+        let by_address = self.data.settings.code_calls.address_call(word.letter);
         if let Some(call) =
             by_address.filter(|_| self.code_may_call(word.letter) && !self.is_axis(word.letter))
         {
-            let Some(raw) = self.evaluate_word(words, word)? else { return Ok(None) };
+            let Some(raw) = self.registers.evaluate_word(words, word)? else { return Ok(None) };
             let number = match word.letter {
                 b'B' | b'S' | b'T' => f64::from(locate(count(raw, word.letter), word.span)?),
-                letter => self.argument_value(raw, letter),
+                letter => self.registers.argument_value(raw, letter),
             };
             let value = Some((call.variable, number));
             return Ok(Some(CallingWord {
@@ -142,7 +123,7 @@ impl Executor {
     ) -> ExecResult<()> {
         let word = &words.list[calling.index];
         let repeats = match words.list.iter().find(|other| calling.takes_repeats && other.letter == b'L') {
-            Some(word) => self.count_of_word(words, word)?.unwrap_or(1),
+            Some(word) => self.registers.count_of_word(words, word)?.unwrap_or(1),
             None => 1,
         };
         if let Some((number, value)) = calling.value {
@@ -167,22 +148,22 @@ impl Executor {
         if !matches!(word.letter, b'G' | b'M') || !self.code_may_call(word.letter) {
             return Ok(None);
         }
-        let Some(raw) = self.evaluate_word(words, word)? else { return Ok(None) };
+        let Some(raw) = self.registers.evaluate_word(words, word)? else { return Ok(None) };
         let tenths = match (word.letter, raw) {
             (b'G', WordNumber::Computed(value)) => (value * 10.0).round(),
             (b'G', WordNumber::Literal(number)) => number.value() * 10.0,
             _ => 10.0 * f64::from(locate(count(raw, b'M'), word.span)?),
         };
         let code = (0.0..=f64::from(u32::MAX)).contains(&tenths).then_some(tenths as u32);
-        Ok(code.and_then(|code| self.settings.code_calls.find_call(word.letter, code)))
+        Ok(code.and_then(|code| self.data.settings.code_calls.find_call(word.letter, code)))
     }
 
     fn code_may_call(&self, letter: u8) -> bool {
-        self.frame.origins.allows_call(letter == b'G', self.settings.code_calls.allows_nested_calls)
+        self.flow.frame.origins.allows_call(letter == b'G', self.data.settings.code_calls.allows_nested_calls)
     }
 
     fn is_axis(&self, letter: u8) -> bool {
-        self.settings.axes.find(letter).is_some()
+        self.data.settings.axes.find(letter).is_some()
     }
 }
 

@@ -1,6 +1,6 @@
 //! A drilling block, checked: where its holes are, and its moves one by one, the steps of the cycle at every hole.
-use super::Executor;
-use super::patterns::BoltHolePattern;
+use super::data::ControlData;
+use super::pecks::for_each_peck;
 use super::state::{PolarPoint, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
@@ -37,36 +37,36 @@ pub(super) struct PolarRepeats {
     pub(super) angle_step: f64,
 }
 
-impl Executor {
-    /// Tells a drilling block move by move.
-    pub(super) fn expand_cycle(&self, drill: &CyclePlan, tell: &mut impl FnMut(EventKind, f64)) {
-        let state = &drill.start_state;
-        let mut way = CycleMotion {
-            executor: self,
+impl CyclePlan {
+    /// Emits the moves of the block one by one.
+    pub(super) fn expand(&self, data: &ControlData, emit: &mut impl FnMut(EventKind, f64)) {
+        let state = &self.start_state;
+        let mut motion = CycleMotion {
+            data,
             at: state.machine,
             unknown_axes: state.work_zero_unknown,
-            rate: drill.rate,
-            emit: tell,
+            rate: self.rate,
+            emit,
         };
-        let data = &state.cycle;
-        let (r, z) = (data.r_level(), data.z_level());
-        let mut hole = drill.first_hole;
-        for turn in 0..drill.repeats {
-            drill.move_to_hole(self, turn, &mut hole);
+        let cycle = &state.cycle;
+        let (r, z) = (cycle.r_level(), cycle.z_level());
+        let mut hole = self.first_hole;
+        for repeat in 0..self.repeats {
+            self.move_to_hole(data, repeat, &mut hole);
             let level = |value: f64| {
                 let mut point = hole;
-                point[drill.axis] = value;
-                self.to_machine(state, &point)
+                point[self.axis] = value;
+                data.to_machine(state, &point)
             };
             let mut over = level(r);
-            over[drill.axis] = way.at[drill.axis];
-            way.rapid(over);
-            if drill.cycle.starts_at_r {
-                way.set_work_zero(drill.axis, data.is_r_unknown());
-                way.rapid(level(r));
+            over[self.axis] = motion.at[self.axis];
+            motion.rapid(over);
+            if self.cycle.starts_at_r {
+                motion.set_work_zero(self.axis, cycle.is_r_unknown());
+                motion.rapid(level(r));
             }
-            for step in drill.cycle.steps {
-                self.drill_step(*step, drill, &level, (r, z), &mut way);
+            for step in self.cycle.steps {
+                self.drill_step(*step, data, &level, (r, z), &mut motion);
             }
         }
     }
@@ -74,12 +74,12 @@ impl Executor {
     fn drill_step<T: FnMut(EventKind, f64)>(
         &self,
         step: CycleStep,
-        drill: &CyclePlan,
+        data: &ControlData,
         level: &impl Fn(f64) -> Position,
         (r, z): (f64, f64),
-        way: &mut CycleMotion<'_, T>,
+        motion: &mut CycleMotion<'_, T>,
     ) {
-        let state = &drill.start_state;
+        let state = &self.start_state;
         let initial = state.cycle.initial;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
         let turning = |turning| EventKind::Spindle { direction: turning, speed: Rpm(state.codes.s) };
@@ -89,89 +89,87 @@ impl Executor {
             _ => false,
         };
         if goes_back {
-            way.set_work_zero(drill.axis, state.cycle.is_initial_unknown);
+            motion.set_work_zero(self.axis, state.cycle.is_initial_unknown);
         }
         match step {
-            CycleStep::FeedToBottom => way.feed(level(z)),
+            CycleStep::FeedToBottom => motion.feed(level(z)),
             CycleStep::PeckFull => {
-                self.for_each_peck((r, z), &state.cycle.unscaled(drill.stretch), |last, next, done| {
+                for_each_peck((r, z), &state.cycle.unscaled(self.stretch), |last, next, done| {
                     if last != r {
-                        let clearance = (self.settings.g83_clearance / drill.stretch).min((r - last).abs());
-                        way.rapid(level(last + clearance.copysign(r - z)));
+                        let clearance = (data.settings.g83_clearance / self.stretch).min((r - last).abs());
+                        motion.rapid(level(last + clearance.copysign(r - z)));
                     }
-                    way.feed(level(next));
+                    motion.feed(level(next));
                     if !done {
-                        way.rapid(level(r + self.settings.g83_above_r.copysign(r - z)));
+                        motion.rapid(level(r + data.settings.g83_above_r.copysign(r - z)));
                     }
                 });
             }
             CycleStep::PeckShort => {
-                let retract = (self.settings.g73_retract / drill.stretch).copysign(r - z);
-                self.for_each_peck((r, z), &state.cycle.unscaled(drill.stretch), |_, next, done| {
-                    way.feed(level(next));
+                let retract = (data.settings.g73_retract / self.stretch).copysign(r - z);
+                for_each_peck((r, z), &state.cycle.unscaled(self.stretch), |_, next, done| {
+                    motion.feed(level(next));
                     if !done {
-                        way.rapid(level(next + retract));
+                        motion.rapid(level(next + retract));
                     }
                 });
             }
-            CycleStep::Dwell => way.dwell(drill.dwell),
-            CycleStep::DwellAtR if self.settings.undocumented.tap_dwells_at_r => way.dwell(drill.dwell),
+            CycleStep::Dwell => motion.dwell(self.dwell),
+            CycleStep::DwellAtR if data.settings.undocumented.tap_dwells_at_r => motion.dwell(self.dwell),
             CycleStep::DwellAtR => {}
-            CycleStep::FeedToR => way.feed(level(r)),
+            CycleStep::FeedToR => motion.feed(level(r)),
             CycleStep::RapidBack => {
-                way.rapid_along_axis(level(if to_initial { initial } else { r }), drill.axis)
+                motion.rapid_along_axis(level(if to_initial { initial } else { r }), self.axis)
             }
-            CycleStep::RapidToInitial if to_initial => way.rapid(level(initial)),
+            CycleStep::RapidToInitial if to_initial => motion.rapid(level(initial)),
             CycleStep::RapidToInitial => {}
-            CycleStep::RapidToInitialAlways => way.rapid_along_axis(level(initial), drill.axis),
-            CycleStep::RapidToR => way.rapid_along_axis(level(r), drill.axis),
+            CycleStep::RapidToInitialAlways => motion.rapid_along_axis(level(initial), self.axis),
+            CycleStep::RapidToR => motion.rapid_along_axis(level(r), self.axis),
             CycleStep::Shift => {
-                let mut to = way.at;
-                to[drill.shift.0] = self.remove_residue(to[drill.shift.0] + drill.shift.1);
-                way.rapid(to);
+                let mut to = motion.at;
+                to[self.shift.0] = data.remove_residue(to[self.shift.0] + self.shift.1);
+                motion.rapid(to);
             }
             CycleStep::ShiftBack => {
-                let mut to = way.at;
-                to[drill.shift.0] = self.remove_residue(to[drill.shift.0] - drill.shift.1);
-                way.rapid(to);
+                let mut to = motion.at;
+                to[self.shift.0] = data.remove_residue(to[self.shift.0] - self.shift.1);
+                motion.rapid(to);
             }
-            CycleStep::SpindleStop => (way.emit)(turning(SpindleDirection::Off), 0.0),
-            CycleStep::SpindleForward => (way.emit)(turning(SpindleDirection::Clockwise), 0.0),
-            CycleStep::SpindleReverse => (way.emit)(turning(SpindleDirection::Counterclockwise), 0.0),
+            CycleStep::SpindleStop => (motion.emit)(turning(SpindleDirection::Off), 0.0),
+            CycleStep::SpindleForward => (motion.emit)(turning(SpindleDirection::Clockwise), 0.0),
+            CycleStep::SpindleReverse => (motion.emit)(turning(SpindleDirection::Counterclockwise), 0.0),
             CycleStep::ManualRetract => {
                 let stop = EventKind::Stop {
                     kind: StopKind::M00,
                     text: "retract by hand to R".into(),
                     variables: Vec::new(),
                 };
-                (way.emit)(stop, 0.0);
-                way.rapid(level(r));
+                (motion.emit)(stop, 0.0);
+                motion.rapid(level(r));
             }
         }
     }
-}
 
-impl CyclePlan {
     /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
-    fn move_to_hole(&self, core: &Executor, turn: u32, hole: &mut Position) {
+    fn move_to_hole(&self, data: &ControlData, turn: u32, hole: &mut Position) {
         if let Some(BoltHolePattern { radius, start, angle_step: angle, .. }) = self.pattern {
             let angle = Deg(start + f64::from(turn) * angle);
-            hole[0] = core.remove_residue(self.first_hole[0] + radius * angle.cos());
-            hole[1] = core.remove_residue(self.first_hole[1] + radius * angle.sin());
+            hole[0] = data.remove_residue(self.first_hole[0] + radius * angle.cos());
+            hole[1] = data.remove_residue(self.first_hole[1] + radius * angle.sin());
             return;
         }
         if turn == 0 {
             return;
         }
         let from = *hole;
-        for (place, _) in core.settings.axes.iter() {
+        for (place, _) in data.settings.axes.iter() {
             hole[place] =
-                core.remove_residue(self.first_hole[place] + f64::from(turn) * self.hole_step[place]);
+                data.remove_residue(self.first_hole[place] + f64::from(turn) * self.hole_step[place]);
         }
         if let Some(PolarRepeats { plane, first, angle_step: angle }) = self.polar_repeats {
             (hole[plane.0], hole[plane.1]) = (from[plane.0], from[plane.1]);
             let here = PolarPoint { angle: first.angle + f64::from(turn) * angle, ..first };
-            core.polar_point(&here, plane, hole);
+            data.polar_point(&here, plane, hole);
         }
     }
 
@@ -186,10 +184,10 @@ impl CyclePlan {
     }
 
     /// Where the last hole is.
-    pub(super) fn last_hole(&self, core: &Executor) -> Position {
+    pub(super) fn last_hole(&self, data: &ControlData) -> Position {
         let mut hole = self.first_hole;
         for turn in 0..self.repeats {
-            self.move_to_hole(core, turn, &mut hole);
+            self.move_to_hole(data, turn, &mut hole);
         }
         hole
     }
@@ -197,7 +195,7 @@ impl CyclePlan {
 
 /// The tool on its way through a cycle, in machine coordinates.
 struct CycleMotion<'c, T> {
-    executor: &'c Executor,
+    data: &'c ControlData,
     at: Position,
     unknown_axes: u8,
     rate: MmPerMin,
@@ -216,7 +214,7 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 
     fn rapid(&mut self, to: Position) {
         if to != self.at {
-            (self.emit)(EventKind::Rapid { to }, self.executor.rapid_seconds(&self.at, &to));
+            (self.emit)(EventKind::Rapid { to }, self.data.rapid_seconds(&self.at, &to));
             self.at = to;
         }
     }
@@ -240,5 +238,85 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
         if seconds > 0.0 {
             (self.emit)(EventKind::Dwell { time: Seconds(seconds) }, seconds);
         }
+    }
+}
+
+/// Holes round the point where the block stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BoltHolePattern {
+    pub(super) count: u32,
+    /// mm.
+    pub(super) radius: f64,
+    /// Degrees from X+ to the first hole, and from hole to hole.
+    pub(super) start: f64,
+    pub(super) angle_step: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use gcode_lang::control::Settings;
+    use gcode_lang::program::cycles;
+
+    use super::*;
+    use crate::state::{CycleLevel, CycleState};
+
+    fn at(x: f64, z: f64) -> Position {
+        let mut position = Position::default();
+        (position[0], position[2]) = (x, z);
+        position
+    }
+
+    /// The moves of a hole at X10 from the initial level 50, R 2 and Z −10.
+    fn moves(cycle: &'static Cycle, return_to: ReturnTo, q: Option<f64>) -> Vec<(&'static str, f64)> {
+        let level = |value| CycleLevel { value, is_incremental: false, is_commanded: true };
+        let cycle_state = CycleState {
+            axis: Some(2),
+            initial: 50.0,
+            r: level(2.0),
+            z: level(-10.0),
+            q,
+            ..CycleState::default()
+        };
+        let (programmed, machine) = (at(0.0, 50.0), at(0.0, 50.0));
+        let mut from = State { programmed, machine, cycle: cycle_state, ..State::default() };
+        from.modal.return_to = return_to;
+        let plan = CyclePlan {
+            cycle,
+            start_state: from,
+            first_hole: at(10.0, 50.0),
+            hole_step: Position::default(),
+            polar_repeats: None,
+            pattern: None,
+            repeats: 1,
+            axis: 2,
+            shift: (0, 0.0),
+            rate: MmPerMin(100.0),
+            dwell: 0.0,
+            stretch: 1.0,
+        };
+        let mut moves = Vec::new();
+        plan.expand(&ControlData::new(Settings::default()), &mut |kind, _| match kind {
+            EventKind::Rapid { to } => moves.push(("rapid", to[2])),
+            EventKind::Feed { to, .. } => moves.push(("feed", to[2])),
+            _ => {}
+        });
+        moves
+    }
+
+    #[test]
+    fn a_hole_is_drilled_from_r_to_z_and_left_for_the_level_in_force() {
+        let down = [("rapid", 50.0), ("rapid", 2.0), ("feed", -10.0)];
+        assert_eq!(moves(&cycles::DRILL, ReturnTo::Initial, None), [&down[..], &[("rapid", 50.0)]].concat());
+        assert_eq!(moves(&cycles::DRILL, ReturnTo::R, None), [&down[..], &[("rapid", 2.0)]].concat());
+    }
+
+    #[test]
+    fn pecks_go_q_deeper_each() {
+        let feeds = |cycle| {
+            let moves = moves(cycle, ReturnTo::R, Some(5.0)).into_iter();
+            moves.filter(|(kind, _)| *kind == "feed").map(|(_, z)| z).collect::<Vec<_>>()
+        };
+        assert_eq!(feeds(&cycles::PECK_DRILL), [-3.0, -8.0, -10.0]);
+        assert_eq!(feeds(&cycles::PECK_DRILL_SHORT), [-3.0, -8.0, -10.0]);
     }
 }

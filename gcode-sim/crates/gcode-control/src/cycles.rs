@@ -1,12 +1,11 @@
 //! Checks a drilling block: its axis, its words, its repeats, and where it ends.
-use super::Executor;
-use super::cycle_expansion::{CyclePlan, PolarRepeats};
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
+use super::cycle_expansion::{BoltHolePattern, CyclePlan, PolarRepeats};
 use super::notes::Note;
-use super::patterns::BoltHolePattern;
 use super::pecks::has_too_many_pecks;
 use super::plan::BlockPlan;
-use super::state::{CycleLevel, State};
+use super::planner::Planner;
+use super::state::{CycleLevel, PeckSchedule, State};
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, Position};
@@ -14,10 +13,10 @@ use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::{Distance, Plane, Polar, ReturnTo};
 use gcode_lang::source::Span;
 
-impl Executor {
+impl Planner<'_> {
     /// Whether a block drills: it names an axis or R.
     pub(super) fn is_drilling_block(&self, block_words: &BlockWords) -> bool {
-        block_words.has(b'R') || self.names_axis(block_words)
+        block_words.has(b'R') || self.data.names_axis(block_words)
     }
 
     /// Z; with FXY 5101#0 the plane's normal or the axis beside it that the block names, which stays the same until
@@ -25,9 +24,9 @@ impl Executor {
     pub(super) fn drilling_axis(&self, block_words: &BlockWords, state: &State) -> Result<AxisIndex, Alarm> {
         let find = |letter: u8| {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            self.settings.axes.find(letter).ok_or(missing)
+            self.data.settings.axes.find(letter).ok_or(missing)
         };
-        if !self.settings.drills_by_plane {
+        if !self.data.settings.drills_by_plane {
             return find(b'Z');
         }
         let letters = match state.modal.plane {
@@ -40,7 +39,7 @@ impl Executor {
             (_, Some(_), Some(_)) => Err(Alarm::DrillingAxis),
             (None, named, None) => find(*named.unwrap_or(&letters[0])),
             (Some(axis), named, None) => {
-                let letter = self.settings.axes.letter(axis) as u8;
+                let letter = self.data.settings.axes.letter(axis) as u8;
                 let same = letters.contains(&letter) && named.is_none_or(|named| *named == letter);
                 if same { Ok(axis) } else { Err(Alarm::DrillingAxis) }
             }
@@ -68,41 +67,41 @@ impl Executor {
         plan.state.set_work_zero_unknown(axis, from.work_zero_unknown >> axis & 1 == 1);
         self.read_cycle_words(plan, block_words, axis, incremental)?;
         let data = &plan.state.cycle;
-        for (level, letter) in [(data.r, 'R'), (data.z, self.settings.axes.letter(axis))] {
+        for (level, letter) in [(data.r, 'R'), (data.z, self.data.settings.axes.letter(axis))] {
             if !level.is_commanded {
                 plan.notes.push(Note::CycleLevelMissing { letter });
             }
         }
-        if !self.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
+        if !self.data.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
             plan.notes.push(Note::DrillsAlongZ { code: plan.state.modal.plane.code() });
         }
         if cycle.needs_q {
             self.check_peck_words(plan, block_words, pattern, span)?;
         }
-        let (rate, _) = locate(self.path_time(&plan.state, 1.0, block_words.has(b'F')), span)?;
+        let (rate, _) = locate(self.data.path_time(&plan.state, 1.0, block_words.has(b'F')), span)?;
         plan.commands_axes = true;
         if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.unscaled(stretch), repeats) {
             let what = "more than a million pecks in one block".into();
             return Err(Alarm::NotSimulated { what }.located_at(span));
         }
         let is_rollover_word = |(axis, letter): (AxisIndex, char)| {
-            self.settings.rolls_over[axis] && block_words.has(letter as u8)
+            self.data.settings.rolls_over[axis] && block_words.has(letter as u8)
         };
-        if incremental && self.settings.axes.iter().any(is_rollover_word) {
+        if incremental && self.data.settings.axes.iter().any(is_rollover_word) {
             let what = "a drilling cycle with an incremental axis that rolls over".into();
             return Err(Alarm::NotSimulated { what }.located_at(span));
         }
-        if repeats == 0 && !self.settings.undocumented.k0_positions {
+        if repeats == 0 && !self.data.settings.undocumented.k0_positions {
             plan.notes.push(Note::CycleRepeatsZero);
             return Ok(());
         }
         let mut step = Position::default();
         if incremental {
-            for (place, _) in self.settings.axes.iter() {
+            for (place, _) in self.data.settings.axes.iter() {
                 step[place] = endpoint[place] - from.programmed[place];
             }
         }
-        let first = self.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
+        let first = self.data.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
         let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
         let polar_repeats = self.polar_repeats(plan, block_words, incremental, repeats)?;
         let cycle_plan = CyclePlan {
@@ -119,10 +118,10 @@ impl Executor {
             dwell: plan.state.cycle.p,
             stretch,
         };
-        plan.state.programmed = cycle_plan.last_hole(self);
+        plan.state.programmed = cycle_plan.last_hole(self.data);
         if repeats == 0 {
             // Positions only.
-            let mut to = self.to_machine(&plan.state, &plan.state.programmed);
+            let mut to = self.data.to_machine(&plan.state, &plan.state.programmed);
             to[axis] = from.machine[axis];
             plan.state.machine = from.machine;
             self.push_rapid(plan, &to);
@@ -136,13 +135,13 @@ impl Executor {
         };
         plan.state.set_work_zero_unknown(axis, unplaced);
         plan.state.programmed[axis] = level;
-        plan.state.machine = self.to_machine(&plan.state, &plan.state.programmed);
+        plan.state.machine = self.data.to_machine(&plan.state, &plan.state.programmed);
         plan.cycle_plan = Some(cycle_plan);
         Ok(())
     }
 
     fn cycle_repeats(&self, block_words: &BlockWords, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {
-        let letter = self.settings.cycle_repeat_letter;
+        let letter = self.data.settings.cycle_repeat_letter;
         let repeats = match pattern {
             Some(pattern) => pattern.count,
             None => block_words.count(letter)?.unwrap_or(1),
@@ -162,7 +161,7 @@ impl Executor {
         pattern: Option<BoltHolePattern>,
         span: Span,
     ) -> ExecResult<()> {
-        if self.settings.has_shrinking_pecks && pattern.is_none() {
+        if self.data.settings.has_shrinking_pecks && pattern.is_none() {
             self.read_peck_schedule(plan, block_words, span)?;
         }
         let data = &plan.state.cycle;
@@ -180,18 +179,19 @@ impl Executor {
         repeats: u32,
     ) -> ExecResult<Option<PolarRepeats>> {
         let state = &mut plan.state;
-        let Ok(plane) = self.plane_axes(state.modal.plane) else { return Ok(None) };
+        let Ok(plane) = self.data.plane_axes(state.modal.plane) else { return Ok(None) };
         if state.modal.polar == Polar::Off || !incremental {
             return Ok(None);
         }
-        let angle_step = self.angle(block_words, self.settings.axes.letter(plane.1) as u8)?.unwrap_or(0.0);
+        let angle_step =
+            self.data.angle(block_words, self.data.settings.axes.letter(plane.1) as u8)?.unwrap_or(0.0);
         let first = state.polar;
         state.polar.angle += f64::from(repeats.max(1) - 1) * angle_step;
         Ok(Some(PolarRepeats { plane, first, angle_step }))
     }
 
     fn other_axis(&self, axis: AxisIndex) -> AxisIndex {
-        self.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default()
+        self.data.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default()
     }
 
     /// The depth, R, P and Q stay in force from hole to hole.
@@ -204,17 +204,19 @@ impl Executor {
     ) -> ExecResult<()> {
         let state = &plan.state;
         let mut data = state.cycle;
-        if let Some(value) = self.dimension(block_words, b'R', state)? {
+        if let Some(value) = self.data.dimension(block_words, b'R', state)? {
             data.r = CycleLevel { value, is_incremental: incremental, is_commanded: true };
         }
-        if let Some(value) = self.dimension(block_words, self.settings.axes.letter(axis) as u8, state)? {
+        if let Some(value) =
+            self.data.dimension(block_words, self.data.settings.axes.letter(axis) as u8, state)?
+        {
             data.z = CycleLevel { value, is_incremental: incremental, is_commanded: true };
         }
-        if let Some(value) = self.dimension(block_words, b'Q', state)? {
+        if let Some(value) = self.data.dimension(block_words, b'Q', state)? {
             // Its sign is ignored.
             data.q = Some(value.abs());
         }
-        if let Some(seconds) = self.dwell_seconds(block_words)? {
+        if let Some(seconds) = self.data.dwell_seconds(block_words)? {
             data.p = seconds;
         }
         plan.state.cycle = data;
@@ -234,4 +236,37 @@ fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64
         return Err(Alarm::NotSimulated { what: what.into() });
     }
     Ok(stretch)
+}
+
+impl Planner<'_> {
+    /// G73 and G83 of a Haas: the first peck is I, each next one J less, none less than K.
+    pub(super) fn read_peck_schedule(
+        &self,
+        plan: &mut BlockPlan,
+        block_words: &BlockWords,
+        span: Span,
+    ) -> ExecResult<()> {
+        let state = &plan.state;
+        let first = self.data.dimension(block_words, b'I', state)?;
+        let decrement = self.data.dimension(block_words, b'J', state)?;
+        let minimum = self.data.dimension(block_words, b'K', state)?;
+        let pecks = match (first, decrement, minimum) {
+            (None, None, None) => return Ok(()),
+            (Some(first), None, None) => PeckSchedule { first, decrement: 0.0, minimum: first },
+            (Some(first), Some(less), Some(least)) => PeckSchedule { first, decrement: less, minimum: least },
+            _ => {
+                let what = "I, J and K of G73 and G83 in part, or K with Q".into();
+                return Err(Alarm::NotSimulated { what }.located_at(span));
+            }
+        };
+        if block_words.has(b'Q') {
+            return Err(Alarm::NotSimulated { what: "G73 and G83 with I and Q".into() }.located_at(span));
+        }
+        if pecks.first <= 0.0 || pecks.decrement < 0.0 || pecks.minimum <= 0.0 || pecks.minimum > pecks.first
+        {
+            return Err(Alarm::NoPeckDepth.located_at(span));
+        }
+        plan.state.cycle.pecks = Some(pecks);
+        Ok(())
+    }
 }

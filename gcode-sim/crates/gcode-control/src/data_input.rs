@@ -1,15 +1,15 @@
 //! G10: offsets, parameters and variables that a program writes.
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
 use super::offsets::Register;
 use super::plan::{BlockPlan, TableWrite};
+use super::planner::Planner;
 use super::variables::{Value, VariableClass};
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::modes::Distance;
 use gcode_lang::source::Span;
 
-impl Executor {
+impl Planner<'_> {
     /// G10: L2 and L20 work offsets, L10 to L13 tool offsets, L50 and L52 parameters, L85
     /// variables.
     pub(super) fn plan_data_input(
@@ -22,7 +22,7 @@ impl Executor {
         let p = block_words.count(b'P')?;
         let l = block_words.count(b'L')?.ok_or_else(|| format("L is missing"))?;
         match l {
-            3 | 14 | 50 | 52 | 85 if !self.settings.allows_parameter_input => {
+            3 | 14 | 50 | 52 | 85 if !self.data.settings.allows_parameter_input => {
                 Err(format(&format!("L{l} is not available")))
             }
             2 | 20 => {
@@ -58,16 +58,16 @@ impl Executor {
         let is_incremental = plan.state.modal.distance == Distance::Incremental;
         let system = match l {
             2 if p <= 6 => p,
-            20 if (1..=self.offsets.additional.len()).contains(&p) => 6 + p,
+            20 if (1..=self.data.offsets.additional.len()).contains(&p) => 6 + p,
             _ => return Err(Alarm::OffsetNumber { number: p as i64 }.located_at(span)),
         };
-        for (axis, letter) in self.settings.axes.iter() {
-            let Some(value) = self.dimension(block_words, letter as u8, &plan.state)? else { continue };
-            let old = if is_incremental { self.offsets.work(system)[axis] } else { 0.0 };
+        for (axis, letter) in self.data.settings.axes.iter() {
+            let Some(value) = self.data.dimension(block_words, letter as u8, &plan.state)? else { continue };
+            let old = if is_incremental { self.data.offsets.work(system)[axis] } else { 0.0 };
             plan.writes.push(TableWrite::Work {
                 system,
                 axis,
-                value: locate(self.check_offset_range(self.remove_residue(old + value)), span)?,
+                value: locate(self.data.check_offset_range(self.data.remove_residue(old + value)), span)?,
             });
         }
         Ok(())
@@ -89,15 +89,20 @@ impl Executor {
             _ => Register::HWear,
         };
         let is_incremental = plan.state.modal.distance == Distance::Incremental;
-        let old = locate(self.offsets.tool(register, number), span)?;
+        let old = locate(self.data.offsets.tool(register, number), span)?;
         if number == 0 {
             return Err(Alarm::OffsetNumber { number: 0 }.located_at(span));
         }
         let value = self
+            .data
             .dimension(block_words, b'R', &plan.state)?
             .ok_or_else(|| format("R is missing").located_at(span))?;
         let value = locate(
-            self.check_offset_range(self.remove_residue(if is_incremental { old + value } else { value })),
+            self.data.check_offset_range(self.data.remove_residue(if is_incremental {
+                old + value
+            } else {
+                value
+            })),
             span,
         )?;
         plan.writes.push(TableWrite::Tool { register, number, value });
@@ -112,7 +117,7 @@ impl Executor {
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
-        if !matches!(self.vars.classify(number), VariableClass::Common(_)) {
+        if !matches!(self.registers.variables.classify(number), VariableClass::Common(_)) {
             return Err(
                 Alarm::NoSuchVariable { number: i64::from(number) }.located_at(block_words.span(b'P'))
             );
@@ -131,6 +136,6 @@ impl Executor {
     }
 }
 
-fn format(what: &str) -> Alarm {
+pub(super) fn format(what: &str) -> Alarm {
     Alarm::G10Format { what: what.to_owned() }
 }

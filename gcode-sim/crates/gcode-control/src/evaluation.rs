@@ -1,49 +1,17 @@
 //! Evaluates expressions and conditions.
-use std::cell::Cell;
-
-use super::Executor;
+use super::checked::{ExecResult, integer, locate, variable_number};
 use super::functions::{angle, atan2, binary, compare, function_alarm, function_value, is_finite, power};
 use super::notes::Note;
+use super::quantities::POWERS;
+use super::registers::Registers;
 use super::variables::{Accumulator, Value, VariableClass};
-use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{
-    ComputedSource, Instruction, Operand, OperandSource, Operation, STACK, Slot, UncommonOp,
+    AssignmentTarget, ComputedSource, Instruction, Operand, OperandSource, Operation, Slot, UncommonOp,
 };
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Function};
-use gcode_lang::units::round;
-
-pub(super) type ExecResult<T> = Result<T, LocatedAlarm>;
-
-/// The values that wait for their operators, in as many places as [`gcode_lang::program`] lets an expression need. They
-/// are part of the control, so that an evaluation has none to clear. Going round in them saves the question at every
-/// step whether there is a place, and what an alarm has left behind.
-#[derive(Clone, Debug)]
-pub(super) struct OperandStack {
-    values: [Cell<Value>; STACK],
-    depth: Cell<usize>,
-}
-
-impl Default for OperandStack {
-    fn default() -> Self {
-        Self { values: [const { Cell::new(Value::Vacant) }; STACK], depth: Cell::new(0) }
-    }
-}
-
-impl OperandStack {
-    fn push(&self, value: Value) {
-        let used = self.depth.get();
-        self.values[used % STACK].set(value);
-        self.depth.set(used.wrapping_add(1));
-    }
-
-    #[inline]
-    fn pop(&self) -> Value {
-        let used = self.depth.get().wrapping_sub(1);
-        self.depth.set(used);
-        self.values[used % STACK].get()
-    }
-}
+use gcode_lang::units::{round, round_scaled};
 
 /// What ROUND in a word rounds to.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -52,7 +20,7 @@ pub(super) enum RoundingTarget {
     Whole,
 }
 
-impl Executor {
+impl Registers {
     #[inline]
     pub(super) fn operand(&self, operand: &Operand) -> ExecResult<Value> {
         match operand {
@@ -83,20 +51,20 @@ impl Executor {
 
     /// A value that an operator needs; `last` is what the instruction before has given.
     #[inline(always)]
-    fn fetch(&self, source: &OperandSource, last: Accumulator) -> Value {
+    pub(super) fn fetch(&self, source: &OperandSource, last: Accumulator) -> Value {
         match source {
             OperandSource::Number(number) => Value::Number(*number),
-            OperandSource::Free(place) => self.vars.get_free(*place),
+            OperandSource::Free(place) => self.variables.get_free(*place),
             OperandSource::Computed(ComputedSource::Last) => last.into(),
             OperandSource::Computed(ComputedSource::Waiting) => self.operand_stack.pop(),
         }
     }
 
-    /// As [`Executor::fetch`], where only the number is asked for.
+    /// As [`Registers::fetch`], where only the number is asked for.
     #[inline(always)]
     fn fetch_number(&self, source: &OperandSource, last: Accumulator) -> f64 {
         match source {
-            OperandSource::Free(place) => self.vars.free_number(*place),
+            OperandSource::Free(place) => self.variables.free_number(*place),
             OperandSource::Number(number) => *number,
             OperandSource::Computed(ComputedSource::Last) => last.number,
             OperandSource::Computed(ComputedSource::Waiting) => self.operand_stack.pop().number(),
@@ -106,15 +74,15 @@ impl Executor {
     #[inline(always)]
     pub(super) fn load(&self, slot: Slot, span: &Span) -> ExecResult<Value> {
         match slot {
-            Slot::Free(place) => Ok(self.vars.get_free(place)),
+            Slot::Free(place) => Ok(self.variables.get_free(place)),
             Slot::Other(number) => locate(self.read_variable(number), *span),
         }
     }
 
     /// The value of a variable of any kind.
     pub(super) fn read_variable(&self, number: u32) -> Result<Value, Alarm> {
-        match self.vars.classify(number) {
-            VariableClass::Local(place) | VariableClass::Common(place) => Ok(self.vars.get(place)),
+        match self.variables.classify(number) {
+            VariableClass::Local(place) | VariableClass::Common(place) => Ok(self.variables.get(place)),
             VariableClass::Vacant => Ok(Value::Vacant),
             VariableClass::System => self.read_system(number),
         }
@@ -127,7 +95,7 @@ impl Executor {
         self.evaluate(code, rounds).map(Value::from)
     }
 
-    /// As [`Executor::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
+    /// As [`Registers::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
     #[inline(always)]
     pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundingTarget) -> ExecResult<Accumulator> {
         let mut last = Accumulator::VACANT;
@@ -175,14 +143,14 @@ impl Executor {
             _ => left / right,
         };
         if !is_finite(value) {
-            return locate(binary(op, left, right, &self.settings.undocumented), *span);
+            return locate(binary(op, left, right, &self.data.settings.undocumented), *span);
         }
         Ok(value)
     }
 
     #[inline(always)]
     fn evaluate_function(&self, name: Function, argument: f64, span: &Span) -> ExecResult<f64> {
-        let value = function_value(name, argument, &self.settings);
+        let value = function_value(name, argument, &self.data.settings);
         if !is_finite(value) {
             return Err(function_alarm(name, argument).located_at(*span));
         }
@@ -195,9 +163,9 @@ impl Executor {
     /// ATAN of two values.
     #[inline(always)]
     fn atan(&self, y: f64, x: f64, span: &Span) -> ExecResult<f64> {
-        let value = angle(y, x, &self.settings);
+        let value = angle(y, x, &self.data.settings);
         if !is_finite(value) {
-            return locate(atan2(y, x, &self.settings), *span);
+            return locate(atan2(y, x, &self.data.settings), *span);
         }
         if y == 0.0 && x == 0.0 {
             self.block_effects.record_note(Note::AtanOf0);
@@ -213,7 +181,7 @@ impl Executor {
         before: Accumulator,
         rounds: RoundingTarget,
     ) -> Result<Value, Alarm> {
-        let (last, unsure) = (Value::from(before), &self.settings.undocumented);
+        let (last, unsure) = (Value::from(before), &self.data.settings.undocumented);
         Ok(match *operation {
             UncommonOp::Load(ref source) => self.fetch(source, before),
             UncommonOp::Push => {
@@ -260,23 +228,25 @@ impl Executor {
                     is_there.then(|| std::mem::replace(&mut part, self.operand_stack.pop()).number())
                 };
                 let (axis, bit) = (wait(axis), wait(bit));
-                Value::Number(self.read_parameter(part.number(), bit, axis)?)
+                Value::Number(self.data.read_parameter(part.number(), bit, axis)?)
             }
             UncommonOp::AxisNumber(letter) => {
-                let axis = self.settings.axes.find(letter);
+                let axis = self.data.settings.axes.find(letter);
                 let unknown = || Alarm::AxisAddress { text: char::from(letter).into() };
                 Value::Number(axis.ok_or_else(unknown)? as f64 + 1.0)
             }
             UncommonOp::AddPoint => {
                 let number = variable_number(last)?;
-                match self.vars.classify(number) {
-                    VariableClass::Local(local) => Value::Number(self.vars.value_with_point(local)),
+                match self.variables.classify(number) {
+                    VariableClass::Local(local) => Value::Number(self.variables.value_with_point(local)),
                     _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
                 }
             }
-            UncommonOp::NameNumber(ref name) => Value::Number(f64::from(self.named_variable(name)?)),
+            UncommonOp::NameNumber(ref name) => {
+                Value::Number(f64::from(self.variables.named_variable(name)?))
+            }
             UncommonOp::SystemNumber(row) => {
-                let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };
+                let number = if self.data.settings.series_15_offsets { row.series_15 } else { row.number };
                 let place = match row.suffix {
                     None => 0,
                     Some((from, to)) => {
@@ -304,27 +274,26 @@ pub(super) fn is_true(condition: Value) -> bool {
     condition.number() != 0.0
 }
 
-/// A variable's number by an expression: rounded, never negative; vacant is #0.
-pub(super) fn variable_number(value: Value) -> Result<u32, Alarm> {
-    let number = value.number();
-    let whole = number as u32;
-    if f64::from(whole) == number {
-        return Ok(whole);
+impl Registers {
+    /// ROUND inside an address.
+    pub(super) fn round_to_address(&self, letter: u8, value: f64) -> f64 {
+        match letter {
+            b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
+                let scale = POWERS[self.data.decimals(letter, self.state.modal.unit)];
+                round_scaled(value, scale) / scale
+            }
+            b'F' | b'E' => value,
+            _ => value.round(),
+        }
     }
-    let number = round(number);
-    if (0.0..=f64::from(u32::MAX)).contains(&number) {
-        return Ok(number as u32);
+
+    pub(super) fn resolve_target(&self, target: &AssignmentTarget) -> Result<Slot, Alarm> {
+        match target {
+            AssignmentTarget::Slot(slot) => Ok(*slot),
+            AssignmentTarget::Computed(number) => {
+                let value = self.operand(number).map_err(|alarm| alarm.node)?;
+                variable_number(value).map(Slot::of)
+            }
+        }
     }
-    Err(Alarm::NoSuchVariable { number: number as i64 })
-}
-
-/// A value as the integer that an index, a code or a count is: the nearest one.
-pub(super) fn integer(value: f64) -> Result<i64, Alarm> {
-    let rounded = round(value);
-    if rounded.abs() <= 999_999_999_999.0 { Ok(rounded as i64) } else { Err(Alarm::IntegerOverflow) }
-}
-
-/// Where a value of a computed word stands.
-pub(super) fn locate<T>(result: Result<T, Alarm>, span: Span) -> ExecResult<T> {
-    result.map_err(|alarm| alarm.located_at(span))
 }

@@ -52,7 +52,7 @@ fn integer_operation(
 }
 
 /// AND, OR and XOR work on 32-bit integers.
-fn bits(value: f64, undocumented: &UndocumentedChoices) -> Result<i32, Alarm> {
+pub(super) fn bits(value: f64, undocumented: &UndocumentedChoices) -> Result<i32, Alarm> {
     let value = round(value);
     if value < 0.0 && undocumented.negative_bits_alarm {
         return Err(Alarm::OutOfRange { function: "AND, OR, XOR".into(), value });

@@ -1,15 +1,13 @@
 //! Straight moves: where a block's axis words lead, and how long the way takes.
 use std::hint::cold_path;
 
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
-use super::notes::Note;
-use super::plan::BlockPlan;
+use super::checked::{ExecResult, locate};
+use super::data::ControlData;
 use super::quantities::Measure;
 use super::state::{PolarPoint, State};
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{AxisIndex, EventKind, MAX_AXES, Position};
+use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
 use gcode_lang::program::modes::{Distance, FeedMode, Plane, Polar, Unit};
 use gcode_lang::units::{Deg, MmPerMin};
 
@@ -25,7 +23,7 @@ pub(super) struct Endpoint {
 /// What axis words count from and in, the same for all of a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CoordinateBasis {
-    /// [`Executor::zeros`].
+    /// [`ControlData::zeros`].
     zero: Position,
     /// The axes whose zero and tool length are none, as bits, axis 1 the lowest.
     unshifted_axes: u8,
@@ -70,7 +68,7 @@ impl Endpoint {
     }
 }
 
-impl Executor {
+impl ControlData {
     /// Whether a block names an axis.
     pub(super) fn names_axis(&self, block_words: &BlockWords) -> bool {
         block_words.has_letters(self.settings.axes.letter_bits())
@@ -90,37 +88,6 @@ impl Executor {
         Ok((find(first)?, find(second)?))
     }
 
-    /// The end point of the block's axis words, from where `state` stands.
-    pub(super) fn resolve_endpoint(
-        &self,
-        block_words: &BlockWords,
-        state: &mut State,
-    ) -> ExecResult<Endpoint> {
-        let mut endpoint = Endpoint::at_current_position(state);
-        let basis = self.coordinate_basis(state);
-        self.resolve_axes(block_words, state, &basis, &mut endpoint)?;
-        state.work_zero_unknown = endpoint.work_zero_unknown;
-        if state.modal.polar == Polar::On {
-            self.resolve_polar(block_words, state, &mut endpoint.programmed)?;
-        }
-        if state.last_end_point.is_some() && state.modal.distance == Distance::Absolute {
-            self.note_axes_left_out(block_words, state);
-        }
-        let machine = self.to_machine(state, &endpoint.programmed);
-        let rolled_machine = std::mem::replace(&mut endpoint.machine, machine);
-        for axis in self
-            .settings
-            .rollover_axes()
-            .filter(|axis| block_words.has(self.settings.axes.letter(*axis) as u8))
-        {
-            endpoint.machine[axis] = rolled_machine[axis];
-        }
-        if endpoint.machine.0.iter().any(|at| at.abs() > basis.max_coordinate) {
-            self.check_coordinate_range(block_words, &endpoint.machine, basis.max_coordinate)?;
-        }
-        Ok(endpoint)
-    }
-
     /// What axis words count from where `state` stands.
     pub(super) fn coordinate_basis(&self, state: &State) -> CoordinateBasis {
         let zero = self.zeros(state);
@@ -135,7 +102,7 @@ impl Executor {
     }
 
     /// Takes a goal to where the block's axis words lead, but for those of a plane in which G16 is on.
-    fn resolve_axes(
+    pub(super) fn resolve_axes(
         &self,
         block_words: &BlockWords,
         state: &State,
@@ -198,45 +165,12 @@ impl Executor {
         (self.wrap_angle(axis, from + travel), self.remove_residue(state.machine[axis] + travel))
     }
 
-    /// An axis that the block doesn't name keeps still, though its coordinate is another since a transform was switched.
-    #[cold]
-    fn note_axes_left_out(&self, block_words: &BlockWords, state: &State) {
-        let is_left_out = |(axis, letter): (AxisIndex, char)| {
-            !block_words.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
-        };
-        if self.settings.axes.iter().any(is_left_out) {
-            self.block_effects.record_note(Note::AxisLeftOut);
-        }
-    }
-
-    /// The alarm of an axis beyond the largest coordinate, if one is there; one that rolls over begins anew with each turn.
-    #[cold]
-    fn check_coordinate_range(
-        &self,
-        block_words: &BlockWords,
-        machine: &Position,
-        most: f64,
-    ) -> ExecResult<()> {
-        for (axis, letter) in self.settings.axes.iter() {
-            if machine[axis].abs() > most && !self.settings.rolls_over[axis] {
-                let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
-                let named = block_words.has(letter as u8);
-                return Err(alarm.located_at(if named {
-                    block_words.span(letter as u8)
-                } else {
-                    self.block
-                }));
-            }
-        }
-        Ok(())
-    }
-
     fn in_plane(&self, state: &State, axis: AxisIndex) -> bool {
         self.plane_axes(state.modal.plane).is_ok_and(|(first, second)| axis == first || axis == second)
     }
 
     /// G16: the plane's first axis is the radius, the second the angle.
-    fn resolve_polar(
+    pub(super) fn resolve_polar(
         &self,
         block_words: &BlockWords,
         state: &mut State,
@@ -279,31 +213,6 @@ impl Executor {
         let radius = polar.radius.unwrap_or(0.0);
         point[plane.0] = self.remove_residue(centre.0 + radius * Deg(polar.angle).cos());
         point[plane.1] = self.remove_residue(centre.1 + radius * Deg(polar.angle).sin());
-    }
-
-    /// Tells a rapid to a point in machine coordinates; nothing where the tool already is there.
-    pub(super) fn push_rapid(&self, plan: &mut BlockPlan, to: &Position) {
-        let from = &plan.state.machine;
-        if to != from {
-            plan.events.push((EventKind::Rapid { to: *to }, self.rapid_seconds(from, to)));
-            plan.state.machine = *to;
-        }
-    }
-
-    /// Tells a straight cut; alarms where there is no feed, even if it leads nowhere.
-    pub(super) fn push_feed(
-        &self,
-        plan: &mut BlockPlan,
-        to: &Position,
-        block_words: &BlockWords,
-    ) -> Result<(), Alarm> {
-        let from = &plan.state.machine;
-        let (rate, seconds) = self.feed_seconds(&plan.state, from, to, block_words.has(b'F'))?;
-        if to != from {
-            plan.events.push((EventKind::Feed { to: *to, rate }, seconds));
-            plan.state.machine = *to;
-        }
-        Ok(())
     }
 
     /// All axes start together at their own rapid rates; the slowest decides.
@@ -355,7 +264,7 @@ impl Executor {
         squared_travel
     }
 
-    /// As [`Executor::feed_seconds`] of an F that may not be in force yet.
+    /// As [`ControlData::feed_seconds`] of an F that may not be in force yet.
     #[inline(always)]
     pub(super) fn travel_time(
         &self,

@@ -3,15 +3,11 @@
 //! Brent's method of finding cycles: at each jump back what differs soonest (place, variables, position) is held against
 //! that of an earlier jump, which is kept for longer and longer. Where they agree the control itself is copied; when it equals
 //! its copy one turn later, all that follows repeats. Between such finds a jump costs a few instructions.
-use super::Executor;
-use super::frames::Frame;
-use super::lookahead::Lookahead;
-use super::modal_calls::ModalCall;
-use super::offsets::Offsets;
-use super::run::RunEnd;
-use super::state::State;
+use super::block_effects::RunEnd;
+use super::executor::Executor;
+use super::flow::{Frame, ProgramFlow};
+use super::registers::Registers;
 use super::variables::Vars;
-use gcode_lang::control::{ParameterId, Settings};
 use gcode_lang::motion::Position;
 use gcode_lang::program::{OpIndex, ProgramId};
 use gcode_lang::source::Span;
@@ -28,27 +24,11 @@ struct Fingerprint {
     differing_place: usize,
 }
 
-/// Everything that can decide what the program does next; what it only leaves behind (time, counts, stops, lines
-/// printed) is not there.
+/// Everything that can decide what the program does next; the record of the run, which it only leaves behind, is not there.
 #[derive(Debug)]
 struct ControlSnapshot {
-    state: State,
-    vars: Vars,
-    offsets: Offsets,
-    lookahead: Lookahead,
-    frame: Frame,
-    callers: Vec<Frame>,
-    modal_calls: Vec<ModalCall>,
-    names: std::collections::BTreeMap<String, u32>,
-    outputs: u32,
-    clocks: (f64, f64),
-    idle: f64,
-    switches: [f64; 2],
-    part_counters: [f64; 2],
-    cycles: u32,
-    is_output_open: bool,
-    settings: Settings,
-    parameters: std::collections::BTreeMap<ParameterId, f64>,
+    registers: Registers,
+    flow: ProgramFlow,
 }
 
 /// The jump that the loop is told by: the one to the earliest block of the outermost program.
@@ -102,7 +82,7 @@ impl LoopDetector {
     /// Told of every jump back; ends the run where the program is now known never to leave the loop.
     #[inline(always)]
     pub(super) fn record_jump(&mut self, executor: &mut Executor) {
-        if self.is_waiting || executor.has_read_clock.get() {
+        if self.is_waiting || executor.registers.clock.has_been_read.get() {
             self.advance_clock(executor);
         }
         if self.snapshot.is_some() {
@@ -123,7 +103,7 @@ impl LoopDetector {
         if self.fingerprint.as_mut().is_some_and(|seen| seen.matches(executor)) {
             self.check_revisit(executor);
             if self.endless_loop.is_some() {
-                executor.block_effects.end_run(RunEnd::EndlessLoop);
+                executor.registers.block_effects.end_run(RunEnd::EndlessLoop);
                 return;
             }
         }
@@ -149,7 +129,7 @@ impl LoopDetector {
             None => self.snapshot = Some(Box::new(ControlSnapshot::of(executor))),
             // It waits for the clock, which only motion has moved so far.
             Some(copy) if copy.equals(executor) && self.has_read_clock => {
-                (self.seconds, self.is_waiting) = (executor.seconds, true);
+                (self.seconds, self.is_waiting) = (executor.registers.clock.motion_seconds, true);
                 self.clear();
             }
             Some(copy) if copy.equals(executor) => {
@@ -164,23 +144,23 @@ impl LoopDetector {
     /// Takes note of a jump that leads further out, or further up, than those since the control was copied.
     #[cold]
     fn record_outer_jump(&mut self, executor: &Executor) {
-        let Frame { program, next: to, .. } = executor.frame;
-        let callers = executor.callers.len();
+        let Frame { program, next: to, .. } = executor.flow.frame;
+        let callers = executor.flow.callers.len();
         if self.outermost_jump.is_none_or(|w| (callers, to) < (w.callers, w.to)) {
-            self.outermost_jump = Some(BackJump { callers, to, program, from: executor.block });
+            self.outermost_jump = Some(BackJump { callers, to, program, from: executor.flow.block });
         }
     }
 
     /// A program that does nothing but wait for a clock is given a millisecond a jump, so that the wait ends.
     #[cold]
     fn advance_clock(&mut self, executor: &mut Executor) {
-        let read = executor.has_read_clock.take();
+        let read = executor.registers.clock.has_been_read.take();
         self.has_read_clock |= read;
-        if executor.seconds != self.seconds {
-            (self.seconds, self.is_waiting) = (executor.seconds, false);
+        if executor.registers.clock.motion_seconds != self.seconds {
+            (self.seconds, self.is_waiting) = (executor.registers.clock.motion_seconds, false);
         }
         if read && self.is_waiting {
-            executor.idle_seconds += 0.001;
+            executor.registers.clock.idle_seconds += 0.001;
         }
     }
 
@@ -193,11 +173,11 @@ impl LoopDetector {
 impl Fingerprint {
     fn of(executor: &Executor) -> Self {
         Self {
-            program: executor.frame.program,
-            next: executor.frame.next,
-            callers: executor.callers.len(),
-            machine: executor.state.machine,
-            vars: executor.vars.clone(),
+            program: executor.flow.frame.program,
+            next: executor.flow.frame.next,
+            callers: executor.flow.callers.len(),
+            machine: executor.registers.state.machine,
+            vars: executor.registers.variables.clone(),
             differing_place: 0,
         }
     }
@@ -205,21 +185,26 @@ impl Fingerprint {
     /// Whether nothing that is looked at first differs. What counts turns tells nearly all moments apart.
     #[inline]
     fn may_match(&self, executor: &Executor) -> bool {
-        self.machine[0].to_bits() == executor.state.machine[0].to_bits()
-            && self.next == executor.frame.next
-            && !self.vars.differs_at(self.differing_place, &executor.vars)
+        self.machine[0].to_bits() == executor.registers.state.machine[0].to_bits()
+            && self.next == executor.flow.frame.next
+            && !self.vars.differs_at(self.differing_place, &executor.registers.variables)
     }
 
     /// Whether the control has come to this moment again.
     fn matches(&mut self, executor: &Executor) -> bool {
         if !self.may_match(executor)
-            || self.program != executor.frame.program
-            || self.callers != executor.callers.len()
-            || self.machine.0.iter().zip(executor.state.machine.0).any(|(a, b)| a.to_bits() != b.to_bits())
+            || self.program != executor.flow.frame.program
+            || self.callers != executor.flow.callers.len()
+            || self
+                .machine
+                .0
+                .iter()
+                .zip(executor.registers.state.machine.0)
+                .any(|(a, b)| a.to_bits() != b.to_bits())
         {
             return false;
         }
-        let difference = self.vars.difference(&executor.vars);
+        let difference = self.vars.difference(&executor.registers.variables);
         self.differing_place = difference.unwrap_or(self.differing_place);
         difference.is_none()
     }
@@ -227,43 +212,14 @@ impl Fingerprint {
 
 impl ControlSnapshot {
     fn of(executor: &Executor) -> Self {
-        Self {
-            state: *executor.state,
-            vars: executor.vars.clone(),
-            offsets: executor.offsets.clone(),
-            lookahead: executor.lookahead.clone(),
-            frame: executor.frame.clone(),
-            callers: executor.callers.clone(),
-            modal_calls: executor.modal_calls.clone(),
-            names: executor.names.clone(),
-            outputs: executor.outputs,
-            clocks: executor.clocks,
-            idle: executor.idle_seconds,
-            switches: executor.control_switches,
-            part_counters: executor.part_counters,
-            cycles: executor.cycles,
-            is_output_open: executor.printed.is_open,
-            settings: executor.settings.clone(),
-            parameters: executor.parameters.clone(),
-        }
+        let Executor { registers, flow, log: _ } = executor;
+        Self { registers: registers.clone(), flow: flow.clone() }
     }
 
     fn equals(&self, executor: &Executor) -> bool {
-        let frames = self.frame.continues_like(&executor.frame)
-            && self.callers.len() == executor.callers.len()
-            && self.callers.iter().zip(&executor.callers).all(|(a, b)| a.continues_like(b));
-        frames
-            && self.state == *executor.state
-            && self.vars.has_same_values(&executor.vars)
-            && self.offsets == executor.offsets
-            && self.lookahead == executor.lookahead
-            && self.modal_calls == executor.modal_calls
-            && self.names == executor.names
-            && (self.outputs, self.clocks, self.idle) == (executor.outputs, executor.clocks, executor.idle_seconds)
-            && (self.switches, self.part_counters) == (executor.control_switches, executor.part_counters)
-            && self.is_output_open == executor.printed.is_open
-            && (&self.settings, &self.parameters) == (&executor.settings, &executor.parameters)
-            // M99 of the main program counts only where the count ends the run.
-            && (executor.settings.main_program_cycles.is_none() || self.cycles == executor.cycles)
+        let Executor { registers, flow, log: _ } = executor;
+        // M99 of the main program counts only where the count ends the run.
+        let counts_passes = registers.data.settings.main_program_cycles.is_some();
+        self.flow.continues_like(flow, counts_passes) && self.registers.continues_like(registers)
     }
 }

@@ -1,22 +1,23 @@
 //! What the M codes of a block do, each at its time, and a new S.
-use super::Executor;
-use super::evaluation::ExecResult;
+use super::checked::ExecResult;
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
+use super::planner::Planner;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
-use gcode_lang::program::m_codes::{self, MCodeEffect};
+use gcode_lang::program::m_codes;
+use gcode_lang::program::m_codes::MCodeEffect;
 use gcode_lang::units::Rpm;
 
-impl Executor {
+impl Planner<'_> {
     /// 2., 5. and 6. What M codes do, each at its time.
     pub(super) fn plan_m_codes(&self, block_words: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
         plan.notes.extend(block_words.replaced_m_codes.iter().map(|code| Note::MCodeLost { code: *code }));
         for (code, span) in block_words.m_codes[..block_words.m_code_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);
-            let Some(effect) = m_codes::find(code, self.settings.codes) else {
+            let Some(effect) = m_codes::find(code, self.data.settings.codes) else {
                 plan.auxiliary_codes.push(code);
                 plan.push_event(EventKind::Auxiliary { code });
                 if code > 9999 {
@@ -26,7 +27,9 @@ impl Executor {
             };
             match effect {
                 MCodeEffect::Stop => plan.stops.push(StopKind::M00),
-                MCodeEffect::OptionalStop if self.settings.stops_at_m01 => plan.stops.push(StopKind::M01),
+                MCodeEffect::OptionalStop if self.data.settings.stops_at_m01 => {
+                    plan.stops.push(StopKind::M01)
+                }
                 MCodeEffect::OptionalStop | MCodeEffect::NoEffect => {}
                 MCodeEffect::End => plan.flow = BlockFlow::End,
                 MCodeEffect::SpindleForward => self.set_spindle(plan, SpindleDirection::Clockwise, speed),
@@ -42,7 +45,7 @@ impl Executor {
                         .push((EventKind::Spindle { direction: SpindleDirection::Off, speed }, 0.0));
                 }
                 MCodeEffect::ToolChange => {
-                    let stops_spindle = self.settings.undocumented.tool_change_stops_spindle;
+                    let stops_spindle = self.data.settings.undocumented.tool_change_stops_spindle;
                     if stops_spindle && plan.state.spindle != SpindleDirection::Off {
                         self.set_spindle(plan, SpindleDirection::Off, speed);
                     }

@@ -1,11 +1,12 @@
 //! The G codes of a block put in force, and what else than a move uses its axis words.
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::state::{CycleState, PolarPoint};
 use super::transform_order;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
+use gcode_lang::program::code_facts::{CoordinateUse, LookaheadUse};
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::modes::{CutterSide, Mirror, Polar, Rotation, Scaling};
 use gcode_lang::source::Span;
@@ -22,7 +23,7 @@ pub(super) enum AxisWordUse {
     Tilt,
 }
 
-impl Executor {
+impl Planner<'_> {
     /// 1. Modal G codes in the order they stand in; the answer is what uses the axis words instead of a move.
     #[inline]
     pub(super) fn apply_modal_codes(
@@ -40,7 +41,7 @@ impl Executor {
         Ok(None)
     }
 
-    /// As [`Executor::modal_codes`], of a block with other codes than those of group 01.
+    /// As [`Planner::apply_modal_codes`], of a block with other codes than those of group 01.
     #[inline(never)]
     fn apply_all_codes(
         &self,
@@ -71,7 +72,7 @@ impl Executor {
             }
         }
         let modal = state.modal;
-        if modal.plane != before.plane && self.lookahead.is_offset() {
+        if modal.plane != before.plane && self.registers.lookahead.is_offset() {
             return Err(Alarm::PlaneInCompensation.located_at(span));
         }
         if modal.plane != before.plane && state.transform.rotation.is_some() {
@@ -79,11 +80,11 @@ impl Executor {
         }
         if before.scaling == Scaling::On
             && modal.scaling == Scaling::On
-            && let Some(row) = block_words.g_codes().find(|row| row.effect.needs_plain_coordinates())
+            && let Some(row) = block_words.g_codes().find(|row| row.facts.coordinates != CoordinateUse::Free)
         {
             return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(span));
         }
-        locate(transform_order::check(block_words, &before, state, self.names_axis(block_words)), span)?;
+        locate(transform_order::check(block_words, &before, state, self.data.names_axis(block_words)), span)?;
         if modal.scaling == Scaling::Off {
             state.transform.scaling = None;
         }
@@ -96,9 +97,9 @@ impl Executor {
         }
         if modal.work != before.work {
             state.last_end_point = None;
-            self.recompute_position(state);
-        } else if state.transform != self.state.transform {
-            self.apply_transform_change(state);
+            self.data.recompute_position(state);
+        } else if state.transform != self.registers.state.transform {
+            self.data.apply_transform_change(state);
         }
         if modal.cycle.is_some() && !is_cycle_active {
             let axis = locate(self.drilling_axis(block_words, state), span)?;
@@ -121,19 +122,12 @@ fn axis_use_of(
     block_words: &BlockWords,
     cutter: CutterSide,
 ) -> Result<Option<AxisWordUse>, Alarm> {
+    if row.facts.lookahead == LookaheadUse::Alarms && cutter != CutterSide::Off {
+        return Err(Alarm::ToolOffsetInCompensation);
+    }
+    block_words.mark_letters_read(row.facts.words.without_effect);
     Ok(match row.effect {
-        Effect::NotSimulated if (450..=480).contains(&row.code) && cutter != CutterSide::Off => {
-            return Err(Alarm::ToolOffsetInCompensation);
-        }
         Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help)),
-        Effect::NoEffect => {
-            block_words.mark_read(b"IPQR");
-            None
-        }
-        Effect::Smoothness => {
-            block_words.mark_read(b"EP");
-            None
-        }
         Effect::OneShot(one) => Some(AxisWordUse::OneShot(one)),
         Effect::AdditionalWork => Some(AxisWordUse::AdditionalWork),
         Effect::Scaling(Scaling::On) => Some(AxisWordUse::Scale),
@@ -158,7 +152,9 @@ fn axis_use_of(
         | Effect::NumberedWork(_)
         | Effect::Cutting(_)
         | Effect::Polar(_)
-        | Effect::LookAhead => None,
+        | Effect::LookAhead
+        | Effect::NoEffect
+        | Effect::Smoothness => None,
     })
 }
 

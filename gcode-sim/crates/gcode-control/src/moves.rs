@@ -1,8 +1,8 @@
 //! A move by the modal codes: the tool length that it takes in, a drilling cycle, or group 01.
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
 use super::notes::Note;
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::words::{BlockWords, letters};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::EventKind;
@@ -10,7 +10,7 @@ use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::{CutterSide, Length, Motion};
 use gcode_lang::source::Span;
 
-impl Executor {
+impl Planner<'_> {
     /// 3. G43, G44, G49 and a new H; whether the offset changed.
     #[inline]
     pub(super) fn plan_length(
@@ -21,7 +21,9 @@ impl Executor {
     ) -> ExecResult<bool> {
         let commanded = block_words.has(b'H')
             || block_words.has_non_motion_code(|effect| matches!(effect, Effect::Length(_)));
-        if !commanded || (plan.state.modal.length == Length::Off && self.state.modal.length == Length::Off) {
+        if !commanded
+            || (plan.state.modal.length == Length::Off && self.registers.state.modal.length == Length::Off)
+        {
             return Ok(false);
         }
         self.plan_length_offset(block_words, plan, span)
@@ -42,9 +44,9 @@ impl Executor {
         {
             plan.notes.push(Note::LengthOffsetZero { code: row.code });
         }
-        let offset = locate(self.length_offset(&plan.state), span)?;
+        let offset = locate(self.data.length_offset(&plan.state), span)?;
         let (changed, by) = (offset != plan.state.length_offset, plan.state.length_compensation());
-        if changed || by != self.state.length_compensation() {
+        if changed || by != self.registers.state.length_compensation() {
             plan.push_event(EventKind::ToolLength { offset, compensation: by });
         }
         plan.state.length_offset = offset;
@@ -69,13 +71,13 @@ impl Executor {
                 plan.notes.push(Note::CycleDataLost);
             }
             if has_new_length {
-                self.recompute_position(&mut plan.state);
+                self.data.recompute_position(&mut plan.state);
             }
             return Ok(());
         }
         let motion = plan.state.modal.motion;
         let is_arc = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
-        let names_axis = self.names_axis(block_words);
+        let names_axis = self.data.names_axis(block_words);
         // A code of group 01 behind that of a cycle: a plain move, the cycle's own words are nothing.
         let overrules_cycle =
             block_words.has_non_motion_code(|effect| matches!(effect, Effect::Cycle(Some(_))));
@@ -99,7 +101,7 @@ impl Executor {
             return Err(Alarm::CornerInThread.located_at(span));
         }
         if motion != Motion::Rapid && block_words.has_corner() {
-            plan.corner = self.corner_word(block_words, &plan.state)?;
+            plan.corner = self.data.corner_word(block_words, &plan.state)?;
         }
         match motion {
             Motion::Rapid => self.push_rapid(plan, &endpoint.machine),
@@ -125,11 +127,11 @@ impl Executor {
         if !has_new_length {
             return Ok(());
         }
-        if !self.settings.undocumented.length_moves_at_once {
-            self.recompute_position(&mut plan.state);
+        if !self.data.settings.undocumented.length_moves_at_once {
+            self.data.recompute_position(&mut plan.state);
             return Ok(());
         }
-        let to = self.to_machine(&plan.state, &plan.state.programmed);
+        let to = self.data.to_machine(&plan.state, &plan.state.programmed);
         if plan.state.modal.motion == Motion::Rapid {
             self.push_rapid(plan, &to);
             return Ok(());

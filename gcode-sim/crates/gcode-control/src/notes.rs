@@ -1,7 +1,37 @@
 //! What a control does without a word and a programmer hardly means: told once for each kind, with its first block.
-use super::Control;
+use gcode_lang::diag::FindingKind;
 use gcode_lang::program::g_codes::spelled;
-use gcode_lang::source::Span;
+
+gcode_lang::finding_kinds! {
+    "../../../../docs/explain/";
+    ATAN_OF_0 = "atan-of-0", Warning, "ATAN of 0 and 0";
+    AXIS_LEFT_OUT = "axis-left-out", Warning, "a first move that omits an axis";
+    BLOCK_SKIP = "block-skip", Note, "the result holds for one position of the block skip switch";
+    CENTRE_HERE = "centre-here", Note, "a centre at the current point";
+    CORNER_IGNORED = "corner-ignored", Warning, "a corner word without effect";
+    CYCLE_DATA_LOST = "cycle-data-lost", Warning, "P or Q in a block that does not drill";
+    DIGITS_LOST = "digits-lost", Warning, "DPRNT without the upper digits";
+    DOUBLED_NUMBER = "doubled-number", Warning, "a jump to one of several N";
+    DRILL_PLANE = "drill-plane", Warning, "a cycle drills along Z while another plane is active";
+    END_BEFORE_SWITCH = "end-before-switch", Warning, "a position read after a change of coordinates";
+    G53_IGNORED = "g53-ignored", Warning, "G53 in G91 moves nothing";
+    INTO_LOOP = "into-loop", Warning, "a jump into a loop";
+    LARGE_ALARM_NUMBER = "large-alarm-number", Warning, "the number of #3000 exceeds its range";
+    LENGTH_OF_NOTHING = "length-of-nothing", Warning, "G43 without H";
+    LEVEL_MISSING = "level-missing", Warning, "a drilling cycle without R or without its depth";
+    LONG_M_CODE = "long-m-code", Warning, "an M code with more than four digits";
+    LOWER_CASE = "lower-case", Note, "lower-case letters are read as capitals";
+    M_CODE_LOST = "m-code-lost", Warning, "only the last M code of a block counts";
+    NO_ANGLE = "no-angle", Warning, "G68 without R";
+    NO_AXIS = "no-axis", Warning, "a code without an axis";
+    NO_INTERRUPT = "no-interrupt", Warning, "the macro of M96 is never called";
+    NO_PASS = "no-pass", Warning, "a call with L0";
+    NO_REPEATS = "no-repeats", Note, "K0 stores a cycle and drills nothing";
+    NO_SIGNAL = "no-signal", Warning, "G31 goes to its end";
+    PARAMETER_WITHOUT_EFFECT = "parameter-without-effect", Warning, "a written parameter has no effect here";
+    TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
+    WORDS_PASSED_ON = "words-passed-on", Warning, "a word beside an M code of the machine builder";
+}
 
 /// A thing worth telling that is no alarm on a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,74 +94,74 @@ pub enum Note {
 }
 
 impl Note {
-    /// A stable name, what happened, and what to do.
-    pub fn describe(self) -> (&'static str, String, &'static str) {
+    /// Returns the kind of finding, the message and the remedy.
+    pub fn describe(self) -> (&'static FindingKind, String, &'static str) {
         match self {
             Self::MachineMoveIgnored => {
                 let message = "G53 in G91 is ignored: the axes of the block do not move".to_owned();
-                ("g53-ignored", message, "command G90 with G53")
+                (&G53_IGNORED, message, "command G90 with G53")
             }
             Self::MCodeLost { code } => {
                 let message = format!("M{code} is lost: of several M codes in a block only the last counts");
                 (
-                    "m-code-lost",
+                    &M_CODE_LOST,
                     message,
                     "write each M code in a block of its own, or set M3B=1 if the control accepts three",
                 )
             }
             Self::CycleDataLost => {
                 let message = "P or Q is not stored: the block drills nothing".to_owned();
-                ("cycle-data-lost", message, "write P and Q in the block of a hole")
+                (&CYCLE_DATA_LOST, message, "write P and Q in the block of a hole")
             }
             Self::InterruptNotSimulated => {
                 let message = "the macro of M96 is never called: a run has no UINT signal".to_owned();
-                ("no-interrupt", message, "call the macro with G65 to simulate it")
+                (&NO_INTERRUPT, message, "call the macro with G65 to simulate it")
             }
             Self::NoSkipSignal => {
                 let message = "no skip signal is simulated: G31 moves to its end point".to_owned();
                 (
-                    "no-signal",
+                    &NO_SIGNAL,
                     message,
                     "give the part with --part, or SKIP, the fraction of the path where the signal comes",
                 )
             }
             Self::WordsPassedOn { code, letter } => {
                 let message = format!("{letter} is passed to the machine builder's logic with M{code:02}");
-                ("words-passed-on", message, "see the machine's manual for the words of this M code")
+                (&WORDS_PASSED_ON, message, "see the machine's manual for the words of this M code")
             }
             Self::CornerIgnored => {
                 let message = ",R and ,C are ignored: the block is not a cutting move".to_owned();
-                ("corner-ignored", message, "write them in a block of G01, G02 or G03")
+                (&CORNER_IGNORED, message, "write them in a block of G01, G02 or G03")
             }
             Self::CycleRepeatsZero => {
                 let message = "K0 stores the cycle without a move to the block's X and Y".to_owned();
-                ("no-repeats", message, "use K0-MOVES=1 for a control that moves there")
+                (&NO_REPEATS, message, "use K0-MOVES=1 for a control that moves there")
             }
             Self::CallRepeatsZero => {
-                ("no-pass", "L0: the program is not called".to_owned(), "omit L to call it once")
+                (&NO_PASS, "L0: the program is not called".to_owned(), "omit L to call it once")
             }
             Self::NoAxis { code } => {
                 let message = format!("G{} without an axis: nothing moves or is set", spelled(code));
-                ("no-axis", message, "name the axes")
+                (&NO_AXIS, message, "name the axes")
             }
             Self::CentreDefaulted { code } => {
                 let message =
                     format!("G{} without an axis: the programmed position is its centre", spelled(code));
-                ("centre-here", message, "name the axes of the centre")
+                (&CENTRE_HERE, message, "name the axes of the centre")
             }
             Self::NoAngle => {
                 let message = "G68 without R rotates by 0; a control may have an angle in 5410".to_owned();
-                ("no-angle", message, "write R")
+                (&NO_ANGLE, message, "write R")
             }
             Self::DuplicateNumber { number } => {
                 let message = format!(
                     "N{number} is defined more than once: the control decides which one a jump takes"
                 );
-                ("doubled-number", message, "give each block a number of its own")
+                (&DOUBLED_NUMBER, message, "give each block a number of its own")
             }
             Self::JumpIntoLoop { number } => {
                 let message = format!("a jump into the loop DO{number}: its END raises PS1124");
-                ("into-loop", message, "jump to the block of its DO or WHILE")
+                (&INTO_LOOP, message, "jump to the block of its DO or WHILE")
             }
             Self::TangentOf90 => {
                 let message =
@@ -139,7 +169,7 @@ impl Note {
                      large number"
                         .to_owned();
                 (
-                    "tangent-of-90",
+                    &TANGENT_OF_90,
                     message,
                     "test the angle first; TAN-90-ALARM=1 is for a control that raises the alarm",
                 )
@@ -149,53 +179,53 @@ impl Note {
                     "ATAN of 0 and 0 is undefined: some controls raise an alarm, here the result is 0"
                         .to_owned();
                 (
-                    "atan-of-0",
+                    &ATAN_OF_0,
                     message,
                     "test both values first; ATAN-0-ALARM=1 is for a control that raises the alarm",
                 )
             }
             Self::ParameterWithoutEffect { number } => {
                 let message = format!("parameter {number} is stored for PRM and has no other effect here");
-                ("parameter-without-effect", message, "see docs/control.md for what is not simulated")
+                (&PARAMETER_WITHOUT_EFFECT, message, "see docs/control.md for what is not simulated")
             }
             Self::LowerCase => {
                 let message = "lower case is read as capitals; some controls refuse it".to_owned();
-                ("lower-case", message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
+                (&LOWER_CASE, message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
             }
             Self::LongMCode { code } => {
                 let message =
                     format!("M{code} calls no program: it is one M code, left to the machine builder");
-                ("long-m-code", message, "write P before the program number: M98 P1000")
+                (&LONG_M_CODE, message, "write P before the program number: M98 P1000")
             }
             Self::EndPointBeforeTransform => {
                 let message =
                     "#5001 and following are the end point of the last move as programmed, before the \
                      change of G51.1, G51 or G68"
                         .to_owned();
-                ("end-before-switch", message, "read them after the next move, or before the change")
+                (&END_BEFORE_SWITCH, message, "read them after the next move, or before the change")
             }
             Self::AxisLeftOut => {
                 let message =
                     "an omitted axis keeps its position here; after a change of G51.1, G51 or G68 a \
                      control may move it"
                         .to_owned();
-                ("axis-left-out", message, "name every axis in the first move after the change")
+                (&AXIS_LEFT_OUT, message, "name every axis in the first move after the change")
             }
             Self::DigitsLost => {
                 let message = "DPRNT prints only the lower digits: the format has too few places".to_owned();
                 (
-                    "digits-lost",
+                    &DIGITS_LOST,
                     message,
                     "give the format more places; PRINT-EXPANDS=1 is for a control that expands it",
                 )
             }
             Self::CycleLevelMissing { letter } => {
                 let message = format!("the cycle drills with {letter} at 0: no value was commanded");
-                ("level-missing", message, "write R and the depth in the block that begins the cycle")
+                (&LEVEL_MISSING, message, "write R and the depth in the block that begins the cycle")
             }
             Self::LengthOffsetZero { code } => {
                 let message = format!("G{} with H0 applies no tool length compensation", spelled(code));
-                ("length-of-nothing", message, "write H with the number of the tool's offset")
+                (&LENGTH_OF_NOTHING, message, "write H with the number of the tool's offset")
             }
             Self::BlockSkip { switch, is_on } => {
                 let (is, does) = if is_on { ("on", "skipped") } else { ("off", "executed") };
@@ -203,7 +233,7 @@ impl Note {
                     "the rest of the block after / is {does}: block skip {switch} is {is}; all results \
                      assume this setting"
                 );
-                ("block-skip", message, "use --control BDT=1 to switch block skip 1 on")
+                (&BLOCK_SKIP, message, "use --control BDT=1 to switch block skip 1 on")
             }
             Self::DrillsAlongZ { code } => {
                 let message = format!(
@@ -211,19 +241,12 @@ impl Note {
                      of that plane",
                     spelled(code)
                 );
-                ("drill-plane", message, "write G17, or set FXY=1 if the control drills along the normal")
+                (&DRILL_PLANE, message, "write G17, or set FXY=1 if the control drills along the normal")
             }
             Self::LargeAlarmNumber { number, max: most } => {
                 let message = format!("#3000={number}: the manuals give numbers up to {most}");
-                ("large-alarm-number", message, "use a smaller number")
+                (&LARGE_ALARM_NUMBER, message, "use a smaller number")
             }
         }
-    }
-}
-
-impl Control {
-    /// Each note with the first block it is about.
-    pub fn notes(&self) -> impl Iterator<Item = (Note, Span)> + '_ {
-        self.executor.notes.iter().map(|(note, block)| (*note, *block))
     }
 }

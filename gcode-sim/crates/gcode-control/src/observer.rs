@@ -1,6 +1,7 @@
 //! Looking on while a control runs: at what stands in it before and after every block.
-use super::frames::Frame;
-use super::{Control, Executor};
+use super::control::Control;
+use super::flow::Frame;
+use super::registers::Registers;
 use gcode_lang::program::{Assign, Op, OpKind, Slot, Statement};
 use gcode_lang::source::Span;
 
@@ -61,41 +62,41 @@ impl<W: Observer> Observer for Option<W> {
 impl Control {
     /// The block that a step would do now; `None` where the program has no more.
     pub fn next_block(&mut self) -> Option<Span> {
-        let Frame { program, next, .. } = self.executor.frame;
+        let Frame { program, next, .. } = self.executor.flow.frame;
         self.memory.lower_block(program, next).map(|op| op.span)
     }
 
     /// The variables that [`Control::next_block`] will assign as things stand; those whose numbers are computed as well.
     pub fn next_assigned_variables(&self) -> Vec<u32> {
         let mut numbers = Vec::new();
-        self.inspect_next(|core, op| {
-            if !core.is_skipped(op) {
-                core.collect_targets(op.kind(), &mut numbers);
+        self.inspect_next(|registers, op| {
+            if !registers.is_skipped(op) {
+                registers.collect_targets(op.kind(), &mut numbers);
             }
         });
         numbers
     }
 
     /// What `look` sees in the operation of [`Control::next_block`]; `None` where there is none that is ready.
-    pub(super) fn inspect_next<T>(&self, inspect: impl FnOnce(&Executor, &Op) -> T) -> Option<T> {
-        let Frame { program, next, .. } = self.executor.frame;
+    pub(super) fn inspect_next<T>(&self, inspect: impl FnOnce(&Registers, &Op) -> T) -> Option<T> {
+        let Frame { program, next, .. } = self.executor.flow.frame;
         let op = self.memory.get(program).op(next)?;
-        Some(self.executor.without_side_effects(|core| inspect(core, op)))
+        Some(self.executor.registers.without_side_effects(|registers| inspect(registers, op)))
     }
 }
 
-impl Executor {
+impl Registers {
     /// Does what is no part of the run: what it leaves behind is forgotten.
     pub(super) fn without_side_effects<T>(&self, inspect: impl FnOnce(&Self) -> T) -> T {
-        let clock_read = self.has_read_clock.get();
+        let clock_read = self.clock.has_been_read.get();
         let result = self.block_effects.without_effects(|| inspect(self));
-        self.has_read_clock.set(clock_read);
+        self.clock.has_been_read.set(clock_read);
         result
     }
 
     /// Whether the switch of a block skip before a block is on.
     pub(super) fn is_skipped(&self, op: &Op) -> bool {
-        op.skip().is_some_and(|switch| self.is_skip_on(switch))
+        op.skip().is_some_and(|switch| self.data.is_skip_on(switch))
     }
 
     /// What stands behind an IF that holds; else the operation itself.

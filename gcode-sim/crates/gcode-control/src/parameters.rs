@@ -1,54 +1,16 @@
 //! Parameters in a program: PRM reads them, the blocks between G10 L52 and G11 write them.
-use super::Executor;
-use super::evaluation::{ExecResult, integer};
+use super::checked::ExecResult;
 use super::notes::Note;
 use super::plan::{BlockPlan, TableWrite};
+use super::planner::Planner;
 use super::words::{BlockWords, WordNumber};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{ParameterError, ParameterId, Settings, is_without_effect};
-use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::Words;
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::source::Span;
 
-impl Executor {
-    /// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
-    pub(super) fn read_parameter(
-        &self,
-        number: f64,
-        bit: Option<f64>,
-        axis: Option<f64>,
-    ) -> Result<f64, Alarm> {
-        let format = || Alarm::ArgumentFormat { function: "PRM".into() };
-        let known = integer(number)?;
-        let unknown = || Alarm::NotSimulated { what: format!("PRM[{known}]") };
-        let id = ParameterId {
-            number: u16::try_from(known).map_err(|_| unknown())?,
-            bit: bit.map(|bit| self.parameter_bit(bit).ok_or_else(format)).transpose()?,
-            axis: axis.map(|axis| self.axis_of(axis).map_err(|_| format())).transpose()?,
-        };
-        if let Some(written) = self.parameters.get(&id) {
-            return Ok(*written);
-        }
-        self.settings.parameter(id).map_err(|error| match error {
-            ParameterError::MissingAxis | ParameterError::UnexpectedAxis | ParameterError::UnexpectedBit => {
-                format()
-            }
-            _ => unknown(),
-        })
-    }
-
-    fn parameter_bit(&self, bit: f64) -> Option<u8> {
-        (0.0..=7.0).contains(&bit.round()).then_some(bit.round() as u8)
-    }
-
-    /// An axis by its number from 1 on.
-    pub(super) fn axis_of(&self, number: f64) -> Result<AxisIndex, Alarm> {
-        let number = integer(number)?;
-        let axis = usize::try_from(number - 1).ok().filter(|axis| *axis < self.settings.axes.len());
-        axis.ok_or(Alarm::AxisNumber { number })
-    }
-
+impl Planner<'_> {
     /// A block between G10 L52 and G11: `N_ R_`, with P for an axis and Q for a bit.
     pub(super) fn plan_parameter(
         &self,
@@ -57,9 +19,9 @@ impl Executor {
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
-        plan.reset(&self.state);
+        plan.reset(&self.registers.state);
         let format_alarm = |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.located_at(span);
-        self.evaluate_words(words, None, block_words)?;
+        self.registers.evaluate_words(words, None, block_words)?;
         let mut codes = block_words.g_codes();
         match (codes.next(), codes.next()) {
             (None, _) => {}
@@ -81,12 +43,14 @@ impl Executor {
         let (raw, _) = block_words.get(b'R').ok_or_else(|| format_alarm("R is missing"))?;
         let axis = match block_words.count(b'P')? {
             None => None,
-            Some(axis) => Some(self.axis_of(f64::from(axis)).map_err(|_| format_alarm("P is not an axis"))?),
+            Some(axis) => {
+                Some(self.data.axis_of(f64::from(axis)).map_err(|_| format_alarm("P is not an axis"))?)
+            }
         };
         let bit = match block_words.count(b'Q')? {
             None => None,
             Some(bit) => {
-                Some(self.parameter_bit(f64::from(bit)).ok_or_else(|| format_alarm("Q is not 0 to 7"))?)
+                Some(self.data.parameter_bit(f64::from(bit)).ok_or_else(|| format_alarm("Q is not 0 to 7"))?)
             }
         };
         if block_words.first_unread().is_some() {
@@ -105,7 +69,7 @@ impl Executor {
             WordNumber::Literal(literal) => literal.value(),
             WordNumber::Computed(value) => value,
         };
-        let result = self.settings.clone().set_parameter(id, value);
+        let result = self.data.settings.clone().set_parameter(id, value);
         let has_no_effect = result == Err(ParameterError::Unknown) && is_without_effect(number);
         match result {
             Ok(()) => {}
@@ -127,16 +91,5 @@ impl Executor {
         }
         plan.writes.push(TableWrite::Parameter { id, value, has_no_effect });
         Ok(())
-    }
-
-    /// Carries out what [`Executor::prepare_parameter`] has checked.
-    pub(super) fn set_parameter(&mut self, id: ParameterId, value: f64, has_no_effect: bool) {
-        self.parameters.insert(id, value);
-        if has_no_effect {
-            return;
-        }
-        // It was tried on a copy when the block was checked.
-        let set = self.settings.set_parameter(id, value);
-        debug_assert_eq!(set, Ok(()));
     }
 }

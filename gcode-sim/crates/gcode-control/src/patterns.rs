@@ -1,25 +1,15 @@
 //! G70 and G71 of a Haas: the drilling cycle in force, at holes round a centre.
-use super::Executor;
-use super::evaluation::ExecResult;
+use super::checked::ExecResult;
+use super::cycle_expansion::BoltHolePattern;
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::g_codes::{GCodeRow, HolePattern};
+use gcode_lang::program::g_codes::HolePattern;
 use gcode_lang::program::modes::Plane;
 use gcode_lang::source::Span;
 
-/// Holes round the point where the block stands.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BoltHolePattern {
-    pub(super) count: u32,
-    /// mm.
-    pub(super) radius: f64,
-    /// Degrees from X+ to the first hole, and from hole to hole.
-    pub(super) start: f64,
-    pub(super) angle_step: f64,
-}
-
-impl Executor {
+impl Planner<'_> {
     /// I is the radius, J the angle of the first hole, L their number, K the angle between holes on an arc. The hole
     /// in the centre is not drilled (Haas Mill Operator's Manual, G70 and G71).
     pub(super) fn plan_bolt_holes(
@@ -40,13 +30,13 @@ impl Executor {
             return Err(Alarm::NotSimulated { what: format!("{code} outside plane G17") }.located_at(span));
         }
         let missing = |letter| Alarm::MissingWord { code, letter }.located_at(span);
-        let radius = self.dimension(block_words, b'I', &plan.state)?.ok_or_else(|| missing('I'))?;
-        let start = self.angle(block_words, b'J')?.ok_or_else(|| missing('J'))?;
+        let radius = self.data.dimension(block_words, b'I', &plan.state)?.ok_or_else(|| missing('I'))?;
+        let start = self.data.angle(block_words, b'J')?.ok_or_else(|| missing('J'))?;
         let count = block_words.count(b'L')?.filter(|count| *count > 0).ok_or_else(|| missing('L'))?;
         let angle_step = match holes {
             // A negative radius goes round clockwise.
             HolePattern::Circle => (360.0 / f64::from(count)).copysign(radius),
-            HolePattern::Arc => self.angle(block_words, b'K')?.ok_or_else(|| missing('K'))?,
+            HolePattern::Arc => self.data.angle(block_words, b'K')?.ok_or_else(|| missing('K'))?,
         };
         if radius == 0.0 || radius < 0.0 && holes == HolePattern::Arc {
             return Err(
@@ -56,13 +46,4 @@ impl Executor {
         let pattern = BoltHolePattern { count, radius: radius.abs(), start, angle_step };
         self.plan_cycle(plan, block_words, cycle, Some(pattern), span)
     }
-}
-
-/// Whether L of a block belongs to one of its codes.
-pub(super) fn takes_l(row: &GCodeRow) -> bool {
-    use gcode_lang::program::g_codes::{Effect, OneShot};
-    matches!(
-        row.effect,
-        Effect::OneShot(OneShot::DataInput | OneShot::CirclePocket(_) | OneShot::BoltHoles(_))
-    )
 }

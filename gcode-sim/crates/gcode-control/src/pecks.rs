@@ -1,64 +1,20 @@
 //! The pecks of G73 and G83: all of Q, or becoming shorter by I, J and K.
-use super::Executor;
-use super::evaluation::ExecResult;
-use super::plan::BlockPlan;
 use super::state::{CycleState, PeckSchedule};
-use super::words::BlockWords;
-use gcode_lang::alarm::Alarm;
-use gcode_lang::source::Span;
 
 /// A block with more pecks than this alarms: nobody drills so, and a run must end.
 const MAX_PECKS: f64 = 1e6;
 
-impl Executor {
-    /// G73 and G83 of a Haas: the first peck is I, each next one J less, none less than K.
-    pub(super) fn read_peck_schedule(
-        &self,
-        plan: &mut BlockPlan,
-        block_words: &BlockWords,
-        span: Span,
-    ) -> ExecResult<()> {
-        let state = &plan.state;
-        let first = self.dimension(block_words, b'I', state)?;
-        let decrement = self.dimension(block_words, b'J', state)?;
-        let minimum = self.dimension(block_words, b'K', state)?;
-        let pecks = match (first, decrement, minimum) {
-            (None, None, None) => return Ok(()),
-            (Some(first), None, None) => PeckSchedule { first, decrement: 0.0, minimum: first },
-            (Some(first), Some(less), Some(least)) => PeckSchedule { first, decrement: less, minimum: least },
-            _ => {
-                let what = "I, J and K of G73 and G83 in part, or K with Q".into();
-                return Err(Alarm::NotSimulated { what }.located_at(span));
-            }
-        };
-        if block_words.has(b'Q') {
-            return Err(Alarm::NotSimulated { what: "G73 and G83 with I and Q".into() }.located_at(span));
-        }
-        if pecks.first <= 0.0 || pecks.decrement < 0.0 || pecks.minimum <= 0.0 || pecks.minimum > pecks.first
-        {
-            return Err(Alarm::NoPeckDepth.located_at(span));
-        }
-        plan.state.cycle.pecks = Some(pecks);
-        Ok(())
-    }
-
-    /// From R peck by peck until Z; the last peck is what is left.
-    pub(super) fn for_each_peck(
-        &self,
-        (r, z): (f64, f64),
-        data: &CycleState,
-        mut emit: impl FnMut(f64, f64, bool),
-    ) {
-        let pecks = peck_count(r, z, data);
-        let mut last = r;
-        let mut count = 1.0;
-        while count <= pecks {
-            let is_last = count == pecks;
-            let next = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
-            emit(last, next, is_last);
-            last = next;
-            count += 1.0;
-        }
+/// From R peck by peck until Z; the last peck is what is left.
+pub(super) fn for_each_peck((r, z): (f64, f64), data: &CycleState, mut emit: impl FnMut(f64, f64, bool)) {
+    let pecks = peck_count(r, z, data);
+    let mut last = r;
+    let mut count = 1.0;
+    while count <= pecks {
+        let is_last = count == pecks;
+        let next = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
+        emit(last, next, is_last);
+        last = next;
+        count += 1.0;
     }
 }
 

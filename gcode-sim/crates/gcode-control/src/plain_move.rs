@@ -2,8 +2,9 @@
 //! of a block have nothing to do for it, and of the state it changes little.
 use std::hint::cold_path;
 
-use super::Executor;
+use super::executor::Executor;
 use super::linear_motion::{CoordinateBasis, SquaredTravel};
+use super::registers::Registers;
 use super::variables::Value;
 use super::words::G_CODES;
 use gcode_lang::motion::{AxisIndex, EventKind, EventSink, MAX_AXES, Position};
@@ -68,11 +69,11 @@ impl Executor {
     /// the steps of a block know where and why.
     #[inline(never)]
     pub(super) fn plain_move<S: EventSink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
-        let basis = self.plain_basis.as_ref()?;
-        if !words.is_plain() || words.list.len() > G_CODES || !self.modal_calls.is_empty() {
+        let basis = self.registers.plain_basis.as_ref()?;
+        if !words.is_plain() || words.list.len() > G_CODES || !self.flow.modal_calls.is_empty() {
             return None;
         }
-        let state = &*self.state;
+        let state = &*self.registers.state;
         let mut endpoint = PlainEndpoint::default();
         let mut resolved_move = PlainMove {
             motion: state.modal.motion,
@@ -80,33 +81,42 @@ impl Executor {
             named: AxisSet::NONE,
             travel: SquaredTravel::default(),
         };
-        self.resolve_plain(words, basis, &mut resolved_move, &mut endpoint)?;
+        self.registers.resolve_plain(words, basis, &mut resolved_move, &mut endpoint)?;
         if !resolved_move.named.is_ascending {
             // A sum depends on its order, a way must not on that of the words.
-            resolved_move.travel =
-                self.squared_travel(resolved_move.named.iter(), &state.machine, &endpoint.machine);
+            resolved_move.travel = self.registers.data.squared_travel(
+                resolved_move.named.iter(),
+                &state.machine,
+                &endpoint.machine,
+            );
         }
         let f = resolved_move.f.unwrap_or(state.codes.f);
         let (rate, seconds) = match resolved_move.motion {
             Motion::Rapid => (
                 MmPerMin::ZERO,
-                self.rapid_seconds_of(resolved_move.named.iter(), &state.machine, &endpoint.machine),
+                self.registers.data.rapid_seconds_of(
+                    resolved_move.named.iter(),
+                    &state.machine,
+                    &endpoint.machine,
+                ),
             ),
-            Motion::Linear => {
-                self.travel_time(state, f, resolved_move.travel, resolved_move.f.is_some()).ok()?
-            }
+            Motion::Linear => self
+                .registers
+                .data
+                .travel_time(state, f, resolved_move.travel, resolved_move.f.is_some())
+                .ok()?,
             _ => return None,
         };
 
-        let state = &mut *self.state;
+        let state = &mut *self.registers.state;
         for axis in resolved_move.named.iter() {
             (state.programmed[axis], state.machine[axis]) =
                 (endpoint.programmed[axis], endpoint.machine[axis]);
         }
         (state.modal.motion, state.codes.f) = (resolved_move.motion, f);
         state.codes.n = op.number.unwrap_or(state.codes.n);
-        self.record_work_use(self.state.modal.work, true);
-        let to = &self.state.machine;
+        self.record_work_use(self.registers.state.modal.work, true);
+        let to = &self.registers.state.machine;
         match resolved_move.motion {
             _ if !resolved_move.travel.is_some() => {}
             _ if !sink.is_active() => self.count_move(seconds),
@@ -115,7 +125,9 @@ impl Executor {
         }
         Some(())
     }
+}
 
+impl Registers {
     /// Goes where the words of a block lead; `None` where it isn't a plain move, or alarms.
     #[inline(always)]
     fn resolve_plain(
@@ -130,9 +142,9 @@ impl Executor {
             if word.comma {
                 return None;
             }
-            let Some(axis) = self.settings.axes.find(word.letter) else {
+            let Some(axis) = self.data.settings.axes.find(word.letter) else {
                 match &word.value {
-                    WordOperand::G(_, found) => match found.row_for(self.settings.codes)?.effect {
+                    WordOperand::G(_, found) => match found.row_for(self.data.settings.codes)?.effect {
                         Effect::Motion(code) => resolved_move.motion = code,
                         _ => return None,
                     },
@@ -143,24 +155,26 @@ impl Executor {
             };
             let value = match &word.value {
                 WordOperand::Literal(number) => {
-                    self.literal_dimension(number, word.letter, &basis.measure)?
+                    self.data.literal_dimension(number, word.letter, &basis.measure)?
                 }
                 value => {
                     let value = match value {
-                        WordOperand::Variable { slot: Slot::Free(place), .. } => self.vars.get_free(*place),
+                        WordOperand::Variable { slot: Slot::Free(place), .. } => {
+                            self.variables.get_free(*place)
+                        }
                         value => self.evaluate_axis_value(words, value)?,
                     };
                     let Value::Number(value) = value else { continue };
-                    self.computed_dimension(value, word.letter, &basis.measure)?
+                    self.data.computed_dimension(value, word.letter, &basis.measure)?
                 }
             };
             resolved_move.named.add(axis)?;
             let to = &mut endpoint.machine[axis];
-            (endpoint.programmed[axis], *to) = self.axis_end(axis, value, state, basis);
+            (endpoint.programmed[axis], *to) = self.data.axis_end(axis, value, state, basis);
             if to.abs() > basis.max_coordinate {
                 return None;
             }
-            resolved_move.travel.add(*to - state.machine[axis], self.settings.axes.is_rotary(axis));
+            resolved_move.travel.add(*to - state.machine[axis], self.data.settings.axes.is_rotary(axis));
         }
         (resolved_move.named.axes != 0).then_some(())
     }
@@ -175,7 +189,7 @@ impl Executor {
     #[inline(never)]
     fn evaluate_feed(&self, words: &Words, word: &LoweredWord) -> Option<Option<f64>> {
         match self.evaluate_word(words, word).ok()? {
-            Some(raw) => self.feed_of(&raw, &self.state).ok().map(Some),
+            Some(raw) => self.data.feed_of(&raw, &self.state).ok().map(Some),
             None => Some(None),
         }
     }
@@ -183,7 +197,7 @@ impl Executor {
     /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
     /// count from.
     pub(super) fn update_is_plain(&mut self) {
-        self.plain_basis = self.is_plain().then(|| self.coordinate_basis(&self.state));
+        self.plain_basis = self.is_plain().then(|| self.data.coordinate_basis(&self.state));
     }
 
     /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
@@ -196,9 +210,17 @@ impl Executor {
             && modal.polar == Polar::Off
             && self.state.last_end_point.is_none()
             && self.lookahead.is_idle()
-            && self.settings.code_calls.is_empty()
-            && self.settings.stroke_limits.is_none()
+            && self.data.settings.code_calls.is_empty()
+            && self.data.settings.stroke_limits.is_none()
             && self.is_at_programmed_point()
+    }
+
+    /// Whether every axis stands where the programmed point is on the machine, so that one which isn't named stays there.
+    pub(super) fn is_at_programmed_point(&self) -> bool {
+        self.state.transform.is_none()
+            && self.data.settings.rollover_axes().next().is_none()
+            && self.data.to_machine(&self.state, &self.state.programmed).0.map(f64::to_bits)
+                == self.state.machine.0.map(f64::to_bits)
     }
 }
 
@@ -227,8 +249,11 @@ mod tests {
         let mut control = Control::new(memory, settings);
         let mut told = Told(Vec::new());
         let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
-        told.0.push(format!("{outcome:?} {:?} {:?}", control.executor.state, control.executor.notes));
-        (told.0, control.executor.plain_basis.is_some())
+        told.0.push(format!(
+            "{outcome:?} {:?} {:?}",
+            control.executor.registers.state, control.executor.log.notes
+        ));
+        (told.0, control.executor.registers.plain_basis.is_some())
     }
 
     fn settings() -> Settings {

@@ -1,6 +1,6 @@
 //! What a block is going to do: made without touching the control, carried out afterwards without failing.
 use super::cycle_expansion::CyclePlan;
-use super::frames::CallOrigins;
+use super::flow::CallOrigins;
 use super::lookahead::Lookahead;
 use super::notes::Note;
 use super::offsets::Register;

@@ -1,7 +1,7 @@
 //! G12 and G13 of a Haas: a circular pocket, milled from its centre.
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, PlanarArc};
@@ -12,7 +12,7 @@ use gcode_lang::units::Deg;
 /// More circles than this in one block are a slip.
 const MAX_CIRCLES: f64 = 10_000.0;
 
-impl Executor {
+impl Planner<'_> {
     /// At the centre the tool feeds to Z; then it mills a circle of radius I, and with K and Q wider ones up to K; all
     /// of that L times. The radius of D stays inside. Which circles are milled is in the manual; that the tool goes out
     /// to X+ and back by half circles is a choice of this interpreter.
@@ -49,7 +49,7 @@ impl Executor {
                 let sense = if clockwise { -1.0 } else { 1.0 };
                 let centre = (plan.state.machine[0], plan.state.machine[1]);
                 let half = (centre.0 + radius / 2.0, centre.1);
-                let edge = self.remove_residue(centre.0 + radius);
+                let edge = self.data.remove_residue(centre.0 + radius);
                 self.push_xy_arc(plan, block_words, edge, half, radius / 2.0, 180.0 * sense, span)?;
                 self.push_xy_arc(plan, block_words, edge, centre, *radius, 360.0 * sense, span)?;
                 self.push_xy_arc(plan, block_words, centre.0, half, radius / 2.0, 180.0 * sense, span)?;
@@ -69,17 +69,19 @@ impl Executor {
     ) -> ExecResult<Vec<f64>> {
         let missing = |letter| Alarm::MissingWord { code, letter }.located_at(span);
         let state = &plan.state;
-        let first = self.dimension(block_words, b'I', state)?.ok_or_else(|| missing('I'))?;
-        let (last, step) =
-            match (self.dimension(block_words, b'K', state)?, self.dimension(block_words, b'Q', state)?) {
-                (None, None) => (first, 0.0),
-                (Some(last), Some(step)) => (last, step),
-                (Some(_), None) => return Err(missing('Q')),
-                (None, Some(_)) => return Err(missing('K')),
-            };
+        let first = self.data.dimension(block_words, b'I', state)?.ok_or_else(|| missing('I'))?;
+        let (last, step) = match (
+            self.data.dimension(block_words, b'K', state)?,
+            self.data.dimension(block_words, b'Q', state)?,
+        ) {
+            (None, None) => (first, 0.0),
+            (Some(last), Some(step)) => (last, step),
+            (Some(_), None) => return Err(missing('Q')),
+            (None, Some(_)) => return Err(missing('K')),
+        };
         let number = state.codes.d;
         let unknown = || Alarm::OffsetNumber { number: i64::from(number) }.located_at(span);
-        let tool = self.offset_radius(number).ok_or_else(unknown)?;
+        let tool = self.data.offset_radius(number).ok_or_else(unknown)?;
         let out_of_range = |letter: char, value| {
             Alarm::OutOfRange { function: format!("{letter} of {code}"), value }.located_at(span)
         };
@@ -95,10 +97,10 @@ impl Executor {
         let mut radii = Vec::new();
         let mut count = 0.0;
         while first + count * step < last - 1e-9 {
-            radii.push(self.remove_residue(first + count * step - tool));
+            radii.push(self.data.remove_residue(first + count * step - tool));
             count += 1.0;
         }
-        radii.push(self.remove_residue(last - tool));
+        radii.push(self.data.remove_residue(last - tool));
         Ok(radii)
     }
 
@@ -115,7 +117,7 @@ impl Executor {
         span: Span,
     ) -> ExecResult<()> {
         let length = radius * sweep.abs().to_radians();
-        let timed = self.path_time(&plan.state, length, block_words.has(b'F'));
+        let timed = self.data.path_time(&plan.state, length, block_words.has(b'F'));
         let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.located_at(span))?;
         let mut end = plan.state.machine;
         end[0] = to;

@@ -1,69 +1,15 @@
 //! POPEN, DPRNT, BPRNT and PCLOS: lines that a program sends to the control's output device.
-use super::Executor;
-use super::evaluation::ExecResult;
-use super::notes::Note;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
-use gcode_lang::program::PrintPart;
-use gcode_lang::source::Span;
-use gcode_lang::syntax::ast::PrintKind;
 use gcode_lang::units::round_scaled;
 
 /// What a run may print before it is stopped: a loop that prints must not fill the memory.
-const MAX_PRINTED_BYTES: usize = 64 << 20;
-
-/// Lines printed so far, without their ends.
-#[derive(Clone, Debug, Default)]
-pub(super) struct PrintedLines {
-    pub(super) lines: Vec<Vec<u8>>,
-    bytes: usize,
-    /// Between POPEN and PCLOS.
-    pub(super) is_open: bool,
-}
-
-impl Executor {
-    pub(super) fn set_output_open(&mut self, is_open: bool) {
-        self.printed.is_open = is_open;
-    }
-
-    /// DPRNT and BPRNT: one line.
-    pub(super) fn print(&mut self, kind: PrintKind, parts: &[PrintPart], span: Span) -> ExecResult<()> {
-        if self.settings.print_needs_open && !self.printed.is_open {
-            let what = "DPRNT without POPEN before it".into();
-            return Err(Alarm::MacroFormat { what }.located_at(span));
-        }
-        let mut line = Vec::new();
-        for part in parts {
-            match part {
-                // An asterisk stands for a space: the statement's own spaces are lost when it is read.
-                PrintPart::Text(text) => {
-                    line.extend(text.bytes().map(|b| if b == b'*' { b' ' } else { b }));
-                }
-                PrintPart::Value { value, whole, decimals } => {
-                    let number = self.operand(value)?.number();
-                    let printed = match kind {
-                        PrintKind::Decimal => decimal(number, *whole, *decimals, &self.settings, &mut line),
-                        PrintKind::Binary => binary(number, *decimals, &mut line).map(|()| true),
-                    };
-                    if !printed.map_err(|alarm| alarm.located_at(span))? {
-                        self.block_effects.record_note(Note::DigitsLost);
-                    }
-                }
-            }
-        }
-        self.printed.bytes += line.len() + 1;
-        if self.printed.bytes > MAX_PRINTED_BYTES {
-            return Err(Alarm::NotSimulated { what: "more than 64 MB of output".into() }.located_at(span));
-        }
-        self.printed.lines.push(line);
-        Ok(())
-    }
-}
+pub(super) const MAX_PRINTED_BYTES: usize = 64 << 20;
 
 /// `#n[ab]`: a digits before the point and b behind it. In front stands the place of the sign; with PRT (6001#1)
 /// blanks are left out. A control prints the lower digits of a number that has more than a before its point: the answer
 /// is whether all of them were printed.
-fn decimal(
+pub(super) fn decimal(
     number: f64,
     whole: u8,
     decimals: u8,
@@ -106,7 +52,7 @@ fn decimal(
 }
 
 /// `#n[d]`: the value × 10^d as two words, the highest byte first.
-fn binary(number: f64, decimals: u8, line: &mut Vec<u8>) -> Result<(), Alarm> {
+pub(super) fn binary(number: f64, decimals: u8, line: &mut Vec<u8>) -> Result<(), Alarm> {
     let scaled = round_scaled(number, 10_f64.powi(i32::from(decimals)));
     if !(-2_147_483_648.0..=2_147_483_647.0).contains(&scaled) {
         return Err(Alarm::IntegerOverflow);

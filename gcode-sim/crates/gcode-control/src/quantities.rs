@@ -1,8 +1,8 @@
 //! What the number of a word is at its address: a length, an angle, a time, a feed.
 use std::hint::cold_path;
 
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
+use super::data::ControlData;
 use super::state::State;
 use super::words::{BlockWords, WordNumber};
 use crate::contour::Blend;
@@ -10,15 +10,15 @@ use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Increment;
 use gcode_lang::program::modes::{FeedMode, Unit};
 use gcode_lang::syntax::ast::Decimal;
-use gcode_lang::units::{round_scaled, round_scaled_within};
+use gcode_lang::units::round_scaled_within;
 
-/// What [`Executor::measure`] finds out once for all axes of a block.
+/// What [`ControlData::measure`] finds out once for all axes of a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measure {
     /// Of the least increment in mm and degrees; inches have one more.
     decimals: usize,
     /// Increments in a mm or a degree.
-    scale: f64,
+    pub(super) scale: f64,
     is_in_inches: bool,
 }
 
@@ -57,7 +57,7 @@ fn computed_increments(value: f64, scale: f64) -> Option<f64> {
     round_scaled_within(value, scale, MAX_INCREMENTS as f64).map(|number| number + 0.0)
 }
 
-impl Executor {
+impl ControlData {
     /// How many decimals the least increment of an address has in the unit in force.
     #[inline]
     pub(super) fn decimals(&self, letter: u8, unit: Unit) -> usize {
@@ -128,7 +128,7 @@ impl Executor {
         Measure { decimals, scale: POWERS[decimals], is_in_inches: unit == Unit::Inch }
     }
 
-    /// As [`Executor::dimension`], of a word's value.
+    /// As [`ControlData::dimension`], of a word's value.
     pub(super) fn dimension_of(&self, raw: &WordNumber, letter: u8, measure: &Measure) -> Result<f64, Alarm> {
         let value = match raw {
             WordNumber::Literal(number) => self.literal_dimension(number, letter, measure),
@@ -137,7 +137,7 @@ impl Executor {
         value.ok_or(Alarm::TooManyDigits)
     }
 
-    /// As [`Executor::dimension_of`], of a literal; `None` where it has too many digits.
+    /// As [`ControlData::dimension_of`], of a literal; `None` where it has too many digits.
     #[inline(always)]
     pub(super) fn literal_dimension(&self, number: &Decimal, letter: u8, measure: &Measure) -> Option<f64> {
         if measure.is_inch(letter) {
@@ -149,7 +149,7 @@ impl Executor {
         Some(self.literal_increments(number, measure.decimals)? / measure.scale)
     }
 
-    /// As [`Executor::written`], of a computed value.
+    /// As [`ControlData::literal_dimension`], of a computed value.
     #[inline(always)]
     pub(super) fn computed_dimension(&self, value: f64, letter: u8, measure: &Measure) -> Option<f64> {
         if measure.is_inch(letter) {
@@ -242,18 +242,6 @@ impl Executor {
             (FeedMode::PerRevolution, Unit::Inch) => 4,
             (FeedMode::PerRevolution, Unit::Metric) => 2,
             (FeedMode::PerMinute | FeedMode::InverseTime, _) => 0,
-        }
-    }
-
-    /// ROUND inside an address.
-    pub(super) fn round_to_address(&self, letter: u8, value: f64) -> f64 {
-        match letter {
-            b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
-                let scale = POWERS[self.decimals(letter, self.state.modal.unit)];
-                round_scaled(value, scale) / scale
-            }
-            b'F' | b'E' => value,
-            _ => value.round(),
         }
     }
 }

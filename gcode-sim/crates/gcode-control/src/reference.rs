@@ -1,15 +1,14 @@
 //! The reference position: G27 checks it, G28 and G30 go there, G29 comes back.
-use super::Executor;
-use super::evaluation::ExecResult;
-use super::notes::Note;
+use super::checked::ExecResult;
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, LengthCompensation, Position};
 use gcode_lang::program::modes::Length;
 use gcode_lang::source::Span;
 
-impl Executor {
+impl Planner<'_> {
     pub(super) fn plan_reference_check(
         &self,
         block_words: &BlockWords,
@@ -19,8 +18,8 @@ impl Executor {
         let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
         self.push_rapid(plan, &endpoint.machine);
         plan.state.programmed = endpoint.programmed;
-        for (axis, letter) in self.settings.axes.iter() {
-            if block_words.has(letter as u8) && self.wrap_angle(axis, plan.state.machine[axis]) != 0.0 {
+        for (axis, letter) in self.data.settings.axes.iter() {
+            if block_words.has(letter as u8) && self.data.wrap_angle(axis, plan.state.machine[axis]) != 0.0 {
                 return Err(Alarm::NotAtReference { letter }.located_at(span));
             }
         }
@@ -35,30 +34,26 @@ impl Executor {
         plan: &mut BlockPlan,
         reference: Position,
     ) -> ExecResult<()> {
-        if !self.names_axis(block_words) {
-            let code = block_words.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
-            plan.notes.push(Note::NoAxis { code });
-        }
         let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
         self.push_rapid(plan, &endpoint.machine);
         let mut home = plan.state.machine;
         let mut named = 0;
-        for (axis, letter) in self.settings.axes.iter() {
+        for (axis, letter) in self.data.settings.axes.iter() {
             if block_words.has(letter as u8) {
                 named |= 1 << axis;
-                plan.state.intermediate[axis] = endpoint.machine[axis] - self.zero(&plan.state, axis);
+                plan.state.intermediate[axis] = endpoint.machine[axis] - self.data.zero(&plan.state, axis);
                 plan.state.has_intermediate |= 1 << axis;
-                home[axis] = self.rollover_target(axis, home[axis], reference[axis]);
+                home[axis] = self.data.rollover_target(axis, home[axis], reference[axis]);
             }
         }
         self.note_unknown_work_zero(plan, named);
         self.push_rapid(plan, &home);
         // The length offset is cancelled where its axis reaches the reference position.
-        let z = self.settings.axes.find(b'Z');
+        let z = self.data.settings.axes.find(b'Z');
         if z.is_some() && block_words.has(b'Z') && plan.state.modal.length != Length::Off {
             cancel_length(plan);
         }
-        self.recompute_position(&mut plan.state);
+        self.data.recompute_position(&mut plan.state);
         plan.commands_axes = true;
         Ok(())
     }
@@ -66,16 +61,16 @@ impl Executor {
     /// G28 of a Haas without an axis: all of them straight home, and no length offset any more.
     pub(super) fn plan_home_all(&self, plan: &mut BlockPlan) {
         let mut home = plan.state.machine;
-        for (axis, _) in self.settings.axes.iter() {
-            home[axis] = self.rollover_target(axis, home[axis], 0.0);
+        for (axis, _) in self.data.settings.axes.iter() {
+            home[axis] = self.data.rollover_target(axis, home[axis], 0.0);
         }
         self.note_unknown_work_zero(
             plan,
-            self.settings.axes.iter().fold(0, |axes, (axis, _)| axes | 1 << axis),
+            self.data.settings.axes.iter().fold(0, |axes, (axis, _)| axes | 1 << axis),
         );
         self.push_rapid(plan, &home);
         cancel_length(plan);
-        self.recompute_position(&mut plan.state);
+        self.data.recompute_position(&mut plan.state);
         plan.commands_axes = true;
     }
 
@@ -87,7 +82,7 @@ impl Executor {
         span: Span,
     ) -> ExecResult<()> {
         let mut intermediate = plan.state.machine;
-        for (axis, letter) in self.settings.axes.iter() {
+        for (axis, letter) in self.data.settings.axes.iter() {
             if !block_words.has(letter as u8) {
                 continue;
             }
@@ -95,11 +90,11 @@ impl Executor {
                 return Err(Alarm::NoIntermediatePoint.located_at(span));
             }
             intermediate[axis] =
-                self.remove_residue(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
+                self.data.remove_residue(plan.state.intermediate[axis] + self.data.zero(&plan.state, axis));
             plan.state.work_zero_unknown &= !(1 << axis);
         }
         self.push_rapid(plan, &intermediate);
-        self.recompute_position(&mut plan.state);
+        self.data.recompute_position(&mut plan.state);
         let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
         self.push_rapid(plan, &endpoint.machine);
         plan.state.programmed = endpoint.programmed;

@@ -1,6 +1,7 @@
 //! What a run leaves behind for the next program: variables, modes, offsets, parameters, outputs and counters.
-use super::Control;
-use super::offsets::Register;
+use super::control::Control;
+use super::data::ControlData;
+use super::offsets::{Offsets, Register};
 use gcode_lang::control::ParameterId;
 use gcode_lang::motion::Position;
 
@@ -37,43 +38,47 @@ pub fn mode_name(group: u32) -> String {
 impl Control {
     /// All that isn't vacant or 0; modes always.
     pub fn residual_values(&self) -> Vec<ResidualValue> {
-        let core = &self.executor;
+        let executor = &self.executor;
         let mut all = Vec::new();
         let mut push = |kind, name: String, value: f64| all.push(ResidualValue { kind, name, value });
         for (number, value) in self.variables().filter(|(number, _)| *number >= 100) {
             push(ResidualKind::Variable, format!("#{number}"), value);
         }
         for group in 1..=22 {
-            if let Ok(value) = core.read_variable(4000 + group) {
+            if let Ok(value) = executor.registers.read_variable(4000 + group) {
                 push(ResidualKind::Mode, mode_name(group), value.number());
             }
         }
-        let shifts =
-            [("G52".to_owned(), &core.state.local_offset), ("G92".to_owned(), &core.state.coordinate_shift)];
-        for (system, values) in core.offsets.systems().chain(shifts) {
-            for (axis, letter) in core.settings.axes.iter().filter(|(axis, _)| values[*axis] != 0.0) {
+        let shifts = [
+            ("G52".to_owned(), &executor.registers.state.local_offset),
+            ("G92".to_owned(), &executor.registers.state.coordinate_shift),
+        ];
+        for (system, values) in executor.registers.data.offsets.systems().chain(shifts) {
+            for (axis, letter) in
+                executor.registers.data.settings.axes.iter().filter(|(axis, _)| values[*axis] != 0.0)
+            {
                 push(ResidualKind::WorkOffset, format!("{system} {letter}"), values[axis]);
             }
         }
-        for (name, values) in core.offsets.tools() {
+        for (name, values) in executor.registers.data.offsets.tools() {
             for (number, value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
                 push(ResidualKind::ToolOffset, name(number), *value);
             }
         }
-        for (place, value) in &core.parameters {
-            push(ResidualKind::Parameter, core.parameter_name(*place), *value);
+        for (place, value) in &executor.registers.data.parameters {
+            push(ResidualKind::Parameter, executor.registers.data.parameter_name(*place), *value);
         }
-        if core.outputs != 0 {
-            push(ResidualKind::Output, "#1132".to_owned(), f64::from(core.outputs));
+        if executor.registers.panel.outputs != 0 {
+            push(ResidualKind::Output, "#1132".to_owned(), f64::from(executor.registers.panel.outputs));
         }
-        for (number, value) in [3901, 3902].into_iter().zip(core.part_counters) {
+        for (number, value) in [3901, 3902].into_iter().zip(executor.registers.panel.part_counters) {
             push(ResidualKind::Counter, format!("#{number}"), value);
         }
         all
     }
 }
 
-impl super::Executor {
+impl ControlData {
     /// `parameter 3401#0`, `parameter 1320 X`.
     fn parameter_name(&self, place: ParameterId) -> String {
         let bit = place.bit.map(|bit| format!("#{bit}")).unwrap_or_default();
@@ -84,7 +89,7 @@ impl super::Executor {
 
 type ToolName = fn(usize) -> String;
 
-impl super::Offsets {
+impl Offsets {
     /// Every work coordinate system by its name.
     fn systems(&self) -> impl Iterator<Item = (String, &Position)> {
         let external = std::iter::once(("the external work offset".to_owned(), self.external()));

@@ -1,9 +1,10 @@
 //! What a run would say whatever has gone before: the arithmetic of numbers, and which variables there are.
-pub use super::functions::{atan2, binary, function, power};
 use super::system_variables;
 use super::variables::{VariableClass, Vars};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
+
+pub use super::functions::{atan2, binary, function, power};
 
 /// Which variables a control has.
 #[derive(Debug)]

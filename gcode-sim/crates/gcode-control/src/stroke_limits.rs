@@ -1,34 +1,13 @@
 //! Stored stroke check 1: no move of a block may lead an axis beyond its limits (parameters 1320 and 1321).
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
+use super::data::ControlData;
 use super::lookahead::Lookahead;
-use super::plan::BlockPlan;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::motion::{EventKind, PlanarArc, Position};
-use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
 
-impl Executor {
-    /// Looks at every move of a block before it happens. A real control stops on the way; here nothing has moved.
-    pub(super) fn check_stroke(&self, stroke: &StrokeLimits, plan: &BlockPlan, span: Span) -> ExecResult<()> {
-        for (kind, _) in &plan.events {
-            locate(self.check_event(stroke, kind), span)?;
-        }
-        if plan.uses_lookahead {
-            self.check_ready_moves(&plan.lookahead)?;
-        }
-        let mut result = Ok(());
-        if let Some(drill) = &plan.cycle_plan {
-            self.expand_cycle(drill, &mut |kind, _| {
-                if result.is_ok() {
-                    result = self.check_event(stroke, &kind);
-                }
-            });
-        }
-        locate(result, span)
-    }
-
+impl ControlData {
     /// What no longer waits: each with its own block.
     pub(super) fn check_ready_moves(&self, lookahead: &Lookahead) -> ExecResult<()> {
         lookahead.ready_events().try_for_each(|(kind, place)| locate(self.check_move(kind), place.block))
@@ -39,7 +18,7 @@ impl Executor {
         self.settings.stroke_limits.as_ref().map_or(Ok(()), |stroke| self.check_event(stroke, kind))
     }
 
-    fn check_event(&self, stroke: &StrokeLimits, kind: &EventKind) -> Result<(), Alarm> {
+    pub(super) fn check_event(&self, stroke: &StrokeLimits, kind: &EventKind) -> Result<(), Alarm> {
         let Some(to) = kind.end() else { return Ok(()) };
         self.check_point(stroke, to)?;
         if let EventKind::Arc { arc, .. } = kind {

@@ -1,7 +1,8 @@
 //! The system variables: one row per range, how it is read and how it is written.
-use super::Executor;
 use super::notes::Note;
 use super::offsets::Register;
+use super::panel::check_signal_word;
+use super::registers::Registers;
 use super::variables::Value;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::OffsetVariables;
@@ -9,14 +10,15 @@ use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes;
 use gcode_lang::program::modes::WorkSystem;
 
-type ReadVariable = fn(&Executor, u32) -> Result<f64, Alarm>;
-type WriteVariable = fn(&mut Executor, u32, f64) -> Result<(), Alarm>;
+type ReadVariable = fn(&Registers, u32) -> Result<f64, Alarm>;
+
+type WriteVariable = fn(&mut Registers, u32, f64) -> Result<(), Alarm>;
 
 /// A range of variables; reading and writing take the place in the range, counted from 0.
 struct VariableRow {
-    from: u32,
-    to: u32,
-    read: Option<ReadVariable>,
+    pub(super) from: u32,
+    pub(super) to: u32,
+    pub(super) read: Option<ReadVariable>,
     write: Option<WriteVariable>,
 }
 
@@ -28,10 +30,10 @@ const fn row(from: u32, to: u32, read: Option<ReadVariable>, write: Option<Write
 #[rustfmt::skip]
 const ROWS: &[VariableRow] = &[
     // Interface signals.
-    row(1000, 1031, Some(|c, n| Ok(f64::from(c.settings.inputs >> n & 1))), None),
-    row(1032, 1035, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.settings.inputs as i32))), None),
-    row(1100, 1131, Some(|c, n| Ok(f64::from(c.outputs >> n & 1))), Some(|c, n, v| { c.set_output(n, v != 0.0); Ok(()) })),
-    row(1132, 1135, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.outputs as i32))), Some(|c, n, v| c.set_outputs(n, v))),
+    row(1000, 1031, Some(|c, n| Ok(f64::from(c.data.settings.inputs >> n & 1))), None),
+    row(1032, 1035, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.data.settings.inputs as i32))), None),
+    row(1100, 1131, Some(|c, n| Ok(f64::from(c.panel.outputs >> n & 1))), Some(|c, n, v| { c.panel.set_output(n, v != 0.0); Ok(()) })),
+    row(1132, 1135, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.panel.outputs as i32))), Some(|c, n, v| c.panel.set_outputs(n, v))),
     // Tool offsets, memory C.
     row(2001, 2200, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
     row(2201, 2400, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
@@ -42,26 +44,26 @@ const ROWS: &[VariableRow] = &[
     row(2800, 2806, Some(|c, n| c.work_offset(n as usize, 3)), Some(|c, n, v| c.set_work_offset(n as usize, 3, v))),
     // Alarm, clocks, switches, message.
     row(3000, 3000, None, None),
-    row(3001, 3001, Some(|c, _| Ok(c.millisecond_clock())), Some(|c, _, v| { c.clocks.0 = v - (c.seconds + c.idle_seconds) * 1000.0; Ok(()) })),
-    row(3002, 3002, Some(|c, _| Ok(c.clocks.1 + c.clock_seconds() / 3600.0)), Some(|c, _, v| { c.clocks.1 = v - (c.seconds + c.idle_seconds) / 3600.0; Ok(()) })),
-    row(3003, 3004, Some(|c, n| Ok(c.control_switches[n as usize])), Some(|c, n, v| c.set_switch(n, v))),
+    row(3001, 3001, Some(|c, _| Ok(c.clock.milliseconds())), Some(|c, _, v| { c.clock.set_milliseconds(v); Ok(()) })),
+    row(3002, 3002, Some(|c, _| Ok(c.clock.hours())), Some(|c, _, v| { c.clock.set_hours(v); Ok(()) })),
+    row(3003, 3004, Some(|c, n| Ok(c.panel.control_switches[n as usize])), Some(|c, n, v| c.panel.set_switch(n, v))),
     // Setting data: of its bits only INI (2), inch input, has an effect here.
     row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == gcode_lang::program::modes::Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
     row(3006, 3006, None, None),
     // Mirror image by setting or signal: there is none; G51.1 is none of them.
     row(3007, 3007, Some(|_, _| Ok(0.0)), None),
     row(3008, 3008, Some(|_, _| Ok(0.0)), None),
-    row(3011, 3011, Some(|c, _| Ok(f64::from(c.settings.date))), None),
+    row(3011, 3011, Some(|c, _| Ok(f64::from(c.data.settings.date))), None),
     row(3012, 3012, Some(|c, _| Ok(c.time_of_day())), None),
     row(3101, 3101, Some(|_, _| Ok(std::f64::consts::PI)), None),
     row(3102, 3102, Some(|_, _| Ok(std::f64::consts::E)), None),
-    row(3901, 3902, Some(|c, n| Ok(c.part_counters[n as usize])), Some(|c, n, v| c.set_parts(n, v))),
+    row(3901, 3902, Some(|c, n| Ok(c.panel.part_counters[n as usize])), Some(|c, n, v| c.panel.set_parts(n, v))),
     // Modal information: of the block before, and of the block at work. Here they are the same.
     row(4001, 4130, Some(|c, n| c.modal_information(n + 1)), None),
     row(4201, 4330, Some(|c, n| c.modal_information(n + 1)), None),
     // Positions.
     row(5001, 5020, Some(|c, n| c.position(n, |c, axis| c.end_point()[axis])), None),
-    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.wrap_angle(axis, c.tool_centre(axis)))), None),
+    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.data.wrap_angle(axis, c.tool_centre(axis)))), None),
     row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.work_coordinate(axis, c.tool_centre(axis)))), None),
     row(5061, 5080, Some(|c, n| c.position(n, |c, axis| c.work_coordinate(axis, c.state.skip_position[axis]))), None),
     row(5081, 5100, Some(|c, n| c.position(n, |c, axis| c.state.length_offset[axis])), None),
@@ -109,7 +111,7 @@ const HAAS_NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (50_001, 59_999, "tools of a Haas"),
 ];
 
-fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
+pub(super) fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
     let (.., what) = of.iter().find(|(from, to, _)| (*from..=*to).contains(&number))?;
     Some(Alarm::NotSimulated { what: format!("#{number} ({what})") })
 }
@@ -142,14 +144,6 @@ pub(super) fn check_writable(number: u32, offsets: OffsetVariables) -> Result<()
     find(number, offsets)?.write.map(|_| ()).ok_or(Alarm::WriteProtected { number })
 }
 
-/// A control may have up to 128 signals each way; here are the first 32.
-fn check_signal_word(word: u32) -> Result<(), Alarm> {
-    if word > 0 {
-        return Err(Alarm::NotSimulated { what: "more than 32 interface signals".into() });
-    }
-    Ok(())
-}
-
 /// An axis that the control doesn't have has no variables.
 fn variable_alarm(alarm: Alarm, number: u32) -> Alarm {
     match alarm {
@@ -158,12 +152,12 @@ fn variable_alarm(alarm: Alarm, number: u32) -> Alarm {
     }
 }
 
-impl Executor {
+impl Registers {
     pub(super) fn read_system(&self, number: u32) -> Result<Value, Alarm> {
         if number == 3100 {
             return Ok(Value::Vacant);
         }
-        let row = find(number, self.settings.offset_variables)?;
+        let row = find(number, self.data.settings.offset_variables)?;
         let read = row.read.ok_or(Alarm::ReadProtected { number })?;
         read(self, number - row.from).map(Value::Number).map_err(|alarm| variable_alarm(alarm, number))
     }
@@ -172,62 +166,18 @@ impl Executor {
         if number == 3100 {
             return Err(Alarm::WriteProtected { number });
         }
-        let row = find(number, self.settings.offset_variables)?;
+        let row = find(number, self.data.settings.offset_variables)?;
         let write = row.write.ok_or(Alarm::WriteProtected { number })?;
         write(self, number - row.from, value).map_err(|alarm| variable_alarm(alarm, number))
     }
 
-    fn set_output(&mut self, bit: u32, on: bool) {
-        self.outputs = if on { self.outputs | 1 << bit } else { self.outputs & !(1 << bit) };
-    }
-
-    fn set_outputs(&mut self, word: u32, value: f64) -> Result<(), Alarm> {
-        let bits = super::evaluation::integer(value)?;
-        check_signal_word(word)?;
-        // 32 bits, signed or not.
-        if !(i64::from(i32::MIN)..=i64::from(u32::MAX)).contains(&bits) {
-            return Err(Alarm::OutOfRange { function: "#1132".into(), value });
-        }
-        self.outputs = bits as u32;
-        Ok(())
-    }
-
-    /// Seconds since the start, as the clocks read them.
-    fn clock_seconds(&self) -> f64 {
-        self.has_read_clock.set(true);
-        self.seconds + self.idle_seconds
-    }
-
-    /// #3001: milliseconds; wraps as the control's does.
-    fn millisecond_clock(&self) -> f64 {
-        (self.clock_seconds() * 1000.0 + self.clocks.0 + 1e-6).trunc().rem_euclid(2_147_483_648.0)
-    }
-
     /// #3012 as hhmmss: the setting's time and what the run has taken since.
     fn time_of_day(&self) -> f64 {
-        let start = self.settings.time;
+        let start = self.data.settings.time;
         let seconds =
-            f64::from(start / 10_000 * 3600 + start / 100 % 100 * 60 + start % 100) + self.clock_seconds();
+            f64::from(start / 10_000 * 3600 + start / 100 % 100 * 60 + start % 100) + self.clock.seconds();
         let seconds = seconds.rem_euclid(86_400.0) as u32;
         f64::from(seconds / 3600 * 10_000 + seconds / 60 % 60 * 100 + seconds % 60)
-    }
-
-    /// #3003 has two bits, #3004 three.
-    fn set_switch(&mut self, switch: u32, value: f64) -> Result<(), Alarm> {
-        let most = if switch == 0 { 3.0 } else { 7.0 };
-        if !(0.0..=most).contains(&value.round()) {
-            return Err(Alarm::OutOfRange { function: format!("#{}", 3003 + switch), value });
-        }
-        self.control_switches[switch as usize] = value.round();
-        Ok(())
-    }
-
-    fn set_parts(&mut self, counter: u32, value: f64) -> Result<(), Alarm> {
-        if value < 0.0 {
-            return Err(Alarm::OutOfRange { function: format!("#{}", 3901 + counter), value });
-        }
-        self.part_counters[counter as usize] = value.round();
-        Ok(())
     }
 
     fn modal_information(&self, item: u32) -> Result<f64, Alarm> {
@@ -247,7 +197,7 @@ impl Executor {
                 WorkSystem::Additional(p) => f64::from(p),
                 WorkSystem::Standard(_) => 0.0,
             },
-            14 if g_codes::find(541).row_for(self.settings.codes).is_none()
+            14 if g_codes::find(541).row_for(self.data.settings.codes).is_none()
                 && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
             {
                 return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
@@ -261,62 +211,47 @@ impl Executor {
 
     /// Where the last block ended: as programmed, or after mirror, scaling and rotation.
     fn end_point(&self) -> gcode_lang::motion::Position {
-        match self.settings.undocumented.shows_transformed {
+        match self.data.settings.undocumented.shows_transformed {
             true => self.state.transform.forward(self.state.programmed),
             false => {
                 if self.state.last_end_point.is_some() {
                     self.block_effects.record_note(Note::EndPointBeforeTransform);
                 }
-                self.move_end(&self.state)
+                self.data.move_end(&self.state)
             }
         }
     }
 
-    /// An axis of the control by its number from 0 on.
-    fn check_axis(&self, axis: u32) -> Result<AxisIndex, Alarm> {
-        let known = Some(axis as usize).filter(|axis| *axis < self.settings.axes.len());
-        known.ok_or(Alarm::AxisNumber { number: i64::from(axis) + 1 })
-    }
-
     /// A position of an axis, in the unit of the program.
-    fn position(&self, axis: u32, of: impl Fn(&Self, AxisIndex) -> f64) -> Result<f64, Alarm> {
-        let axis = self.check_axis(axis)?;
-        Ok(self.to_program_unit(&self.state, Some(axis), of(self, axis)))
+    pub(super) fn position(&self, axis: u32, of: impl Fn(&Self, AxisIndex) -> f64) -> Result<f64, Alarm> {
+        let axis = self.data.check_axis(axis)?;
+        Ok(self.data.to_program_unit(&self.state, Some(axis), of(self, axis)))
     }
 
     /// A machine position in the work coordinate system, tool length included.
     fn work_coordinate(&self, axis: AxisIndex, machine: f64) -> f64 {
-        self.wrap_angle(axis, self.remove_residue(machine - self.zero(&self.state, axis)))
-    }
-
-    /// The control has so many work coordinate systems; 6 are G54 to G59.
-    fn check_system(&self, system: usize) -> Result<(), Alarm> {
-        if system > 6 + self.offsets.additional.len() {
-            return Err(Alarm::OffsetNumber { number: system as i64 - 6 });
-        }
-        Ok(())
+        self.data.wrap_angle(axis, self.data.remove_residue(machine - self.data.zero(&self.state, axis)))
     }
 
     /// The offset of G52.
     fn set_local(&mut self, axis: u32, value: f64) -> Result<(), Alarm> {
-        let axis = self.check_axis(axis)?;
+        let axis = self.data.check_axis(axis)?;
         self.state.local_offset[axis] =
-            self.check_offset_range(self.to_stored(&self.state, Some(axis), value))?;
+            self.data.check_offset_range(self.data.to_stored(&self.state, Some(axis), value))?;
         self.update_after_offset_change();
         Ok(())
     }
 
     fn work_offset(&self, system: usize, axis: u32) -> Result<f64, Alarm> {
-        self.check_system(system)?;
-        self.position(axis, |core, axis| core.offsets.work(system)[axis])
+        self.data.check_system(system)?;
+        self.position(axis, |registers, axis| registers.data.offsets.work(system)[axis])
     }
 
     fn set_work_offset(&mut self, system: usize, axis: u32, value: f64) -> Result<(), Alarm> {
-        self.check_system(system)?;
-        let axis = self.check_axis(axis)?;
-        let value = self.check_offset_range(self.to_stored(&self.state, Some(axis), value))?;
-        self.offsets.work_mut(system)[axis] = value;
-        self.record_system_set(system);
+        self.data.check_system(system)?;
+        let axis = self.data.check_axis(axis)?;
+        let value = self.data.check_offset_range(self.data.to_stored(&self.state, Some(axis), value))?;
+        self.data.set_work_offset(system, axis, value);
         self.update_after_offset_change();
         Ok(())
     }
@@ -324,39 +259,22 @@ impl Executor {
     /// The active system's zero has moved, the machine hasn't.
     pub(super) fn update_after_offset_change(&mut self) {
         let mut state = *self.state;
-        self.recompute_position(&mut state);
+        self.data.recompute_position(&mut state);
         *self.state = state;
         self.update_is_plain();
     }
 
-    fn register(&self, register: Register) -> Register {
-        match (self.settings.series_15_offsets, register) {
-            (false, same) => same,
-            (true, Register::HGeometry) => Register::HWear,
-            (true, Register::HWear) => Register::HGeometry,
-            (true, Register::DGeometry) => Register::DWear,
-            (true, Register::DWear) => Register::DGeometry,
-        }
-    }
-
     fn tool_offset(&self, register: Register, place: u32) -> Result<f64, Alarm> {
-        let value = self.offsets.tool(self.register(register), place + 1)?;
-        Ok(self.to_program_unit(&self.state, None, value))
+        let value = self.data.offsets.tool(self.data.register(register), place + 1)?;
+        Ok(self.data.to_program_unit(&self.state, None, value))
     }
 
     fn set_tool_offset(&mut self, register: Register, place: u32, value: f64) -> Result<(), Alarm> {
-        let register = self.register(register);
-        self.offsets.tool(register, place + 1)?;
-        let value = self.check_offset_range(self.to_stored(&self.state, None, value))?;
-        self.offsets.register(register)[place as usize + 1] = value;
+        let register = self.data.register(register);
+        self.data.offsets.tool(register, place + 1)?;
+        let value = self.data.check_offset_range(self.data.to_stored(&self.state, None, value))?;
+        self.data.offsets.register(register)[place as usize + 1] = value;
         Ok(())
-    }
-
-    /// Geometry and wear of a D number, or half of them with ODI; `None` where it isn't in the table.
-    pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
-        let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
-        let sum = geometry + self.offsets.tool(Register::DWear, d).ok()?;
-        Some(if self.settings.offsets_are_diameters { sum / 2.0 } else { sum })
     }
 
     /// Where the tool's centre stands, in machine coordinates; a move that waits for the next counts as done, as if

@@ -1,7 +1,7 @@
 //! G33: a straight cut that keeps step with the spindle.
-use super::Executor;
-use super::evaluation::ExecResult;
+use super::checked::ExecResult;
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::words::{BlockWords, WordNumber};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, MAX_AXES, Position, SpindleDirection};
@@ -9,23 +9,23 @@ use gcode_lang::program::modes::Unit;
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
-impl Executor {
+impl Planner<'_> {
     /// F is the lead along the axis with the longest way, in every feed mode; Q, the angle it starts at, moves nothing.
     pub(super) fn plan_thread(
         &self,
         plan: &mut BlockPlan,
         to: Position,
-        given: &BlockWords,
+        block_words: &BlockWords,
         span: Span,
     ) -> ExecResult<()> {
-        given.mark_read(b"Q");
+        block_words.mark_read(b"Q");
         let refused = |what: &str, span| Err(Alarm::NotSimulated { what: what.into() }.located_at(span));
-        if let Some((WordNumber::Literal(lead), _)) = given.get(b'F')
+        if let Some((WordNumber::Literal(lead), _)) = block_words.get(b'F')
             && lead.places.is_none()
         {
             return refused(
                 "F without a decimal point (its unit differs between controls) in G33",
-                given.span(b'F'),
+                block_words.span(b'F'),
             );
         }
         let turning = plan.state.spindle != SpindleDirection::Off && plan.state.codes.s > 0.0;

@@ -1,9 +1,9 @@
 //! G68, G68.2, G51 and G51.1: their words to a [`super::transform::Transform`].
-use super::Executor;
-use super::evaluation::{ExecResult, locate};
+use super::checked::{ExecResult, locate};
 use super::modal_codes::not_simulated;
 use super::notes::Note;
 use super::plan::BlockPlan;
+use super::planner::Planner;
 use super::transform::{Rotation, Scale, Tilt, Transform};
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
@@ -11,7 +11,7 @@ use gcode_lang::motion::{MAX_AXES, Position};
 use gcode_lang::program::modes::Mirror;
 use gcode_lang::source::Span;
 
-impl Executor {
+impl Planner<'_> {
     /// G68: the plane turns about a point.
     pub(super) fn plan_rotation(
         &self,
@@ -20,12 +20,13 @@ impl Executor {
         span: Span,
     ) -> ExecResult<()> {
         let state = &mut plan.state;
-        let plane = locate(self.plane_axes(state.modal.plane), span)?;
-        let letter = |axis| self.settings.axes.letter(axis) as u8;
-        let first = self.dimension(block_words, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
+        let plane = locate(self.data.plane_axes(state.modal.plane), span)?;
+        let letter = |axis| self.data.settings.axes.letter(axis) as u8;
+        let first =
+            self.data.dimension(block_words, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
         let second =
-            self.dimension(block_words, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
-        let angle = self.angle(block_words, b'R')?;
+            self.data.dimension(block_words, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
+        let angle = self.data.angle(block_words, b'R')?;
         if angle.is_none() {
             plan.notes.push(Note::NoAngle);
         }
@@ -37,7 +38,7 @@ impl Executor {
         let (mirrored, _) = state.transform.arc_effect(plane);
         let angle = if mirrored { -angle } else { angle };
         state.transform.rotation = Some(Rotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
-        self.apply_transform_change(state);
+        self.data.apply_transform_change(state);
         Ok(())
     }
 
@@ -54,12 +55,12 @@ impl Executor {
         let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
         for (place, (letter, angle)) in [(b'X', b'I'), (b'Y', b'J'), (b'Z', b'K')].into_iter().enumerate() {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            axes[place] = locate(self.settings.axes.find(letter).ok_or(missing), span)?;
-            origin[place] = self.dimension(block_words, letter, &plan.state)?.unwrap_or(0.0);
-            angles[place] = self.angle(block_words, angle)?.unwrap_or(0.0);
+            axes[place] = locate(self.data.settings.axes.find(letter).ok_or(missing), span)?;
+            origin[place] = self.data.dimension(block_words, letter, &plan.state)?.unwrap_or(0.0);
+            angles[place] = self.data.angle(block_words, angle)?.unwrap_or(0.0);
         }
         plan.state.transform.tilt = Some(Tilt::new(axes, origin, angles));
-        self.apply_transform_change(&mut plan.state);
+        self.data.apply_transform_change(&mut plan.state);
         Ok(())
     }
 
@@ -70,16 +71,16 @@ impl Executor {
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
-        let unit = if self.settings.has_coarse_scaling { 1000.0 } else { 100_000.0 };
+        let unit = if self.data.settings.has_coarse_scaling { 1000.0 } else { 100_000.0 };
         let mut scale = Scale { centre: plan.state.programmed, factor: Position([1.0; MAX_AXES]) };
-        for (axis, letter) in self.settings.axes.iter() {
-            if let Some(value) = self.dimension(block_words, letter as u8, &plan.state)? {
+        for (axis, letter) in self.data.settings.axes.iter() {
+            if let Some(value) = self.data.dimension(block_words, letter as u8, &plan.state)? {
                 scale.centre[axis] = value;
             }
             let own = match letter {
-                'X' => self.factor(block_words, b'I')?,
-                'Y' => self.factor(block_words, b'J')?,
-                'Z' => self.factor(block_words, b'K')?,
+                'X' => self.data.factor(block_words, b'I')?,
+                'Y' => self.data.factor(block_words, b'J')?,
+                'Z' => self.data.factor(block_words, b'K')?,
                 _ => continue,
             };
             let common = block_words.count(b'P')?.map(f64::from);
@@ -92,7 +93,7 @@ impl Executor {
             scale.factor[axis] = factor / unit;
         }
         plan.state.transform.scaling = Some(scale);
-        self.apply_transform_change(&mut plan.state);
+        self.data.apply_transform_change(&mut plan.state);
         Ok(())
     }
 
@@ -104,11 +105,11 @@ impl Executor {
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
         let state = &mut plan.state;
-        if !is_on && !self.names_axis(block_words) {
+        if !is_on && !self.data.names_axis(block_words) {
             state.transform.mirrored_axes = 0;
         }
-        for (axis, letter) in self.settings.axes.iter() {
-            let Some(value) = self.dimension(block_words, letter as u8, state)? else { continue };
+        for (axis, letter) in self.data.settings.axes.iter() {
+            let Some(value) = self.data.dimension(block_words, letter as u8, state)? else { continue };
             state.transform.mirrored_axes &= !(1 << axis);
             if is_on {
                 state.transform.mirrored_axes |= 1 << axis;
@@ -116,7 +117,7 @@ impl Executor {
             }
         }
         state.modal.mirror = if state.transform.mirrored_axes == 0 { Mirror::Off } else { Mirror::On };
-        self.apply_transform_change(state);
+        self.data.apply_transform_change(state);
         Ok(())
     }
 }

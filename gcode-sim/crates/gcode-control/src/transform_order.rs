@@ -4,6 +4,7 @@ use super::modal_state::Modal;
 use super::state::State;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
+use gcode_lang::program::code_facts::CoordinateUse;
 use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
 use gcode_lang::program::modes::{Mirror, Rotation, Scaling};
 
@@ -21,9 +22,10 @@ pub(super) fn check(
     let is_scaled = before.scaling == Scaling::On && modal.scaling == Scaling::On;
     let is_wait = |effect| effect == Effect::OneShot(OneShot::MachineSystem) && !names_axis;
     for row in block_words.g_codes().filter(|row| !is_wait(row.effect)) {
+        let is_bound = row.facts.coordinates == CoordinateUse::NotTransformed;
         let active_code = match row.effect {
-            effect if changes_coordinates(effect) && is_rotated => "G68",
-            effect if changes_coordinates(effect) && is_mirrored => "G51.1",
+            _ if is_bound && is_rotated => "G68",
+            _ if is_bound && is_mirrored => "G51.1",
             Effect::Mirror(Mirror::On) | Effect::Scaling(Scaling::On) if is_rotated => "G68",
             Effect::Mirror(Mirror::On) if is_scaled => "G51",
             Effect::Mirror(Mirror::Off) if is_mirrored && is_rotated => "G68",
@@ -41,28 +43,4 @@ pub(super) fn check(
         return Err(Alarm::NotSimulated { what });
     }
     Ok(())
-}
-
-/// Reference returns and what sets or chooses a coordinate system (operator's manual, coordinate system rotation and
-/// programmable mirror image).
-fn changes_coordinates(effect: Effect) -> bool {
-    use OneShot::{
-        CheckReference, FromReference, LocalSystem, MachineSystem, PresetSystem, Reference, SecondReference,
-        SetSystem,
-    };
-    match effect {
-        Effect::Work(_) | Effect::AdditionalWork | Effect::NumberedWork(_) => true,
-        Effect::OneShot(one) => matches!(
-            one,
-            CheckReference
-                | Reference
-                | FromReference
-                | SecondReference
-                | LocalSystem
-                | MachineSystem
-                | SetSystem
-                | PresetSystem
-        ),
-        _ => false,
-    }
 }

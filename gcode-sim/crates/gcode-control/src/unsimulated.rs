@@ -1,9 +1,11 @@
 //! What a block says that moves nothing in a run and means something on a machine: block skips, codes without effect here.
+use super::control::Control;
+use super::registers::Registers;
 use super::words::{computed_row, count};
-use super::{Control, Executor};
-use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
-use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::{OpKind, WordOperand, Words};
+use gcode_lang::program::code_facts::{Letters, Unsimulated};
+use gcode_lang::program::g_codes;
+use gcode_lang::program::m_codes::MCodeEffect;
+use gcode_lang::program::{OpKind, WordOperand, Words, m_codes};
 
 /// Of a block that is about to be done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,13 +28,13 @@ impl Control {
     /// What [`Control::next_block`] says so; nothing for a block that is skipped.
     pub fn next_unsimulated(&self) -> UnsimulatedCodes {
         let mut unsimulated = UnsimulatedCodes::default();
-        self.inspect_next(|core, op| {
-            if core.is_skipped(op) {
+        self.inspect_next(|registers, op| {
+            if registers.is_skipped(op) {
                 return;
             }
             unsimulated.block_skips.extend(op.skip().map(skip_text));
-            match core.guarded_operation(op.kind()) {
-                OpKind::Words(words) => core.collect_unsimulated(words, &mut unsimulated),
+            match registers.guarded_operation(op.kind()) {
+                OpKind::Words(words) => registers.collect_unsimulated(words, &mut unsimulated),
                 OpKind::Statement(_) => {
                     unsimulated.writes = self.next_assigned_variables().iter().any(|number| *number >= 1000);
                 }
@@ -48,13 +50,13 @@ fn skip_text(switch: u8) -> String {
     if switch <= 1 { "/".to_owned() } else { format!("/{switch}") }
 }
 
-impl Executor {
-    fn collect_unsimulated(&self, words: &Words, silent: &mut UnsimulatedCodes) {
-        silent.writes |= self.state.is_in_parameter_input;
+impl Registers {
+    fn collect_unsimulated(&self, words: &Words, unsimulated: &mut UnsimulatedCodes) {
+        unsimulated.writes |= self.state.is_in_parameter_input;
         let words = match words.skipped_form() {
-            Some((switch, short)) if self.is_skip_on(*switch) => short,
+            Some((switch, short)) if self.data.is_skip_on(*switch) => short,
             Some((switch, _)) => {
-                silent.block_skips.push(skip_text(*switch));
+                unsimulated.block_skips.push(skip_text(*switch));
                 words
             }
             None => words,
@@ -63,47 +65,48 @@ impl Executor {
             let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
-                match m_codes::find(code, self.settings.codes) {
-                    Some(MCodeEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
+                match m_codes::find(code, self.data.settings.codes) {
+                    Some(MCodeEffect::NoEffect) => unsimulated.m_codes.push(format!("M{code:02}")),
                     Some(MCodeEffect::Orient) => {
-                        silent.m_codes.push(self.with_words(words, format!("M{code:02}"), b"PR"));
+                        unsimulated.m_codes.push(self.with_words(
+                            words,
+                            format!("M{code:02}"),
+                            Letters::of(b"PR"),
+                        ));
                     }
-                    Some(MCodeEffect::End) => silent.end_code = Some(code),
-                    _ => {}
+                    Some(MCodeEffect::End) => unsimulated.end_code = Some(code),
+                    Some(
+                        MCodeEffect::Stop
+                        | MCodeEffect::OptionalStop
+                        | MCodeEffect::SpindleForward
+                        | MCodeEffect::SpindleReverse
+                        | MCodeEffect::SpindleStop
+                        | MCodeEffect::ToolChange
+                        | MCodeEffect::CoolantOn
+                        | MCodeEffect::CoolantOff
+                        | MCodeEffect::InterruptOn
+                        | MCodeEffect::InterruptOff
+                        | MCodeEffect::Call
+                        | MCodeEffect::NotSimulated,
+                    )
+                    | None => {}
                 }
                 continue;
             }
-            let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
-            let text = || self.with_values(words, row.code);
-            match row.effect {
-                Effect::NoEffect if [50, 51, 90].contains(&row.code) => silent.path_codes.push(text()),
-                Effect::LookAhead | Effect::Smoothness => silent.path_codes.push(text()),
-                Effect::NoEffect => silent.g_codes.push(text()),
-                Effect::OneShot(
-                    OneShot::DataInput | OneShot::SetSystem | OneShot::PresetSystem | OneShot::LocalSystem,
-                ) => silent.writes = true,
-                Effect::OneShot(OneShot::OneSide) => silent.path_codes.push("G60".to_owned()),
-                Effect::OneShot(OneShot::Reference | OneShot::CheckReference | OneShot::FromReference) => {
-                    silent.g_codes.push(format!("G{}", spelled(row.code)));
-                }
-                Effect::OneShot(OneShot::SecondReference) => {
-                    silent.g_codes.push(self.with_words(words, "G30".to_owned(), b"P"));
-                }
-                _ => {}
+            let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
+            let text = |letters| self.with_words(words, g_codes::name(row.code), letters);
+            match row.facts.unsimulated {
+                Unsimulated::No => {}
+                Unsimulated::Path(letters) => unsimulated.path_codes.push(text(letters)),
+                Unsimulated::Code(letters) => unsimulated.g_codes.push(text(letters)),
+                Unsimulated::Writes => unsimulated.writes = true,
             }
         }
     }
 
-    /// A code with the words that belong to it; exact stop has none.
-    fn with_values(&self, words: &Words, code: u32) -> String {
-        let name = if code.is_multiple_of(10) { format!("G{:02}", code / 10) } else { two_digits(code) };
-        self.with_words(words, name, if code == 90 { b"" } else { b"EIPQR" })
-    }
-
     /// A name and what stands behind these letters.
-    fn with_words(&self, words: &Words, name: String, letters: &[u8]) -> String {
-        let of_code = |letter: u8| letters.contains(&letter);
-        let values = words.list.iter().filter(|word| of_code(word.letter) && !word.comma);
+    fn with_words(&self, words: &Words, name: String, letters: Letters) -> String {
+        let values = words.list.iter().filter(|word| letters.has(word.letter) && !word.comma);
         let shown = values.filter_map(|word| {
             if matches!(word.value, WordOperand::G(..)) {
                 return None;
@@ -113,11 +116,6 @@ impl Executor {
         });
         name + &shown.collect::<String>()
     }
-}
-
-/// `G05.1`
-fn two_digits(code: u32) -> String {
-    if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
 }
 
 #[cfg(test)]

@@ -1,4 +1,7 @@
 //! Local and common variables. Vacant is a state of its own: it is neither 0 nor a number.
+use std::collections::BTreeMap;
+
+use gcode_lang::alarm::Alarm;
 use gcode_lang::program::Slot;
 
 /// What a variable holds.
@@ -95,8 +98,10 @@ impl From<StoredValue> for Value {
 
 /// #0, which stays vacant, and #1 to #33.
 const LOCALS: usize = 34;
+
 /// The numbers up to the last common of every control.
 const DIRECT_COUNT: usize = 1000;
+
 /// Places for them, so many that the low bits of any number are one: nothing needs to ask whether it is there.
 const PLACES: usize = DIRECT_COUNT.next_power_of_two();
 
@@ -139,6 +144,8 @@ pub struct Vars {
     extra_range: (u32, u32),
     /// `#10100` is `#100`.
     aliases_commons: bool,
+    /// Names given by SETVN.
+    names: BTreeMap<String, u32>,
 }
 
 impl Vars {
@@ -151,7 +158,31 @@ impl Vars {
             outer_locals: Vec::new(),
             extra_range: more.unwrap_or((1, 0)),
             aliases_commons: aliased,
+            names: BTreeMap::new(),
         }
+    }
+
+    /// SETVN: names for variables from `first` on.
+    pub(super) fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {
+        let numbered = || {
+            let number = |place: usize| first.saturating_add(place as u32);
+            names.iter().enumerate().map(move |(place, name)| (number(place), name))
+        };
+        if let Some((number, _)) = numbered().find(|(number, _)| !(500..=549).contains(number)) {
+            return Err(Alarm::NoSuchVariable { number: i64::from(number) });
+        }
+        for (number, name) in numbered() {
+            // A variable has one name: the last.
+            self.names.retain(|_, named| *named != number);
+            self.names.insert(name.clone(), number);
+        }
+        Ok(())
+    }
+
+    /// The variable of a name given by SETVN.
+    pub(super) fn named_variable(&self, name: &str) -> Result<u32, Alarm> {
+        let unknown = || Alarm::NoVariableName { name: name.to_owned() };
+        self.names.get(name).copied().ok_or_else(unknown)
     }
 
     /// What kind of variable `number` is.
@@ -197,7 +228,7 @@ impl Vars {
         (held.number, held.is_vacant, held.decimals) = (value.number, value.is_vacant, 0);
     }
 
-    /// The value at a place that [`Vars::kind`] tells.
+    /// The value at a place that [`Vars::classify`] tells.
     pub(super) fn get(&self, place: usize) -> Value {
         self.stored_value(place).into()
     }
@@ -257,9 +288,19 @@ impl Vars {
 
     /// Whether all values in force are the same.
     pub(super) fn has_same_values(&self, other: &Self) -> bool {
-        self.direct_values == other.direct_values
-            && self.extra_values == other.extra_values
-            && self.outer_locals == other.outer_locals
+        let Self {
+            direct_values,
+            extra_values,
+            outer_locals,
+            names,
+            // Settings of the control.
+            extra_range: _,
+            aliases_commons: _,
+        } = self;
+        *direct_values == other.direct_values
+            && *extra_values == other.extra_values
+            && *outer_locals == other.outer_locals
+            && *names == other.names
     }
 
     /// Whether the values at a place differ, be it in one bit.

@@ -2,16 +2,13 @@
 //! the block asks for them.
 use std::cell::Cell;
 
-use super::Executor;
-use super::code_calls::CallingWord;
-use super::evaluation::{ExecResult, RoundingTarget, integer, locate};
-use super::variables::Value;
+use super::checked::{ExecResult, integer, locate};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{CodeSet, Settings};
-use gcode_lang::program::g_codes::{self, Effect, GCodeRow};
-use gcode_lang::program::m_codes;
+use gcode_lang::program::code_facts::Letters;
+use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::Motion;
-use gcode_lang::program::{LoweredWord, WordOperand, Words};
+use gcode_lang::program::{LoweredWord, g_codes, m_codes};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::Decimal;
 use gcode_lang::units::round;
@@ -44,15 +41,16 @@ pub(super) const fn letters(some: &[u8]) -> u32 {
 }
 
 pub(super) const G_CODES: usize = 12;
+
 const M_CODES: usize = 3;
 
 /// The words of a block by letter. Kept between blocks and cleared by its mask, so that it costs nothing.
 #[derive(Clone, Debug)]
 pub(super) struct BlockWords {
-    present_letters: u32,
+    pub(super) present_letters: u32,
     /// The letters whose value somebody has asked for.
     read_letters: Cell<u32>,
-    values: [(WordNumber, Span); 26],
+    pub(super) values: [(WordNumber, Span); 26],
     g_rows: [Option<&'static GCodeRow>; G_CODES],
     g_count: usize,
     /// The last code of group 01.
@@ -90,7 +88,7 @@ impl Default for BlockWords {
 
 impl BlockWords {
     /// As before the first block.
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.present_letters = 0;
         self.read_letters.set(0);
         self.g_count = 0;
@@ -103,7 +101,7 @@ impl BlockWords {
     }
 
     /// `,R` or `,C`.
-    fn put_corner(&mut self, word: &LoweredWord, raw: WordNumber) -> Result<(), Alarm> {
+    pub(super) fn put_corner(&mut self, word: &LoweredWord, raw: WordNumber) -> Result<(), Alarm> {
         if word.letter == b'A' {
             return Err(Alarm::NotSimulated { what: "direct drawing dimensions (,A)".into() });
         }
@@ -114,7 +112,7 @@ impl BlockWords {
         Ok(())
     }
 
-    fn put_g(&mut self, row: &'static GCodeRow) -> Result<(), Alarm> {
+    pub(super) fn put_g(&mut self, row: &'static GCodeRow) -> Result<(), Alarm> {
         if self.g_count == G_CODES {
             return Err(Alarm::MacroFormat { what: "too many G codes in one block".into() });
         }
@@ -128,7 +126,7 @@ impl BlockWords {
     }
 
     /// Without M3B the last M code of a block counts; a stop or an end isn't lost in silence.
-    fn put_m(&mut self, code: u32, span: Span, settings: &Settings) -> Result<(), Alarm> {
+    pub(super) fn put_m(&mut self, code: u32, span: Span, settings: &Settings) -> Result<(), Alarm> {
         let max = if settings.allows_three_m_codes { M_CODES } else { 1 };
         let place = self.m_code_count.min(max - 1);
         if self.m_code_count == max
@@ -180,6 +178,19 @@ impl BlockWords {
         for letter in letters {
             self.get(*letter);
         }
+    }
+
+    /// As [`BlockWords::mark_read`].
+    pub(super) fn mark_letters_read(&self, letters: Letters) {
+        self.read_letters.set(self.read_letters.get() | letters.bits());
+    }
+
+    /// The letters that are refused without one of its codes, as bits.
+    pub(super) fn letters_of_codes(&self) -> u32 {
+        if !self.has_other_g_codes {
+            return 0;
+        }
+        self.g_codes().fold(0, |letters, row| letters | row.facts.words.own.bits())
     }
 
     /// The first word, by its letter, that nothing in the block had a use for.
@@ -235,123 +246,6 @@ pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
     if number > max { Err(Alarm::TooManyDigits) } else { Ok(number as u32) }
 }
 
-impl Executor {
-    /// Evaluates every word of a block into `given`, but for those that belong to a call.
-    pub(super) fn evaluate_words(
-        &self,
-        words: &Words,
-        calling: Option<&CallingWord>,
-        block_words: &mut BlockWords,
-    ) -> ExecResult<()> {
-        block_words.clear();
-        block_words.punched_value = words.punched_value();
-        match calling {
-            None => words.list.iter().try_for_each(|word| self.evaluate_into(words, word, block_words)),
-            Some(calling) => {
-                let mut others =
-                    words.list.iter().enumerate().filter(|(place, word)| !calling.contains(*place, word));
-                others.try_for_each(|(_, word)| self.evaluate_into(words, word, block_words))
-            }
-        }
-    }
-
-    /// Evaluates a word and puts it to those of its block.
-    #[inline(always)]
-    fn evaluate_into(
-        &self,
-        words: &Words,
-        word: &LoweredWord,
-        block_words: &mut BlockWords,
-    ) -> ExecResult<()> {
-        let raw = match &word.value {
-            WordOperand::Literal(number) => WordNumber::Literal(*number),
-            WordOperand::G(code, found) if !word.comma => {
-                let row = found.row_for(self.settings.codes);
-                let improper =
-                    || Alarm::ImproperGCode { code: g_codes::spelled(*code) }.located_at(word.span);
-                return locate(block_words.put_g(row.ok_or_else(improper)?), word.span);
-            }
-            value => match self.evaluate_operand(words, value)? {
-                Value::Number(value) => WordNumber::Computed(value),
-                Value::Vacant => return Ok(()),
-            },
-        };
-        if word.comma || word.axis.is_some() || matches!(word.letter, b'G' | b'M') {
-            return self.put(words, word, raw, block_words);
-        }
-        self.put_value(word.letter, word.span, raw, block_words)
-    }
-
-    /// Puts a word that is more than a value at an address to those of its block.
-    #[inline(never)]
-    fn put(
-        &self,
-        words: &Words,
-        word: &LoweredWord,
-        raw: WordNumber,
-        block_words: &mut BlockWords,
-    ) -> ExecResult<()> {
-        if word.comma {
-            return locate(block_words.put_corner(word, raw), word.span);
-        }
-        let letter = match word.axis.and_then(|place| words.axis(place)) {
-            Some(axis) => {
-                let number = self.operand(axis)?.number();
-                self.settings.axes.letter(locate(self.axis_of(number), word.span)?) as u8
-            }
-            None => word.letter,
-        };
-        match letter {
-            b'G' => {
-                let row = locate(computed_row(raw, self.settings.codes), word.span)?;
-                locate(block_words.put_g(row), word.span)
-            }
-            b'M' => {
-                let code = locate(count(raw, b'M'), word.span)?;
-                locate(block_words.put_m(code, word.span, &self.settings), word.span)
-            }
-            letter => self.put_value(letter, word.span, raw, block_words),
-        }
-    }
-
-    #[inline(always)]
-    fn put_value(
-        &self,
-        letter: u8,
-        span: Span,
-        raw: WordNumber,
-        block_words: &mut BlockWords,
-    ) -> ExecResult<()> {
-        if self.settings.alarms_on_repeated_address && block_words.has(letter) {
-            return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.located_at(span));
-        }
-        block_words.present_letters |= 1 << (letter - b'A');
-        block_words.values[usize::from(letter - b'A')] = (raw, span);
-        Ok(())
-    }
-
-    /// The value of a word, or `None` where it is vacant and the word therefore not there.
-    #[inline]
-    pub(super) fn evaluate_word(&self, words: &Words, word: &LoweredWord) -> ExecResult<Option<WordNumber>> {
-        match &word.value {
-            WordOperand::Literal(number) => Ok(Some(WordNumber::Literal(*number))),
-            value => Ok(self.evaluate_operand(words, value)?.as_number().map(WordNumber::Computed)),
-        }
-    }
-
-    /// What a value behind an address is that is more than a literal.
-    #[inline(always)]
-    pub(super) fn evaluate_operand(&self, words: &Words, value: &WordOperand) -> ExecResult<Value> {
-        match value {
-            WordOperand::Variable { slot, span } => self.load(*slot, span),
-            WordOperand::Code(place) => self.run_code(words.code(*place), RoundingTarget::Increment),
-            WordOperand::Number(number) => Ok(Value::Number(*number)),
-            WordOperand::G(code, _) => Ok(Value::Number(f64::from(*code) / 10.0)),
-            WordOperand::Literal(number) => Ok(Value::Number(number.value())),
-        }
-    }
-}
-
 /// The row of a G code that is computed.
 pub(super) fn computed_row(raw: WordNumber, set: CodeSet) -> Result<&'static GCodeRow, Alarm> {
     let value = match raw {
@@ -365,4 +259,23 @@ pub(super) fn computed_row(raw: WordNumber, set: CodeSet) -> Result<&'static GCo
     }
     let code = tenths as u32;
     g_codes::find(code).row_for(set).ok_or_else(|| Alarm::ImproperGCode { code: g_codes::spelled(code) })
+}
+
+/// A word that calls a subprogram, taken out of its block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CallingWord {
+    /// Its place in the block.
+    pub(super) index: usize,
+    /// Behind an M code L repeats the call.
+    pub(super) takes_repeats: bool,
+    pub(super) program: u32,
+    /// The common variable that gets the word's number.
+    pub(super) value: Option<(u32, f64)>,
+}
+
+impl CallingWord {
+    /// Whether a word of the block belongs to the call and not to what acts first.
+    pub(super) fn contains(&self, place: usize, word: &LoweredWord) -> bool {
+        place == self.index || self.takes_repeats && word.letter == b'L'
+    }
 }

@@ -6,7 +6,7 @@
 //! A view turns its contents into a [`Scene`] in mm, without pixels or colours: [`main_view`], [`top_view`],
 //! [`development`], [`side_view`], [`tip_view`], [`helix_graph`]. [`lay_out`] places a scene on a [`Sheet`], where
 //! every symbol and label has its position in pixels and no label covers another. [`paint`] paints the sheet, and
-//! [`png`] encodes it; [`draw`] does all three. [`compare`] compares two PNG files pixel by pixel. A new view is a
+//! [`png`] encodes it; [`draw`] does all three. [`compare()`] compares two PNG files pixel by pixel. A new view is a
 //! new file in `views`; a new file format is a new painter of sheets.
 //!
 //! ```

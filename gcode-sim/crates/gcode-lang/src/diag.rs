@@ -1,5 +1,7 @@
 //! Findings and messages as plain data: code, severity, place, reason and remedy. Rendering is left to the
 //! caller.
+use std::borrow::Cow;
+
 use crate::motion::Backtrace;
 use crate::source::Span;
 
@@ -44,14 +46,109 @@ impl Site {
     }
 }
 
+/// Kind of finding: one row with its code, highest severity, title and page. [`finding_kinds!`](crate::finding_kinds)
+/// declares the rows.
+#[derive(Debug)]
+pub struct FindingKind {
+    /// Stable identifier, such as `rapid-into-part` or the code of an alarm.
+    pub code: &'static str,
+    /// Highest severity; a single finding may have a lower one.
+    pub severity: Severity,
+    /// Meaning of the code in a few words.
+    pub title: &'static str,
+    /// Text that contains the page.
+    pub document: Document,
+}
+
+/// Markdown that contains the page of a kind.
+#[derive(Debug)]
+pub enum Document {
+    /// The page is the whole text.
+    Page(&'static str),
+    /// The page is the section whose heading starts with the code.
+    Section(&'static str),
+}
+
+impl FindingKind {
+    /// Returns the page: meaning, causes and remedy, as Markdown.
+    pub fn page(&self) -> &'static str {
+        match self.document {
+            Document::Page(text) => text,
+            Document::Section(text) => {
+                let mut sections = text.split("\n## ").skip(1);
+                sections.find(|section| section.starts_with(&format!("{}: ", self.code))).unwrap_or_default()
+            }
+        }
+    }
+}
+
+impl PartialEq for FindingKind {
+    fn eq(&self, other: &Self) -> bool {
+        self.code == other.code
+    }
+}
+
+impl Eq for FindingKind {}
+
+impl std::fmt::Display for FindingKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.code)
+    }
+}
+
+/// Declares a static [`FindingKind`](crate::diag::FindingKind) per line, and `ALL`. The folder of the pages comes first. The first line of a page is
+/// compared with code and title at compile time.
+#[macro_export]
+macro_rules! finding_kinds {
+    ($folder:literal; $($name:ident = $code:literal, $severity:ident, $title:literal;)+) => {
+        $(
+            #[doc = concat!("`", $code, "`: ", $title, ".")]
+            pub static $name: $crate::diag::FindingKind = {
+                const PAGE: &str = include_str!(concat!($folder, $code, ".md"));
+                assert!($crate::diag::starts_with(PAGE, concat!("# ", $code, ": ", $title, "\n")));
+                $crate::diag::FindingKind {
+                    code: $code,
+                    severity: $crate::diag::Severity::$severity,
+                    title: $title,
+                    document: $crate::diag::Document::Page(PAGE),
+                }
+            };
+        )+
+
+        /// All rows of this table.
+        pub static ALL: &[&$crate::diag::FindingKind] = &[$(&$name),+];
+    };
+}
+
+/// Returns true if a text starts with another, at compile time too.
+#[doc(hidden)]
+pub const fn starts_with(text: &str, start: &str) -> bool {
+    match text.as_bytes().split_at_checked(start.len()) {
+        Some((opening, _)) => is_equal(opening, start.as_bytes()),
+        None => false,
+    }
+}
+
+const fn is_equal(mut one: &[u8], mut other: &[u8]) -> bool {
+    while let ([a, rest @ ..], [b, others @ ..]) = (one, other) {
+        if *a != *b {
+            return false;
+        }
+        (one, other) = (rest, others);
+    }
+    one.is_empty() && other.is_empty()
+}
+
 /// One finding: message, place and remedy.
 ///
 /// The message is complete without the other fields, also on a narrow screen: it states the actual and the
 /// nominal value with their units.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// Stable identifier, such as `rapid-into-part` or the code of an alarm.
-    pub code: String,
+    /// Kind of the finding, with its code and page.
+    pub kind: &'static FindingKind,
+    /// Number of an alarm that the program raises: replaces the number in the kind's code.
+    pub raised: Option<u16>,
     /// Grade of the finding.
     pub severity: Severity,
     /// Statement of the fault, one sentence.
@@ -71,11 +168,12 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Creates a finding without place, notes or help.
-    pub fn new(severity: Severity, code: impl Into<String>, message: impl Into<String>) -> Self {
+    /// Creates a finding of the kind's severity, without place, notes or help.
+    pub fn new(kind: &'static FindingKind, message: impl Into<String>) -> Self {
         Self {
-            code: code.into(),
-            severity,
+            kind,
+            raised: None,
+            severity: kind.severity,
             message: message.into(),
             backtrace: None,
             span: None,
@@ -86,14 +184,20 @@ impl Diagnostic {
         }
     }
 
-    /// Creates a finding of severity [`Severity::Error`].
-    pub fn error(code: impl Into<String>, message: impl Into<String>) -> Self {
-        Self::new(Severity::Error, code, message)
+    /// Returns the code: `hole-depth`, `PS0112`, `MC3021`.
+    pub fn code(&self) -> Cow<'static, str> {
+        match self.raised {
+            None => self.kind.code.into(),
+            Some(number) => format!("MC{number:04}").into(),
+        }
     }
 
-    /// Creates a finding of severity [`Severity::Warning`].
-    pub fn warning(code: impl Into<String>, message: impl Into<String>) -> Self {
-        Self::new(Severity::Warning, code, message)
+    /// Sets a severity, not higher than the kind's.
+    #[must_use]
+    pub fn with_severity(mut self, severity: Severity) -> Self {
+        debug_assert!(severity <= self.kind.severity, "{}", self.kind);
+        self.severity = severity;
+        self
     }
 
     /// Sets the block and the calls that led to it.

@@ -1,4 +1,4 @@
-//! Program texts as bytes, and places in them: every token, operation, event and finding carries a [`Span`].
+//! Program texts as bytes, and places in them. Every token, operation, event and finding has a [`Span`].
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 

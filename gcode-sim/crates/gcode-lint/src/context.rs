@@ -2,7 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::control::Settings;
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::{CallCode, Memory, Op, OpIndex, OpKind, Program, ProgramId};
 use gcode_lang::source::{SourceId, Span};
@@ -171,35 +171,12 @@ impl ProgramUnit<'_> {
     /// Creates a finding about a block.
     pub(crate) fn finding(
         &self,
-        severity: Severity,
-        code: &'static str,
+        kind: &'static FindingKind,
         block: OpIndex,
         message: impl Into<String>,
     ) -> RuleFinding {
         let place = Backtrace { block: self.op(block).span, calls: None };
-        RuleFinding { block, diagnostic: Diagnostic::new(severity, code, message).with_backtrace(place) }
-    }
-
-    pub(crate) fn error(
-        &self,
-        code: &'static str,
-        block: OpIndex,
-        message: impl Into<String>,
-    ) -> RuleFinding {
-        self.finding(Severity::Error, code, block, message)
-    }
-
-    pub(crate) fn warning(
-        &self,
-        code: &'static str,
-        block: OpIndex,
-        message: impl Into<String>,
-    ) -> RuleFinding {
-        self.finding(Severity::Warning, code, block, message)
-    }
-
-    pub(crate) fn note(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> RuleFinding {
-        self.finding(Severity::Note, code, block, message)
+        RuleFinding { block, diagnostic: Diagnostic::new(kind, message).with_backtrace(place) }
     }
 }
 
@@ -214,6 +191,12 @@ impl RuleFinding {
     /// Sets the exact part of the block.
     pub(crate) fn with_span(mut self, span: Span) -> Self {
         self.diagnostic.span = Some(span);
+        self
+    }
+
+    /// Sets a severity, not higher than the rule's.
+    pub(crate) fn with_severity(mut self, severity: Severity) -> Self {
+        self.diagnostic = self.diagnostic.with_severity(severity);
         self
     }
 

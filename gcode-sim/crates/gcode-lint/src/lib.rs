@@ -26,6 +26,7 @@ mod expressions;
 mod first_reach;
 mod literal;
 mod parameters;
+mod rule;
 pub mod rules;
 mod suppression;
 mod unset_reads;
@@ -71,7 +72,7 @@ pub fn check(
 /// Checks the programs in memory as [`check`] does.
 pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> CheckResult {
     let programs = load_called_programs(&mut memory, settings, library);
-    let context = CheckContext::new(&memory, settings, &programs, rules::names());
+    let context = CheckContext::new(&memory, settings, &programs, rules::codes());
     let findings = rules::findings(&context);
     CheckResult { programs: programs.len(), memory, findings }
 }

@@ -42,7 +42,7 @@ impl Suppressions {
     pub(super) fn suppresses(&self, finding: &RuleFinding) -> bool {
         self.entries.iter().any(|(place, name, _)| {
             place.is_none_or(|block| block == finding.block)
-                && name.eq_ignore_ascii_case(&finding.diagnostic.code)
+                && name.eq_ignore_ascii_case(finding.diagnostic.kind.code)
         })
     }
 

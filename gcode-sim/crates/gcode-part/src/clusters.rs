@@ -12,21 +12,21 @@ use crate::point_tree::{LEAF_SIZE, Node, PointTree};
 #[derive(Debug)]
 pub struct Clusters<'t> {
     nodes: &'t [Node],
-    /// For each point a point of its cluster with a lower index, or itself.
+    /// For each point, itself or a point of its cluster with a lower index.
     parents: Vec<u32>,
-    /// For each node, in the tree's order: all points of its subtree are one cluster.
+    /// For each node, in the order of the tree: whether all points of its subtree are one cluster.
     is_uniform: Vec<bool>,
 }
 
 impl<'t> Clusters<'t> {
-    /// Each point of the tree as a cluster of its own.
+    /// Returns the clusters of a tree in which each point is a cluster of its own.
     pub fn new(tree: &'t PointTree) -> Self {
         let nodes = tree.nodes();
         let points = nodes.len();
         Self { nodes, parents: (0..points as u32).collect(), is_uniform: vec![false; points] }
     }
 
-    /// Joins a point with those in the box from `low` to `high` that belong to it.
+    /// Joins point `index` with each point of the box from `low` to `high` that satisfies `belongs`.
     pub fn join(
         &mut self,
         index: usize,
@@ -37,7 +37,7 @@ impl<'t> Clusters<'t> {
         self.visit(0..self.nodes.len(), index as u32, low, high, belongs);
     }
 
-    /// For each point the lowest index in its group.
+    /// Returns for each point the lowest index in its cluster.
     pub fn representatives(mut self) -> Vec<usize> {
         (0..self.nodes.len()).map(|index| self.root(index as u32) as usize).collect()
     }
@@ -76,7 +76,7 @@ impl<'t> Clusters<'t> {
             self.is_uniform_with(&before, node.index) && self.is_uniform_with(&behind, node.index);
     }
 
-    /// Joins the point of one node, if it lies in the box and belongs to it.
+    /// Joins the point of one node if it lies in the box and satisfies `belongs`.
     fn join_node(
         &mut self,
         node: usize,
@@ -106,7 +106,7 @@ impl<'t> Clusters<'t> {
     }
 }
 
-/// The node of a part of the tree.
+/// Returns the node of a range of the tree; `None` if the range is empty.
 fn middle(part: &Range<usize>) -> Option<usize> {
     (!part.is_empty()).then(|| part.start + part.len() / 2)
 }
@@ -117,7 +117,7 @@ mod tests {
 
     use super::*;
 
-    /// Points within `reach` of one another in every coordinate, and whatever hangs together through others.
+    /// Returns the transitive closure of “within `reach` in every coordinate, and `belongs`”, by brute force.
     fn linked(points: &[Point3<f64>], reach: f64, belongs: &dyn Fn(usize, usize) -> bool) -> Vec<usize> {
         let mut first: Vec<usize> = (0..points.len()).collect();
         let near = |i: usize, j: usize| (points[i] - points[j]).amax() <= reach && belongs(i, j);
@@ -131,7 +131,7 @@ mod tests {
         first
     }
 
-    /// Looked through pair by pair, it would be 10¹⁰ of them.
+    /// A comparison pair by pair would take 10¹⁰ of them.
     #[test]
     fn a_hundred_thousand_points_on_one_spot_are_joined_at_once() {
         let spot = Point3::new(1.0, 2.0, 3.0);

@@ -1,18 +1,19 @@
-//! The exact distance of a point from the part's surface, and the direction to it.
+//! Exact distance of a point from the part's surface, and the direction of the nearest point.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::surface::{Surface, bisect};
 
-/// The place of the surface that is nearest to a point.
+/// Distance from a surface, and the normal at the nearest point of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
-    /// mm; below 0 inside the body.
+    /// Distance in mm; negative inside the body.
     pub distance: f64,
-    /// The surface's normal there, out of the body.
+    /// Outward normal of the surface at the nearest point.
     pub normal: Unit<Vector3<f64>>,
 }
 
 impl Surface {
+    /// Returns the distance of `p` from the surface and the normal at its nearest point.
     pub fn nearest(&self, p: &Point3<f64>) -> NearestPoint {
         match *self {
             Self::Ellipsoid { a, b } => nearest_on_ellipsoid(a, b, p),
@@ -24,8 +25,10 @@ impl Surface {
         }
     }
 
-    /// Where on a straight way, 0 to 1, the surface is nearest: along a line the distance from a convex body is a convex
-    /// function, which falls until there and rises from there on.
+    /// Returns the fraction, 0 to 1, of a straight travel at which the surface is nearest.
+    ///
+    /// Along a line the distance from a convex body is a convex function: it falls up to that point and rises
+    /// after it.
     pub fn nearest_between(&self, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
         let along = to - from;
         let leaving = |t: f64| self.nearest(&(from + along * t)).normal.dot(&along) >= 0.0;
@@ -37,10 +40,14 @@ impl Surface {
     }
 }
 
-/// The foot q of the perpendicular has p − q = t·(q.x/a², q.y/b², q.z/a²), so q.x = p.x·a²/(a² + t) and so on. That q
-/// lies on the surface is one equation for t, whose left side falls as t grows; the nearest foot is its largest root.
+/// Returns the nearest point of an ellipsoid of revolution about y with semi-axes `a` and `b`.
 ///
-/// Solved for s = t + m², m the smaller semi-axis: that loses no digits where s is small, deep inside.
+/// The foot q of the perpendicular satisfies p − q = t·(q.x/a², q.y/b², q.z/a²), so q.x = p.x·a²/(a² + t) and
+/// so on. The condition that q lies on the surface is one equation for t whose left side falls as t grows;
+/// the nearest foot is its largest root.
+///
+/// The equation is solved for s = t + m², m the smaller semi-axis: that loses no digits where s is small,
+/// deep inside.
 fn nearest_on_ellipsoid(a: f64, b: f64, p: &Point3<f64>) -> NearestPoint {
     let m = a.min(b);
     let (round, along) = (a * a - m * m, b * b - m * m);
@@ -52,7 +59,7 @@ fn nearest_on_ellipsoid(a: f64, b: f64, p: &Point3<f64>) -> NearestPoint {
     let short = if a <= b { rho } else { p.y.abs() };
     let s = bisect(m * short, libm::hypot(a * rho, b * p.y).max(f64::MIN_POSITIVE), outside);
     let t = s - m * m;
-    // p − q is t times this.
+    // p − q is t times this slope.
     let slope = Vector3::new(p.x / (s + round), p.y / (s + along), p.z / (s + round));
     match Unit::try_new_and_get(slope, 1e-9 / m) {
         Some((normal, length)) if !is_on_long_axis(s, m, short) => {
@@ -62,13 +69,16 @@ fn nearest_on_ellipsoid(a: f64, b: f64, p: &Point3<f64>) -> NearestPoint {
     }
 }
 
-/// Between the centres of curvature on the long axis two feet are equally near, and the equation has no root above 0.
+/// Returns true between the centres of curvature on the long axis, where two feet are equally near and the
+/// equation has no root above 0.
 fn is_on_long_axis(s: f64, m: f64, short: f64) -> bool {
     s < 1e-9 * m * m && short < 1e-9 * m
 }
 
-/// Of a point on the long axis (for a flat body: in the plane of its equator), so deep inside that the nearest foot lies
-/// to the side: its coordinate along the long axis is p·l²/(l² − m²).
+/// Returns the nearest point for a point on the long axis, deep inside the body.
+///
+/// For a flat body (b < a) the long axis is any line of the equatorial plane. The nearest foot lies to the
+/// side: its coordinate along the long axis is p·l²/(l² − m²).
 fn nearest_from_long_axis(a: f64, b: f64, p: &Point3<f64>) -> NearestPoint {
     let flat = b < a;
     let (long, m) = if flat { (a, b) } else { (b, a) };
@@ -126,8 +136,8 @@ mod tests {
     }
 
     proptest! {
-        /// A point put at a distance along the normal of a place is at that distance: outside always, inside as far as
-        /// the smallest radius of curvature.
+        /// A point moved along a surface normal has that distance: always outside, and inside up to the
+        /// smallest radius of curvature.
         #[test]
         fn along_the_normal_the_distance_is_the_way_gone(
             (a, b) in (1.0..2000.0, 1.0..2000.0f64),
@@ -147,7 +157,7 @@ mod tests {
             prop_assert!((found.normal.into_inner() - normal.into_inner()).norm() < 1e-6, "{:?}", found);
         }
 
-        /// No place of the surface is nearer.
+        /// No other point of the surface is nearer.
         #[test]
         fn no_other_place_is_nearer(
             (a, b) in (1.0..50.0, 1.0..50.0f64),

@@ -1,49 +1,53 @@
-//! The wanted flutes of a burr: what surface they lie on, how they cross its meridians, how many there are.
+//! Nominal flutes of a burr: their surface, their helix law and their number.
 use nalgebra::Point3;
 
 use super::profile::Profile;
 use crate::job::{AxisSigns, Burr, FluteLaw};
 use gcode_lang::units::Deg;
 
-/// What a burr's program is held against; lengths in mm.
+/// Nominal flutes and their tolerances; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flutes {
+    /// Tooth-bottom surface.
     pub profile: Profile,
+    /// Number of flutes.
     pub count: u32,
-    /// On the cylinder; below 0 left-hand.
+    /// Helix angle on the cylinder; negative for a left-hand burr.
     pub helix: Deg,
+    /// Law of the helix angle on the nose.
     pub law: FluteLaw,
-    /// Where a flute begins, along x.
+    /// x of the start of a flute.
     pub start: f64,
-    /// Polar angle of the normal where it ends.
+    /// Polar angle of the normal at the end of a flute.
     pub tip_angle: Deg,
-    /// How far the blank stands above the tooth bottom.
+    /// Height of the blank above the tooth bottom.
     pub tooth_depth: f64,
-    /// How far the contact's path may be from the flute it follows.
+    /// Tolerance of the contact path's distance from the flute.
     pub chord_error: f64,
-    /// Over how long a stretch of a flute its helix angle is measured.
+    /// Length of the stretch over which a flute's helix angle is measured.
     pub gauge: f64,
-    /// How far it may be from the surface.
+    /// Tolerance of the distance from the surface.
     pub surface_tolerance: f64,
-    /// Of the helix angle, either way.
+    /// Tolerance of the helix angle, either way.
     pub helix_tolerance: Deg,
-    /// Of a flute's place round the burr, either way.
+    /// Tolerance of a flute's azimuth, either way.
     pub index_tolerance: Deg,
-    /// Of the contact along a flute, mm/min, where the job says it.
+    /// Speed of the contact along a flute, mm/min; `None` if the job does not specify it.
     pub speed: Option<f64>,
-    /// Into the blank, mm/min, where the job says it.
+    /// Feed into the blank, mm/min; `None` if the job does not specify it.
     pub plunge: Option<f64>,
-    /// From the blank, where rapid motion ends at the nearest, mm, where the job says it.
+    /// Least distance from the blank at which a rapid ends; `None` if the job does not specify it.
     pub clearance: Option<f64>,
-    /// Of the wheel, r/min, where the job says it.
+    /// Wheel speed, r/min; `None` if the job does not specify it.
     pub wheel: Option<f64>,
-    /// From the C axis to the end of the cylinder at C 0, x and y, as the job has it.
+    /// x and y from the C axis to the end of the cylinder at C0, as in the job.
     pub c_offset: [f64; 2],
-    /// Which way the axes run, where the job says it.
+    /// Directions of the axes; `None` if the job does not specify them.
     pub signs: Option<AxisSigns>,
 }
 
 impl Flutes {
+    /// Returns the nominal flutes of a burr job.
     pub fn from_job(job: &Burr) -> Self {
         let profile = Profile::new(&job.shape);
         Self {
@@ -68,7 +72,7 @@ impl Flutes {
         }
     }
 
-    /// How long all flutes are together, mm, reckoned with the angle on the cylinder.
+    /// Returns the total length of all flutes, mm, computed with the helix angle on the cylinder.
     pub fn length(&self) -> f64 {
         let steps = (90.0 - self.tip_angle.0).ceil().max(1.0);
         let polar = |step: f64| Deg(90.0 + (self.tip_angle.0 - 90.0) * step / steps);
@@ -78,10 +82,11 @@ impl Flutes {
         f64::from(self.count) * meridian / self.helix.cos()
     }
 
-    /// The tangent of the helix angle at a point of the surface: way around over way along the meridian.
+    /// Returns the tangent of the helix angle at a point of the surface: travel around over travel along the
+    /// meridian.
     ///
-    /// Of the published law only its own statement is used, that a flute's azimuth is tan(helix) times the way along
-    /// the axis over the distance from it: its slope comes of differences along the meridian.
+    /// For the published law only its statement is used: the azimuth of a flute is tan(helix) times the
+    /// travel along the axis over the distance from it. The slope comes from differences along the meridian.
     pub fn slope(&self, law: FluteLaw, at: &Point3<f64>) -> f64 {
         let tan = self.helix.tan();
         match law {
@@ -97,7 +102,7 @@ impl Flutes {
         }
     }
 
-    /// The helix angle that a law has at a polar angle.
+    /// Returns the helix angle that a law gives at a polar angle.
     pub fn helix_angle(&self, law: FluteLaw, polar: Deg) -> Deg {
         Deg::atan2(self.slope(law, &self.profile.point_at_polar(polar)), 1.0)
     }
@@ -132,8 +137,8 @@ mod tests {
         }
     }
 
-    /// Where the arcs of 14 and 4 meet (8.4 along, 3.2 off the axis, tangent 0.8 along and 0.6 inwards):
-    /// d(8.4/3.2)·3.2 = 0.8 + 8.4·0.6/3.2 = 2.375.
+    /// At the junction of the arcs of 14 and 4 (8.4 along, 3.2 off the axis, tangent 0.8 along and 0.6
+    /// inwards): d(8.4/3.2)·3.2 = 0.8 + 8.4·0.6/3.2 = 2.375.
     #[test]
     fn on_a_nose_of_arcs_too() {
         let flutes = flutes(30.0, "profile = { large = 14.0, small = 4.0 }\n");

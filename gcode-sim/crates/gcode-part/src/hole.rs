@@ -1,12 +1,15 @@
-//! A hole as the drawing and the simulator both write it down, and a list of them: one schema for both.
+//! A hole in the part's frame and the hole list: one schema for references and simulated holes.
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Which block of which program made a hole.
+/// Block of a program that made a hole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+/// Program as in messages, such as `O8300`.
 pub struct Origin {
+    /// Line in the file, from 1.
     pub program: String,
+    /// Tool in the spindle; `None` if unknown.
     pub line: u32,
     pub tool: Option<u32>,
 }
@@ -15,6 +18,7 @@ pub struct Origin {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hole {
+    /// Identifier; `None` for holes that a program made and for unnamed entries of a list.
     #[serde(default)]
     pub id: Option<String>,
     /// In a reference: where the axis meets the surface. From a program: where the cutting feed begins.
@@ -26,14 +30,18 @@ pub struct Hole {
     pub depth: f64,
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
+    /// Diameter; `None` if unknown.
     pub diameter: Option<f64>,
     #[serde(default)]
+    /// Block that made the hole; `None` in a reference.
     pub from: Option<Origin>,
 }
 
+/// Unit of a hole list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Unit {
     #[default]
+    /// Millimetres.
     #[serde(rename = "mm")]
     Mm,
 }
@@ -42,6 +50,8 @@ pub enum Unit {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HoleList {
+    /// Unit of all lengths.
     pub unit: Unit,
+    /// The holes, in the order of the drawing or of the program.
     pub holes: Vec<Hole>,
 }

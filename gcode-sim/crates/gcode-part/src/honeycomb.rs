@@ -1,8 +1,10 @@
-//! The holes of a honeycomb on a cylinder about x, found by measuring distances between points of the cylinder: rows are
-//! laid round it, and the pitch is the one at which a hole's neighbours in the next row are as far as those in its own.
+//! Holes of a honeycomb on a cylinder about x, computed from distances between points of the cylinder.
 //!
-//! The part's frame: x along the cylinder's axis, its origin where x = 0 in the first row's first hole; the first row lies at
-//! +z, and azimuth counts from z towards y. Both senses give the same holes.
+//! Rows are laid round the cylinder. At the resulting pitch a hole is as far from its neighbours in the next
+//! row as from those in its own.
+//!
+//! Part frame: x along the cylinder's axis, with the origin at the first hole of the first row; the first row
+//! lies at +z, and azimuth counts from z towards y. Both senses give the same holes.
 use super::hole::Hole;
 use super::pattern::{Pattern, point, solve_pitch};
 use super::process::{ProcessLimits, ToolProcess};
@@ -12,10 +14,13 @@ use super::surface::Surface;
 use crate::job::{Cylinder, Drill, Honeycomb, Metric, Spacing};
 use gcode_lang::units::Deg;
 
-/// No cylinder that is drilled hole by hole has more.
+/// Limit of the number of holes, above that of any cylinder drilled hole by hole.
 const MAX_HOLES: f64 = 200_000.0;
 
-/// What the job's part should get.
+/// Returns the nominal holes of a honeycomb job.
+///
+/// # Errors
+/// A pattern that does not close, or whose holes overlap or exceed the limit.
 pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
     let pattern = pattern(job)?;
     let (outer, drill) = (job.cylinder.outer / 2.0, job.drill);
@@ -61,13 +66,13 @@ fn process_limits(job: &Honeycomb) -> ProcessLimits {
             offset: said.has_number.then_some(number),
             speed: said.has_speed.then_some(speed),
             feed: said.has_feed.then_some(feed),
-            // Shallower holes are drilled in one go.
+            // Shallower holes are drilled without pecks.
             peck: (said.has_peck && 3.0 * diameter < depth).then_some(peck),
         }],
     }
 }
 
-/// How many rows, and the pitch at which all six neighbours are equally far.
+/// Returns the number of rows and the pitch at which all six neighbours are equally far.
 fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
     let (diameter, metric) = (job.cylinder.diameter, job.metric);
     let error = |message: String| Err(ReferenceError { line: None, message });
@@ -93,13 +98,16 @@ fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
     Ok(Pattern { metric, diameter, rows, pitch, specified_pitch: asked, length, outer, bore })
 }
 
-/// How many rows of each group come nearest to the pitch that was asked for; `None` where they are too many.
+/// Returns the rows of each group whose closing pitch is nearest to the specified one; `None` if there are
+/// too many.
 ///
-/// The pitch each count closes with is measured on the developed surface, in either metric; how far it is off the
-/// asked one adds up over the rows, and the count with the least sum is it. Of two as near the larger, the smaller pitch.
+/// The closing pitch of each count is measured on the developed surface, in either metric. Its difference
+/// from the specified pitch adds up over the rows; the count with the least sum wins. Of two equal sums the
+/// larger count wins, with the smaller pitch.
 fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
     let too_far = |count: u32| asked < solve_pitch(Metric::Arc, diameter, 2 * count);
-    // The more rows the smaller the pitch: the last count that is too far apart stands before the first that isn't.
+    // More rows mean a smaller pitch: the search finds the last count that is too far apart and the first
+    // that is not.
     let (mut far, mut near) = (0, 1);
     while too_far(near) {
         if MAX_HOLES < f64::from(near) {
@@ -118,7 +126,8 @@ fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
     Some(if sum(far) < sum(near) { far } else { near })
 }
 
-/// Whether the part can have these holes: they must not run into each other, down to where they end in the material.
+/// Checks that the holes do not overlap, down to their bottoms in the material, and that their number is
+/// within the limit.
 fn check_drillable(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
     let deepest = (job.cylinder.outer / 2.0 - job.drill.depth).max(job.cylinder.bore / 2.0);
     let p = pattern.pitch;
@@ -258,7 +267,7 @@ mod tests {
         holes(&[("pitch = 10", "pitch = 5.2"), ("depth = 12", "depth = 40"), tube]);
     }
 
-    /// One diameter of 100, counted by hand: 100π is 314.159 round; rows of one group are 1.7320508·pitch apart.
+    /// Diameter 100, counted by hand: 100π is 314.159 round; rows of one group are 1.7320508·pitch apart.
     /// 17.7 → 30.657, 10.247 of them; 17.3 → 29.964, 10.484; 17.27 → 29.913, 10.503; 16.9 → 29.272, 10.732;
     /// 120 → 207.846, 1.51; 125 → 216.506, 1.45: one row of a group is no pattern.
     #[test]
@@ -271,7 +280,7 @@ mod tests {
         assert_eq!(nearest_count(100.0, 0.000_1), None, "1.8 million rows");
     }
 
-    /// A hole lies where x is the length, to the last bit.
+    /// A hole lies at x = length, to the last bit.
     #[test]
     fn the_last_hole_may_stand_at_the_very_end() {
         let pitch = holes(&[]).pattern.unwrap().pitch;

@@ -1,31 +1,34 @@
-//! What an indicator that stands still shows when an ellipsoid is tilted under it: figure 5 of *Improved Processing Technology
-//! of Positioning Pin Hole on Melon Mold*.
+//! Reading of a fixed indicator when an ellipsoid is tilted under it.
+//!
+//! Source: figure 5 of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::surface::Surface;
 use gcode_lang::units::{Deg, Mm};
 
-/// An indicator at (x, y, 0) that moves along x, and the part turned about z through its centre, x towards y.
+/// Change of an indicator's reading at (x, y, 0), measured along x, when the part is tilted about z through
+/// its centre, x towards y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TiltedEllipsoid {
-    /// Where the surface is before, from the axis of revolution.
+    /// Distance of the surface from the axis of revolution before the tilt.
     pub radius: Mm,
-    /// How far it moves outwards, exactly.
+    /// Exact outward displacement of the surface.
     pub change: Mm,
-    /// δ·y·(a²/b² − 1), δ in rad: what of it grows as the angle does.
+    /// First-order term, δ·y·(a²/b² − 1), δ in rad.
     pub first_order: Mm,
-    /// δ²/2·(a²/b² − 1)·(y²·a²/b² − r²)/r, r the radius: what of it grows as the angle's square. On the equator that is
-    /// −(a²/b² − 1)·r·δ²/2.
+    /// Second-order term, δ²/2·(a²/b² − 1)·(y²·a²/b² − r²)/r, with r the radius. On the equator it is −(a²/b²
+    /// − 1)·r·δ²/2.
     pub second_order: Mm,
 }
 
-/// What the indicator at height `y` shows when the part is tilted; `None` where it would pass above or below the part.
+/// Returns the change of an indicator's reading at height `y` for a tilt; `None` if the indicator passes
+/// above or below the part.
 ///
-/// A sphere shows nothing, and neither does any part to first order at its equator: a tilt is seen the better the farther the
-/// indicator is from there.
+/// For a sphere the change is 0, and for any part the first order is 0 at its equator: the sensitivity grows
+/// with the distance from there.
 pub fn tilted_ellipsoid(a: Mm, b: Mm, y: Mm, tilt: Deg) -> Option<TiltedEllipsoid> {
     let body = Surface::Ellipsoid { a: a.0, b: b.0 };
-    // In the part's frame the indicator is turned the other way.
+    // In the part's frame the indicator rotates in the opposite direction.
     let reach = |turned: Deg| {
         let (cos, sin) = (turned.cos(), turned.sin());
         let on = Point3::new(y.0 * sin, y.0 * cos, 0.0);
@@ -72,15 +75,15 @@ mod tests {
         let back = at(1000.0, 500.0, 200.0, -1.0);
         near(back.first_order, -10.471_975_5);
         near(back.change, -10.799_094_5);
-        // Below the equator a tilt shows the other way round.
+        // Below the equator the sign is reversed.
         near(at(1000.0, 500.0, -200.0, 1.0).change, -10.799_094_5);
-        // A tall part too: a²/b² − 1 = −0.75.
+        // A tall part: a²/b² − 1 = −0.75.
         let tall = at(500.0, 1000.0, 200.0, 1.0);
         near(tall.first_order, -2.617_993_9);
         near(tall.change, -2.564_426_9);
     }
 
-    /// On the equator the first order is nothing: 1000/√(1 + 3·sin² 1°) = 999.543 433.
+    /// On the equator the first order is 0: 1000/√(1 + 3·sin² 1°) = 999.543 433.
     #[test]
     fn on_the_equator_only_the_square_is_left() {
         let tilt = at(1000.0, 500.0, 0.0, 1.0);
@@ -89,8 +92,9 @@ mod tests {
         near(tilt.change, -0.456_566_9);
     }
 
-    /// Figure 5: 1113.76 − 1113.41 = 0.35 mm at y = 200 for 1°. With a = 1133.267 and b = 1082.596, which is nearly a sphere,
-    /// both radii come out; with the proportions of a flatter dome the change is sixteen times that.
+    /// Figure 5: 1113.76 − 1113.41 = 0.35 mm at y = 200 for 1°. With a = 1133.267 and b = 1082.596, nearly a
+    /// sphere, both radii result; with the proportions of a flatter dome the change is sixteen times as
+    /// large.
     #[test]
     fn figure_5_can_be_had() {
         let tilt = at(1_133.266_655, 1_082.596_426, 200.0, -1.0);
@@ -109,7 +113,7 @@ mod tests {
     }
 
     proptest! {
-        /// What the two orders leave grows with the third power of the angle.
+        /// The remainder after both orders grows with the third power of the angle.
         #[test]
         fn the_orders_are_those_of_the_exact_change(
             (a, flatness) in (100.0..2000.0, 0.5..2.0f64),

@@ -1,21 +1,24 @@
-//! What a program is held against, by the kind of part: read from a hole list or a job file.
+//! Nominal part by kind, read from a hole list or a job file.
 use super::flutes::Flutes;
 use super::read::{self, ReferenceError};
 use super::reference::Reference;
 use crate::job::Job;
 
-/// What the part should get.
+/// Nominal part, the reference of `verify`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NominalPart {
-    /// Holes: `verify` says of each how far it is off.
+    /// Holes, each with its nominal position.
     Holes(Reference),
     /// The flutes of a burr.
     Flutes(Flutes),
 }
 
 impl NominalPart {
-    /// A job file, or a list of holes as JSON or CSV: told apart by how the text begins, since it may come from a
-    /// pipe.
+    /// Parses a job file, or a list of holes as JSON or CSV. The start of the text decides, because it may
+    /// come from a pipe.
+    ///
+    /// # Errors
+    /// Text that is none of these, an invalid list or job, and a job of the family `alignment`.
     pub fn parse(text: &str) -> Result<Self, ReferenceError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.trim().is_empty() {
@@ -40,7 +43,10 @@ impl NominalPart {
         Self::from_job(&job)
     }
 
-    /// Computed from the geometry of the job's part.
+    /// Returns the nominal part computed from the geometry of a job.
+    ///
+    /// # Errors
+    /// A job of the family `alignment`, which makes no part, and holes that are impossible on the surface.
     pub fn from_job(job: &Job) -> Result<Self, ReferenceError> {
         match job {
             Job::PinHoles(job) => super::pin_holes::reference(job).map(Self::Holes),
@@ -56,7 +62,7 @@ impl NominalPart {
         }
     }
 
-    /// The holes, of a part that is to get holes and nothing else.
+    /// Returns the holes; `None` for a burr.
     pub fn into_holes(self) -> Option<Reference> {
         match self {
             Self::Holes(reference) => Some(reference),

@@ -1,20 +1,21 @@
-//! Wanted holes that cut into each other: their axes come nearer, within their depths, than their radii allow.
+//! Nominal holes that cut into each other: the distance of their axes is below the sum of their radii.
 use nalgebra::{Point3, Vector3};
 
 use super::hole::Hole;
 
-/// Two holes, by their numbers in the list.
+/// Two overlapping holes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
+    /// Indices in the list, in ascending order.
     pub holes: [usize; 2],
-    /// Between the axes where they are nearest, from entry to bottom, mm.
+    /// Least distance of the axes between entry and bottom, mm.
     pub distance: f64,
-    /// Of the two radii, mm.
+    /// Sum of the radii, mm.
     pub radius_sum: f64,
 }
 
 impl Overlap {
-    /// In one sentence, with the ids.
+    /// Returns one sentence with the ids of the holes.
     pub fn sentence(&self, holes: &[Hole]) -> String {
         let [one, other] = self.holes.map(|index| holes[index].id.as_deref().unwrap_or("?"));
         format!(
@@ -24,7 +25,7 @@ impl Overlap {
     }
 }
 
-/// All pairs of holes with known diameters that overlap, in the order of the list.
+/// Returns all pairs of overlapping holes with known diameters, in the order of the list.
 pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
     let mut sized: Vec<_> = holes
         .iter()
@@ -36,13 +37,13 @@ pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
             Some((index, radius, reach))
         })
         .collect();
-    // Along x, so that only those are compared which can meet.
+    // Sorted along x: only holes that overlap in x are compared.
     sized.sort_by(|a, b| a.2[0].total_cmp(&b.2[0]));
     let mut found = Vec::new();
     for (place, &(one, radius, reach)) in sized.iter().enumerate() {
         for &(other, other_radius, _) in sized[place + 1..].iter().take_while(|next| next.2[0] < reach[1]) {
             let (distance, radii) = (axis_distance(&holes[one], &holes[other]), radius + other_radius);
-            // Those that only touch have no material between them at one line; arithmetic can't tell.
+            // Tangent holes share a single line without material between them; rounding must not report them.
             if distance < radii - 1e-9 {
                 found.push(Overlap { holes: [one.min(other), one.max(other)], distance, radius_sum: radii });
             }
@@ -52,8 +53,10 @@ pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
     found
 }
 
-/// How near the axes of two holes come from entry to bottom. The nearest pair of points is either inside both, where
-/// the axes' common perpendicular is, or has an end of one of them.
+/// Returns the least distance of two holes' axes between entry and bottom.
+///
+/// The nearest pair of points is either inside both, on the common perpendicular, or contains an end of one
+/// of them.
 fn axis_distance(one: &Hole, other: &Hole) -> f64 {
     let [(p, u), (q, v)] =
         [one, other].map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis) * -hole.depth));
@@ -95,7 +98,7 @@ mod tests {
         assert!((found[0].distance - 4.9).abs() < 1e-12);
     }
 
-    /// Entries 20 mm apart, the axes leaning towards one another by 45°: they meet 10 mm below the surface.
+    /// Entries 20 mm apart, the axes tilted towards each other by 45°: they meet 10 mm below the surface.
     #[test]
     fn leaning_holes_overlap_where_they_are_deep_enough() {
         let s = 0.5f64.sqrt();
@@ -108,7 +111,7 @@ mod tests {
         // The bottoms are 20 − 2·depth·s apart: 2 mm at 12.73.
         assert_eq!(overlaps(&pair(12.7)).len(), 0);
         assert_eq!(overlaps(&pair(12.8)).len(), 1);
-        // Deep enough to cross: the axes meet.
+        // At this depth the axes cross.
         assert!(overlaps(&pair(20.0))[0].distance < 1e-9);
     }
 

@@ -1,5 +1,6 @@
-//! The holes of a pin-hole job: the entry is found by searching along the hole's axis line for the implicit surface, and
-//! the direction is the surface's gradient there.
+//! Holes of a pin-hole job: the entry is the intersection of the hole's line with the implicit surface.
+//!
+//! The direction is the gradient of the surface there, or its axis of revolution.
 use nalgebra::{Point3, Vector3};
 
 use super::hole::Hole;
@@ -10,7 +11,10 @@ use super::surface::Surface;
 use crate::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 use gcode_lang::units::Deg;
 
-/// What the job's part should get.
+/// Returns the nominal holes of a pin-hole job.
+///
+/// # Errors
+/// A hole whose line misses the surface.
 pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
     let holes = job.holes.iter().map(|hole| pin_hole(&surface, hole));
@@ -42,7 +46,7 @@ fn process_limits(job: &PinHoles) -> ProcessLimits {
     }
 }
 
-/// The upper half's point over (r·cos α, r·sin α).
+/// Returns the hole at the point of the upper half over (r·cos α, r·sin α).
 fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, ReferenceError> {
     let azimuth = Deg(spec.azimuth);
     let under = Point3::new(spec.radius * azimuth.cos(), 0.0, spec.radius * azimuth.sin());

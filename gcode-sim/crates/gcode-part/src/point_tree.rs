@@ -1,10 +1,10 @@
-//! Which of many points lie near: a k-d tree, so that hundreds of thousands of holes stay n log n.
+//! A k-d tree of points for box, pair and nearest-neighbour queries on hundreds of thousands of holes.
 use nalgebra::{Point3, Vector3};
 
-/// A part of so few points is looked at point by point: halving it further takes longer.
+/// Size below which a range of nodes is searched linearly; further halving is slower.
 pub(crate) const LEAF_SIZE: usize = 8;
 
-/// Points in an order that halves them again and again; the middle one of each part is its node.
+/// Points in k-d order: the middle point of each range is its node, and both halves are ranges.
 #[derive(Debug, Default)]
 pub struct PointTree {
     nodes: Vec<Node>,
@@ -14,18 +14,19 @@ pub struct PointTree {
 pub(crate) struct Node {
     pub point: Point3<f64>,
     pub index: u32,
-    /// Before the node lie points that are less in this coordinate, behind it those that are more.
+    /// Coordinate of the split: points before the node are less or equal, points after it greater or equal.
     axis: u8,
 }
 
 impl Node {
-    /// All coordinates are asked, whichever is outside: that takes less than a branch for each.
+    /// Returns true if the point is in the box. All coordinates are compared, which is faster than a branch
+    /// for each.
     pub(crate) fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
         let p = &self.point;
         (0..3).fold(true, |inside, i| inside & (low[i] <= p[i]) & (p[i] <= high[i]))
     }
 
-    /// The coordinate by which it halves its part, and where.
+    /// Returns the coordinate of the split and its value.
     pub(crate) fn halves(&self) -> (usize, f64) {
         let axis = usize::from(self.axis);
         (axis, self.point[axis])
@@ -33,6 +34,7 @@ impl Node {
 }
 
 impl PointTree {
+    /// Builds the tree. A point's index is its place in `points`.
     pub fn new(points: impl IntoIterator<Item = Point3<f64>>) -> Self {
         let nodes = points.into_iter().zip(0u32..).map(|(point, index)| Node { point, index, axis: 0 });
         let mut nodes: Vec<_> = nodes.collect();
@@ -44,12 +46,12 @@ impl PointTree {
         Self { nodes }
     }
 
-    /// Tells `each` the index of every point in the box from `low` to `high`.
+    /// Calls `each` with the index of every point in the box from `low` to `high`, bounds included.
     pub fn in_box(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
         visit(&self.nodes, 0, low, high, each);
     }
 
-    /// Tells `each` the indices of every two points whose coordinates differ by no more than `reach`, once.
+    /// Calls `each` once with the indices of every two points whose coordinates differ by at most `reach`.
     pub fn pairs(&self, reach: f64, each: &mut impl FnMut(usize, usize)) {
         let margin = Vector3::repeat(reach);
         for (place, node) in self.nodes.iter().enumerate() {
@@ -58,12 +60,12 @@ impl PointTree {
         }
     }
 
-    /// The index and the distance of the nearest point.
+    /// Returns the index and the distance of the nearest point; `None` for an empty tree.
     pub fn nearest(&self, to: &Point3<f64>) -> Option<(usize, f64)> {
         self.nearest_matching(to, &|_, _| true)
     }
 
-    /// The nearest of the points that `counts`, asked with index and distance.
+    /// Returns the nearest point for which `counts`, called with index and distance, is true.
     pub fn nearest_matching(
         &self,
         to: &Point3<f64>,
@@ -79,15 +81,16 @@ impl PointTree {
     }
 }
 
-/// Halves points between `low` and `high` where that box is longest: holes often lie on a plane, and halving across it
-/// would tell nothing apart.
+/// Sorts the points between `low` and `high` into k-d order, split along the longest side of the box.
+///
+/// Holes often lie on a plane; a split across that plane would separate none of them.
 fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
     if nodes.len() <= LEAF_SIZE {
         return;
     }
     let axis = (high - low).imax();
     let middle = nodes.len() / 2;
-    // The index decides between equal ones, so that the same points always make the same tree.
+    // The index decides between equal coordinates, so that the tree is deterministic.
     let order = |a: &Node, b: &Node| a.point[axis].total_cmp(&b.point[axis]).then(a.index.cmp(&b.index));
     nodes.select_nth_unstable_by(middle, order);
     nodes[middle].axis = axis as u8;
@@ -99,7 +102,7 @@ fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
     halve(&mut behind[1..], start, high);
 }
 
-/// The points in a box, without the first `but` of the nodes.
+/// Calls `each` for the points in a box, without the first `skipped` nodes.
 fn visit(
     nodes: &[Node],
     skipped: usize,

@@ -1,21 +1,25 @@
-//! The part as a probe finds it on the machine, read from a job file of any family.
+//! The part as a touch probe meets it, read from a job file of any family.
 use super::nominal::NominalPart;
 use super::reference::ReferenceError;
 use super::surface::Surface;
 use crate::job::{Job, Rotary};
 
-/// A surface that is there to be touched.
+/// A surface for touch probes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbedPart {
+    /// Surface of the part.
     pub surface: Surface,
-    /// Of the stylus ball, mm, where the job says it.
+    /// Radius of the stylus ball, mm; `None` if the job has none.
     pub radius: Option<f64>,
-    /// The axis that its programs turn it by, where they measure while it turns.
+    /// Rotary axis of programs that measure while it rotates; `None` for other families.
     pub rotary: Option<Rotary>,
 }
 
 impl ProbedPart {
-    /// Reads a job file's text.
+    /// Parses the text of a job file.
+    ///
+    /// # Errors
+    /// An invalid job, and a family whose part has no surface.
     pub fn parse(text: &str) -> Result<Self, ReferenceError> {
         let told = |e: crate::reader::FileError| ReferenceError { line: e.line, message: e.message };
         let job = Job::parse(text).map_err(told)?;

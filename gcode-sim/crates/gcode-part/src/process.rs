@@ -1,37 +1,42 @@
-//! How a part is to be worked, as far as a reference says it: heights, the rotary and its clamp, what the tools run at.
+//! Limits of the process that a reference specifies: heights, the rotary table and its clamp, cutting data of
+//! the tools.
 use crate::job::{Clamp, Rotary};
 
-/// What a program's motion is held against besides the holes that come of it. What isn't said is no demand.
+/// Limits for a program's motion. An unspecified value is `None` and is not checked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProcessLimits {
-    /// From so far above the surface the tool feeds, mm.
+    /// Height above the surface at which the feed begins, mm.
     pub clearance: Option<f64>,
-    /// The same where the job says it in so many words: no rapid ends nearer to the part.
+    /// The clearance if the job specifies it explicitly: no rapid ends nearer to the part.
     pub approach: Option<f64>,
-    /// So far above the surface the tool is at least while the rotary table turns, mm.
+    /// Least height above the surface while the rotary table rotates, mm.
     pub retract: Option<f64>,
+    /// Rotary table of the job.
     pub rotary: Option<Rotary>,
-    /// The M codes that hold the rotary table and let it go: all that they do is known.
+    /// M codes that clamp and release the rotary table; they have no other effect.
     pub clamp: Option<Clamp>,
+    /// Limits of each tool.
     pub tools: Vec<ToolProcess>,
 }
 
-/// What is said of a tool.
+/// Limits of one tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolProcess {
+    /// Number of the tool.
     pub number: u32,
-    /// The number of its length offset, H.
+    /// Number of the tool's length offset, H.
     pub offset: Option<u32>,
-    /// r/min.
+    /// Spindle speed, r/min.
     pub speed: Option<f64>,
-    /// Into the part, mm/min.
+    /// Feed into the part, mm/min.
     pub feed: Option<f64>,
-    /// It cuts no more than this before it comes back, mm.
+    /// Largest depth of cut before a retract, mm.
     pub peck: Option<f64>,
 }
 
 impl ProcessLimits {
-    /// What is said of a tool; where the program puts none in, the only one there is is in the spindle.
+    /// Returns the limits of a tool. If the program selects none, a single tool is taken to be in the
+    /// spindle.
     pub fn tool_process(&self, tool: Option<u32>) -> Option<&ToolProcess> {
         match tool {
             Some(number) => self.tools.iter().find(|duty| duty.number == number),

@@ -1,18 +1,18 @@
-//! The tooth bottom of a burr as a body of revolution: how far a point is from it, and which way is out.
+//! Tooth bottom of a burr as a body of revolution: distances, normals and meridians.
 use nalgebra::{Point3, Unit, Vector2, Vector3};
 
 use crate::job::{BurrShape, Nose};
 use gcode_lang::units::Deg;
 
-/// Of revolution about x, the tip towards −x; the cylinder ends at x = 0. Lengths in mm.
+/// Body of revolution about x with the tip towards −x; the cylinder ends at x = 0. Lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
     radius: f64,
-    /// The arcs of the nose in the half plane of the axis and the radius, from the cylinder on.
+    /// Arcs of the nose in the half plane (x, distance from the axis), from the cylinder to the tip.
     arcs: [Circle; 2],
 }
 
-/// In the half plane: along the axis, away from it.
+/// A circle in the half plane (x, distance from the axis).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Circle {
     centre: Vector2<f64>,
@@ -20,15 +20,16 @@ struct Circle {
 }
 
 impl Profile {
+    /// Builds the profile of a burr.
     pub fn new(shape: &BurrShape) -> Self {
         let radius = shape.radius;
         let arcs = match shape.nose {
             Nose::Ball => [Circle { centre: Vector2::zeros(), radius }; 2],
             Nose::Arcs { large, small } => {
-                // The cylinder's line touches the large circle where it ends.
+                // The cylinder's line is tangent to the large circle at its end.
                 let first = Circle { centre: Vector2::new(0.0, radius - large), radius: large };
-                // A circle about a point of the axis reaches the large one from inside where its centre is nearer to
-                // that one's by its own radius: searched along the axis.
+                // A circle centred on the axis touches the large one from inside where the distance of the
+                // centres is the difference of the radii; bisection along the axis.
                 let inside = |x: f64| (Vector2::new(x, 0.0) - first.centre).norm() + small < large;
                 let (mut near, mut far) = (0.0, -large);
                 for _ in 0..200 {
@@ -41,27 +42,28 @@ impl Profile {
         Self { radius, arcs }
     }
 
+    /// Returns the radius of the cylinder.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Where the body ends.
+    /// Returns the x of the tip.
     pub fn pole(&self) -> f64 {
         let last = self.arcs[1];
         last.centre.x - last.radius
     }
 
-    /// Which circle a point beyond the cylinder belongs to: they meet on the line through both centres.
+    /// Returns the circle of a point beyond the cylinder; the arcs meet on the line through both centres.
     fn circle(&self, at: Vector2<f64>) -> Circle {
         let [first, second] = self.arcs;
         let between = second.centre - first.centre;
         let out = at - first.centre;
-        // Turned towards the tip, seen from the line.
+        // True on the tip's side of that line.
         let beyond = 0.0 < between.x * out.y - between.y * out.x;
         if beyond || between.norm() == 0.0 { second } else { first }
     }
 
-    /// From the surface; below 0 inside.
+    /// Returns the distance of `p` from the surface, mm; negative inside.
     pub fn distance(&self, p: &Point3<f64>) -> f64 {
         let at = half_plane(p);
         if at.x >= 0.0 {
@@ -71,49 +73,49 @@ impl Profile {
         (at - circle.centre).norm() - circle.radius
     }
 
-    /// The surface's point next to `p`.
+    /// Returns the point of the surface nearest to `p`.
     pub fn foot(&self, p: &Point3<f64>) -> Point3<f64> {
         p - self.normal(p).into_inner() * self.distance(p)
     }
 
-    /// The unit normal out of the body at the surface's point next to `p`.
+    /// Returns the outward unit normal at the point of the surface nearest to `p`.
     pub fn normal(&self, p: &Point3<f64>) -> Unit<Vector3<f64>> {
         let at = half_plane(p);
         let out = if at.x >= 0.0 { Vector2::y() } else { (at - self.circle(at).centre).normalize() };
         Unit::new_normalize(Vector3::x() * out.x + radial(p) * out.y)
     }
 
-    /// The direction of the meridian at `p`, towards the tip, and the one round the axis that makes a right-hand flute
-    /// with it.
+    /// Returns the direction of the meridian at `p`, towards the tip, and the direction around the axis that
+    /// makes a right-hand flute with it.
     pub fn directions(&self, p: &Point3<f64>) -> (Vector3<f64>, Vector3<f64>) {
         let around = radial(p).cross(&Vector3::x());
         (self.normal(p).cross(&around), around)
     }
 
-    /// The polar angle of the normal at `p`, from the tip: 90° on the cylinder.
+    /// Returns the polar angle of the normal at `p`, measured from the tip: 90° on the cylinder.
     pub fn polar(&self, p: &Point3<f64>) -> Deg {
         let normal = self.normal(p);
         Deg::atan2(libm::hypot(normal.y, normal.z), -normal.x)
     }
 
-    /// The surface's point whose normal has that polar angle, in the plane z = 0 with y below 0.
+    /// Returns the point of the surface whose normal has this polar angle, in the plane z = 0 with y below 0.
     pub fn point_at_polar(&self, polar: Deg) -> Point3<f64> {
         let out = Vector2::new(-polar.cos(), polar.sin());
         let there = |circle: Circle| circle.centre + out * circle.radius;
         let [first, second] = self.arcs.map(there);
-        // Of a convex body the outermost point in that direction.
+        // The outermost point of a convex body in that direction.
         let own = self.circle(first) == self.arcs[0];
         let at = if own { first } else { second };
         Point3::new(at.x, -at.y, 0.0)
     }
 }
 
-/// Along the axis, away from it.
+/// Returns the coordinates in the half plane: x, and the distance from the axis.
 fn half_plane(p: &Point3<f64>) -> Vector2<f64> {
     Vector2::new(p.x, libm::hypot(p.y, p.z))
 }
 
-/// Away from the axis; on the axis itself any direction will do.
+/// Returns the unit vector away from the axis; −y for a point on the axis.
 fn radial(p: &Point3<f64>) -> Vector3<f64> {
     Vector3::new(0.0, p.y, p.z).try_normalize(0.0).unwrap_or(-Vector3::y())
 }
@@ -171,8 +173,8 @@ mod tests {
         let profile = Profile::new(&shape(Nose::Ball));
         let (tip, around) = profile.directions(&Point3::new(5.0, -6.0, 0.0));
         assert!((tip + Vector3::x()).norm() < 1e-12, "{tip}");
-        // A right-hand screw thread turns right-handed about x while it goes to +x; so to −x it turns the other way:
-        // from −y towards +z.
+        // A right-hand screw thread rotates right-handed about x towards +x, so towards −x it rotates the
+        // other way: from −y towards +z.
         assert!((around - Vector3::z()).norm() < 1e-12, "{around}");
     }
 }

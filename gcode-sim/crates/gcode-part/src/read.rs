@@ -1,15 +1,18 @@
-//! Reads lists of wanted holes: JSON and CSV in the schema of `hole`; what can't be meant is refused with its place.
+//! Reads lists of nominal holes as JSON and CSV in the schema of `hole`, and rejects implausible entries with
+//! their location.
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
 use super::hole::{Hole, HoleList, Unit};
 
-/// Why a reference can't be used: one sentence with the place and what to do.
+/// Reason for which a reference is unusable: one sentence with the location and the remedy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", match line { Some(n) => format!("line {n}: "), None => String::new() })]
 pub struct ReferenceError {
+    /// Line in the text, from 1; `None` if the error concerns the whole text.
     pub line: Option<usize>,
+    /// The sentence, without the line.
     pub message: String,
 }
 
@@ -27,13 +30,14 @@ pub(super) fn json(text: &str) -> Result<HoleList, ReferenceError> {
     })
 }
 
-/// Whether the first line looks like a header of columns; a job file's first line never has a comma and no `=`.
+/// Returns true if the first line looks like a header of columns: a comma and no `=`, unlike the first line
+/// of a job file.
 pub(super) fn is_csv(text: &str) -> bool {
     let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
     first.contains(',') && !first.contains('=') && !first.trim_start().starts_with('#')
 }
 
-/// A list as spreadsheets write it where the comma is the decimal point.
+/// Returns true for a list that a spreadsheet wrote with the comma as decimal point.
 pub(super) fn has_semicolons(text: &str) -> bool {
     let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
     let columns: Vec<_> = first.split(';').map(|name| name.trim().trim_matches('"')).collect();
@@ -92,7 +96,7 @@ fn csv_error(e: &csv::Error) -> ReferenceError {
     }
 }
 
-/// The holes with an id each and axes of length 1 exactly, or the first thing that's wrong with them.
+/// Returns the holes with an id each and axes normalised to length 1, or the first error.
 pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, ReferenceError> {
     let mut ids = BTreeMap::new();
     for (index, hole) in holes.iter_mut().enumerate() {
@@ -111,7 +115,7 @@ pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, ReferenceErro
     Ok(holes)
 }
 
-/// Whether one hole can be meant.
+/// Checks one hole for finite, plausible values.
 fn check(hole: &Hole, index: usize) -> Result<(), String> {
     let name = match &hole.id {
         Some(id) => format!("hole {} (id '{id}')", index + 1),
@@ -125,7 +129,7 @@ fn check(hole: &Hole, index: usize) -> Result<(), String> {
     if length == 0.0 {
         return Err(format!("{name}: the axis is 0, 0, 0: give the unit vector out of the part"));
     }
-    // Lists rounded to a few digits are normalized; what is farther off was never meant as a direction of length 1.
+    // Axes rounded to a few digits are normalised; a larger error is not a direction of length 1.
     if (length - 1.0).abs() > 1e-3 {
         return Err(format!("{name}: the axis has the length {length:.7}: divide i, j, k by it"));
     }

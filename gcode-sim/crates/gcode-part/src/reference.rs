@@ -1,4 +1,4 @@
-//! The wanted holes: computed from a job's geometry, or read from a list.
+//! Nominal holes, computed from the geometry of a job or read from a list.
 use super::hole::{Hole, HoleList, Unit};
 use super::pattern::Pattern;
 use super::process::ProcessLimits;
@@ -6,24 +6,28 @@ use super::read;
 pub(crate) use super::read::ReferenceError;
 use super::surface::Surface;
 
-/// What the holes of a program are held against.
+/// Nominal holes with their tolerances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// Every hole has an id here.
+    /// Holes, each with an id.
     pub holes: Vec<Hole>,
-    /// Diameter of the tolerance zone in mm, where the reference says it.
+    /// Diameter of the tolerance zone, mm; `None` if the reference does not specify it.
     pub position: Option<f64>,
-    /// How far a depth may be off, in mm, where the reference says it.
+    /// Tolerance of a depth, either way, mm; `None` if the reference does not specify it.
     pub depth: Option<f64>,
+    /// Surface of the part; `None` for a hole list.
     pub surface: Option<Surface>,
-    /// How the part is to be worked, as far as the reference says it.
+    /// Limits of the process that the reference specifies.
     pub process_limits: ProcessLimits,
-    /// What the holes' neighbours must be like, of a part where that matters.
+    /// Nominal relation of neighbouring holes; `None` for parts without a pattern.
     pub pattern: Option<Pattern>,
 }
 
 impl Reference {
-    /// A list of holes, each given an id where it has none.
+    /// Returns the reference of a hole list. Holes without an id get `#` and their number.
+    ///
+    /// # Errors
+    /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, ReferenceError> {
         Ok(Self {
             holes: read::check_all(list.holes)?,
@@ -35,7 +39,7 @@ impl Reference {
         })
     }
 
-    /// The document that `reference` writes.
+    /// Returns the hole list that `reference` writes.
     pub fn list(&self) -> HoleList {
         HoleList { unit: Unit::Mm, holes: self.holes.clone() }
     }

@@ -1,17 +1,18 @@
-//! The part's surface as an implicit function, and where a line meets it: by its values and gradients alone.
+//! Surface of the part as an implicit function: intersections, depths and distances from its values and
+//! gradients.
 use nalgebra::{Point3, Unit, Vector3};
 
 /// A convex body; lengths in mm, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    /// Of revolution about y: `a` its equatorial, `b` its polar radius.
+    /// Ellipsoid of revolution about y with the equatorial radius `a` and the polar radius `b`.
     Ellipsoid { a: f64, b: f64 },
-    /// About x, without ends: what stands beyond them isn't known.
+    /// Cylinder of unlimited length about x; the space beyond its ends is unknown.
     Cylinder { radius: f64 },
 }
 
 impl Surface {
-    /// Below 0 inside, 0 on the surface, above 0 outside.
+    /// Returns the implicit function: negative inside, 0 on the surface, positive outside.
     pub fn value(&self, p: &Point3<f64>) -> f64 {
         match *self {
             Self::Ellipsoid { a, b } => {
@@ -22,6 +23,7 @@ impl Surface {
         }
     }
 
+    /// Returns the gradient of [`Self::value`].
     pub fn gradient(&self, p: &Point3<f64>) -> Vector3<f64> {
         match *self {
             Self::Ellipsoid { a, b } => {
@@ -31,13 +33,15 @@ impl Surface {
         }
     }
 
-    /// The unit normal out of the body; `None` where the gradient vanishes, as in the centre.
+    /// Returns the outward unit normal; `None` where the gradient vanishes, as in the centre.
     pub fn normal(&self, p: &Point3<f64>) -> Option<Unit<Vector3<f64>>> {
         Unit::try_new(self.gradient(p), f64::MIN_POSITIVE)
     }
 
-    /// How far below the surface a point lies, along the gradient there: the distance for a sphere, near the surface
-    /// and on an axis of the body. Below 0 outside, to first order.
+    /// Returns the depth of a point below the surface along the gradient there, mm.
+    ///
+    /// It is the exact distance for a sphere, near the surface and on an axis of the body. Outside it is
+    /// negative and correct to first order.
     pub fn depth(&self, p: &Point3<f64>) -> f64 {
         let value = self.value(p);
         let out = || self.normal(p).unwrap_or(Vector3::y_axis());
@@ -47,19 +51,19 @@ impl Surface {
         }
     }
 
-    /// Whether a point is deeper below the surface than so many mm, as [`Self::depth`] counts: one that is stays inside
-    /// when it goes so far out.
+    /// Returns true if a point is deeper than `than` mm in the sense of [`Self::depth`]: moved outwards by
+    /// that much it is still inside.
     pub fn is_deeper(&self, p: &Point3<f64>, than: f64) -> bool {
         let beyond = || p + self.normal(p).unwrap_or(Vector3::y_axis()).into_inner() * than;
         self.value(p) < 0.0 && self.value(&beyond()) < 0.0
     }
 
-    /// Where a line leaves the body towards `out`; `None` where it misses the body.
+    /// Returns the point where a line leaves the body towards `out`; `None` if it misses the body.
     pub fn exit(&self, on: &Point3<f64>, out: &Unit<Vector3<f64>>) -> Option<Point3<f64>> {
         let at = |t: f64| on + out.into_inner() * t;
-        // From a point inside the body there is one way out.
+        // From a point inside the body a line has one exit.
         let inside = if self.value(on) < 0.0 { 0.0 } else { self.innermost(on, out) };
-        // A line that touches is one that meets: what is left of the value there is rounding.
+        // A tangent line meets the body: the remaining value is rounding.
         if self.value(&at(inside)) > 1e-12 {
             return None;
         }
@@ -67,7 +71,7 @@ impl Surface {
         Some(at(find_zero(inside, beyond, |t| self.value(&at(t)))))
     }
 
-    /// Whether turning about an axis through a point leaves the body as it is, to the last digits.
+    /// Returns true if rotation about this axis leaves the body unchanged, to rounding.
     pub fn is_round(&self, on: &Point3<f64>, about: &Unit<Vector3<f64>>) -> bool {
         let (own, all) = match *self {
             Self::Ellipsoid { a, b } => (Vector3::y_axis(), a == b),
@@ -77,10 +81,11 @@ impl Surface {
         along && on.coords.cross(about).norm() < 1e-9
     }
 
-    /// At least this far from a straight way; below 0 where that can't be said.
+    /// Returns a lower bound of the distance from a straight travel, mm; negative if the bound is not
+    /// positive.
     ///
-    /// For a convex function no value between two points is below both tangents, and the way to a point of the
-    /// body is at least the value over the slope.
+    /// For a convex function no value between two points is below both tangents, and the distance to a point
+    /// of the body is at least the value over the slope.
     pub fn clearance(&self, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
         let along = to - from;
         let (low, high) = (self.value(from), self.value(to));
@@ -95,10 +100,11 @@ impl Surface {
         least / at_from.norm().max(at_to.norm())
     }
 
-    /// The deepest point of a straight way; of one that only touches the body at an end, that end.
+    /// Returns the deepest point of a straight travel; for a travel that touches the body only at an end,
+    /// that end.
     pub fn deepest_between(&self, from: &Point3<f64>, to: &Point3<f64>) -> Point3<f64> {
         let Some(along) = Unit::try_new(to - from, 1e-9) else { return *from };
-        // The slope grows along the way, because the body is convex.
+        // The slope grows along the travel, because the body is convex.
         if self.gradient(from).dot(&along) >= 0.0 {
             return *from;
         }
@@ -108,7 +114,8 @@ impl Surface {
         from + along.into_inner() * self.innermost(from, &along)
     }
 
-    /// Where along a line the value is least: there its slope changes sign, once, because the body is convex.
+    /// Returns the parameter of least value along a line. The slope changes sign there, once, because the
+    /// body is convex.
     fn innermost(&self, on: &Point3<f64>, along: &Unit<Vector3<f64>>) -> f64 {
         let slope = |t: f64| self.gradient(&(on + along.into_inner() * t)).dot(along);
         let high = grow_until(0.0, 1.0, |t| slope(t) > 0.0);
@@ -117,7 +124,7 @@ impl Surface {
     }
 }
 
-/// The first of `from` + `step`·1, 2, 4, 8 … where `reached` holds.
+/// Returns the first of `from` + `step`·1, 2, 4, 8 … for which `reached` is true.
 fn grow_until(from: f64, mut step: f64, reached: impl Fn(f64) -> bool) -> f64 {
     while !reached(from + step) && step.abs() < 1e12 {
         step *= 2.0;
@@ -125,9 +132,12 @@ fn grow_until(from: f64, mut step: f64, reached: impl Fn(f64) -> bool) -> f64 {
     from + step
 }
 
-/// Where `value` changes from 0 or less at `low` to more at `high`, to the last bit: as [`bisect`], in a few steps where
-/// that takes fifty. A step goes where the chord is 0; an end that stays counts half the next time (the Illinois method).
-/// What isn't found by chords is found by halves.
+/// Returns the point between `low` (value ≤ 0) and `high` (value > 0) where the value changes sign, to the
+/// last bit.
+///
+/// The result is that of [`bisect`], in a few evaluations instead of fifty. Each step takes the zero of the
+/// chord; the value at an end that stays is halved (the Illinois method). After forty chords the search
+/// bisects.
 fn find_zero(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
     let (mut below, mut above) = (value(low), value(high));
     let (mut was_above, mut chords) = (None, 40_u32);
@@ -136,7 +146,7 @@ fn find_zero(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
         if middle <= low || middle >= high {
             return middle;
         }
-        // A step beside an end that is the place already brings the other end there.
+        // If one end is the zero already, a step beside it moves the other end there.
         let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());
         let chord = low - below * ((high - low) / (above - below));
         let by_chord = chords > 0 && high - low > 2.0 * least && chord.is_finite();
@@ -156,7 +166,7 @@ fn find_zero(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
     }
 }
 
-/// Where `above` changes from false at `low` to true at `high`, to the last bit.
+/// Returns the point between `low` and `high` where `above` changes from false to true, to the last bit.
 pub fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = low + (high - low) / 2.0;
@@ -241,7 +251,7 @@ mod tests {
             prop_assert!(steps.get() <= 45, "{} steps", steps.get());
         }
 
-        /// The bound on the distance never promises too much: no point of the body is nearer.
+        /// The lower bound is never too large: no point of the body is nearer.
         #[test]
         fn clearance_is_kept(
             (a, b) in (1.0..50.0, 1.0..50.0f64),
@@ -257,7 +267,7 @@ mod tests {
             prop_assert!(surface.clearance(&from, &to) <= (way - body).norm() + 1e-9);
         }
 
-        /// A line through a point of the surface given by its latitude is left there.
+        /// A line through a point of the surface at a given latitude leaves the body there.
         #[test]
         fn a_line_is_left_at_the_point_it_was_laid_through(
             (a, b) in (1.0..2000.0, 1.0..2000.0),

@@ -1,49 +1,51 @@
-//! How much of a touch's noise a run-out passes on: the covariance of the least squares that find shift and tilt.
+//! Uncertainty of a run-out: the covariance of the least squares that determine shift and tilt.
 use nalgebra::{Point3, SMatrix, SVector, Vector3};
 
 use super::surface::Surface;
 use gcode_lang::units::Deg;
 
-/// What would come out so many times as large as a touch's noise isn't told.
+/// Ratio of a result's deviation to a touch's noise above which the fit counts as degenerate.
 const MAX_FACTOR: f64 = 300.0;
 
-/// Where a stylus' ball touches a part along x, in the plane z = 0; lengths in mm.
+/// Touches of a part along x with a stylus ball, in the plane z = 0; lengths in mm.
 #[derive(Clone, Debug)]
 pub struct TouchPlan {
+    /// Surface of the part.
     pub surface: Surface,
-    /// Of the ball.
+    /// Radius of the ball.
     pub radius: f64,
-    /// The y of the ball.
+    /// y of the ball at each height.
     pub heights: Vec<f64>,
-    /// The azimuths of the part that are touched at each height.
+    /// Azimuths of the part touched at each height.
     pub azimuths: Vec<Deg>,
 }
 
-/// Standard deviations of what is found, for touches with one of 1 mm.
+/// Standard deviations of the results for touches with a standard deviation of 1 mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitUncertainty {
-    /// In x, y and z.
+    /// Shift in x, y and z, mm.
     pub shift: [f64; 3],
-    /// About x and about z, degrees.
+    /// Tilt about x and about z, degrees.
     pub tilt: [f64; 2],
 }
 
-/// Why nothing is found.
+/// Reason for which a fit is impossible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FitError {
-    /// The ball passes the part at this height.
+    /// The ball passes the part at `height`, mm.
     NoContact { height: f64 },
-    /// One of the five unknowns makes the same readings as others, or so nearly that noise would come out 300 times as large.
+    /// One of the five unknowns has the same readings as others, or nearly: its deviation would exceed 300
+    /// times the noise.
     Degenerate,
 }
 
 impl TouchPlan {
-    /// Of a fit of shift in x, y, z and tilt about x and z.
+    /// Returns the uncertainty of a fit of shift in x, y, z and tilt about x and z.
     ///
     /// # Errors
-    /// A ball that touches nothing, and touches that can't tell the five apart.
+    /// A ball that touches nothing, and touches that do not separate the five unknowns.
     pub fn uncertainty(&self) -> Result<FitUncertainty, FitError> {
-        // A tilt is counted by what it moves here, so that all five are lengths.
+        // A tilt is scaled by its displacement at this lever, so that all five unknowns are lengths.
         let lever = self.lever();
         let (mut normal, mut spread) = (SMatrix::<f64, 5, 5>::zeros(), SMatrix::<f64, 5, 5>::zeros());
         for (height, azimuth) in
@@ -56,7 +58,7 @@ impl TouchPlan {
             let row = SVector::<f64, 5>::new(n.x, n.y, n.z, moment.x, moment.z);
             let square = row * row.transpose();
             normal += square;
-            // Noise along x moves the ball from the surface by its part along the normal.
+            // Noise along x moves the ball from the surface by its component along the normal.
             spread += square * (along * along);
         }
         let inverse = normal.try_inverse().ok_or(FitError::Degenerate)?;
@@ -74,7 +76,7 @@ impl TouchPlan {
         }
     }
 
-    /// How far from the axis the ball is when it touches at this height, and the surface's normal there, along x and along y.
+    /// Returns the x of the ball in contact at this height, and the x and y of the surface's normal there.
     fn contact(&self, height: f64) -> Option<(f64, f64, f64)> {
         let far = |x: f64| self.surface.nearest(&Point3::new(x, height, 0.0));
         let mut outside = self.radius + 1.0;
@@ -108,10 +110,10 @@ mod tests {
         assert!((found / expected - 1.0).abs() < part, "{found} is not {expected}");
     }
 
-    /// By hand, a = 1000, b = 500, y = ±300 four times a turn: there r = 800 and the normal is (0.0008, 0.0012) by its length. All
-    /// sums of products of two different unknowns vanish. A shift in x is seen n_r·cos φ, which squared and summed is 4·n_r²:
-    /// σ = 1/√4. A tilt is seen (r·n_y − y·n_r)·cos φ: σ = n_r/(r·n_y − y·n_r)/√4 = 0.0008/0.72/2 rad. A shift in y is seen n_y in
-    /// all eight: σ = n_r/n_y/√8.
+    /// By hand, a = 1000, b = 500, y = ±300 four times per revolution: there r = 800 and the normal is
+    /// (0.0008, 0.0012) by its length. All sums of products of two different unknowns vanish. A shift in x
+    /// reads n_r·cos φ, which squared and summed is 4·n_r²: σ = 1/√4. A tilt reads (r·n_y − y·n_r)·cos φ: σ =
+    /// n_r/(r·n_y − y·n_r)/√4 = 0.0008/0.72/2 rad. A shift in y reads n_y in all eight: σ = n_r/n_y/√8.
     #[test]
     fn of_a_full_turn_the_deviations_are_those_worked_out_by_hand() {
         let found = touches(1000.0, 500.0, [300.0, -300.0], (0..4).map(|n| 90.0 * f64::from(n)));
@@ -123,7 +125,8 @@ mod tests {
         near(found.tilt[1], (1.0_f64 / 1800.0).to_degrees(), 1e-5);
     }
 
-    /// The petal of docs/methods/alignment.md, whose deviations are those of many simulated runs with noise of 0.001.
+    /// The petal of docs/methods/alignment.md, whose deviations come from many simulated runs with noise of
+    /// 0.001.
     #[test]
     fn of_a_petal_they_are_those_that_noisy_runs_show() {
         for (to, [x, z, about_x, about_z]) in [

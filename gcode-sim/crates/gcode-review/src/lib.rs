@@ -38,7 +38,7 @@ mod uniform_shift;
 pub use change::{CODES, Change, Effect};
 pub use holes::Paired;
 pub use path::Leg;
-pub use record::{BlockLocation, Record, Revision, Totals};
+pub use record::{BlockLocation, Record, Revision, Totals, alarm_code};
 pub use recorder::MOST_STEPS;
 pub use store::AcceptedFile;
 pub use store::StoreError;

@@ -3,7 +3,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use gcode_control::State;
-use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::WorkSystem;
 
 /// One kind of modal condition.
@@ -76,18 +75,10 @@ impl ModalAspect {
             (Self::Path, ..) => group(self.group()),
             (Self::Level | Self::Cycle, None, _) => String::new(),
             (Self::Level, Some(_), _) => group(self.group()),
-            (Self::Cycle, Some(cycle), Some(q)) if has_q(cycle) => format!("{} Q{q}", group(self.group())),
+            (Self::Cycle, Some(cycle), Some(q)) if cycle.uses_q() => format!("{} Q{q}", group(self.group())),
             (Self::Cycle, Some(_), _) => group(self.group()),
         }
     }
-}
-
-/// It pecks by Q, or moves aside by it.
-fn has_q(cycle: &Cycle) -> bool {
-    cycle
-        .steps
-        .iter()
-        .any(|step| matches!(step, CycleStep::PeckFull | CycleStep::PeckShort | CycleStep::Shift))
 }
 
 /// What is in force while a step is made.

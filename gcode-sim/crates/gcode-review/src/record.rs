@@ -12,6 +12,7 @@ use super::recorder::{EndCause, ExecutedBlocks, FirstExecutions, MOST_STEPS, Rec
 use super::steps::{Step, StepKind};
 use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue, mode_name};
 use gcode_inspect::holes::DrilledHole;
+use gcode_lang::alarm::kinds::{LIMIT, PS0076};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Axes, Backtrace, CallChain, MAX_AXES, Position};
 use gcode_lang::program::{Library, Program};
@@ -129,7 +130,7 @@ impl Revision {
         let mut recorder = recorder.into_inner();
         if recorder.too_many {
             let message = format!("more than {MOST_STEPS} moves: later ones are not compared");
-            simulation.extracted.findings.push(Diagnostic::new(Severity::Alarm, "limit", message));
+            simulation.extracted.findings.push(Diagnostic::new(&LIMIT, message));
         }
         let done = std::mem::take(&mut recorder.done);
         let record = record(&simulation, recorder);
@@ -152,7 +153,7 @@ impl Revision {
 
     /// The run was cut off by a limit: what lies behind it isn't in the record.
     pub fn is_cut_off(&self) -> bool {
-        self.stopped().any(|finding| finding.code == "limit")
+        self.stopped().any(|finding| finding.kind == &LIMIT)
     }
 
     /// Why the run stopped before its end, or can't be compared to its end.
@@ -301,13 +302,18 @@ impl Record {
 
     /// A called program wasn't found: that says more of the folders that were named than of the program.
     pub fn lacks_program(&self) -> bool {
-        self.ending.words.starts_with("alarm PS0076 ")
+        alarm_code(&self.ending.words) == Some(PS0076.code)
     }
 
     /// How the run ended, in words.
     pub fn words(&self) -> &str {
         &self.ending.words
     }
+}
+
+/// Returns the alarm's code from the text of a run's end: `alarm PS0076 program O0009 is not found`.
+pub fn alarm_code(words: &str) -> Option<&str> {
+    words.strip_prefix("alarm ")?.split(' ').next()
 }
 
 impl BlockLocation {

@@ -38,7 +38,8 @@ use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
 use gcode_inspect::verify::{Tolerances, Verdict, verify};
-use gcode_lang::alarm::{Alarm, AlarmCode, remedy};
+use gcode_lang::alarm::kinds::LIMIT;
+use gcode_lang::alarm::{Alarm, remedy};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, EventSink};
@@ -346,20 +347,14 @@ impl Run {
     /// Returns the control's notes as findings: actions without an alarm that are probably unintended are warnings.
     pub fn note_findings(&self) -> impl Iterator<Item = Diagnostic> + '_ {
         self.control.notes().map(|(note, block)| {
-            let (code, message, help) = note.describe();
-            // K0, lower case, block skip, G53 as a wait and a centre at the tool are intentional; the others are slips.
-            let meant = matches!(
-                note,
-                Note::CycleRepeatsZero
-                    | Note::LowerCase
-                    | Note::CentreDefaulted { .. }
-                    | Note::NoAxis { code: 530 }
-                    | Note::BlockSkip { .. }
-            );
-            let severity = if meant { Severity::Note } else { Severity::Warning };
-            Diagnostic::new(severity, code, message)
-                .with_backtrace(Backtrace { block, calls: None })
-                .help(help)
+            let (kind, message, help) = note.describe();
+            let finding =
+                Diagnostic::new(kind, message).with_backtrace(Backtrace { block, calls: None }).help(help);
+            match note {
+                // G53 without axes is a deliberate wait.
+                Note::NoAxis { code: 530 } => finding.with_severity(Severity::Note),
+                _ => finding,
+            }
         })
     }
 
@@ -369,14 +364,15 @@ impl Run {
             Outcome::End => None,
             Outcome::Alarm(stopped) => {
                 let row = stopped.alarm.row();
-                let mut finding = Diagnostic::new(Severity::Alarm, row.code.to_string(), row.message);
+                let mut finding = Diagnostic::new(row.code.kind, row.message);
+                finding.raised = row.code.raised;
                 finding.backtrace = Some(stopped.backtrace.clone());
                 finding.span = Some(stopped.span);
                 finding.help = remedy(&stopped.alarm, stopped.span, self.control.memory().sources()).or_else(
-                    || match row.code {
+                    || match row.code.raised {
                         // The program's own message is the only help.
-                        AlarmCode::Mc(_) => None,
-                        code => Some(format!("run 'gcode-sim explain {code}' for the correct form")),
+                        Some(_) => None,
+                        None => Some(format!("run 'gcode-sim explain {}' for the correct form", row.code)),
                     },
                 );
                 Some(finding)
@@ -390,13 +386,11 @@ impl Run {
             let (blocks, moves) = (self.control.blocks(), self.control.moves());
             if self.control.is_cancelled() {
                 let message = format!("the run was interrupted after {blocks} blocks and {moves} moves");
-                let finding = Diagnostic::new(Severity::Alarm, "limit", message)
-                    .with_backtrace(self.control.backtrace());
+                let finding = Diagnostic::new(&LIMIT, message).with_backtrace(self.control.backtrace());
                 return finding.help("results cover the blocks executed so far");
             }
             let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
-            let finding =
-                Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(self.control.backtrace());
+            let finding = Diagnostic::new(&LIMIT, message).with_backtrace(self.control.backtrace());
             return finding.help("check for a loop that never ends; --max-blocks raises the limit");
         };
         let ((program, from), (other, to)) = (self.locate(first), self.locate(last));
@@ -404,8 +398,7 @@ impl Run {
         let message = format!(
             "the program never ends: the blocks from line {from} of {program} to {to} repeat without change"
         );
-        let finding =
-            Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(self.control.backtrace());
+        let finding = Diagnostic::new(&LIMIT, message).with_backtrace(self.control.backtrace());
         if let Some(why) = endless_cause::unchanged_counter(&self.control, first, last) {
             return finding
                 .note(why)

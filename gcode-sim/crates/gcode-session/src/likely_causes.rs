@@ -1,5 +1,6 @@
 //! Likely causes of a verdict: unset work offsets, and numbers without a decimal point.
 use super::Run;
+use gcode_inspect::findings::WORK_OFFSET;
 use gcode_inspect::machine::Machine;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::program::modes::WorkSystem;
@@ -11,7 +12,7 @@ pub(super) fn likely_causes(run: &Run, machine: &Machine, explain: bool) -> Vec<
     let mut found: Vec<Diagnostic> = unset_work_offsets(run, machine, "holes").collect();
     if explain {
         let checked = check_loaded(reload(run), run.control.settings(), &mut NoLibrary);
-        let points = checked.findings.into_iter().filter(|finding| finding.code == rules::MISSING_POINT);
+        let points = checked.findings.into_iter().filter(|finding| finding.kind == rules::MISSING_POINT);
         found.extend(points.map(|mut finding| {
             finding.message = finding.message.replacen(" is ", " without a decimal point is ", 1);
             finding
@@ -52,6 +53,6 @@ fn offset_finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnost
     };
     let message =
         format!("the program uses work offset {name}, which is unknown: the machine file gives {given}");
-    Diagnostic::warning("work-offset", message)
+    Diagnostic::new(&WORK_OFFSET, message)
         .help("check that it is the offset set up on the machine; its values there are not checked")
 }

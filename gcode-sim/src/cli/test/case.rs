@@ -162,9 +162,11 @@ fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<F
     }
     let first = findings.iter().find(|finding| Severity::Error <= finding.severity);
     let place = first.and_then(|first| Some(BlockLocation::of(run, first.backtrace.as_ref()?)));
-    let (code, message) = first
-        .map_or(("verdict", "verification failed"), |first| (first.code.as_str(), first.message.as_str()));
-    Some(FirstFailure { code: code.to_owned(), message: message.to_owned(), place })
+    let (code, message) = match first {
+        Some(first) => (first.code(), first.message.clone()),
+        None => ("verdict".into(), "verification failed".to_owned()),
+    };
+    Some(FirstFailure { code: code.into_owned(), message, place })
 }
 
 /// Returns the files of the programs that the changes and the failure name.

@@ -42,7 +42,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> 
     }
 }
 
-/// What else the same edit does.
+/// Lists the further effects of the same edit.
 fn also(effects: &[Effect], sides: &[ReviewSide<'_>]) -> Markup {
     html! {
         ul.also {
@@ -53,7 +53,7 @@ fn also(effects: &[Effect], sides: &[ReviewSide<'_>]) -> Markup {
     }
 }
 
-/// The block before and now.
+/// Returns the block of the old and of the new revision.
 fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[ReviewSide<'_>]) -> Markup {
     let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {

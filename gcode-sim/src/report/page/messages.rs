@@ -48,7 +48,7 @@ fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let key = |side: &ReviewSide<'_>, finding: &Diagnostic| {
         let place = finding.backtrace.as_ref();
         let block = place.map(|place| BlockLocation::of(&side.observed.revision.simulation.run, place).block);
-        (finding.code.clone(), finding.message.clone(), block)
+        (finding.code(), finding.message.clone(), block)
     };
     let known: Option<BTreeSet<_>> =
         other.map(|other| findings_of(other).into_iter().map(|finding| key(other, finding)).collect());
@@ -73,7 +73,7 @@ fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {
             @for alike in groups(all.get(..MAX_LISTED).unwrap_or(&all)) {
                 @let finding = alike[0];
                 li class=(finding.severity.name()) {
-                    strong { (finding.severity.name()) } " " code.code { (shown(&finding.code)) } " "
+                    strong { (finding.severity.name()) } " " code.code { (shown(&finding.code())) } " "
                     @if alike.len() > 1 { "(" (alike.len()) "×) " }
                     (one(finding))
                     @for note in &finding.notes { div.more { (shown(note)) } }
@@ -95,7 +95,7 @@ fn groups<'a>(all: &[&'a Diagnostic]) -> Vec<Vec<&'a Diagnostic>> {
         let is_alike = |first: &Diagnostic| {
             finding.severity < Severity::Error
                 && first.severity == finding.severity
-                && first.code == finding.code
+                && first.kind == finding.kind
                 && (&first.help, &first.notes) == (&finding.help, &finding.notes)
         };
         match groups.iter_mut().find(|group| is_alike(group[0])) {

@@ -1,42 +1,26 @@
 //! Corner words: `,R` and `,C` between two cutting moves.
-use super::path_move::PendingItem;
-use super::{Lookahead, LookaheadRequest, PathMove};
-use crate::Executor;
-use crate::contour::{Blend, Segment};
-use crate::evaluation::ExecResult;
+use super::super::checked::ExecResult;
+use super::super::data::ControlData;
+use super::buffer::Lookahead;
+use super::pending::{PathMove, PendingCorner};
+use super::request::LookaheadRequest;
+use crate::contour::Segment;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, PlanarArc, Position};
-
-/// A move with a corner word, waiting for the one that makes the corner.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct PendingCorner {
-    pub(super) path_move: PathMove,
-    pub(super) request: LookaheadRequest,
-    blend: Blend,
-    pub(super) pending_items: Vec<PendingItem>,
-    /// The one dwell that may stand between the two moves has been read.
-    pub(super) has_dwell: bool,
-}
-
-impl PendingCorner {
-    pub(super) fn no_move_alarm(&self) -> Alarm {
-        Alarm::NoMoveAfterCorner
-    }
-}
 
 impl Lookahead {
     /// Takes the next move of the programmed path.
     pub(super) fn process_corner(
         &mut self,
-        executor: &Executor,
+        data: &ControlData,
         path_move: PathMove,
         request: &LookaheadRequest,
     ) -> ExecResult<()> {
         let piece = match self.pending_corner.take() {
             None => path_move,
-            Some(corner) => self.blend_corner(executor, corner, path_move, request)?,
+            Some(corner) => self.blend_corner(data, corner, path_move, request)?,
         };
-        let Some(blend) = request.blend else { return self.compensate(executor, piece, request) };
+        let Some(blend) = request.blend else { return self.compensate(data, piece, request) };
         if let (Some(segment), Some(distance)) = (&piece.segment, request.distance) {
             self.set_offset(segment.parallel_end(distance) - segment.end());
         }
@@ -54,7 +38,7 @@ impl Lookahead {
     /// Puts the corner's shape between two moves; the answer is what is left of the second.
     fn blend_corner(
         &mut self,
-        executor: &Executor,
+        data: &ControlData,
         corner: PendingCorner,
         path_move: PathMove,
         request: &LookaheadRequest,
@@ -77,14 +61,14 @@ impl Lookahead {
         }
         let too_long = |_| Alarm::CornerTooLarge.located_at(corner.path_move.backtrace.block);
         let Some(blended) = corner.blend.blend_between(first, second).map_err(too_long)? else {
-            self.compensate(executor, corner.path_move, &corner.request)?;
-            corner.pending_items.into_iter().for_each(|held| self.defer(executor, held));
+            self.compensate(data, corner.path_move, &corner.request)?;
+            corner.pending_items.into_iter().for_each(|held| self.defer(data, held));
             return Ok(path_move);
         };
-        self.compensate(executor, self.on_segment(&corner.path_move, blended.before), &corner.request)?;
+        self.compensate(data, self.on_segment(&corner.path_move, blended.before), &corner.request)?;
         let unrestated = LookaheadRequest { is_restated: false, ..corner.request };
-        self.compensate(executor, self.on_segment(&corner.path_move, blended.between), &unrestated)?;
-        corner.pending_items.into_iter().for_each(|held| self.defer(executor, held));
+        self.compensate(data, self.on_segment(&corner.path_move, blended.between), &unrestated)?;
+        corner.pending_items.into_iter().for_each(|held| self.defer(data, held));
         Ok(self.on_segment(&path_move, blended.after))
     }
 

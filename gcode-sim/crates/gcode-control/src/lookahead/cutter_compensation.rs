@@ -3,58 +3,27 @@
 //! After the operator's manual, "Details of cutter compensation": a block moves from the vector at its start to the
 //! vector at its end, and the vector at its end depends on the next block that moves in the plane. Where a corner has
 //! several vectors, the moves between them belong to the latter block.
-use super::path_move::PendingItem;
-use super::{Lookahead, LookaheadRequest, PathMove};
-use crate::Executor;
-use crate::contour::{self, Point, Segment};
-use crate::evaluation::ExecResult;
+use super::super::checked::ExecResult;
+use super::super::contour;
+use super::super::data::ControlData;
+use super::buffer::Lookahead;
+use super::pending::{PathMove, PendingCornerArc, PendingItem, PendingMove};
+use super::request::{CornerArc, LookaheadRequest};
+use crate::contour::{Point, Segment};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{Backtrace, EventKind, PlanarArc};
-use gcode_lang::units::{Deg, MmPerMin};
-
-/// A move whose end isn't known yet.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct PendingMove {
-    pub(super) path_move: PathMove,
-    segment: Segment,
-    /// The points it begins with: where the centre stands, and the rest of the way round the corner.
-    start_points: Vec<Point>,
-    /// Of the centre to the left of the path.
-    distance: f64,
-    is_start_up: bool,
-}
-
-/// G39 without a direction: an arc at the corner, up to beside the next move.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct PendingCornerArc {
-    backtrace: Backtrace,
-    rate: MmPerMin,
-    distance: f64,
-}
-
-/// G39: its direction, if it has one, and its feed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct CornerArc {
-    pub(super) direction: Option<Point>,
-    pub(super) rate: MmPerMin,
-}
-
-impl PendingMove {
-    fn beside_end(&self) -> Point {
-        self.segment.parallel_end(self.distance)
-    }
-}
+use gcode_lang::motion::{EventKind, PlanarArc};
+use gcode_lang::units::Deg;
 
 impl Lookahead {
     /// Takes the next move of the shaped path.
     pub(super) fn compensate(
         &mut self,
-        executor: &Executor,
+        data: &ControlData,
         path_move: PathMove,
         request: &LookaheadRequest,
     ) -> ExecResult<()> {
         let Some(segment) = path_move.segment else {
-            self.defer_behind_move(executor, PendingItem::Move(path_move));
+            self.defer_behind_move(data, PendingItem::Move(path_move));
             return Ok(());
         };
         let restated = std::mem::take(&mut self.is_restated) || request.is_restated;
@@ -67,7 +36,7 @@ impl Lookahead {
             return Err(Alarm::ArcAtStartOrEnd.located_at(block));
         }
         let Some(distance) = request.distance else {
-            return self.cancel_compensation(executor, &path_move, segment, request);
+            return self.cancel_compensation(data, &path_move, segment, request);
         };
         if segment.is_too_small(distance) {
             return Err(Alarm::Interference.located_at(block));
@@ -80,19 +49,19 @@ impl Lookahead {
                 let ends = if restated {
                     vec![open.beside_end()]
                 } else if open.is_start_up
-                    && !(executor.settings.starts_up_by_type_b && is_outside_corner(&open, &segment))
+                    && !(data.settings.starts_up_by_type_b && is_outside_corner(&open, &segment))
                 {
                     vec![segment.parallel_start(near)]
                 } else {
                     let met = contour::corner_points(&open.segment, &segment, open.distance, near);
                     met.map_err(|_| Alarm::NoIntersection.located_at(block))?
                 };
-                self.close_move(executor, open, &ends)?
+                self.close_move(data, open, &ends)?
             }
         };
         if let Some(rounding) = self.pending_corner_arc.take() {
             let end = segment.parallel_start(distance);
-            self.emit_corner_arc(executor, &rounding, segment.start(), end)?;
+            self.emit_corner_arc(data, &rounding, segment.start(), end)?;
             starts = vec![end];
         }
         let begins_on_parallel =
@@ -110,7 +79,7 @@ impl Lookahead {
     /// A move without compensation: the one that cancels it, that takes up the vector of G40 alone, or any other.
     fn cancel_compensation(
         &mut self,
-        executor: &Executor,
+        data: &ControlData,
         path_move: &PathMove,
         segment: Segment,
         request: &LookaheadRequest,
@@ -118,7 +87,7 @@ impl Lookahead {
         if let Some(open) = self.pending_move.take() {
             let ends = match request.wall_direction {
                 Some(direction) => vec![contour::wall_corner(&open.segment, direction, open.distance)],
-                None if executor.settings.starts_up_by_type_b
+                None if data.settings.starts_up_by_type_b
                     && !open.is_start_up
                     && is_outside_corner(&open, &segment) =>
                 {
@@ -127,8 +96,8 @@ impl Lookahead {
                 }
                 None => vec![open.beside_end()],
             };
-            let rest = self.close_move(executor, open, &ends)?;
-            self.emit_corner(executor, path_move, &rest);
+            let rest = self.close_move(data, open, &ends)?;
+            self.emit_corner(data, path_move, &rest);
         }
         if let Some(rounding) = self.pending_corner_arc.take() {
             let what = "G39 followed by the end of cutter compensation".into();
@@ -136,27 +105,27 @@ impl Lookahead {
         }
         self.is_compensating = false;
         self.set_offset(Point::zeros());
-        self.emit_along(executor, path_move, segment.end(), 0.0);
+        self.emit_along(data, path_move, segment.end(), 0.0);
         Ok(())
     }
 
     /// A move of G28, G53 and the like: in the plane it takes the vector away, and the next move starts up anew.
-    pub(super) fn suspend(&mut self, executor: &Executor, piece: &PathMove) {
+    pub(super) fn suspend(&mut self, data: &ControlData, piece: &PathMove) {
         if piece.segment.is_none() {
-            return self.emit_pending(executor, PendingItem::Move(piece.clone()));
+            return self.emit_pending(data, PendingItem::Move(piece.clone()));
         }
         self.is_compensating = false;
         self.set_offset(Point::zeros());
-        self.emit_straight(executor, piece, piece.end_position());
+        self.emit_straight(data, piece, piece.end_position());
     }
 
     /// Ends the open move with the centre beside its end, as where nothing follows.
-    pub(super) fn close_pending_move(&mut self, executor: &Executor) -> ExecResult<()> {
+    pub(super) fn close_pending_move(&mut self, data: &ControlData) -> ExecResult<()> {
         self.blocks_without_move = 0;
         if let Some(pending_move) = self.pending_move.take() {
             let end = pending_move.beside_end();
             self.set_offset(end - pending_move.segment.end());
-            self.close_move(executor, pending_move, &[end])?;
+            self.close_move(data, pending_move, &[end])?;
         }
         Ok(())
     }
@@ -166,7 +135,7 @@ impl Lookahead {
     /// interference check).
     fn close_move(
         &mut self,
-        executor: &Executor,
+        data: &ControlData,
         open: PendingMove,
         ends: &[Point],
     ) -> ExecResult<Vec<Point>> {
@@ -174,39 +143,39 @@ impl Lookahead {
             if !open.is_start_up && open.segment.is_reversed(*start, *end, open.distance) {
                 return Err(Alarm::Interference.located_at(open.path_move.backtrace.block));
             }
-            self.emit_corner(executor, &open.path_move, &open.start_points);
-            self.emit_along(executor, &open.path_move, *end, open.distance);
+            self.emit_corner(data, &open.path_move, &open.start_points);
+            self.emit_along(data, &open.path_move, *end, open.distance);
         }
         for item in std::mem::take(&mut self.pending_items) {
-            self.emit_pending(executor, item);
+            self.emit_pending(data, item);
         }
         Ok(ends.to_vec())
     }
 
     /// The moves from point to point of a corner; the first is where the centre stands.
-    fn emit_corner(&mut self, executor: &Executor, piece: &PathMove, points: &[Point]) {
+    fn emit_corner(&mut self, data: &ControlData, piece: &PathMove, points: &[Point]) {
         for point in points.iter().skip(1) {
             let to = self.with_plane_point(self.tool_centre, *point);
-            self.emit_straight(executor, piece, to);
+            self.emit_straight(data, piece, to);
         }
     }
 
-    fn defer_behind_move(&mut self, executor: &Executor, held: PendingItem) {
+    fn defer_behind_move(&mut self, data: &ControlData, held: PendingItem) {
         if self.pending_move.is_some() {
             self.pending_items.push(held);
         } else {
-            self.emit_pending(executor, held);
+            self.emit_pending(data, held);
         }
     }
 
     /// G39: round the corner to beside a direction at once, or to beside the next move when that is read.
     pub(super) fn start_corner_arc(
         &mut self,
-        executor: &Executor,
+        data: &ControlData,
         arc: &CornerArc,
         order: &LookaheadRequest,
     ) -> ExecResult<()> {
-        self.close_pending_move(executor)?;
+        self.close_pending_move(data)?;
         let Some(distance) = order.distance else {
             let what = "G39 without an offset of the cutter (D0)".into();
             return Err(Alarm::NotSimulated { what }.located_at(order.backtrace.block));
@@ -218,14 +187,14 @@ impl Lookahead {
         };
         let corner = self.plane_point(&self.programmed_position);
         let end = Segment::Line { from: corner, to: corner + direction }.parallel_start(distance);
-        self.emit_corner_arc(executor, &corner_arc, corner, end)?;
+        self.emit_corner_arc(data, &corner_arc, corner, end)?;
         self.set_offset(end - corner);
         Ok(())
     }
 
     fn emit_corner_arc(
         &mut self,
-        core: &Executor,
+        data: &ControlData,
         rounding: &PendingCornerArc,
         corner: Point,
         end: Point,
@@ -247,7 +216,7 @@ impl Lookahead {
             segment: Some(segment),
             backtrace: rounding.backtrace.clone(),
         };
-        self.emit_along(core, &piece, end, 0.0);
+        self.emit_along(data, &piece, end, 0.0);
         Ok(())
     }
 }

@@ -1,240 +1,37 @@
 //! What a block commands of compensation and corner words, read off its plan.
-use super::cutter_compensation::CornerArc;
-use super::{Lookahead, ReadyEvent};
-use crate::Executor;
 use crate::contour::{Blend, Point};
-use crate::evaluation::{ExecResult, locate};
-use crate::modal_codes::AxisWordUse;
-use crate::notes::Note;
-use crate::plan::{BlockFlow, BlockPlan};
-use crate::state::State;
-use crate::words::BlockWords;
-use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{AxisIndex, Backtrace, Event, EventSink};
-use gcode_lang::program::g_codes::{Effect, OneShot};
-use gcode_lang::program::modes::{CutterSide, Motion, Plane};
-use gcode_lang::source::{Span, Spanned};
-use gcode_lang::units::Seconds;
+use gcode_lang::motion::{AxisIndex, Backtrace};
+use gcode_lang::units::MmPerMin;
 
 /// One block, as far as it matters here.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LookaheadRequest {
-    pub(super) plane: (AxisIndex, AxisIndex),
+    pub(crate) plane: (AxisIndex, AxisIndex),
     /// Of the centre to the left of the path; `None` without compensation, be it by G40 or by D0.
-    pub(super) distance: Option<f64>,
+    pub(crate) distance: Option<f64>,
     /// G40 with I J K: the direction of a wall that the tool comes to.
-    pub(super) wall_direction: Option<Point>,
+    pub(crate) wall_direction: Option<Point>,
     /// G41 or G42 stands in the block and was in force before.
-    pub(super) is_restated: bool,
+    pub(crate) is_restated: bool,
     /// G28, G53, a drilling cycle…: without compensation, and nothing is read before it.
-    pub(super) suspends_compensation: bool,
+    pub(crate) suspends_compensation: bool,
     /// M00, M01, M02, M30: nothing is read before it is done.
-    pub(super) blocks_lookahead: bool,
+    pub(crate) blocks_lookahead: bool,
     /// It counts as a block without a move if it has none: calls and returns don't.
-    pub(super) counts_as_block: bool,
+    pub(crate) counts_as_block: bool,
     /// An axis of the plane is named: without a move, a move of length 0.
-    pub(super) has_zero_length: bool,
-    pub(super) is_dwell: bool,
+    pub(crate) has_zero_length: bool,
+    pub(crate) is_dwell: bool,
     /// G01, G02, G03.
-    pub(super) is_cut: bool,
-    pub(super) blend: Option<Blend>,
-    pub(super) corner_arc: Option<CornerArc>,
-    pub(super) backtrace: Backtrace,
+    pub(crate) is_cut: bool,
+    pub(crate) blend: Option<Blend>,
+    pub(crate) corner_arc: Option<CornerArc>,
+    pub(crate) backtrace: Backtrace,
 }
 
-impl Executor {
-    /// Whether compensation, a corner word or a move that waits could concern a block.
-    #[inline(always)]
-    pub(crate) fn needs_lookahead(&self, block_words: &BlockWords, state: &State) -> bool {
-        let is_commanded = state.modal.cutter != CutterSide::Off || block_words.has_corner();
-        is_commanded || block_words.has_any(b"IJK") || !self.lookahead.is_idle()
-    }
-
-    /// Lets a block's plan go by way of what is read ahead, where compensation or a corner word is in use.
-    pub(crate) fn plan_lookahead(
-        &self,
-        act: Option<AxisWordUse>,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
-        if block_words.has_corner() && plan.corner.is_none() {
-            plan.notes.push(Note::CornerIgnored);
-        }
-        let cancels_compensation =
-            block_words.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
-        let towards =
-            if cancels_compensation { self.plane_vector(block_words, &plan.state, span)? } else { None };
-        let distance = locate(self.cutter_distance(&plan.state), span)?;
-        if self.lookahead.is_idle() && distance.is_none() && plan.corner.is_none() {
-            return Ok(());
-        }
-        if plan.state.transform.tilt.is_some() && distance.is_some_and(|d| d != 0.0) {
-            let what = "cutter compensation in a tilted plane".into();
-            return Err(Alarm::NotSimulated { what }.located_at(span));
-        }
-        let motion = plan.state.modal.motion;
-        let refused_code = match act {
-            Some(AxisWordUse::OneShot(OneShot::OneSide)) => Some("G60"),
-            None if motion == Motion::Thread && plan.commands_axes => Some("G33"),
-            _ => None,
-        };
-        if let Some(code) = refused_code
-            && (distance.is_some() || self.lookahead.is_offset())
-        {
-            return Err(
-                Alarm::NotSimulated { what: format!("{code} in cutter compensation") }.located_at(span)
-            );
-        }
-        let plane = locate(self.plane_axes(plan.state.modal.plane), span)?;
-        let names_plane_axis = |axis| block_words.has(self.settings.axes.letter(axis) as u8);
-        let restates_side = block_words.g_codes().any(|row| {
-            matches!(row.effect, Effect::Cutter(side) if side != CutterSide::Off)
-                && self.state.modal.cutter == plan.state.modal.cutter
-        });
-        let corner_arc = match act {
-            Some(AxisWordUse::OneShot(OneShot::CornerArc)) => {
-                Some(self.corner_arc(block_words, plan, span)?)
-            }
-            _ => None,
-        };
-        let request = LookaheadRequest {
-            plane,
-            distance,
-            wall_direction: towards,
-            is_restated: restates_side,
-            suspends_compensation: plan.cycle_plan.is_some()
-                || suspends_compensation(act)
-                || plan.commands_axes && plan.state.modal.cycle.is_some(),
-            blocks_lookahead: !plan.stops.is_empty() || matches!(plan.flow, BlockFlow::End),
-            counts_as_block: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
-            has_zero_length: act.is_none() && (names_plane_axis(plane.0) || names_plane_axis(plane.1)),
-            is_cut: act.is_none()
-                && matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise),
-            is_dwell: act == Some(AxisWordUse::OneShot(OneShot::Dwell)),
-            blend: plan.corner,
-            corner_arc,
-            backtrace: Backtrace { block: span, calls: self.frame.calls.clone() },
-        };
-        plan.lookahead.clone_from(&self.lookahead);
-        plan.lookahead.start_at(self.state.machine);
-        if plan.cycle_plan.is_none() {
-            plan.events.append(&mut plan.events_after_motion);
-        }
-        plan.lookahead.process_block(self, &request, &plan.events)?;
-        plan.events.clear();
-        plan.uses_lookahead = true;
-        if let Some(drill) = &mut plan.cycle_plan {
-            drill.set_start(plan.lookahead.tool_centre);
-            plan.lookahead =
-                Lookahead { ready: std::mem::take(&mut plan.lookahead.ready), ..Lookahead::default() };
-        }
-        Ok(())
-    }
-
-    /// How far the tool's centre is to be to the left of the path.
-    fn cutter_distance(&self, state: &State) -> Result<Option<f64>, Alarm> {
-        let side = match state.modal.cutter {
-            CutterSide::Off => return Ok(None),
-            CutterSide::Left => 1.0,
-            CutterSide::Right => -1.0,
-        };
-        if state.codes.d == 0 {
-            return Ok(None);
-        }
-        let (mirrored, _) = state.transform.arc_effect(self.plane_axes(state.modal.plane)?);
-        Ok(Some(if mirrored { -side } else { side } * state.cutter_radius))
-    }
-
-    /// I, J, K of the plane as a direction in machine coordinates.
-    fn plane_vector(&self, block_words: &BlockWords, state: &State, span: Span) -> ExecResult<Option<Point>> {
-        let letters = match state.modal.plane {
-            Plane::Xy => (b'I', b'J'),
-            Plane::Zx => (b'K', b'I'),
-            Plane::Yz => (b'J', b'K'),
-        };
-        let first = self.dimension(block_words, letters.0, state)?.unwrap_or(0.0);
-        let second = self.dimension(block_words, letters.1, state)?.unwrap_or(0.0);
-        let plane = locate(self.plane_axes(state.modal.plane), span)?;
-        if first == 0.0 && second == 0.0 {
-            return Ok(None);
-        }
-        let mut tip = state.programmed;
-        tip[plane.0] += first;
-        tip[plane.1] += second;
-        let (from, to) = (state.transform.forward(state.programmed), state.transform.forward(tip));
-        Ok(Some(Point::new(to[plane.0] - from[plane.0], to[plane.1] - from[plane.1])))
-    }
-
-    /// G39: a cutting feed round the corner.
-    fn corner_arc(&self, block_words: &BlockWords, plan: &BlockPlan, span: Span) -> ExecResult<CornerArc> {
-        let timed = self.path_time(&plan.state, 1.0, block_words.has(b'F'));
-        let (rate, _) = timed.map_err(|_| Alarm::ArcFeedZero.located_at(span))?;
-        Ok(CornerArc { direction: self.plane_vector(block_words, &plan.state, span)?, rate })
-    }
-
-    /// Takes over what a plan has read ahead, and tells the machine what no longer waits.
-    pub(crate) fn take_lookahead<S: EventSink>(&mut self, lookahead: &mut Lookahead, sink: &mut S) {
-        std::mem::swap(&mut self.lookahead, lookahead);
-        self.emit_ready(sink);
-    }
-
-    /// A block with nothing but a sequence number.
-    pub(crate) fn process_number_block<S: EventSink>(&mut self, block: Span, sink: &mut S) -> ExecResult<()> {
-        if self.lookahead.is_idle() {
-            return Ok(());
-        }
-        let mut lookahead = self.lookahead.clone();
-        lookahead.count_number(self, block)?;
-        self.check_ready_moves(&lookahead)?;
-        self.take_lookahead(&mut lookahead, sink);
-        Ok(())
-    }
-
-    /// Does what waits at the end of a program that has no M30.
-    pub(crate) fn finish_lookahead<S: EventSink>(&mut self, sink: &mut S) -> ExecResult<()> {
-        if self.lookahead.is_idle() {
-            return Ok(());
-        }
-        let mut lookahead = self.lookahead.clone();
-        lookahead.finish(self, self.block)?;
-        self.check_ready_moves(&lookahead)?;
-        self.take_lookahead(&mut lookahead, sink);
-        Ok(())
-    }
-
-    /// Does what waits before an alarm ends the run.
-    pub(crate) fn finish_before_alarm<S: EventSink>(&mut self, alarm: &Spanned<Alarm>, sink: &mut S) {
-        if self.lookahead.is_idle() {
-            return;
-        }
-        let refused = matches!(alarm.node, Alarm::Interference | Alarm::Overtravel { .. });
-        let refused = refused.then_some(alarm.span);
-        let mut lookahead = std::mem::take(&mut self.lookahead);
-        lookahead.finish_before_alarm(self, refused);
-        self.take_lookahead(&mut lookahead, sink);
-    }
-
-    fn emit_ready<S: EventSink>(&mut self, sink: &mut S) {
-        let ready: Vec<ReadyEvent> = std::mem::take(&mut self.lookahead.ready);
-        for (kind, seconds, place) in ready {
-            self.count_event(&kind, seconds);
-            let (seconds, block) = (Seconds(seconds), place.block);
-            sink.event(&Event { kind: &kind, seconds, block, calls: &place.calls });
-        }
-        if self.lookahead.is_idle() {
-            self.lookahead = Lookahead::default();
-        }
-    }
-}
-
-/// What goes somewhere without compensation.
-fn suspends_compensation(act: Option<AxisWordUse>) -> bool {
-    use OneShot::{CheckReference, FromReference, MachineSystem, Reference, SecondReference, Skip};
-    matches!(
-        act,
-        Some(AxisWordUse::OneShot(
-            CheckReference | FromReference | MachineSystem | Reference | SecondReference | Skip
-        ))
-    )
+/// G39: its direction, if it has one, and its feed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CornerArc {
+    pub(crate) direction: Option<Point>,
+    pub(crate) rate: MmPerMin,
 }

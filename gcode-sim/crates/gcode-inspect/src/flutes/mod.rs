@@ -18,7 +18,8 @@ use crate::holes::UnknownWorkZero;
 use crate::holes::work_zero::WorkZeroTracker;
 use crate::machine::path::AxisMotion;
 use crate::machine::{LinkMotion, Machine, Wheel};
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::alarm::kinds::LIMIT;
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, EventKind, EventSink, PlanarArc, Position};
 use gcode_lang::units::{Deg, Rpm};
 use gcode_part::Flutes;
@@ -173,8 +174,7 @@ impl<'m> FluteTracker<'m> {
     /// Tells once that nothing is looked at from here on.
     fn report_limit(&mut self, event: &Event<'_>, what: String) {
         self.is_full = true;
-        let finding =
-            Diagnostic::new(Severity::Alarm, "limit", format!("{what}: nothing after this is checked"));
+        let finding = Diagnostic::new(&LIMIT, format!("{what}: nothing after this is checked"));
         let finding = finding.help(
             "check for a loop that never ends or rotates the burr continuously; otherwise split the program",
         );

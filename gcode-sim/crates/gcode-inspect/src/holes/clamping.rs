@@ -1,6 +1,7 @@
 //! The clamp of the rotary table: while it holds, the table must not turn, and while it doesn't, nothing may be drilled.
 use super::HoleExtractor;
-use gcode_lang::diag::Diagnostic;
+use crate::findings::{DRILLS_UNCLAMPED, TURNS_CLAMPED};
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
 use gcode_part::job::Clamp;
 
@@ -34,19 +35,17 @@ impl HoleExtractor<'_> {
         let Clamp { on, off } = clamp;
         match self.clamp_state {
             ClampState::Released => {}
-            ClampState::Clamped => self.findings.add("turns-clamped", &event.backtrace(), 0, || {
-                Diagnostic::error("turns-clamped", format!("{letter} rotates while clamped by M{on:02}"))
+            ClampState::Clamped => self.findings.add(&TURNS_CLAMPED, &event.backtrace(), 0, |kind| {
+                Diagnostic::new(kind, format!("{letter} rotates while clamped by M{on:02}"))
                     .note("the control raises an alarm, or the drive works against the clamp")
                     .help(format!("command M{off:02} before {letter} rotates"))
             }),
             ClampState::Unknown => {
-                self.findings.add("turns-clamped", &event.backtrace(), 1, || {
-                    Diagnostic::warning(
-                        "turns-clamped",
-                        format!("{letter} rotates before any M{off:02} releases it"),
-                    )
-                    .note("the state of the clamp at the start of the program is unknown")
-                    .help(format!("command M{off:02} before {letter} rotates"))
+                self.findings.add(&TURNS_CLAMPED, &event.backtrace(), 1, |kind| {
+                    Diagnostic::new(kind, format!("{letter} rotates before any M{off:02} releases it"))
+                        .with_severity(Severity::Warning)
+                        .note("the state of the clamp at the start of the program is unknown")
+                        .help(format!("command M{off:02} before {letter} rotates"))
                 });
                 // It turned: so it was free, and nothing holds it now.
                 self.clamp_state = ClampState::Released;
@@ -61,15 +60,16 @@ impl HoleExtractor<'_> {
         let letter = self.machine.axes.letter(axis);
         match clamp_state {
             ClampState::Clamped => {}
-            ClampState::Released => self.findings.add("drills-unclamped", place, 0, || {
+            ClampState::Released => self.findings.add(&DRILLS_UNCLAMPED, place, 0, |kind| {
                 let message = format!("the tool feeds into the part with {letter} unclamped");
-                Diagnostic::error("drills-unclamped", message)
+                Diagnostic::new(kind, message)
                     .note("the part gives way under the drill, which moves the hole")
                     .help(format!("command M{on:02} after {letter} has rotated"))
             }),
-            ClampState::Unknown => self.findings.add("drills-unclamped", place, 1, || {
+            ClampState::Unknown => self.findings.add(&DRILLS_UNCLAMPED, place, 1, |kind| {
                 let message = format!("the tool feeds into the part before any M{on:02} clamps {letter}");
-                Diagnostic::warning("drills-unclamped", message)
+                Diagnostic::new(kind, message)
+                    .with_severity(Severity::Warning)
                     .note("the state of the clamp at the start of the program is unknown")
                     .help(format!("command M{on:02} before the feed"))
             }),

@@ -2,8 +2,12 @@
 use super::line::{CuttingLine, ToolExit};
 use super::rapids::TOUCH_DEPTH;
 use super::{DrillPass, HoleExtractor, spindle};
+use crate::findings::{
+    BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
+    SPINDLE_STOPPED,
+};
 use crate::machine::HeadKind;
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::SpindleDirection;
 use gcode_lang::units::Deg;
 
@@ -42,9 +46,9 @@ impl HoleExtractor<'_> {
             let left_at = line.bottom() + line.out.into_inner() * back;
             let depth = surface.depth(&left_at);
             if depth > TOUCH_DEPTH {
-                self.findings.add("leaves-hole-sideways", line.backtrace(), 0, || {
-                    Diagnostic::error(
-                        "leaves-hole-sideways",
+                self.findings.add(&LEAVES_HOLE_SIDEWAYS, line.backtrace(), 0, |kind| {
+                    Diagnostic::new(
+                        kind,
                         format!("the tool leaves the hole sideways, {depth:.3} mm below the surface"),
                     )
                     .help("retract along the hole until the tool is outside the part")
@@ -60,23 +64,23 @@ impl HoleExtractor<'_> {
     fn report_no_retract(&mut self, line: &CuttingLine, inside: Option<f64>) {
         let place = line.backtrace();
         match inside {
-            Some(depth) => self.findings.add("feed-without-retract", place, 0, || {
-                Diagnostic::error(
-                    "feed-without-retract",
-                    format!(
+            Some(depth) => {
+                self.findings.add(&FEED_WITHOUT_RETRACT, place, 0, |kind| {
+                    Diagnostic::new(kind, format!(
                         "the feed ends {depth:.3} mm inside the part and the tool does not retract along it"
-                    ),
-                )
+                    ))
                 .help("retract along the hole before anything else moves")
-            }),
-            None => self.findings.add("feed-without-retract", place, 0, || {
+                })
+            }
+            None => self.findings.add(&FEED_WITHOUT_RETRACT, place, 0, |kind| {
                 let length = line.cut_depth();
-                Diagnostic::warning(
-                    "feed-without-retract",
+                Diagnostic::new(
+                    kind,
                     format!(
                         "the tool does not retract along a feed of {length:.3} mm: not counted as a hole"
                     ),
                 )
+                .with_severity(Severity::Warning)
                 .help("retract along it before anything else moves, if it is a hole")
             }),
         }
@@ -86,11 +90,8 @@ impl HoleExtractor<'_> {
     /// where the tool comes from.
     pub(super) fn report_back_boring(&mut self, line: &CuttingLine) {
         let length = line.cut_depth();
-        self.findings.add("back-bored", line.backtrace(), 0, || {
-            Diagnostic::warning(
-                "back-bored",
-                format!("the tool bores {length:.3} mm backwards, out of the part: not counted as a hole"),
-            )
+        self.findings.add(&BACK_BORED, line.backtrace(), 0, |kind| {
+            Diagnostic::new(kind, format!("the tool bores {length:.3} mm backwards, out of the part: not counted as a hole"))
             .help("check the bore's depth and position in the picture or on the review page: no check covers them")
         });
     }
@@ -106,7 +107,7 @@ impl HoleExtractor<'_> {
         self.check_spindle(place, line);
         if line.cutting_state.spindle_direction == SpindleDirection::Off {
             let builder = self.builder_code;
-            self.findings.add("spindle-stopped", place, 0, || {
+            self.findings.add(&SPINDLE_STOPPED, place, 0, |_| {
                 spindle::spindle_stopped_finding(
                     "the tool feeds into the part with the spindle stopped",
                     builder,
@@ -116,11 +117,8 @@ impl HoleExtractor<'_> {
         }
         let Some(off) = tilt else {
             if matches!(self.machine.head.kind, HeadKind::Manual { .. }) {
-                self.findings.add("head-not-set", place, 0, || {
-                    Diagnostic::error(
-                        "head-not-set",
-                        "the tool feeds before the head is set: its angle is unknown",
-                    )
+                self.findings.add(&HEAD_NOT_SET, place, 0, |kind| {
+                    Diagnostic::new(kind, "the tool feeds before the head is set: its angle is unknown")
                     .help(
                         "stop with #3006=1(SET HEAD TO #140) before the feed, or give head.angle in the machine file",
                     )
@@ -130,10 +128,10 @@ impl HoleExtractor<'_> {
         };
         let rounding = Deg::atan2(2.0 * self.machine.increment.size(), line.cut_depth());
         if off.0 > (MAX_FEED_TILT + rounding).0 {
-            self.findings.add("feed-not-along-tool", place, 0, || {
+            self.findings.add(&FEED_NOT_ALONG_TOOL, place, 0, |kind| {
                 let aside = off.sin() * line.cut_depth();
-                Diagnostic::error(
-                    "feed-not-along-tool",
+                Diagnostic::new(
+                    kind,
                     format!(
                         "the feed direction is {:.3}° off the tool axis, limit {:.2}°: {aside:.3} mm \
                          sideways over {:.3} mm",

@@ -1,5 +1,6 @@
 //! What a program asks of the machine that the machine file doesn't have: axes, tools, a head set by hand.
 use super::HoleExtractor;
+use crate::findings::{AXIS_CARRIES_NOTHING, HEAD_MESSAGE_UNCLEAR, HEAD_NOT_MANUAL, TOOL_UNKNOWN};
 use crate::machine::HeadMessage;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, Position};
@@ -10,11 +11,8 @@ impl HoleExtractor<'_> {
     pub(super) fn check_idle_axes(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
         for (axis, letter) in self.machine.axes.iter() {
             if from[axis] != to[axis] && !self.machine.is_axis_used(axis) {
-                self.findings.add("axis-carries-nothing", &event.backtrace(), axis as u32, || {
-                    Diagnostic::warning(
-                        "axis-carries-nothing",
-                        format!("{letter} moves to {}; the machine has nothing on that axis", to[axis]),
-                    )
+                self.findings.add(&AXIS_CARRIES_NOTHING, &event.backtrace(), axis as u32, |kind| {
+                    Diagnostic::new(kind, format!("{letter} moves to {}; the machine has nothing on that axis", to[axis]))
                     .help(format!(
                         "describe in the machine file what {letter} carries, or remove {letter} from the program"
                     ))
@@ -26,17 +24,14 @@ impl HoleExtractor<'_> {
     /// A tool that the machine file has no row for.
     pub(super) fn check_tool_known(&mut self, event: &Event<'_>, number: u32) {
         if number != 0 && !self.machine.tools.is_empty() && self.machine.find_tool(number).is_none() {
-            self.findings.add("tool-unknown", &event.backtrace(), number, || {
+            self.findings.add(&TOOL_UNKNOWN, &event.backtrace(), number, |kind| {
                 let known: Vec<_> =
                     self.machine.tools.iter().map(|tool| format!("T{}", tool.number)).collect();
-                Diagnostic::warning(
-                    "tool-unknown",
-                    format!(
+                Diagnostic::new(kind, format!(
                         "T{number} is not in the machine file (which has {}): the diameter of its holes is \
                          not checked, its length is taken from the length offset",
                         known.join(", ")
-                    ),
-                )
+                    ))
                 .help(format!(
                     "check that it is the right tool; if so, add a [[tool]] with number = {number} and its diameter"
                 ))
@@ -56,9 +51,9 @@ impl HoleExtractor<'_> {
             return None;
         }
         if !self.machine.head.is_set_by_hand() {
-            self.findings.add("head-not-manual", &event.backtrace(), 0, || {
-                Diagnostic::warning(
-                    "head-not-manual",
+            self.findings.add(&HEAD_NOT_MANUAL, &event.backtrace(), 0, |kind| {
+                Diagnostic::new(
+                    kind,
                     format!("the message ({text}) calls for a head set by hand; the machine's head is not"),
                 )
                 .help("give kind = \"manual\" under [head] in the machine file, or remove the message")
@@ -68,7 +63,7 @@ impl HoleExtractor<'_> {
         match message {
             HeadMessage::Angle(angle) => Some(angle),
             HeadMessage::Unrelated | HeadMessage::Unclear => {
-                self.findings.add("head-message-unclear", &event.backtrace(), 0, || unclear_head(text));
+                self.findings.add(&HEAD_MESSAGE_UNCLEAR, &event.backtrace(), 0, |_| unclear_head(text));
                 None
             }
         }
@@ -80,6 +75,6 @@ pub fn unclear_head(text: &str) -> Diagnostic {
     let message = format!(
         "the message ({text}) does not name exactly one variable with a value: the head angle is unchanged"
     );
-    Diagnostic::warning("head-message-unclear", message)
+    Diagnostic::new(&HEAD_MESSAGE_UNCLEAR, message)
         .help("name the variable that holds the angle, as in #3006=1(SET HEAD TO #140)")
 }

@@ -1,4 +1,5 @@
 //! Motion → holes: follows the tool on the part, sees feeds along one line as passes, and passes as holes.
+use gcode_lang::alarm::kinds::LIMIT;
 mod clamping;
 mod clearance;
 mod cutting;
@@ -38,7 +39,7 @@ use self::rapids::{CurvedMotion, TOUCH_DEPTH};
 use self::work_zero::WorkZeroTracker;
 use crate::machine::path::AxisMotion;
 use crate::machine::{Frame, Machine, Pose, Setup};
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
     Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
     StopKind,
@@ -167,7 +168,7 @@ impl<'m> HoleExtractor<'m> {
         findings.extend(self.first_excess_pass.map(|place| {
             let message =
                 format!("more than {MAX_PASSES} feeds into the part: nothing after this is checked");
-            let finding = Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(place);
+            let finding = Diagnostic::new(&LIMIT, message).with_backtrace(place);
             finding.help("check for a loop that never ends; otherwise split the program")
         }));
         let holes = group::group_holes(&self.passes, self.machine);

@@ -3,8 +3,9 @@ use nalgebra::Point3;
 
 use super::HoleExtractor;
 use super::line::CuttingLine;
+use crate::findings::{FEED_NO_HOLE, RAPID_BEYOND_CUT, RAPID_INTO_PART};
 use crate::machine::path::AxisMotion;
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Event;
 use gcode_part::Surface;
 
@@ -29,14 +30,14 @@ impl HoleExtractor<'_> {
         if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
             return;
         }
-        self.findings.add("rapid-beyond-cut", &event.backtrace(), 0, || {
+        self.findings.add(&RAPID_BEYOND_CUT, &event.backtrace(), 0, |kind| {
             let message = format!(
                 "rapid along the hole beyond the drilled depth, to {:.3} mm from the start of the feed",
                 line.cut_depth()
             );
             let finding = match inside {
-                Some(_) => Diagnostic::error("rapid-beyond-cut", message),
-                None => Diagnostic::warning("rapid-beyond-cut", message),
+                Some(_) => Diagnostic::new(kind, message),
+                None => Diagnostic::new(kind, message).with_severity(Severity::Warning),
             };
             finding.help("end the rapid above the depth already drilled")
         });
@@ -52,15 +53,12 @@ impl HoleExtractor<'_> {
         if outwards {
             return;
         }
-        self.findings.add("rapid-beyond-cut", &event.backtrace(), 0, || {
-            Diagnostic::warning(
-                "rapid-beyond-cut",
-                format!(
+        self.findings.add(&RAPID_BEYOND_CUT, &event.backtrace(), 0, |kind| {
+            Diagnostic::new(kind, format!(
                     "the rapid continues {:.3} mm in the direction of a feed of {:.3} mm: not counted as a hole",
                     line.depth_of(to) - line.cut_depth(),
                     line.cut_depth()
-                ),
-            )
+                )).with_severity(Severity::Warning)
             .help("check that the feed leads out of the part; otherwise the rapid enters it")
         });
     }
@@ -77,9 +75,9 @@ impl HoleExtractor<'_> {
         if depth <= TOUCH_DEPTH {
             self.record_close_rapid(event, &surface, from, to);
         } else {
-            self.findings.add("rapid-into-part", &event.backtrace(), 0, || {
-                Diagnostic::error(
-                    "rapid-into-part",
+            self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+                Diagnostic::new(
+                    kind,
                     format!(
                         "rapid through the part, {depth:.3} mm below the surface at {}",
                         format_point(&deepest)
@@ -106,11 +104,11 @@ impl HoleExtractor<'_> {
         }
         // Without work offsets machine zero is only taken for the work zero: nothing stands there.
         let known = !self.machine.offsets.is_empty();
-        self.findings.add("rapid-into-part", &event.backtrace(), 0, || {
+        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
             let message = format!("the rapid ends {depth:.3} mm below the surface, at {}", format_point(to));
             let finding = match known {
-                true => Diagnostic::error("rapid-into-part", message),
-                false => Diagnostic::warning("rapid-into-part", message),
+                true => Diagnostic::new(kind, message),
+                false => Diagnostic::new(kind, message).with_severity(Severity::Warning),
             };
             finding
                 .note(
@@ -130,9 +128,9 @@ impl HoleExtractor<'_> {
         let in_part = deepest > 2.0 * TOUCH_DEPTH;
         match kind {
             CurvedMotion::Rapid if in_part => {
-                self.findings.add("rapid-into-part", &event.backtrace(), 0, || {
-                    Diagnostic::error(
-                        "rapid-into-part",
+                self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+                    Diagnostic::new(
+                        kind,
                         format!(
                             "rapid through the part while an axis rotates, {deepest:.3} mm below the surface"
                         ),
@@ -140,21 +138,24 @@ impl HoleExtractor<'_> {
                     .help("retract until the tool is outside the part before the table or the head rotates")
                 })
             }
-            CurvedMotion::Feed if in_part => self.findings.add("feed-no-hole", &event.backtrace(), 0, || {
-                Diagnostic::error(
-                    "feed-no-hole",
-                    format!("a curved feed cuts {deepest:.3} mm into the part: not a hole"),
-                )
-                .help("feed holes along a straight line, with the table stationary")
-            }),
+            CurvedMotion::Feed if in_part => {
+                self.findings.add(&FEED_NO_HOLE, &event.backtrace(), 0, |kind| {
+                    Diagnostic::new(
+                        kind,
+                        format!("a curved feed cuts {deepest:.3} mm into the part: not a hole"),
+                    )
+                    .help("feed holes along a straight line, with the table stationary")
+                })
+            }
             CurvedMotion::Rapid | CurvedMotion::Feed if self.has_been_outside => {
                 if let Some(surface) = self.surface {
                     self.record_close_turn(event, &surface, travel);
                 }
             }
             CurvedMotion::Feed if self.surface.is_none() => {
-                self.findings.add("feed-no-hole", &event.backtrace(), 0, || {
-                    Diagnostic::warning("feed-no-hole", "a curved feed on the part: not counted as a hole")
+                self.findings.add(&FEED_NO_HOLE, &event.backtrace(), 0, |kind| {
+                    Diagnostic::new(kind, "a curved feed on the part: not counted as a hole")
+                        .with_severity(Severity::Warning)
                         .help("feed holes along a straight line, with the table stationary")
                 })
             }

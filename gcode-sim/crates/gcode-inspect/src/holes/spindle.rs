@@ -2,6 +2,7 @@
 //! reversed in the hole, as the cycles do that bore and tap.
 use super::HoleExtractor;
 use super::line::{CuttingLine, SpindleInHole};
+use crate::findings::{SPINDLE_IN_HOLE, SPINDLE_STOPPED};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, SpindleDirection};
 
@@ -9,7 +10,7 @@ use gcode_lang::motion::{Backtrace, SpindleDirection};
 /// for that may be what starts the spindle.
 pub(crate) fn spindle_stopped_finding(message: &str, builder: Option<u32>) -> Diagnostic {
     let severity = if builder.is_some() { Severity::Warning } else { Severity::Error };
-    let finding = Diagnostic::new(severity, "spindle-stopped", message);
+    let finding = Diagnostic::new(&SPINDLE_STOPPED, message).with_severity(severity);
     builder.into_iter().fold(finding, |finding, code| {
         finding.note(format!(
             "M{code:02} is left to the machine builder's logic, which may have started it: this is not simulated"
@@ -42,17 +43,17 @@ impl HoleExtractor<'_> {
             SpindleInHole::Unchanged => return,
             SpindleInHole::Stopped => {
                 let message = format!("the spindle stops while {} is in the hole", name());
-                Diagnostic::warning("spindle-in-hole", message).note(
+                Diagnostic::new(&SPINDLE_IN_HOLE, message).with_severity(Severity::Warning).note(
                     "G76, G86 and G88 stop the spindle for a boring bar; a stopped drill rubs in its hole, or breaks when \
                      it is moved sideways",
                 )
             }
             SpindleInHole::Reversed => {
                 let message = format!("the spindle reverses while {} is in the hole", name());
-                Diagnostic::error("spindle-in-hole", message)
+                Diagnostic::new(&SPINDLE_IN_HOLE, message)
                     .note("G84 and G74 reverse the spindle for a tap; the job specifies a drilled hole")
             }
         };
-        self.findings.add("spindle-in-hole", place, 0, || finding.help("drill with G81, G82, G83 or G73"));
+        self.findings.add(&SPINDLE_IN_HOLE, place, 0, |_| finding.help("drill with G81, G82, G83 or G73"));
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::Point3;
 use super::event_script::EventScript;
 use super::{DrilledHole, HoleExtraction, HoleExtractor};
 use crate::machine::{Head, HeadKind, Machine, Tool};
+use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::motion::{EventKind, StopKind};
 use gcode_part::Surface;
 
@@ -21,7 +22,7 @@ fn told(extracted: &HoleExtraction) -> String {
         format!("{}{}", numbers.join(" "), h.tool.map_or(String::new(), |t| format!(" T{t}")))
     };
     let holes = extracted.holes.iter().map(hole);
-    holes.chain(extracted.findings.iter().map(|f| f.code.clone())).collect::<Vec<_>>().join("\n")
+    holes.chain(extracted.findings.iter().map(|f| f.code().into_owned())).collect::<Vec<_>>().join("\n")
 }
 
 fn check(script: &EventScript, expected: &str) {
@@ -108,7 +109,7 @@ fn a_loop_over_one_hole_ends_with_the_limit_of_passes() {
     assert_eq!(found.holes.len(), 500);
     assert!(found.holes.iter().all(|hole| hole.first_on_line == 0 && (hole.depth - 5.0).abs() < 1e-9));
     let [limit] = &found.findings[..] else { panic!("{:?}", found.findings) };
-    assert_eq!((limit.code.as_str(), limit.severity), ("limit", gcode_lang::diag::Severity::Alarm));
+    assert_eq!((limit.kind, limit.severity), (&LIMIT, gcode_lang::diag::Severity::Alarm));
 }
 
 #[test]

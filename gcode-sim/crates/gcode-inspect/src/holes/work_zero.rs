@@ -5,6 +5,7 @@ use nalgebra::Point3;
 use super::HoleExtractor;
 use super::line::{CuttingLine, ToolExit};
 use super::rapids::TOUCH_DEPTH;
+use crate::findings::{MACHINE_POSITION, RAPID_INTO_PART};
 use crate::machine::Machine;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{AxisIndex, Backtrace, Event};
@@ -128,12 +129,12 @@ impl HoleExtractor<'_> {
         if depth <= TOUCH_DEPTH {
             return;
         }
-        self.findings.add("rapid-into-part", &event.backtrace(), 0, || {
+        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
             let message = format!(
                 "the rapid ends {depth:.3} mm below the surface, at {}",
                 super::rapids::format_point(to)
             );
-            Diagnostic::error("rapid-into-part", message)
+            Diagnostic::new(kind, message)
                 .note("the start of this rapid is unknown: G28, G30 or G53 sent the tool there")
                 .help("end it at a safe height; check the sign of Z and the length offset")
         });
@@ -145,12 +146,12 @@ impl HoleExtractor<'_> {
             return;
         }
         let letters = axis_letters(self.machine, unplaced);
-        self.findings.add("machine-position", place, u32::from(unplaced), || {
+        self.findings.add(&MACHINE_POSITION, place, u32::from(unplaced), |kind| {
             let message = format!(
                 "the tool feeds into the part with {letters} where G28, G30 or G53 sent it: this position \
                  on the part is unknown"
             );
-            Diagnostic::warning("machine-position", message)
+            Diagnostic::new(kind, message)
                 .note("the machine file lacks the work offset in effect; machine zero is taken as the work zero")
                 .help(format!("command {letters} to the hole explicitly, or give the offset under \
                                [offsets] in the machine file"))

@@ -2,6 +2,7 @@
 //!
 //! Feeds along the surface are a pass; approach and retract cross it. What is farther away than [`REACH`] or lies across
 //! has no reading: where the path should have gone on there, that is an error.
+use gcode_lang::alarm::kinds::LIMIT;
 mod ball;
 mod rapids;
 #[cfg(test)]
@@ -13,7 +14,7 @@ use nalgebra::{Point3, Unit};
 use crate::holes::unclear_head;
 use crate::machine::path::AxisMotion;
 use crate::machine::{Machine, Placement};
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, EventSink};
 use gcode_part::Surface;
 
@@ -188,7 +189,7 @@ impl<'m> Stylus<'m> {
         } else {
             return;
         };
-        let finding = Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(event.backtrace());
+        let finding = Diagnostic::new(&LIMIT, message).with_backtrace(event.backtrace());
         let finding = finding.help("check for a loop that never ends; otherwise split the program");
         self.result.findings.push(finding);
     }

@@ -8,6 +8,7 @@ use gcode_lang::motion::{Event, EventKind, EventSink, Position};
 use gcode_part::Surface;
 
 use super::ball::{Ball, BallMove, BallUpdate};
+use crate::findings::RAPID_INTO_PART;
 
 /// A curved way is taken as chords that stray from it by no more than this, mm; nor is less than this told.
 const CHORD_TOLERANCE: f64 = 0.001;
@@ -78,7 +79,7 @@ impl<'m> RapidChecker<'m> {
             let message = format!(
                 "rapid motion with the stylus ball {deepest:.3} mm in the part, which a probe does not detect"
             );
-            Diagnostic::error("rapid-into-part", message).with_backtrace(event.backtrace()).help(
+            Diagnostic::new(&RAPID_INTO_PART, message).with_backtrace(event.backtrace()).help(
                 "begin the touch farther away and check the first touch: the part is farther out than the \
                  touch allows",
             )

@@ -1,6 +1,8 @@
 //! An edge finder's ball round a sphere and an ellipsoid: readings worked out by hand.
 use super::*;
+use crate::findings::PATH_NOT_READ;
 use crate::holes::event_script::EventScript;
+use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::units::Deg;
 
 const SPHERE: Surface = Surface::Ellipsoid { a: 100.0, b: 100.0 };
@@ -85,7 +87,7 @@ fn told(feeds: &[&str]) -> (Vec<String>, usize) {
     let begin = EventScript::new().rapid("X-20 Y110");
     let script = feeds.iter().fold(begin, |script, words| script.feed(words)).rapid("Y200");
     let found = followed(&Machine::default(), SPHERE, &script);
-    let codes = found.findings.iter().map(|finding| finding.code.clone());
+    let codes = found.findings.iter().map(|finding| finding.code().into_owned());
     (codes.collect(), found.passes.iter().map(|pass| pass.backtraces.len()).sum())
 }
 
@@ -134,7 +136,7 @@ fn what_is_fed_past_the_part_is_told_wherever_a_path_is_read() {
     for (script, behind, passes) in [(before, 0, 1), (after.clone(), 1, 1), (over(after), 1, 2)] {
         let found = followed(&Machine::default(), SPHERE, &script);
         let [finding] = found.findings.as_slice() else { panic!("{:?}", found.findings) };
-        assert_eq!(finding.code, "path-not-read");
+        assert_eq!(finding.kind, &PATH_NOT_READ);
         assert_eq!((found.gaps.len(), found.gaps[0].passes_before, found.passes.len()), (1, behind, passes));
     }
 }
@@ -189,12 +191,12 @@ fn feeds_without_a_reading_are_looked_at_so_long_and_no_longer() {
     let mut machine = Machine::default();
     machine.part.shift.x = 30.0;
     let few = followed(&machine, SPHERE, &turns(10));
-    assert!(few.findings.iter().all(|finding| finding.code != "limit"), "{:?}", few.findings);
+    assert!(few.findings.iter().all(|finding| finding.kind != &LIMIT), "{:?}", few.findings);
     let mut stylus = Stylus::new(&machine, SPHERE, 3.0);
     stylus.unread_points = MAX_UNREAD_POINTS - 1000;
     turns(20).emit_to(&mut stylus);
     let many = stylus.finish();
-    let told: Vec<_> = many.findings.iter().filter(|finding| finding.code == "limit").collect();
+    let told: Vec<_> = many.findings.iter().filter(|finding| finding.kind == &LIMIT).collect();
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].message.contains("no readings after this"), "{told:?}");
 }

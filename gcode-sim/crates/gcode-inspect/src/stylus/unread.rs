@@ -1,6 +1,7 @@
 //! Feeds on which no dial is read: the way to the surface and the way from it are none of the path; whatever else isn't
 //! read is missing from it, and is told.
 use super::MAX_READING_DISTANCE;
+use crate::findings::{BALL_INTO_PART, PATH_NOT_READ};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 
@@ -124,13 +125,13 @@ impl UnreadFeeds {
                 "the ball is fed into the part: {number} {length:.3} mm, up to {:.3} mm deep",
                 -least
             );
-            Diagnostic::error("ball-into-part", message)
+            Diagnostic::new(&BALL_INTO_PART, message)
         } else {
             let message = format!(
                 "{number} {length:.3} mm: up to {:.3} mm off the surface, neither straight to it nor from it",
                 greatest.max(-least)
             );
-            Diagnostic::error("path-not-read", message)
+            Diagnostic::new(&PATH_NOT_READ, message)
         };
         let help = format!(
             "keep the ball within {MAX_READING_DISTANCE} mm of the surface, at less than 30° to it, to get readings"

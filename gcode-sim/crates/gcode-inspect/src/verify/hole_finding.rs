@@ -1,5 +1,5 @@
 //! What a check has against the holes, and which of it stands behind one sentence about many.
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::{Backtrace, Call};
 
 /// Something a check has against the holes.
@@ -10,6 +10,8 @@ pub struct HoleFinding {
     /// The drilled hole that nobody asked for, counted from 0.
     pub extra: Option<usize>,
     pub finding: Diagnostic,
+    /// It is about how the tool moved, not about the holes that came of it.
+    pub is_motion: bool,
     /// Another finding says it of many holes at once: people read that one, the data has both.
     pub is_folded: bool,
 }
@@ -17,7 +19,7 @@ pub struct HoleFinding {
 impl HoleFinding {
     /// About many holes, or about none that is known.
     pub fn unlocated(finding: Diagnostic) -> Self {
-        Self { nominal: None, extra: None, finding, is_folded: false }
+        Self { nominal: None, extra: None, finding, is_motion: false, is_folded: false }
     }
 
     pub fn of_nominal(wanted: usize, finding: Diagnostic) -> Self {
@@ -28,19 +30,24 @@ impl HoleFinding {
         Self { extra: Some(extra), ..Self::unlocated(finding) }
     }
 
-    fn is_one_of(&self, codes: &[&str]) -> bool {
-        codes.contains(&self.finding.code.as_str())
+    /// About how the tool moved.
+    pub fn of_motion(finding: Diagnostic) -> Self {
+        Self { is_motion: true, ..Self::unlocated(finding) }
+    }
+
+    pub(super) fn is_one_of(&self, kinds: &[&FindingKind]) -> bool {
+        kinds.contains(&self.finding.kind)
     }
 }
 
 /// Puts those of these codes that `about` speaks of behind another finding; the answer is how many they are.
 pub(super) fn fold(
     findings: &mut [HoleFinding],
-    codes: &[&str],
+    kinds: &[&FindingKind],
     is_concerned: impl Fn(&HoleFinding) -> bool,
 ) -> usize {
     let mut folded = 0;
-    for objection in findings.iter_mut().filter(|o| !o.is_folded && o.is_one_of(codes) && is_concerned(o)) {
+    for objection in findings.iter_mut().filter(|o| !o.is_folded && o.is_one_of(kinds) && is_concerned(o)) {
         objection.is_folded = true;
         folded += 1;
     }

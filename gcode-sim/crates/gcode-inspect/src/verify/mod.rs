@@ -22,7 +22,6 @@ pub use verdict::{Answer, ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoi
 use self::rounding::RoundingDeviation;
 use crate::holes::HoleExtraction;
 use crate::machine::Machine;
-use gcode_lang::diag::Severity;
 use gcode_lang::source::Span;
 use gcode_part::Reference;
 
@@ -48,38 +47,36 @@ impl Tolerances {
     }
 }
 
+/// What the checks look at.
+struct HoleInspection<'a> {
+    comparison: Comparison<'a>,
+    extraction: &'a HoleExtraction,
+    reference: &'a Reference,
+    machine: &'a Machine,
+}
+
 /// The verdict on a program. `locate` names the program and the line of a block.
 pub fn verify(
-    extracted: &HoleExtraction,
+    extraction: &HoleExtraction,
     reference: &Reference,
     tolerances: Tolerances,
     machine: &Machine,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
-    let comparison = Comparison::new(&reference.holes, &extracted.holes, tolerances, pattern);
-    let rounding = RoundingDeviation::of(&comparison, machine);
-    let mut objections = Vec::new();
-    checks::mirrored::check(&comparison, machine, &mut objections);
+    let comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
+    let inspection = HoleInspection { comparison, extraction, reference, machine };
+    let motion = extraction.findings.iter().cloned();
+    let mut findings: Vec<HoleFinding> = motion.map(HoleFinding::of_motion).collect();
     for check in checks::ALL {
-        check(&comparison, &mut objections);
+        check(&inspection, &mut findings);
     }
-    checks::air::check(&comparison, reference.surface, &mut objections);
-    checks::through::check(&comparison, reference.surface, &mut objections);
-    checks::tool_short::check(&comparison, machine, &mut objections);
-    let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);
-    checks::stopped::check(&comparison, stopped, &mut objections);
-    checks::common_shift::check(&comparison, machine, &mut objections);
-    let (reaches, conduct) = (&extracted.length_mismatches, &reference.process_limits);
-    checks::reach::check(&comparison, reaches, conduct, machine, &mut objections);
-    let mut motion = extracted.findings.clone();
-    motion.extend(checks::signs::finding(reference, machine));
-    motion.extend(checks::clearance::findings(&extracted.close_motions, &reference.process_limits));
-    motion.extend(checks::cutting::findings(&extracted.cut_conditions, &reference.process_limits, machine));
-    let mut verdict = verdict::verdict(&comparison, &rounding, objections, &motion, locate);
+    let comparison = &inspection.comparison;
+    let rounding = RoundingDeviation::of(comparison, machine);
+    let mut verdict = verdict::verdict(comparison, &rounding, findings, locate);
     if let Some(pattern) = pattern {
-        verdict.set_neighbours(neighbours::neighbours(&comparison, pattern));
+        verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    verdict.not_checked = not_checked::lines(&comparison, extracted, reference, machine, locate);
+    verdict.not_checked = not_checked::lines(comparison, extraction, reference, machine, locate);
     verdict
 }

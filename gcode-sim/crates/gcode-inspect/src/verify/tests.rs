@@ -99,7 +99,7 @@ fn judge(machine: &Machine, reference: &Reference, script: &EventScript) -> Verd
 }
 
 fn codes(verdict: &Verdict) -> Vec<&str> {
-    verdict.findings.iter().map(|finding| finding.code.as_str()).collect()
+    verdict.findings.iter().map(|finding| &*finding.code).collect()
 }
 
 const PAPER: Section = Section { a: 1158.8, b: 724.3 };

@@ -1,4 +1,5 @@
 //! The answer: every hole with its numbers, what is missing and what is too many, and why.
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
@@ -6,7 +7,7 @@ use serde::Serialize;
 
 use super::rounding::{AxisRounding, RoundingDeviation};
 use super::{Comparison, HoleFinding, HoleNeighbours, Neighbours};
-use gcode_lang::diag::{Diagnostic, Severity, Site};
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
 use gcode_lang::motion::{Call, CallChain};
 use gcode_lang::source::Span;
 use gcode_part::{Hole, Origin};
@@ -71,7 +72,7 @@ pub struct HoleVerdict {
     /// The calls that led to that block, innermost first.
     pub calls: Vec<Origin>,
     /// The codes of its findings.
-    pub objections: Vec<String>,
+    pub objections: Vec<&'static str>,
     /// Its neighbours, for a part where they matter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub neighbours: Option<HoleNeighbours>,
@@ -104,7 +105,9 @@ pub struct ExtraHole {
 /// A finding as data.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Finding {
-    pub code: String,
+    #[serde(skip)]
+    pub kind: &'static FindingKind,
+    pub code: Cow<'static, str>,
     pub severity: &'static str,
     pub message: String,
     pub help: Option<String>,
@@ -136,15 +139,15 @@ impl From<&Site> for PartPoint {
 pub(super) fn verdict(
     comparison: &Comparison<'_>,
     rounding: &RoundingDeviation<'_>,
-    objections: Vec<HoleFinding>,
-    findings: &[Diagnostic],
+    mut findings: Vec<HoleFinding>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
-    let mut codes_by_hole: Vec<Vec<String>> = vec![Vec::new(); comparison.nominal.len()];
+    findings.sort_by_key(|finding| finding.is_motion);
+    let mut codes_by_hole: Vec<Vec<&'static str>> = vec![Vec::new(); comparison.nominal.len()];
     let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
-    for objection in objections.iter().filter(|objection| failed(&objection.finding)) {
-        if let Some(wanted) = objection.nominal {
-            codes_by_hole[wanted].push(objection.finding.code.clone());
+    for HoleFinding { nominal, finding, .. } in findings.iter().filter(|one| failed(&one.finding)) {
+        if let Some(nominal) = *nominal {
+            codes_by_hole[nominal].push(finding.kind.code);
         }
     }
     let holes: Vec<HoleVerdict> = comparison
@@ -156,11 +159,9 @@ pub(super) fn verdict(
             hole_verdict(comparison, pair, *rounding, objections, locate)
         })
         .collect();
-    let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
+    let fails = findings.iter().any(|one| failed(&one.finding));
     let worst = (0..holes.len())
         .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
-    let about_holes = objections.iter().map(|o| (o.nominal, &o.finding, false));
-    let reported = about_holes.chain(findings.iter().map(|f| (None, f, true)));
     Verdict {
         basis: "predicted by simulation, not measured",
         tolerance: comparison.tolerances.position,
@@ -171,21 +172,17 @@ pub(super) fn verdict(
         rounding: rounding.position_deviations.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
         extra: comparison.extra.iter().map(|index| extra_hole(comparison, *index, locate)).collect(),
-        findings: reported
-            .map(|(wanted, finding, from_motion)| {
-                finding_of(finding, wanted.map(|index| comparison.id(index)), from_motion, locate)
+        findings: findings
+            .iter()
+            .map(|one| {
+                let hole = one.nominal.map(|index| comparison.id(index));
+                finding_of(&one.finding, hole, one.is_motion, locate)
             })
             .collect(),
         neighbours: None,
         not_checked: Vec::new(),
         holes,
-        diagnostics: limit_per_kind(
-            objections
-                .into_iter()
-                .filter(|o| !o.is_folded)
-                .map(|o| o.finding)
-                .chain(findings.iter().cloned()),
-        ),
+        diagnostics: limit_per_kind(findings.into_iter().filter(|one| !one.is_folded).map(|one| one.finding)),
     }
 }
 
@@ -198,7 +195,8 @@ pub(super) fn finding_of(
 ) -> Finding {
     let origin = finding.backtrace.as_ref().map(|place| locate(place.block));
     Finding {
-        code: finding.code.clone(),
+        kind: finding.kind,
+        code: finding.code(),
         severity: finding.severity.name(),
         message: finding.message.clone(),
         help: finding.help.clone(),
@@ -236,10 +234,10 @@ impl Verdict {
 /// As many of each kind as people read; the last of them says how many more there are.
 pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
     const MAX_SHOWN: usize = 8;
-    let mut kinds: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     let mut shown: Vec<Diagnostic> = Vec::new();
     for finding in findings {
-        let (count, last) = kinds.entry(finding.code.clone()).or_insert((0, 0));
+        let (count, last) = kinds.entry(finding.kind.code).or_insert((0, 0));
         *count += 1;
         if *count <= MAX_SHOWN {
             *last = shown.len();
@@ -260,7 +258,7 @@ fn hole_verdict(
     comparison: &Comparison<'_>,
     pair: &super::HolePair,
     rounding: f64,
-    objections: Vec<String>,
+    objections: Vec<&'static str>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> HoleVerdict {
     let (wanted, found, deviation) =

@@ -1,43 +1,38 @@
 //! Alarms that stop a control: each variant holds the facts, `table.rs` the number and wording.
 //!
 //! Numbers and triggers follow the alarm list of the 30i / 0i-F class; the wording is this project's own.
+pub mod kinds;
 mod table;
 mod typos;
 
+use crate::diag::FindingKind;
 use crate::source::{Span, Spanned};
 
 pub use typos::remedy;
 
-/// Designation of an alarm: `PS0112`, `MC3001`, `OT0500`; `SIM…` where the simulator, not the control, cannot
-/// continue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum AlarmCode {
-    /// Program error.
-    Ps(u16),
-    /// Alarm raised by a macro (`#3000`).
-    Mc(u16),
-    /// Overtravel.
-    Ot(u16),
-    /// Limit of the simulator.
-    Sim(u16),
+/// Designation of an alarm: `PS0112`, `OT0500`, `MC3021` if the program raises it; `SIM…` if the simulator, not the
+/// control, cannot continue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AlarmCode {
+    /// Kind of finding, with code and page.
+    pub kind: &'static FindingKind,
+    /// Number of an alarm that the program raises: replaces the number in the kind's code.
+    pub raised: Option<u16>,
 }
 
 impl AlarmCode {
     /// Returns the number without its letters.
     pub fn number(self) -> u32 {
-        match self {
-            Self::Ps(n) | Self::Mc(n) | Self::Ot(n) | Self::Sim(n) => u32::from(n),
-        }
+        let digits = self.kind.code.trim_start_matches(|c: char| c.is_ascii_alphabetic());
+        self.raised.map_or_else(|| digits.parse().unwrap_or_default(), u32::from)
     }
 }
 
 impl std::fmt::Display for AlarmCode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Ps(n) => write!(f, "PS{n:04}"),
-            Self::Mc(n) => write!(f, "MC{n:04}"),
-            Self::Ot(n) => write!(f, "OT{n:04}"),
-            Self::Sim(n) => write!(f, "SIM{n:04}"),
+        match self.raised {
+            Some(number) => write!(f, "MC{number:04}"),
+            None => self.kind.fmt(f),
         }
     }
 }

@@ -245,8 +245,10 @@ pub const ROWS: &[SettingRow] = &[
 ];
 
 impl Settings {
-    /// Sets one setting by its key (`NAT`, `5115`), an input by its variable (`#1005`), or a code that calls a
-    /// program (`G201`, `M50`, `T`), by itself or by its parameter (`6050`).
+    /// Sets a setting, an input or a code that calls a program, from the text of its value.
+    ///
+    /// A setting has a key (`NAT`, `5115`), an input its variable (`#1005`). A code is given by itself (`G201`,
+    /// `M50`, `T`) or by its parameter (`6050`).
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), SettingError> {
         let bad = |allowed: &dyn std::fmt::Display| {
             let allowed = allowed.to_string();
@@ -296,7 +298,7 @@ fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
     value.parse().ok().filter(|v| (least..=most).contains(v))
 }
 
-/// `X10,Z-5`; axes not named are at 0.
+/// Reads a position, `X10,Z-5`; axes not named are at 0.
 fn point(settings: &Settings, value: &str) -> Option<Position> {
     let mut point = Position::default();
     for word in value.split(',').map(str::trim) {
@@ -306,7 +308,7 @@ fn point(settings: &Settings, value: &str) -> Option<Position> {
     Some(point)
 }
 
-/// `X400,Z0`: the named axes.
+/// Reads the limits of the named axes, `X400,Z0`.
 fn limits(axes: &Axes, value: &str) -> Option<[Option<f64>; MAX_AXES]> {
     let mut limits = [None; MAX_AXES];
     for word in value.split(',').map(str::trim) {
@@ -316,7 +318,7 @@ fn limits(axes: &Axes, value: &str) -> Option<[Option<f64>; MAX_AXES]> {
     Some(limits)
 }
 
-/// `98000-98499`; `0` is none.
+/// Reads a range, `98000-98499`; `0` is no range.
 fn range(value: &str) -> Option<Option<(u32, u32)>> {
     if value == "0" {
         return Some(None);

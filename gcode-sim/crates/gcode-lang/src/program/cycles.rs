@@ -52,6 +52,13 @@ pub struct Cycle {
     pub help: &'static str,
 }
 
+impl Cycle {
+    /// Returns true if Q is a length of the cycle: the depth of a peck, or the shift off the wall.
+    pub fn uses_q(&self) -> bool {
+        self.steps.iter().any(|step| matches!(step, PeckFull | PeckShort | Shift))
+    }
+}
+
 use CycleStep::{
     Dwell, DwellAtR, FeedToBottom, FeedToR, ManualRetract, PeckFull, PeckShort, RapidBack, RapidToInitial,
     RapidToInitialAlways, RapidToR, Shift, ShiftBack, SpindleForward, SpindleReverse, SpindleStop,
@@ -61,24 +68,39 @@ const fn row(code: u32, steps: &'static [CycleStep], help: &'static str) -> Cycl
     Cycle { code, starts_at_r: true, needs_q: false, steps, help }
 }
 
-/// All drilling cycles, sorted by code.
+/// G73.
+pub const PECK_DRILL_SHORT: Cycle =
+    Cycle { needs_q: true, ..row(730, &[PeckShort, RapidBack], "drill in pecks, short retract") };
+/// G74.
 #[rustfmt::skip]
-pub const CYCLES: [Cycle; 12] = [
-    Cycle { needs_q: true, ..row(730, &[PeckShort, RapidBack], "drill in pecks, short retract") },
-    row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitial], "tap, left hand"),
-    row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidBack, ShiftBack, SpindleForward], "bore, shift off the wall at the bottom"),
-    row(810, &[FeedToBottom, RapidBack], "drill"),
-    row(820, &[FeedToBottom, Dwell, RapidBack], "drill, dwell at the bottom"),
-    Cycle { needs_q: true, ..row(830, &[PeckFull, RapidBack], "drill in pecks, retract to R") },
-    row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitial], "tap"),
-    row(850, &[FeedToBottom, FeedToR, RapidToInitial], "bore, feed back"),
-    row(860, &[FeedToBottom, SpindleStop, RapidBack, SpindleForward], "bore, stop the spindle at the bottom"),
-    Cycle { starts_at_r: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitialAlways, ShiftBack, SpindleForward], "bore from the back") },
-    row(880, &[FeedToBottom, Dwell, SpindleStop, ManualRetract, RapidToInitial, SpindleForward], "bore, retract by hand"),
-    row(890, &[FeedToBottom, Dwell, FeedToR, RapidToInitial], "bore, dwell, feed back"),
-];
-
-/// Returns the cycle of a G code × 10.
-pub fn find(code: u32) -> Option<&'static Cycle> {
-    CYCLES.iter().find(|cycle| cycle.code == code)
-}
+pub const TAP_LEFT_HAND: Cycle = row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitial], "tap, left hand");
+/// G76.
+#[rustfmt::skip]
+pub const BORE_SHIFT: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidBack, ShiftBack, SpindleForward], "bore, shift off the wall at the bottom");
+/// G81.
+pub const DRILL: Cycle = row(810, &[FeedToBottom, RapidBack], "drill");
+/// G82.
+pub const DRILL_DWELL: Cycle = row(820, &[FeedToBottom, Dwell, RapidBack], "drill, dwell at the bottom");
+/// G83.
+pub const PECK_DRILL: Cycle =
+    Cycle { needs_q: true, ..row(830, &[PeckFull, RapidBack], "drill in pecks, retract to R") };
+/// G84.
+#[rustfmt::skip]
+pub const TAP: Cycle = row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitial], "tap");
+/// G85.
+pub const BORE_FEED_BACK: Cycle = row(850, &[FeedToBottom, FeedToR, RapidToInitial], "bore, feed back");
+/// G86.
+pub const BORE_SPINDLE_STOP: Cycle =
+    row(860, &[FeedToBottom, SpindleStop, RapidBack, SpindleForward], "bore, stop the spindle at the bottom");
+/// G87.
+#[rustfmt::skip]
+pub const BACK_BORE: Cycle = Cycle { starts_at_r: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitialAlways, ShiftBack, SpindleForward], "bore from the back") };
+/// G88.
+pub const BORE_BY_HAND: Cycle = row(
+    880,
+    &[FeedToBottom, Dwell, SpindleStop, ManualRetract, RapidToInitial, SpindleForward],
+    "bore, retract by hand",
+);
+/// G89.
+pub const BORE_DWELL: Cycle =
+    row(890, &[FeedToBottom, Dwell, FeedToR, RapidToInitial], "bore, dwell, feed back");

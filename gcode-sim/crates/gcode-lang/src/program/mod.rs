@@ -6,8 +6,11 @@
 mod arguments;
 mod blocks;
 mod bytecode;
+pub mod code_facts;
 pub mod cycles;
 mod dialect_syntax;
+mod g_code_row;
+mod g_code_table;
 pub mod g_codes;
 mod loops;
 mod lowering;

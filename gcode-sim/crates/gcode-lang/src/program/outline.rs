@@ -23,7 +23,7 @@ struct OutlineBuilder {
     separate_trees: BTreeMap<u32, ast::Block>,
 }
 
-/// Outlines the programs of a file.
+/// Returns the programs of a file, with their blocks located but not lowered.
 pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
     let text = ProgramText { source, bytes: bytes.clone(), length: without_trailer(bytes).len() };
     let programs = outline(source, bytes, |growing: &mut OutlineBuilder, block| growing.block(block, &text));

@@ -97,17 +97,18 @@ impl<C: Default, B> Programs<C, B> {
 mod tests {
     use super::super::ast::{Item, Statement, WordValue};
     use super::*;
-    use crate::alarm::AlarmCode;
 
     fn programs(text: &[u8]) -> Vec<Program> {
         parse(SourceId(0), text)
     }
 
-    fn alarms(text: &str) -> Vec<AlarmCode> {
+    fn alarms(text: &str) -> Vec<u32> {
         let blocks = programs(text.as_bytes()).into_iter().flat_map(|p| p.blocks);
         let items = blocks.flat_map(|b| b.items);
         items
-            .filter_map(|item| if let Item::Unreadable(a) = item { Some(a.alarm.node.code()) } else { None })
+            .filter_map(|item| {
+                if let Item::Unreadable(a) = item { Some(a.alarm.node.code().number()) } else { None }
+            })
             .collect()
     }
 
@@ -176,7 +177,7 @@ mod tests {
             ("X#1+#2", 4),
             ("?", 4),
         ] {
-            assert_eq!(alarms(text), [AlarmCode::Ps(alarm)], "{text}");
+            assert_eq!(alarms(text), [alarm], "{text}");
         }
     }
 }

@@ -97,7 +97,7 @@ fn chain(parts: BoxedStrategy<Expr>, ops: [BinaryOp; 4]) -> BoxedStrategy<Expr> 
     (parts.clone(), vec((select(ops.to_vec()), parts), 0..3))
         .prop_map(|(first, more)| {
             more.into_iter().fold(first, |left, (op, right)| {
-                // `ATAN[a]/[b]` and `PRM[n]/[axis]` are no divisions.
+                // `ATAN[a]/[b]` and `PRM[n]/[axis]` are not divisions.
                 let op = match (op, &right.kind) {
                     (BinaryOp::Div, ExprKind::Bracket(_) | ExprKind::Named(_)) => BinaryOp::Mul,
                     _ => op,

@@ -7,17 +7,20 @@ use gcode_lang::control::Settings;
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind, Function};
 
 use super::unreadable::finding;
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "constant-alarm";
+pub(super) static RULE: Rule =
+    Rule::new("constant-alarm", Severity::Error, "arithmetic on constants that always raises an alarm", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
         let mut numbers = ConstantEvaluator { settings: context.settings, alarms: Vec::new() };
         for expr in expressions::block_expressions(block) {
             numbers.value(expr);
         }
-        found.extend(numbers.alarms.iter().map(|alarm| finding(context, unit, NAME, index, alarm)));
+        found.extend(numbers.alarms.iter().map(|alarm| finding(context, unit, &RULE.kind, index, alarm)));
     }
     found
 }
@@ -78,20 +81,20 @@ impl ConstantEvaluator<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn numbers_that_no_function_takes() {
         let text = "O1\n#1=SQRT[-4]\n#2=#1/0\n#3=1/[2-2]\n#4=ACOS[1.5]\n#5=LN[0]\nIF[#1 MOD 0 GT 2]GOTO 9\n\
                     X[ASIN[-2]]\n#[5/0]=1\n#6=2+SQRT[0-ABS[-9]]*#1\nN9 M30\n";
-        assert_eq!(lines(NAME, text), [2, 3, 4, 5, 6, 7, 8, 9, 10]);
-        let found = messages(NAME, text);
+        assert_eq!(lines(&RULE, text), [2, 3, 4, 5, 6, 7, 8, 9, 10]);
+        let found = messages(&RULE, text);
         assert!(found[0].starts_with("PS0119: ") && found[1].starts_with("PS0112: "), "{found:?}");
     }
 
     #[test]
     fn what_computes_and_what_only_a_run_knows() {
         let text = "O1\n#1=SQRT[4]/2\n#2=SQRT[#1-9]\n#3=5/#4\n#5=ACOS[-1]\n#6=0/5\n#7=ATAN[1]/[0]\n#8=7 MOD 3\nM30\n";
-        assert_eq!(lines(NAME, text), NOWHERE);
+        assert_eq!(lines(&RULE, text), NOWHERE);
     }
 }

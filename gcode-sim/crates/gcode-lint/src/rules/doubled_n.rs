@@ -5,11 +5,14 @@ use std::collections::BTreeMap;
 
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::parameters;
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 use gcode_lang::source::Span;
 
-pub(super) const NAME: &str = "doubled-n";
+pub(super) static RULE: Rule =
+    Rule::new("doubled-n", Severity::Warning, "a sequence number that is defined twice", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
     let parameters = parameters::parameter_blocks(unit.program);
@@ -29,7 +32,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
                     ": a search finds one of the two"
                 };
                 let message = format!("N{number} is already defined in line {line}{consequence}");
-                found.push(unit.warning(NAME, block, message).help("give one of them another number"));
+                found.push(unit.finding(&RULE.kind, block, message).help("give one of them another number"));
             }
             Some(_) => {}
         }
@@ -40,13 +43,13 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn each_number_is_told_once() {
-        assert_eq!(lines(NAME, "O1\nN10 G0\nN010 G0\nN10 G0\nN20 M30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\nN10 G0\nN010 G0\nN10 G0\nN20 M30\n"), [3]);
         let parameters = "O1\nN1241 G10 L52\nN1241 P1 R1.\nN1241 P2 R1.\nG11\nN1241 M30\n";
-        assert_eq!(lines(NAME, parameters), [6], "behind G10 L52 N is no sequence number");
-        assert_eq!(lines(NAME, "O1\nN10 M30\nO2\nN10 M99\n(N10)\n"), NOWHERE, "each program has its own");
+        assert_eq!(lines(&RULE, parameters), [6], "behind G10 L52 N is no sequence number");
+        assert_eq!(lines(&RULE, "O1\nN10 M30\nO2\nN10 M99\n(N10)\n"), NOWHERE, "each program has its own");
     }
 }

@@ -1,27 +1,33 @@
 //! Rule: two programs with the same number or name. A control refuses the second and does not start.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "doubled-program";
+pub(super) static RULE: Rule =
+    Rule::new("doubled-program", Severity::Error, "a program number that is defined twice", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let refused = context.memory.duplicates().any(|program| std::ptr::eq(program, unit.program));
     if !refused || unit.program.ops().is_empty() {
         return Vec::new();
     }
     let label = unit.program.label();
-    let finding =
-        unit.error(NAME, 0, format!("program {label} is already defined above: a control refuses it"));
+    let finding = unit.finding(
+        &RULE.kind,
+        0,
+        format!("program {label} is already defined above: a control refuses it"),
+    );
     vec![finding.help("give one of them another number")]
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn a_number_belongs_to_one_program() {
-        assert_eq!(lines(NAME, "O1\nM30\nO0001\nM30\n"), [4]);
-        assert_eq!(lines(NAME, "O1\nM30\nO2\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nM30\nO0001\nM30\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\nM30\nO2\nM30\n"), NOWHERE);
     }
 }

@@ -5,17 +5,19 @@ use crate::components::strongly_connected_components;
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control_flow::{Jump, raises_alarm};
 use crate::literal;
+use crate::rule::Rule;
 use crate::vacancy::{Locals, truth};
 use crate::variables::{self, VariableUses};
+use gcode_lang::diag::Severity;
 use gcode_lang::program::{OpIndex, OpKind};
 use gcode_lang::syntax::ast::{Condition, Statement};
 
-pub(super) const NAME: &str = "endless-loop";
+pub(super) static RULE: Rule = Rule::new("endless-loop", Severity::Warning, "a loop that never ends", find);
 
 /// First system variable. System variables may change by themselves.
 const FIRST_SYSTEM: u32 = 1000;
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut reported = vec![false; unit.program.ops().len()];
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
@@ -60,7 +62,7 @@ fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[b
         }
         let message = format!("GOTO {} loops forever: no block in the loop exits it", jump.number);
         let finding =
-            unit.warning(NAME, jump.block, message).label(unit.op(to).span, "it jumps back to here");
+            unit.finding(&RULE.kind, jump.block, message).label(unit.op(to).span, "it jumps back to here");
         found.push(
             finding.help("change a variable of the exit condition in the loop, or count the iterations"),
         );
@@ -83,10 +85,10 @@ fn loop_finding(unit: &ProgramUnit<'_>, block: OpIndex) -> RuleFinding {
                 Some(name) => format!("change {name} in the loop, {name}={name}+1"),
                 None => "exit it by GOTO, or count the iterations".to_owned(),
             };
-            unit.warning(NAME, block, message).help(help)
+            unit.finding(&RULE.kind, block, message).help(help)
         }
         None => unit
-            .warning(NAME, block, "this loop never ends: no block in it exits it")
+            .finding(&RULE.kind, block, "this loop never ends: no block in it exits it")
             .help("exit it by GOTO, or count the iterations"),
     }
 }
@@ -217,13 +219,13 @@ impl WrittenVariables {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn what_the_condition_asks_must_change() {
-        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nG91 X1.\n#2=#1+1\nEND1\nM30\n"), [3]);
-        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nG91 X1.\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
-        let found = messages(NAME, "O1\n#1=0\nWHILE[#1 LT #2]DO1\nG65 P2 X#1\nEND1\nM30\nO2\n#1=5\nM99\n");
+        assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nG91 X1.\n#2=#1+1\nEND1\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nG91 X1.\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
+        let found = messages(&RULE, "O1\n#1=0\nWHILE[#1 LT #2]DO1\nG65 P2 X#1\nEND1\nM30\nO2\n#1=5\nM99\n");
         assert_eq!(
             found,
             ["this loop never ends: no block in it changes #1 or #2"],
@@ -243,32 +245,39 @@ mod tests {
             "#[#1]=5",
         ] {
             let text = format!("O1\n#1=0\nWHILE[#1 LT 3]DO1\n{exit}\nEND1\nN9 M30\nO2\n#1=5\nM99\n");
-            assert_eq!(lines(NAME, &text), NOWHERE, "{exit}");
+            assert_eq!(lines(&RULE, &text), NOWHERE, "{exit}");
         }
         assert_eq!(
-            lines(NAME, "O1\nWHILE[#1005 EQ 0]DO1\nEND1\nM30\n"),
+            lines(&RULE, "O1\nWHILE[#1005 EQ 0]DO1\nEND1\nM30\n"),
             NOWHERE,
             "a signal changes by itself"
         );
-        assert_eq!(lines(NAME, "O1\n#1=0\nDO1\n#1=#1+1\nEND1\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\n#1=0\nDO1\n#1=#1+1\nEND1\nM30\n"), [3]);
     }
 
     #[test]
     fn jumps_that_go_round() {
-        assert_eq!(lines(NAME, "O1\nN1 G0 X1.\nX2.\nGOTO 1\nM30\n"), [4]);
-        assert_eq!(lines(NAME, "O1\n#1=0\nN1 G0 X1.\nIF[#1 EQ 5]GOTO 9\nGOTO 1\nN9 M30\n"), [5]);
-        assert_eq!(lines(NAME, "O1\n#1=0\nN1 G0 X1.\n#1=#1+1\nIF[#1 EQ 5]GOTO 9\nGOTO 1\nN9 M30\n"), NOWHERE);
-        assert_eq!(lines(NAME, "O1\nN1 G0 X1.\nX2.\nM99\n"), NOWHERE, "M99 is how a main program goes round");
+        assert_eq!(lines(&RULE, "O1\nN1 G0 X1.\nX2.\nGOTO 1\nM30\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\n#1=0\nN1 G0 X1.\nIF[#1 EQ 5]GOTO 9\nGOTO 1\nN9 M30\n"), [5]);
+        assert_eq!(
+            lines(&RULE, "O1\n#1=0\nN1 G0 X1.\n#1=#1+1\nIF[#1 EQ 5]GOTO 9\nGOTO 1\nN9 M30\n"),
+            NOWHERE
+        );
+        assert_eq!(
+            lines(&RULE, "O1\nN1 G0 X1.\nX2.\nM99\n"),
+            NOWHERE,
+            "M99 is how a main program goes round"
+        );
     }
 
     #[test]
     fn circles_inside_and_beside_one_another() {
         let twice = "O1\n#1=0\nN1 X1.\nIF[#2 EQ 5]GOTO 1\nX2.\nGOTO 1\nM30\n";
-        assert_eq!(lines(NAME, twice), [4], "one circle, told at its first GOTO");
+        assert_eq!(lines(&RULE, twice), [4], "one circle, told at its first GOTO");
         let beside = "O1\nN1 IF[#500 EQ 1]GOTO 2\n#500=#500+1\nGOTO 1\nN2 X1.\nGOTO 2\nM30\n";
-        assert_eq!(lines(NAME, beside), [6]);
+        assert_eq!(lines(&RULE, beside), [6]);
         let crossed = "O1\n#1=0\nN1 X1.\nN2 #1=#1+1\nIF[#1 LT 5]GOTO 1\nIF[#1 LT 9]GOTO 2\nM30\n";
-        assert_eq!(lines(NAME, crossed), NOWHERE);
+        assert_eq!(lines(&RULE, crossed), NOWHERE);
     }
 
     #[test]
@@ -277,6 +286,6 @@ mod tests {
         for place in 2..2_000 {
             text.push_str(&format!("N{place} X{place}.\nIF[#1 EQ {place}]GOTO {}\n", place - 1));
         }
-        assert_eq!(lines(NAME, &format!("{text}M30\n")), NOWHERE);
+        assert_eq!(lines(&RULE, &format!("{text}M30\n")), NOWHERE);
     }
 }

@@ -9,11 +9,14 @@ use crate::literal;
 use crate::variables;
 use std::ops::RangeInclusive;
 
+use crate::rule::Rule;
 use gcode_lang::control::Settings;
-use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::diag::Severity;
+use gcode_lang::program::code_facts::Timing;
 use gcode_lang::program::{OpIndex, OpKind, Statement, WordOperand, Words};
 
-pub(super) const NAME: &str = "live-position";
+pub(super) static RULE: Rule =
+    Rule::new("live-position", Severity::Warning, "a position read while a move may be in progress", find);
 
 /// Inputs, clocks, codes of the executing block, positions, servo deviations, handle interruption, distance
 /// to go.
@@ -23,7 +26,7 @@ const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
 /// Output signals.
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let pending = pending_moves(context.settings, unit);
     let mut found = Vec::new();
     for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
@@ -34,14 +37,14 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         if let Some(read) = live.take(1).next() {
             let number = read.number;
             let message = format!("#{number} is read while the preceding move may still be in progress");
-            let finding = unit.warning(NAME, block, message).with_span(read.span);
+            let finding = unit.finding(&RULE.kind, block, message).with_span(read.span);
             let finding = finding.label(unit.op(motion).span, "the move");
             found.push(finding.help(HELP));
         }
         let target = variables::assignment(written).and_then(|(target, _)| literal::variable(target));
         if let Some(number) = target.filter(|number| OUTPUTS.contains(number)) {
             let message = format!("#{number} is set while the preceding move may still be in progress");
-            let finding = unit.warning(NAME, block, message);
+            let finding = unit.finding(&RULE.kind, block, message);
             found.push(finding.label(unit.op(motion).span, "the move").help(HELP));
         }
     }
@@ -89,17 +92,15 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
     let mut axis = false;
     for word in &words.list {
         match (word.letter, word.value) {
-            (b'G', WordOperand::G(_, found)) => match found.row_for(settings.codes).map(|row| row.effect) {
-                // G53 waits; G31 ends at its signal; G04 and G10 wait on some controls.
-                Some(Effect::OneShot(
-                    OneShot::MachineSystem | OneShot::Skip | OneShot::Dwell | OneShot::DataInput,
-                )) => return Some(false),
-                // These codes only set coordinates.
-                Some(Effect::OneShot(OneShot::LocalSystem | OneShot::SetSystem | OneShot::PresetSystem)) => {
-                    return None;
+            (b'G', WordOperand::G(_, found)) => {
+                match found.row_for(settings.codes).map(|row| row.facts.timing) {
+                    // G53 waits; G31 ends at its signal; G04 and G10 wait on some controls.
+                    Some(Timing::Waits) => return Some(false),
+                    // These codes only set coordinates.
+                    Some(Timing::MovesNothing) => return None,
+                    Some(Timing::ReadAhead) | None => {}
                 }
-                _ => {}
-            },
+            }
             // Coolant and spindle codes do not wait; the effect of the machine builder's codes is unknown.
             (b'M', _) if !matches!(literal::word_count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => {
                 return Some(false);
@@ -113,33 +114,33 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn a_move_may_be_under_way() {
-        assert_eq!(lines(NAME, "O1\nG0 X10.\n#100=#5041\n#101=#5023*2\nM30\n"), [3, 4]);
-        assert_eq!(lines(NAME, "O1\nG0 X10.\nM8\nIF[#5023 LT 0]GOTO 9\nN9 M30\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\nG0 X10.\n#100=#5041\n#101=#5023*2\nM30\n"), [3, 4]);
+        assert_eq!(lines(&RULE, "O1\nG0 X10.\nM8\nIF[#5023 LT 0]GOTO 9\nN9 M30\n"), [4]);
     }
 
     #[test]
     fn signals_and_clocks_are_of_the_moment_too() {
         for read in ["#100=#1005", "#100=#3001", "#100=#4201", "IF[#1032 EQ 0]GOTO 9", "#100=[#_UI[3]]"] {
-            assert_eq!(lines(NAME, &format!("O1\nG0 X10.\n{read}\nN9 M30\n")), [3], "{read}");
-            assert_eq!(lines(NAME, &format!("O1\nG0 X10.\nM00\n{read}\nN9 M30\n")), NOWHERE, "{read}");
+            assert_eq!(lines(&RULE, &format!("O1\nG0 X10.\n{read}\nN9 M30\n")), [3], "{read}");
+            assert_eq!(lines(&RULE, &format!("O1\nG0 X10.\nM00\n{read}\nN9 M30\n")), NOWHERE, "{read}");
         }
         for written in ["#1100=1", "#1132=5", "IF[#1 EQ 1]THEN #1131=0"] {
-            assert_eq!(lines(NAME, &format!("O1\n#1=1\nG0 X10.\n{written}\nM30\n")), [4], "{written}");
-            assert_eq!(lines(NAME, &format!("O1\n#1=1\nG0 X10.\nG53\n{written}\nM30\n")), NOWHERE);
+            assert_eq!(lines(&RULE, &format!("O1\n#1=1\nG0 X10.\n{written}\nM30\n")), [4], "{written}");
+            assert_eq!(lines(&RULE, &format!("O1\n#1=1\nG0 X10.\nG53\n{written}\nM30\n")), NOWHERE);
         }
-        assert_eq!(lines(NAME, "O1\nG0 X10.\n#100=#4001+#3011+#1100\n#3003=1\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nG0 X10.\n#100=#4001+#3011+#1100\n#3003=1\nM30\n"), NOWHERE);
     }
 
     #[test]
     fn what_waits_settles_it() {
         for stop in ["M00", "G53", "#3006=1(LOOK)", "G31 Z-5. F50.", "M50"] {
-            assert_eq!(lines(NAME, &format!("O1\nG0 X10.\n{stop}\n#100=#5041\nM30\n")), NOWHERE, "{stop}");
+            assert_eq!(lines(&RULE, &format!("O1\nG0 X10.\n{stop}\n#100=#5041\nM30\n")), NOWHERE, "{stop}");
         }
-        assert_eq!(lines(NAME, "O1\nG0 X10.\n#100=#5001\n#101=#5063\nM30\n"), NOWHERE);
-        assert_eq!(lines(NAME, "O1\n#100=#5041\nG0 X10.\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nG0 X10.\n#100=#5001\n#101=#5063\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\n#100=#5041\nG0 X10.\nM30\n"), NOWHERE);
     }
 }

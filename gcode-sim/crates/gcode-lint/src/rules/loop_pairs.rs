@@ -1,11 +1,15 @@
 //! Rule: DO and END that do not pair: a missing partner, nested loops of one number, or overlapping loops.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::rule::Rule;
+use gcode_lang::alarm::kinds::{PS0124, PS0126, PS1124};
+use gcode_lang::diag::Severity;
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Item, Statement};
 
-pub(super) const NAME: &str = "loop-pairs";
+pub(super) static RULE: Rule =
+    Rule::new("loop-pairs", Severity::Error, "DO and END that do not pair, or loops that overlap", find);
 
-pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut unpaired = Vec::new();
     let mut open: Vec<(i64, usize, Span)> = Vec::new();
@@ -18,26 +22,27 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
                 continue;
             }
             unpaired.push(number);
-            let message = format!("PS0126: {word}{number}: a loop's number is 1, 2 or 3");
-            found.push(unit.error(NAME, block, message).help("number it 1, 2 or 3"));
+            let message = format!("{PS0126}: {word}{number}: a loop's number is 1, 2 or 3");
+            found.push(unit.finding(&RULE.kind, block, message).help("number it 1, 2 or 3"));
         } else if begins {
             if let Some((.., outer)) = open.iter().find(|(n, ..)| *n == number) {
-                let message = format!("PS0124: DO{number} inside an open DO{number}");
-                let finding = unit.error(NAME, block, message).label(*outer, "the outer loop begins here");
+                let message = format!("{PS0124}: DO{number} inside an open DO{number}");
+                let finding =
+                    unit.finding(&RULE.kind, block, message).label(*outer, "the outer loop begins here");
                 found.push(finding.help("give the inner loop another number, 1 to 3"));
             }
             open.push((number, block, read.span));
         } else {
             let Some(place) = open.iter().rposition(|(n, ..)| *n == number) else {
-                let message = format!("PS1124: END{number} without a DO{number} before it");
-                found.push(unit.error(NAME, block, message).help("write its DO, or remove it"));
+                let message = format!("{PS1124}: END{number} without a DO{number} before it");
+                found.push(unit.finding(&RULE.kind, block, message).help("write its DO, or remove it"));
                 continue;
             };
             let crossed = open.split_off(place);
             if let Some((inner, _, begun)) = crossed.get(1) {
-                let message = format!("PS0124: END{number} while DO{inner} is open: the loops overlap");
+                let message = format!("{PS0124}: END{number} while DO{inner} is open: the loops overlap");
                 let finding =
-                    unit.error(NAME, block, message).label(*begun, format!("DO{inner} begins here"));
+                    unit.finding(&RULE.kind, block, message).label(*begun, format!("DO{inner} begins here"));
                 found.push(finding.help(format!("write END{inner} before END{number}")));
                 // Their ENDs follow this one and are not a second fault.
                 open.extend(crossed.into_iter().skip(1));
@@ -45,8 +50,9 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         }
     }
     for (number, block, _) in open {
-        let message = format!("PS0124: DO{number} has no END{number}");
-        found.push(unit.error(NAME, block, message).help(format!("write END{number} after the loop")));
+        let message = format!("{PS0124}: DO{number} has no END{number}");
+        found
+            .push(unit.finding(&RULE.kind, block, message).help(format!("write END{number} after the loop")));
     }
     found.retain(|finding| unit.is_reached[finding.block]);
     found
@@ -83,16 +89,16 @@ fn unreadable_loop_number(text: &[u8]) -> Option<i64> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn loops_pair_and_nest() {
-        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#1=#1+1\nM30\n"), [3]);
-        assert_eq!(lines(NAME, "O1\nEND1\nM30\n"), [2]);
-        assert_eq!(lines(NAME, "O1\nDO4\n#1=#500\nEND4\nM30\n"), [2]);
+        assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#1=#1+1\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\nEND1\nM30\n"), [2]);
+        assert_eq!(lines(&RULE, "O1\nDO4\n#1=#500\nEND4\nM30\n"), [2]);
         assert_eq!(
             lines(
-                NAME,
+                &RULE,
                 "O1\n#1=0\nDO1\nDO2\n#1=#1+1\nIF[#1 GT 3]GOTO 5\nEND2\nEND1\nDO1\nGOTO 5\nEND1\nN5 M30\n"
             ),
             NOWHERE,
@@ -101,14 +107,14 @@ mod tests {
 
     #[test]
     fn one_fault_is_told_once() {
-        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE(#1 LT 3)DO1\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
-        assert_eq!(lines(NAME, "O1\n#1=0\nDO1\nDO1\n#1=#1+1\nEND1\nEND1\nM30\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE(#1 LT 3)DO1\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\n#1=0\nDO1\nDO1\n#1=#1+1\nEND1\nEND1\nM30\n"), [4]);
     }
 
     #[test]
     fn overlapping_loops_are_one_fault() {
         let text = "O1\n#1=0\nWHILE[#1 LT 3]DO1\nWHILE[#1 LT 2]DO2\n#1=#1+1\nEND1\nEND2\nM30\n";
-        let found = messages(NAME, text);
+        let found = messages(&RULE, text);
         assert_eq!(found, ["PS0124: END1 while DO2 is open: the loops overlap"]);
     }
 }

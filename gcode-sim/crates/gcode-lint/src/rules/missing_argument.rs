@@ -6,15 +6,18 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control_flow::raises_alarm;
+use crate::rule::Rule;
 use crate::unset_reads::{entry_locals, unset_reads};
 use crate::vacancy::{Locals, NUMBER, States, UNSET, states, truth};
 use crate::variables::{self, VariableUse};
+use gcode_lang::diag::Severity;
 use gcode_lang::program::{OpIndex, OpKind, argument_letter};
 use gcode_lang::syntax::ast::Statement;
 
-pub(super) const NAME: &str = "missing-argument";
+pub(super) static RULE: Rule =
+    Rule::new("missing-argument", Severity::Error, "a macro call without a required argument", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut known: BTreeMap<(usize, Locals), Vec<MissingArgumentEffect>> = BTreeMap::new();
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block] && call.has_own_locals) {
@@ -25,9 +28,11 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         });
         for lack in effects {
             let finding = match lack {
-                MissingArgumentEffect::Alarm(message) => unit.error(NAME, call.block, message.clone()),
+                MissingArgumentEffect::Alarm(message) => {
+                    unit.finding(&RULE.kind, call.block, message.clone())
+                }
                 MissingArgumentEffect::DefaultsToZero(message) => {
-                    unit.warning(NAME, call.block, message.clone())
+                    unit.finding(&RULE.kind, call.block, message.clone()).with_severity(Severity::Warning)
                 }
             };
             found.push(finding.help("write the letter with its value"));
@@ -132,14 +137,14 @@ fn alarm_text(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex
 #[cfg(test)]
 mod tests {
     use super::super::testing::{lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     const DRILL: &str = "O2\nIF[#18 EQ #0]GOTO 90\nIF[#7 LE 0]THEN #3000=2(D MISSING)\n\
                          IF[#6 EQ #0]THEN #6=1.\nX#18 Z-#7 Y#25\n#30=#7*#9\nM99\nN90 #3000=1(R MISSING)\n";
 
     #[test]
     fn the_macro_says_what_it_needs() {
-        let call = |words: &str| messages(NAME, &format!("O1\nG65 P2 {words}\nM30\n{DRILL}"));
+        let call = |words: &str| messages(&RULE, &format!("O1\nG65 P2 {words}\nM30\n{DRILL}"));
         assert_eq!(call("R5. D2. F3."), [""; 0]);
         assert_eq!(call("R#500 D#501 F#502"), [""; 0], "values that only a run knows");
         assert_eq!(
@@ -160,7 +165,7 @@ mod tests {
     fn letters_that_belong_together_may_both_be_left_out() {
         let arcs = "O2\nIF[[#6 EQ #0]AND[#17 EQ #0]]GOTO 20\nIF[#6 LE 0]THEN #3000=1(K MISSING)\n\
                     IF[#17 LE 0]THEN #3000=2(Q MISSING)\nN20 X1.\nM99\n";
-        let call = |words: &str| messages(NAME, &format!("O1\nG65 P2 {words}\nM30\n{arcs}"));
+        let call = |words: &str| messages(&RULE, &format!("O1\nG65 P2 {words}\nM30\n{arcs}"));
         assert_eq!(call(""), [""; 0]);
         assert_eq!(call("K14. Q4."), [""; 0]);
         assert_eq!(
@@ -172,6 +177,6 @@ mod tests {
     #[test]
     fn each_call_is_looked_at() {
         let text = format!("O1\nG65 P2 R1. D2. F3.\nG65 P2 R1. F3.\nM30\n{DRILL}");
-        assert_eq!(lines(NAME, &text), [3]);
+        assert_eq!(lines(&RULE, &text), [3]);
     }
 }

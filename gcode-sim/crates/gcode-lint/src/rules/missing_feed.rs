@@ -1,17 +1,19 @@
 //! Rule: a feed move that no F precedes on any path, PS0011.
 use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::code_facts::AxisWords;
 use gcode_lang::program::{OpIndex, OpKind, WordOperand, Words};
 
 use super::unreadable::finding;
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "missing-feed";
+pub(super) static RULE: Rule = Rule::new("missing-feed", Severity::Error, "a feed move before any F", find);
 
 /// G01, G02 and G03, × 10.
 const FEEDS: [u32; 3] = [10, 20, 30];
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     // The caller of a program may have set the feed.
     if unit.role != Role::Main {
         return Vec::new();
@@ -21,7 +23,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         let OpKind::Words(words) = unit.op(block).kind() else { continue };
         if fed == Some(false) && !has_feed_word(words) && is_feed_move(context, words) {
             let alarm = Alarm::FeedZero.located_at(unit.op(block).span);
-            found.push(finding(context, unit, NAME, block, &alarm));
+            found.push(finding(context, unit, &RULE.kind, block, &alarm));
         }
     }
     found
@@ -79,9 +81,8 @@ fn is_feed_move(context: &CheckContext<'_>, words: &Words) -> bool {
     for word in &words.list {
         let WordOperand::G(code, row) = word.value else { continue };
         feeds |= FEEDS.contains(&code);
-        match row.row_for(context.settings.codes).map(|row| row.effect) {
-            Some(Effect::OneShot(_) | Effect::Cycle(Some(_))) | None => return false,
-            Some(_) => {}
+        if row.row_for(context.settings.codes).is_none_or(|row| row.facts.axis_words != AxisWords::Move) {
+            return false;
         }
     }
     feeds && axis && words.call().is_none()
@@ -90,16 +91,16 @@ fn is_feed_move(context: &CheckContext<'_>, words: &Words) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn no_way_has_an_f() {
-        assert_eq!(lines(NAME, "O1\nG0 X5.\nG1 X10.\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\nG0 X5.\nG1 X10.\nM30\n"), [3]);
         assert_eq!(
-            lines(NAME, "O1\nIF[#500 EQ 1]GOTO 5\nG2 X1. R5.\nN5 G1 X10.\nG1 Y5. F100.\nM30\n"),
+            lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 5\nG2 X1. R5.\nN5 G1 X10.\nG1 Y5. F100.\nM30\n"),
             [3, 4]
         );
-        assert_eq!(lines(NAME, "O1\nM98 P2\nG1 X10.\nM30\nO2\nG0 X1.\nM99\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\nM98 P2\nG1 X10.\nM30\nO2\nG0 X1.\nM99\n"), [3]);
     }
 
     #[test]
@@ -113,7 +114,7 @@ mod tests {
             "O2\nG1 X10.\nM99\n",
             "O1\nG1 G4 X1.\nG1\nG0 X5.\nG91 G1 G28 Z0.\nM30\n",
         ] {
-            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+            assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
         }
     }
 }

@@ -5,38 +5,51 @@
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal::without_point;
 use crate::parameters;
+use crate::rule::Rule;
 use gcode_lang::control::Settings;
+use gcode_lang::diag::Severity;
+use gcode_lang::program::code_facts::Measured;
+use gcode_lang::program::g_codes::{Effect, GCodeRow};
+use gcode_lang::program::modes::{Motion, Unit};
 use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
 use gcode_lang::syntax::ast::Decimal;
 
-pub(super) const NAME: &str = "missing-point";
+pub(super) static RULE: Rule = Rule::new(
+    "missing-point",
+    Severity::Warning,
+    "a number without a decimal point that counts thousandths",
+    find,
+);
 
-/// Cycles whose Q is a length: G73, G76, G83, G87. Older controls accept no decimal point there.
-const WITH_Q: [u32; 4] = [730, 760, 830, 870];
 /// Number of increments from which a peck or a dwell may be intended: many programs write `G4 X500`.
 const MIN_INTENDED_INCREMENTS: u64 = 100;
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let settings = context.settings;
     if settings.uses_calculator_input || counts_in_increments(unit, settings) {
         return Vec::new();
     }
-    let is_inch =
-        unit.program.ops().iter().any(|op| block_words(op.kind()).is_some_and(|words| has(words, &[200])));
+    let is_inch = unit.program.ops().iter().any(|op| {
+        block_words(op.kind())
+            .is_some_and(|words| g_codes(words).any(|row| row.effect == Effect::Unit(Unit::Inch)))
+    });
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let Some(words) = block_words(op.kind()).filter(|_| !parameters[block]) else { continue };
         for word in measured_words(words, settings) {
             let Some(number) = without_point(word) else { continue };
-            let is_count = (word.letter == b'Q' && words.call().is_none()) || has(words, &[40]);
+            let is_count =
+                (word.letter == b'Q' && words.call().is_none()) || measured(words) == Measured::Seconds;
             if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
             let written = spelled(word.letter, number);
             let message = format!("{written} is {}", meaning(word.letter, number, words, settings, is_inch));
             found.push(
-                unit.warning(NAME, block, message).with_span(word.span).help(format!("write {written}.")),
+                unit.finding(&RULE.kind, block, message)
+                    .with_span(word.span)
+                    .help(format!("write {written}.")),
             );
         }
     }
@@ -50,8 +63,20 @@ fn block_words(kind: &OpKind) -> Option<&Words> {
     }
 }
 
-fn has(words: &Words, codes: &[u32]) -> bool {
-    words.list.iter().any(|word| matches!(word.value, WordOperand::G(code, _) if codes.contains(&code)))
+/// The rows of a block's G codes, whatever the control.
+fn g_codes(words: &Words) -> impl Iterator<Item = &'static GCodeRow> + '_ {
+    words.list.iter().filter_map(|word| match word.value {
+        WordOperand::G(_, found) => found.row_for_any(),
+        WordOperand::Literal(_)
+        | WordOperand::Number(_)
+        | WordOperand::Variable { .. }
+        | WordOperand::Code(_) => None,
+    })
+}
+
+/// What the words of a block measure: of several codes the one that leaves fewest.
+fn measured(words: &Words) -> Measured {
+    g_codes(words).map(|row| row.facts.words.measured).max().unwrap_or(Measured::AsInMove)
 }
 
 /// Iterates over the words of a block that are lengths, angles or seconds.
@@ -66,18 +91,21 @@ fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator
 
 fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
     let axis = settings.axes.find(word.letter).is_some();
+    match measured(words) {
+        Measured::Nothing => return false,
+        Measured::Seconds => return matches!(word.letter, b'X' | b'U'),
+        Measured::ByTable => {
+            return match parameters::data_input_kind(words) {
+                Some(2 | 20) => axis,
+                Some(1 | 10..=13) => word.letter == b'R',
+                _ => false,
+            };
+        }
+        Measured::Axes => return axis,
+        Measured::AsInMove => {}
+    }
     match word.letter {
-        // G05.1: the words select lookahead functions.
-        _ if has(words, &[51]) => false,
-        letter if has(words, &[40]) => matches!(letter, b'X' | b'U'),
-        letter if has(words, &[100]) => match parameters::data_input_kind(words) {
-            Some(2 | 20) => axis,
-            Some(1 | 10..=13) => letter == b'R',
-            _ => false,
-        },
-        // I J K and P are factors.
-        _ if has(words, &[510]) => axis,
-        b'Q' => has(words, &WITH_Q),
+        b'Q' => g_codes(words).any(|row| matches!(row.effect, Effect::Cycle(Some(cycle)) if cycle.uses_q())),
         b'I' | b'J' | b'K' | b'R' => true,
         b'C' if word.comma => true,
         _ => axis,
@@ -85,7 +113,8 @@ fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
 }
 
 fn is_drilling(words: &Words) -> bool {
-    let arc = has(words, &[20, 30]);
+    let arc = g_codes(words)
+        .any(|row| matches!(row.effect, Effect::Motion(Motion::Clockwise | Motion::Counterclockwise)));
     !arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'))
 }
 
@@ -117,11 +146,9 @@ fn spelled(letter: u8, number: Decimal) -> String {
 fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
     let is_angle = match letter {
         b'A' | b'B' | b'C' => true,
-        b'R' => has(words, &[680]),
-        b'I' | b'J' | b'K' => has(words, &[682]),
-        _ => false,
+        letter => g_codes(words).any(|row| row.facts.words.angles.has(letter)),
     };
-    let is_dwell = has(words, &[40]);
+    let is_dwell = measured(words) == Measured::Seconds;
     let finer = if inch && !is_angle && !is_dwell { 10.0 } else { 1.0 };
     let per_unit = settings.increment.per_unit() * finer;
     let unit = match () {
@@ -137,11 +164,12 @@ fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn a_point_is_missing() {
-        let found = messages(NAME, "O1\nG0 X10. Y20.\nG1 Z-3 F100\nG4 X2\nG0 B90\nG65 P2 A5\nM30\nO2\nM99\n");
+        let found =
+            messages(&RULE, "O1\nG0 X10. Y20.\nG1 Z-3 F100\nG4 X2\nG0 B90\nG65 P2 A5\nM30\nO2\nM99\n");
         assert_eq!(
             found,
             ["Z-3 is -0.003 mm", "X2 is 0.002 seconds", "B90 is 0.09 degrees", "A5 is 0.005 for the macro"]
@@ -152,9 +180,9 @@ mod tests {
     fn offsets_and_angles_of_codes_are_measures_too() {
         let text =
             "O1\nG0 X1.\nG10 L2 P1 X-100 Y0\nG10 L10 P1 R50\nG68 X0 Y0 R45\nG69\nG51 X10 Y0 P2000\nM30\n";
-        let found = messages(NAME, text);
+        let found = messages(&RULE, text);
         assert_eq!(found, ["X-100 is -0.1 mm", "R50 is 0.05 mm", "R45 is 0.045 degrees", "X10 is 0.01 mm"]);
-        let tilted = messages(NAME, "O1\nG68.2 X0 Y0 Z0 I0 J90 K0\nG0 Z5.\nM30\n");
+        let tilted = messages(&RULE, "O1\nG68.2 X0 Y0 Z0 I0 J90 K0\nG0 Z5.\nM30\n");
         assert_eq!(tilted, ["J90 is 0.09 degrees"]);
     }
 
@@ -169,7 +197,7 @@ mod tests {
             "O1\nG0 X1.\nG10 L52\nN6004 Q0 R1\nN1241 P1 R5.\nG11\nM30\n",
             "O1\nG0 X1.\nG10 L3\nP1 L10\nG11\nM30\n",
         ] {
-            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+            assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
         }
     }
 }

@@ -1,14 +1,18 @@
-//! Calls of programs that are neither in the file nor in the folders: PS0076, or PS0310 by name.
+//! Rule: a call of a program that is neither in the file nor in the folders, PS0076, or PS0310 by name.
 use crate::calls::CalledProgramName;
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::rule::Rule;
+use gcode_lang::alarm::kinds::{PS0076, PS0310};
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "missing-program";
+pub(super) static RULE: Rule =
+    Rule::new("missing-program", Severity::Error, "a call of a program that is not found", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut reported: Vec<&CalledProgramName> = Vec::new();
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
-        // Each program once: what is missing is one thing, however often it is called.
+        // One finding per missing program, regardless of the number of calls.
         if context.called_unit(call).is_some()
             || call.target != CalledProgramName::Missing && reported.contains(&&call.target)
         {
@@ -21,13 +25,13 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             // M98 Q alone starts in this program.
             CalledProgramName::Missing if call.start.is_some() => continue,
             CalledProgramName::Missing => unit
-                .error(NAME, call.block, "PS0076: a call without a program number")
+                .finding(&RULE.kind, call.block, format!("{PS0076}: a call without a program number"))
                 .help("write the program number after P"),
             CalledProgramName::Number(_) => unit
-                .error(NAME, call.block, format!("PS0076: program {label} is not found"))
+                .finding(&RULE.kind, call.block, format!("{PS0076}: program {label} is not found"))
                 .help("give the folder that holds it with --lib"),
             CalledProgramName::Name(_) => unit
-                .error(NAME, call.block, format!("PS0310: program {label} is not found"))
+                .finding(&RULE.kind, call.block, format!("{PS0310}: program {label} is not found"))
                 .help("give the folder that holds it with --lib, or put it into the same file"),
         };
         found.push(finding.with_span(call.span));
@@ -38,12 +42,12 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 #[cfg(test)]
 mod tests {
     use super::super::testing::lines;
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn called_programs_must_be_there() {
         let text =
             "O1\nM98 P30002\nG65 P3 A1.\nM98 P2 L2\n#1=2\nG65 P#1\nG65 A1.\nG65 P3 A2.\nM30\nO2\nM99\n";
-        assert_eq!(lines(NAME, text), [3, 7]);
+        assert_eq!(lines(&RULE, text), [3, 7]);
     }
 }

@@ -5,17 +5,24 @@ use gcode_control::static_eval::VariableTable;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 
 use super::unreadable::finding;
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "no-such-variable";
+pub(super) static RULE: Rule = Rule::new(
+    "no-such-variable",
+    Severity::Error,
+    "a variable that does not exist, or cannot be read or written",
+    find,
+);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let known = VariableTable::new(context.settings);
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
         let mut report = |alarm: LocatedAlarm| {
             // A limit of the simulator is not a fault of the program.
             if !matches!(alarm.node, Alarm::NotSimulated { .. }) {
-                found.push(finding(context, unit, NAME, index, &alarm));
+                found.push(finding(context, unit, &RULE.kind, index, &alarm));
             }
         };
         for read in variables::block_uses(block).reads {
@@ -37,20 +44,20 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     /// Locals are #1 to #33; #5021 and up are positions; #3000 is write-only.
     #[test]
     fn what_is_not_there_or_not_for_that() {
         let text = "O1\n#34=1\n#5021=5\n#4001=1\n#0=1\n#1=#99\nG0 X#450\n#1=#3000\n#[30+4]=1\nM30\n";
-        assert_eq!(lines(NAME, text), [2, 3, 4, 5, 6, 7, 8, 9]);
-        let told: Vec<_> = messages(NAME, text).iter().map(|m| m[..6].to_owned()).collect();
+        assert_eq!(lines(&RULE, text), [2, 3, 4, 5, 6, 7, 8, 9]);
+        let told: Vec<_> = messages(&RULE, text).iter().map(|m| m[..6].to_owned()).collect();
         assert_eq!(told, ["PS0115", "PS0116", "PS0116", "PS0116", "PS0115", "PS0115", "PS1115", "PS0115"]);
     }
 
     #[test]
     fn what_is_there_is_left_alone() {
         let text = "O1\n#33=1\n#100=#0\n#199=#5021\n#500=#999\n#5221=0\n#3006=1(LOOK)\n#1=10\n#[#1]=#[#1+30]\nIF[#3100 EQ #0]GOTO 9\n#3000=1(STOP)\nN9 M30\n";
-        assert_eq!(lines(NAME, text), NOWHERE);
+        assert_eq!(lines(&RULE, text), NOWHERE);
     }
 }

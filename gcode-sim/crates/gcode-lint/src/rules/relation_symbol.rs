@@ -3,24 +3,27 @@ use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 
 use super::unreadable::{alarm_blocks, finding, refused_blocks};
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "relation-symbol";
+pub(super) static RULE: Rule =
+    Rule::new("relation-symbol", Severity::Error, "= < > instead of EQ, LT, GT …", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let of_all = alarm_blocks(unit).map(|(block, alarm)| (block, alarm.clone()));
     let all = of_all.chain(refused_blocks(context, unit));
     let signs = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));
-    signs.map(|(block, alarm)| finding(context, unit, NAME, block, &alarm)).collect()
+    signs.map(|(block, alarm)| finding(context, unit, &RULE.kind, block, &alarm)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::testing::lines;
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn symbols_compare_nothing() {
         let text = "O1\n#1=1\nIF[#1=2]GOTO 5\nIF[#1<=4]GOTO 5\nWHILE[#1>4]DO1\nIF[#1 GT 4]GOTO 5\nN5 M30\n";
-        assert_eq!(lines(NAME, text), [3, 4, 5]);
+        assert_eq!(lines(&RULE, text), [3, 4, 5]);
     }
 }

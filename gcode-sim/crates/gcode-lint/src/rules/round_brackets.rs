@@ -3,22 +3,25 @@ use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 
 use super::unreadable::{alarm_blocks, finding};
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "round-brackets";
+pub(super) static RULE: Rule =
+    Rule::new("round-brackets", Severity::Error, "( ) instead of [ ]: round brackets are a comment", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let alarms = alarm_blocks(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RoundBrackets { .. }));
-    alarms.map(|(block, alarm)| finding(context, unit, NAME, block, alarm)).collect()
+    alarms.map(|(block, alarm)| finding(context, unit, &RULE.kind, block, alarm)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::testing::lines;
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn values_and_conditions_need_square_brackets() {
         let text = "O1\n#1=ABS(#2)\nX(#1+1.)\nIF(#1 EQ 2)GOTO 5\n#3=[2.*3.] (#1+1.)\nN5 M30\n";
-        assert_eq!(lines(NAME, text), [2, 3, 4]);
+        assert_eq!(lines(&RULE, text), [2, 3, 4]);
     }
 }

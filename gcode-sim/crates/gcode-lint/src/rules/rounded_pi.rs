@@ -5,17 +5,19 @@ use std::f64::consts::PI;
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::expressions;
 use crate::literal::constant;
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind};
 
-pub(super) const NAME: &str = "rounded-pi";
+pub(super) static RULE: Rule = Rule::new("rounded-pi", Severity::Warning, "a rounded π as a factor", find);
 
 /// Numbers this close to π are meant as π; 22/7 differs by 0.0013.
 const PI_TOLERANCE: f64 = 0.002;
 /// Six decimals are exact enough: 1 µm on a diameter of 1 m.
 const PI_PRECISION: f64 = 1e-6;
 
-pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
         let mut factors = Vec::new();
@@ -32,7 +34,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
                 if deviation < 0.0 { "small" } else { "large" },
                 (pi - PI).abs() * 500.0
             );
-            found.push(unit.warning(NAME, index, message).with_span(span).help("write 3.14159265"));
+            found.push(unit.finding(&RULE.kind, index, message).with_span(span).help("write 3.14159265"));
         }
     }
     found
@@ -67,25 +69,25 @@ fn collect_factors(expr: &Expr, found: &mut Vec<(f64, Span)>) {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn a_factor_near_pi_is_one_if_it_is_exact() {
         let text = "O1\n#1=500.\n#2=3.14*#1\n#3=#1*3.1416/2.\n#4=FIX[#1/[22/7]]\n#5=3.14159265*#1\nX[3.142*#1]\n\
                     IF[#2*3.14 GT 5.]THEN #2=#1/3.14\n#6=355/113*#1\nM30\n";
-        assert_eq!(lines(NAME, text), [3, 4, 5, 7, 8, 8]);
+        assert_eq!(lines(&RULE, text), [3, 4, 5, 7, 8, 8]);
     }
 
     #[test]
     fn a_length_near_pi_is_a_length() {
-        assert_eq!(lines(NAME, "O1\n#1=3.14\nX3.14\n#2=#1+3.14\n#3=#1*3.15\nM30\n"), [0u32; 0]);
+        assert_eq!(lines(&RULE, "O1\n#1=3.14\nX3.14\n#2=#1+3.14\n#3=#1*3.15\nM30\n"), [0u32; 0]);
     }
 
     /// 3.14 is π less 0.00159265: 0.0507 % of it, and 0.796 mm of 500·π.
     #[test]
     fn what_it_costs_is_told() {
         assert_eq!(
-            messages(NAME, "O1\n#2=3.14*500.\nM30\n"),
+            messages(&RULE, "O1\n#2=3.14*500.\nM30\n"),
             ["3.14 is used for π: 0.0507 % too small, an error of 0.796 mm round a diameter of 500 mm"]
         );
     }

@@ -6,10 +6,13 @@ use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{OpKind, m_codes};
 
 use super::unreadable::finding;
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "several-m-codes";
+pub(super) static RULE: Rule =
+    Rule::new("several-m-codes", Severity::Error, "more M codes in a block than the control accepts", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let settings = context.settings;
     let max = if settings.allows_three_m_codes { 3 } else { 1 };
     let mut found = Vec::new();
@@ -26,12 +29,17 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             {
                 if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
                     let alarm = Alarm::PluralM { first, second: code }.located_at(word.span);
-                    found.push(finding(context, unit, NAME, block, &alarm));
+                    found.push(finding(context, unit, &RULE.kind, block, &alarm));
                 } else {
                     let message =
                         format!("M{first} is lost: of several M codes in a block only the last counts");
                     let help = "write each in a block of its own; M3B=1 is for a control that accepts three";
-                    found.push(unit.warning(NAME, block, message).with_span(word.span).help(help));
+                    found.push(
+                        unit.finding(&RULE.kind, block, message)
+                            .with_severity(Severity::Warning)
+                            .with_span(word.span)
+                            .help(help),
+                    );
                 }
             }
             kept.push(code);
@@ -43,17 +51,17 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn the_first_is_lost_or_would_have_stopped() {
-        let found = messages(NAME, "O1\nM3 S100 M8\nM30 M5\nM30\n");
+        let found = messages(&RULE, "O1\nM3 S100 M8\nM30 M5\nM30\n");
         assert_eq!(found[0], "M3 is lost: of several M codes in a block only the last counts");
         assert!(found[1].starts_with("PS0335: ") && found.len() == 2, "{found:?}");
     }
 
     #[test]
     fn one_and_a_call_are_one() {
-        assert_eq!(lines(NAME, "O1\nM98 P2 M8\nM8\nGOTO 5\nM3 M8\nN5 M30\nO2\nM9 M99\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nM98 P2 M8\nM8\nGOTO 5\nM3 M8\nN5 M30\nO2\nM9 M99\n"), NOWHERE);
     }
 }

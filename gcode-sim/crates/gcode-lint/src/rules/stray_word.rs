@@ -2,14 +2,16 @@
 //! (PS0009).
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
 
 use super::unreadable::finding;
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "stray-word";
+pub(super) static RULE: Rule =
+    Rule::new("stray-word", Severity::Error, "a word that no block of this control accepts", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
@@ -18,7 +20,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         }
         let stray = words.list.iter().filter_map(|word| Some((word, alarm(context, words, word)?)));
         found.extend(stray.map(|(word, alarm)| {
-            let finding = finding(context, unit, NAME, block, &alarm.located_at(word.span));
+            let finding = finding(context, unit, &RULE.kind, block, &alarm.located_at(word.span));
             match (word.comma, word.letter) {
                 (true, _) => finding.help("remove the comma: words are not separated by commas"),
                 (_, b'E') => {
@@ -33,21 +35,21 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 
 fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Option<Alarm> {
     let axes = &context.settings.axes;
-    let has = |effect: Effect| {
-        words.list.iter().any(|word| match word.value {
-            WordOperand::G(_, row) => {
-                row.row_for(context.settings.codes).is_some_and(|row| row.effect == effect)
-            }
-            _ => false,
-        })
-    };
+    let mut codes = words.list.iter().filter_map(|word| match word.value {
+        WordOperand::G(_, found) => found.row_for(context.settings.codes),
+        WordOperand::Literal(_)
+        | WordOperand::Number(_)
+        | WordOperand::Variable { .. }
+        | WordOperand::Code(_) => None,
+    });
+    let is_of_code = codes.any(|row| row.facts.words.own.has(word.letter));
     if word.comma {
         // `,A` is an angle of direct drawing dimension programming, which the simulator does not execute.
         return (!matches!(word.letter, b'R' | b'C' | b'A')).then_some(Alarm::CornerWords);
     }
     let refused = match word.letter {
-        b'E' => !has(Effect::Smoothness),
-        b'U' if has(Effect::OneShot(OneShot::Dwell)) => false,
+        _ if is_of_code => false,
+        b'E' => true,
         b'A' | b'B' | b'C' | b'U' | b'V' | b'W' | b'X' | b'Y' | b'Z' => axes.find(word.letter).is_none(),
         _ => false,
     };
@@ -57,20 +59,20 @@ fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Optio
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn commas_and_exponents_are_no_words() {
         let text = "O1\nG0 X10., Y5.\nG1 X1.E3 F100.\nG0 U5.\nM30\n";
-        assert_eq!(lines(NAME, text), [2, 3, 4]);
-        let found = messages(NAME, text);
+        assert_eq!(lines(&RULE, text), [2, 3, 4]);
+        let found = messages(&RULE, text);
         assert!(found[0].starts_with("PS0053: ") && found[1].starts_with("PS0009: "), "{found:?}");
     }
 
     #[test]
     fn corners_dwells_and_arguments_are_left_alone() {
         assert_eq!(
-            lines(NAME, "O1\nG1 X10.,R2. F100.\nX20.,C1.\nG4 U1.\nG65 P2 E3. U1.\nM30\nO2\nM99\n"),
+            lines(&RULE, "O1\nG1 X10.,R2. F100.\nX20.,C1.\nG4 U1.\nG65 P2 E3. U1.\nM30\nO2\nM99\n"),
             NOWHERE
         );
     }

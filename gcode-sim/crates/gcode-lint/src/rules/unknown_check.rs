@@ -1,10 +1,13 @@
 //! Rule: `(CHECK-OFF NAME)` with a name that is not a rule, which suppresses nothing.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::rule::Rule;
 use crate::suppression::Suppressions;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "unknown-check";
+pub(super) static RULE: Rule =
+    Rule::new("unknown-check", Severity::Warning, "CHECK-OFF with a name that is not a rule", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let suppressions = Suppressions::new(unit);
     let known = |name: &str| context.rules.iter().any(|rule| rule.eq_ignore_ascii_case(name));
     let unknown = suppressions.names().filter(|(name, _)| !known(name)).map(|(name, span)| {
@@ -13,27 +16,28 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             "" => "CHECK-OFF does not name a rule".to_owned(),
             name => format!("{name} is not a rule: CHECK-OFF suppresses nothing"),
         };
-        unit.warning(NAME, block, message).with_span(span).help("see docs/checks.md for the rules")
+        unit.finding(&RULE.kind, block, message).with_span(span).help("see docs/checks.md for the rules")
     });
     unknown.collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::doubled_n;
     use super::super::testing::{NOWHERE, lines};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn names_must_be_those_of_rules() {
         assert_eq!(
-            lines(NAME, "O1(CHECK-OFF DOUBLED-M)\n(CHECK-OFF)\nN1 M8(CHECK-OFF DOUBLED-N)\nM30\n"),
+            lines(&RULE, "O1(CHECK-OFF DOUBLED-M)\n(CHECK-OFF)\nN1 M8(CHECK-OFF DOUBLED-N)\nM30\n"),
             [1, 2]
         );
     }
 
     #[test]
     fn a_silenced_rule_is_silent_on_its_block_or_in_its_program() {
-        assert_eq!(lines("doubled-n", "O1\nN1 M8\nN1 M9 (CHECK-OFF DOUBLED-N)\nN2\nN2\nM30\n"), [5]);
-        assert_eq!(lines("doubled-n", "O1(PART)\n(CHECK-OFF DOUBLED-N)\nN1 M8\nN1 M9\nM30\n"), NOWHERE);
+        assert_eq!(lines(&doubled_n::RULE, "O1\nN1 M8\nN1 M9 (CHECK-OFF DOUBLED-N)\nN2\nN2\nM30\n"), [5]);
+        assert_eq!(lines(&doubled_n::RULE, "O1(PART)\n(CHECK-OFF DOUBLED-N)\nN1 M8\nN1 M9\nM30\n"), NOWHERE);
     }
 }

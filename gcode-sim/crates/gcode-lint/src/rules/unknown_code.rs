@@ -11,15 +11,19 @@ use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::{LoweredWord, OpKind, WordOperand};
 
 use super::unreadable::{alarm_blocks, finding, refused_blocks};
+use crate::rule::Rule;
+use gcode_lang::alarm::kinds::PS0010;
+use gcode_lang::diag::Severity;
 
-pub(super) const NAME: &str = "unknown-code";
+pub(super) static RULE: Rule =
+    Rule::new("unknown-code", Severity::Error, "a G or M code the control does not have", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let written = alarm_blocks(unit).map(|(block, alarm)| (block, alarm.clone()));
     let all = written.chain(refused_blocks(context, unit));
     let improper = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::ImproperGCode { .. }));
     let mut found: Vec<_> =
-        improper.map(|(block, alarm)| finding(context, unit, NAME, block, &alarm)).collect();
+        improper.map(|(block, alarm)| finding(context, unit, &RULE.kind, block, &alarm)).collect();
     let mut reported = BTreeSet::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
@@ -27,9 +31,13 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             let Some((name, message, certain)) = describe_code(context, word) else { continue };
             if certain {
                 let help = "correct it, or name the macro it calls with --code";
-                found.push(unit.error(NAME, block, message).with_span(word.span).help(help));
+                found.push(unit.finding(&RULE.kind, block, message).with_span(word.span).help(help));
             } else if reported.insert(name) {
-                found.push(unit.note(NAME, block, message).with_span(word.span));
+                found.push(
+                    unit.finding(&RULE.kind, block, message)
+                        .with_severity(Severity::Note)
+                        .with_span(word.span),
+                );
             }
         }
     }
@@ -45,7 +53,7 @@ fn describe_code(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(Stri
             let calls = context.settings.code_calls.find_call(b'G', code).is_some();
             match row.map(|row| row.effect) {
                 _ if calls => None,
-                None => Some((name.clone(), format!("PS0010: the control has no {name}"), true)),
+                None => Some((name.clone(), format!("{PS0010}: the control has no {name}"), true)),
                 Some(Effect::NotSimulated) => {
                     let help = row.map_or("", |row| row.help);
                     Some((name.clone(), format!("{name} ({help}) is not simulated"), false))
@@ -76,10 +84,10 @@ fn describe_code(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(Stri
 #[cfg(test)]
 mod tests {
     use super::super::testing::lines;
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn every_unknown_g_and_each_machine_m_once() {
-        assert_eq!(lines(NAME, "O1\nG0 G154 P1\nG12 I5.\nG54.1 P3\nM88\nM88\nM8\nG#1\nM30\n"), [2, 3, 5]);
+        assert_eq!(lines(&RULE, "O1\nG0 G154 P1\nG12 I5.\nG54.1 P3\nM88\nM88\nM8\nG#1\nM30\n"), [2, 3, 5]);
     }
 }

@@ -1,11 +1,14 @@
 //! Rule: blocks that are never reached: after M30, M99, GOTO or #3000, without a jump to them.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control_flow::raises_alarm;
+use crate::rule::Rule;
+use gcode_lang::diag::Severity;
 use gcode_lang::program::{OpIndex, OpKind, Statement};
 
-pub(super) const NAME: &str = "unreachable";
+pub(super) static RULE: Rule =
+    Rule::new("unreachable", Severity::Warning, "blocks that are never reached", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found: Vec<RuleFinding> = Vec::new();
     let ops = unit.program.ops();
     let mut block = 0;
@@ -26,7 +29,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
                 format!("this block and the following ones, up to line {}, are never reached", line(*last))
             };
             let help = "remove it, or jump to its number";
-            found.push(unit.warning(NAME, *first, message).help(help));
+            found.push(unit.finding(&RULE.kind, *first, message).help(help));
         }
         block = end;
     }
@@ -48,33 +51,33 @@ fn is_harmless(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn what_stands_behind_the_end_needs_a_jump() {
-        assert_eq!(lines(NAME, "O1\nG0 X1.\nM30\nG0 X2.\nM30\n"), [4]);
-        assert_eq!(lines(NAME, "O1\n#1=1\nIF[#1 EQ 2]GOTO 9\nM30\n(REMARK)\nN9 G0 X2.\nM30\n"), NOWHERE);
-        assert_eq!(lines(NAME, "O1\n#1=1\nGOTO#1\nN1 G0\nM30\nN9 G0 X2.\nM30\n"), NOWHERE, "#1 may be 9");
-        assert_eq!(lines(NAME, "O1\n/M30\nG0 X2.\nM30\n"), NOWHERE, "the switch may be on");
+        assert_eq!(lines(&RULE, "O1\nG0 X1.\nM30\nG0 X2.\nM30\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\n#1=1\nIF[#1 EQ 2]GOTO 9\nM30\n(REMARK)\nN9 G0 X2.\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\n#1=1\nGOTO#1\nN1 G0\nM30\nN9 G0 X2.\nM30\n"), NOWHERE, "#1 may be 9");
+        assert_eq!(lines(&RULE, "O1\n/M30\nG0 X2.\nM30\n"), NOWHERE, "the switch may be on");
     }
 
     #[test]
     fn an_end_behind_an_alarm_is_no_fault() {
-        assert_eq!(lines(NAME, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
-        assert_eq!(lines(NAME, "O1\n#3000=1(NO)\nG0 X1.\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\n#3000=1(NO)\nG0 X1.\nM30\n"), [3]);
         let left = "O1\nN3 WHILE[#500 LT 3]DO1\n#500=#500+1\nGOTO 3\nEND1\nM30\n";
-        assert_eq!(lines(NAME, left), NOWHERE, "a loop needs its END");
+        assert_eq!(lines(&RULE, left), NOWHERE, "a loop needs its END");
     }
 
     #[test]
     fn a_called_program_may_return_behind_the_end() {
-        assert_eq!(lines(NAME, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99 P9\n"), NOWHERE);
-        assert_eq!(lines(NAME, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99 P9\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99\n"), [4]);
     }
 
     #[test]
     fn a_run_of_blocks_is_one_finding() {
-        let found = messages(NAME, "O1\nGOTO 5\nG0 X1.\nG0 X2.\nN5 M30\n");
+        let found = messages(&RULE, "O1\nGOTO 5\nG0 X1.\nG0 X2.\nN5 M30\n");
         assert_eq!(found, ["this block and the following ones, up to line 4, are never reached"]);
     }
 }

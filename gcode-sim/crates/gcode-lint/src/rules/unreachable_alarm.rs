@@ -1,13 +1,16 @@
 //! Rule: a #3000 that is never reached, so that the test it belongs to has no effect.
 use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 use crate::control_flow::raises_alarm;
+use crate::rule::Rule;
 use crate::vacancy::{Locals, states, truth};
 use crate::variables;
+use gcode_lang::diag::Severity;
 use gcode_lang::syntax::ast::Statement;
 
-pub(super) const NAME: &str = "unreachable-alarm";
+pub(super) static RULE: Rule =
+    Rule::new("unreachable-alarm", Severity::Warning, "a #3000 that is never reached", find);
 
-pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     // The result must hold for all calls of a program, also those outside the check.
     let entry = if unit.role == Role::Main { Locals::UNSET } else { Locals::ANYTHING };
     let states = states(unit, entry);
@@ -16,7 +19,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         if !unit.is_reached[block] {
             let help = "jump to its number, or remove it";
             let message = "this alarm is never reached, so it never stops the program";
-            found.push(unit.warning(NAME, block, message).help(help));
+            found.push(unit.finding(&RULE.kind, block, message).help(help));
             continue;
         }
         let is_never_raised = match (&states[block], variables::statement(&unit.blocks, block)) {
@@ -29,7 +32,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         if is_never_raised {
             let message = "this alarm is never raised: the preceding blocks decide its condition";
             let help = "test the variable before it is set";
-            found.push(unit.warning(NAME, block, message).with_span(op.span).help(help));
+            found.push(unit.finding(&RULE.kind, block, message).with_span(op.span).help(help));
         }
     }
     found
@@ -38,19 +41,19 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn an_alarm_needs_a_way_to_it() {
         let head = "O2\nIF[#24 EQ #0]GOTO 90\nX#24\nM99\n";
-        assert_eq!(lines(NAME, &format!("{head}N90 #3000=1(NO X)\n")), NOWHERE);
-        assert_eq!(lines(NAME, &format!("{head}N90 M99\nN91 #3000=1(NO X)\n")), [6]);
+        assert_eq!(lines(&RULE, &format!("{head}N90 #3000=1(NO X)\n")), NOWHERE);
+        assert_eq!(lines(&RULE, &format!("{head}N90 M99\nN91 #3000=1(NO X)\n")), [6]);
     }
 
     #[test]
     fn a_condition_that_is_decided_already_raises_nothing() {
-        assert_eq!(lines(NAME, "O2\nIF[#24 EQ #0]THEN #24=0\nIF[#24 EQ #0]THEN #3000=1(NO X)\nM99\n"), [3]);
-        assert_eq!(lines(NAME, "O2\n#24=1.\nIF[#24 EQ #0]GOTO 9\nM99\nN9 #3000=1(NO X)\n"), [5]);
-        assert_eq!(lines(NAME, "O2\nIF[#24 EQ #0]THEN #3000=1(NO X)\nX#24\nM99\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O2\nIF[#24 EQ #0]THEN #24=0\nIF[#24 EQ #0]THEN #3000=1(NO X)\nM99\n"), [3]);
+        assert_eq!(lines(&RULE, "O2\n#24=1.\nIF[#24 EQ #0]GOTO 9\nM99\nN9 #3000=1(NO X)\n"), [5]);
+        assert_eq!(lines(&RULE, "O2\nIF[#24 EQ #0]THEN #3000=1(NO X)\nX#24\nM99\n"), NOWHERE);
     }
 }

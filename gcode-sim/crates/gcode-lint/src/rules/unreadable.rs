@@ -1,17 +1,21 @@
 //! Rule: a block that raises an alarm as it is read: unreadable text, or words that exclude each other.
 use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control_flow::is_loop_alarm;
+use crate::rule::Rule;
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
+use gcode_lang::diag::{FindingKind, Severity};
 use gcode_lang::program::{OpKind, Statement};
 use gcode_lang::source::Spanned;
 
-pub(super) const NAME: &str = "unreadable";
+pub(super) static RULE: Rule =
+    Rule::new("unreadable", Severity::Error, "a block that raises an alarm as it is read", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let alarms = alarm_blocks(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
-    let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(context, unit, NAME, block, alarm)).collect();
+    let mut found: Vec<_> =
+        alarms.map(|(block, alarm)| finding(context, unit, &RULE.kind, block, alarm)).collect();
     let refused = refused_blocks(context, unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
-    found.extend(refused.map(|(block, alarm)| finding(context, unit, NAME, block, &alarm)));
+    found.extend(refused.map(|(block, alarm)| finding(context, unit, &RULE.kind, block, &alarm)));
     found
 }
 
@@ -50,12 +54,12 @@ fn has_own_rule(alarm: &Alarm) -> bool {
 pub(super) fn finding(
     context: &CheckContext<'_>,
     unit: &ProgramUnit<'_>,
-    name: &'static str,
+    kind: &'static FindingKind,
     block: usize,
     alarm: &Spanned<Alarm>,
 ) -> RuleFinding {
     let row = alarm.node.row();
-    let found = unit.error(name, block, format!("{}: {}", row.code, row.message)).with_span(alarm.span);
+    let found = unit.finding(kind, block, format!("{}: {}", row.code, row.message)).with_span(alarm.span);
     match remedy(&alarm.node, alarm.span, context.memory.sources()) {
         Some(help) => found.help(help),
         None => found,
@@ -65,22 +69,22 @@ pub(super) fn finding(
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn names_the_alarm_a_control_raises() {
-        let found = messages(NAME, "O1\nG0 X..5\nG0 X1. #1=5\nM30\n");
+        let found = messages(&RULE, "O1\nG0 X..5\nG0 X1. #1=5\nM30\n");
         assert!(found[0].starts_with("PS0007: ") && found[1].starts_with("PS0127: "), "{found:?}");
     }
 
     #[test]
     fn an_if_without_then_is_for_other_controls() {
-        let found = messages(NAME, "O1\nIF[#1 EQ 0]#2=1\nM30\n");
+        let found = messages(&RULE, "O1\nIF[#1 EQ 0]#2=1\nM30\n");
         assert!(found[0].starts_with("PS1137: "), "{found:?}");
     }
 
     #[test]
     fn what_nothing_reaches_alarms_nobody() {
-        assert_eq!(lines(NAME, "O1\nGOTO 5\nWRITTEN BY HAND\nN5 M30\nNOTES, FREE TEXT\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nGOTO 5\nWRITTEN BY HAND\nN5 M30\nNOTES, FREE TEXT\n"), NOWHERE);
     }
 }

@@ -2,15 +2,18 @@
 use std::collections::BTreeMap;
 
 use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
+use crate::rule::Rule;
 use crate::unset_reads::{entry_locals, unset_reads};
 use crate::vacancy::{Locals, states};
 use crate::variables::VariableUse;
+use gcode_lang::diag::Severity;
 use gcode_lang::program::{OpIndex, argument_letter};
 use gcode_lang::source::Span;
 
-pub(super) const NAME: &str = "unset-variable";
+pub(super) static RULE: Rule =
+    Rule::new("unset-variable", Severity::Warning, "a local variable that is read before it is set", find);
 
-pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut unset: BTreeMap<(OpIndex, u32), (Span, VariableUse)> = BTreeMap::new();
     match unit.role {
         Role::Resident => {}
@@ -44,7 +47,7 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         };
         let message = format!("#{local} is read but never set: {so}");
         let help = format!("set #{local} before it is read, or correct its number");
-        found.push(unit.warning(NAME, block, message).with_span(span).help(help));
+        found.push(unit.finding(&RULE.kind, block, message).with_span(span).help(help));
     }
     found
 }
@@ -52,14 +55,14 @@ pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
-    use super::NAME;
+    use super::RULE;
 
     #[test]
     fn what_was_never_set_is_told() {
-        assert_eq!(lines(NAME, "O1\n#1=2.\nG0 X#1 Y#2\n#3=#4*2\n#5=#6\nM30\n"), [3, 4, 5]);
-        assert_eq!(lines(NAME, "O1\nIF[#9 EQ #0]THEN #10=#9*2\nM30\n"), [2]);
-        assert_eq!(lines(NAME, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
-        let found = messages(NAME, "O1\nG0 Y#2\nM30\n");
+        assert_eq!(lines(&RULE, "O1\n#1=2.\nG0 X#1 Y#2\n#3=#4*2\n#5=#6\nM30\n"), [3, 4, 5]);
+        assert_eq!(lines(&RULE, "O1\nIF[#9 EQ #0]THEN #10=#9*2\nM30\n"), [2]);
+        assert_eq!(lines(&RULE, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
+        let found = messages(&RULE, "O1\nG0 Y#2\nM30\n");
         assert_eq!(found, ["#2 is read but never set: its word is ignored"]);
     }
 
@@ -78,15 +81,15 @@ mod tests {
             "O1\nIF[#9 NE #0]THEN #10=#9*2\nIF[[#9 NE #0] AND [#9 LT 5]]GOTO 5\nN5 M30\n",
             "O1\nIF[[#9 EQ #0] OR [#9 LT 5]]GOTO 5\nN5 M30\n",
         ] {
-            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+            assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
         }
     }
 
     #[test]
     fn the_first_pass_of_a_loop_counts() {
-        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nX#2\n#2=5.\n#1=#1+1\nEND1\nM30\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nX#2\n#2=5.\n#1=#1+1\nEND1\nM30\n"), [4]);
         assert_eq!(
-            lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#2=5.\nX#2\n#1=#1+1\nEND1\nX#2\nM30\n"),
+            lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#2=5.\nX#2\n#1=#1+1\nEND1\nX#2\nM30\n"),
             NOWHERE
         );
     }
@@ -94,7 +97,7 @@ mod tests {
     #[test]
     fn a_macro_knows_what_its_calls_pass() {
         let called = "O2\nX#24\n#30=#24+#31\nM99\n";
-        assert_eq!(lines(NAME, &format!("O1\nG65 P2 X1.\nM30\n{called}")), [6]);
-        assert_eq!(lines(NAME, "O1\nG65 P2 I1. I2.\nM30\nO2\nX#4 Y#7\nM99\n"), NOWHERE);
+        assert_eq!(lines(&RULE, &format!("O1\nG65 P2 X1.\nM30\n{called}")), [6]);
+        assert_eq!(lines(&RULE, "O1\nG65 P2 I1. I2.\nM30\nO2\nX#4 Y#7\nM99\n"), NOWHERE);
     }
 }

@@ -1,4 +1,4 @@
-//! Gauge blocks: sets as data, the stack with the fewest blocks nearest to a height, and what it makes of a sine table's angle.
+//! Gauge blocks: the sets, the stack nearest to a height, and the angle that it sets on a sine table.
 mod sets;
 mod sine;
 mod stack;

@@ -1,40 +1,47 @@
-//! The sets of gauge blocks that job files can name: which blocks lie in each box.
+//! Sets of gauge blocks that job files can name, and the blocks in each box.
 //!
-//! DIN EN ISO 3650 says what a block is and leaves the composition of sets to the makers. Those here are the usual ones: the
-//! sets 1 to 4 of GB/T 6093 (91, 83, 46 and 38 blocks), and what catalogues list under 32, 47, 76, 87, 88, 103 and 112.
+//! DIN EN ISO 3650 defines a block and leaves the composition of sets to the makers. The sets here are the
+//! usual ones: sets 1 to 4 of GB/T 6093 (91, 83, 46 and 38 blocks), and those that catalogues list under 32,
+//! 47, 76, 87, 88, 103 and 112.
 use std::fmt;
 
-/// The thickness of a block or a stack, in half micrometres: a whole number of them for every block there is.
+/// Thickness of a block or a stack, in half micrometres; every block is a whole number of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Thickness(pub u32);
 
 impl Thickness {
+    /// Returns the thickness in mm.
     pub fn mm(self) -> f64 {
         f64::from(self.0) / 2000.0
     }
 }
 
 impl fmt::Display for Thickness {
-    /// In mm, as it is engraved on the block: `1.0005`, `1.01`, `2.5`, `100`.
+    /// Writes mm as engraved on the block: `1.0005`, `1.01`, `2.5`, `100`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let text = format!("{}.{:04}", self.0 / 2000, self.0 % 2000 * 5);
         f.write_str(text.trim_end_matches('0').trim_end_matches('.'))
     }
 }
 
-/// Blocks that grow by equal steps.
+/// Blocks in equal steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Series {
+    /// Thinnest block.
     pub first: Thickness,
+    /// Difference between neighbouring blocks.
     pub step: Thickness,
+    /// Number of blocks, at least 1.
     pub count: u32,
 }
 
 impl Series {
+    /// Returns the thickest block.
     pub fn last(&self) -> Thickness {
         Thickness(self.first.0 + self.step.0 * (self.count - 1))
     }
 
+    /// Returns the blocks from the thinnest to the thickest.
     pub fn blocks(self) -> impl Iterator<Item = Thickness> {
         (0..self.count).map(move |n| Thickness(self.first.0 + self.step.0 * n))
     }
@@ -43,13 +50,13 @@ impl Series {
 /// A box of gauge blocks, one of each thickness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GaugeSet {
-    /// As job files have it.
+    /// Name in job files.
     pub name: &'static str,
-    /// From the finest blocks to the thickest; no block is in two of them.
+    /// Series from the finest blocks to the thickest; no block is in two of them.
     pub series: &'static [Series],
 }
 
-/// One block of so many half micrometres.
+/// Returns a series of one block, in half micrometres.
 const fn single(block: u32) -> Series {
     series(block, block, 1)
 }
@@ -90,6 +97,7 @@ const TENS: Series = series(20_000, 20_000, 10);
 const QUARTERS: Series = series(50_000, 50_000, 4);
 
 impl GaugeSet {
+    /// All sets, by the number of blocks.
     pub const ALL: [Self; 11] = [
         Self {
             name: "metric-32",
@@ -132,19 +140,19 @@ impl GaugeSet {
         },
     ];
 
-    /// All blocks, from the thinnest to the thickest.
+    /// Returns all blocks, from the thinnest to the thickest.
     pub fn blocks(&self) -> Vec<Thickness> {
         let mut blocks: Vec<_> = self.series.iter().copied().flat_map(Series::blocks).collect();
         blocks.sort_unstable();
         blocks
     }
 
-    /// What every thickness that can be made is a whole number of.
+    /// Returns the greatest common divisor of the blocks; every possible stack is a multiple of it.
     pub fn step(&self) -> Thickness {
         Thickness(self.blocks().iter().fold(0, |step, block| common_divisor(step, block.0)))
     }
 
-    /// All blocks on top of each other.
+    /// Returns the thickness of all blocks together.
     pub fn total(&self) -> Thickness {
         Thickness(self.blocks().iter().map(|block| block.0).sum())
     }
@@ -158,7 +166,7 @@ fn common_divisor(one: u32, other: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// The number in a set's name is how many blocks lie in its box, no two alike.
+    /// The number in a set's name is the number of its blocks, all different.
     #[test]
     fn every_set_has_as_many_blocks_as_its_name_says() {
         for set in GaugeSet::ALL {
@@ -186,7 +194,8 @@ mod tests {
         assert_eq!(set.total().to_string(), "715.295");
         assert_eq!(set.step().to_string(), "0.001");
         let steps = GaugeSet::ALL.map(|set| set.step().to_string());
-        // 1.0005 is in the sets of 88 and 112; 1.005 without 1.001 … in those of 32, 38, 47, 76, 83 and 103.
+        // 1.0005 is in the sets of 88 and 112; 1.005 without 1.001 … is in those of 32, 38, 47, 76, 83 and
+        // 103.
         let half = [
             "0.005", "0.005", "0.001", "0.005", "0.005", "0.005", "0.001", "0.0005", "0.001", "0.005",
             "0.0005",

@@ -1,24 +1,24 @@
-//! What gauge blocks make of the angle of a sine table: H = L·sin φ.
+//! Angle of a sine table set with gauge blocks: H = L·sin φ.
 use super::{GaugeSet, Stack};
 use gcode_lang::units::{Deg, Mm};
 
-/// A sine table set with blocks of one set.
+/// Setting of a sine table with blocks of one set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineSetting {
-    /// What the blocks should be high: L·sin φ.
+    /// Nominal height, L·sin φ.
     pub height: Mm,
-    /// What they are.
+    /// Nearest stack of the set.
     pub stack: Stack,
-    /// The angle that the stack makes less the wanted one, in seconds of arc.
+    /// Angle set by the stack minus the nominal angle, seconds of arc.
     pub remainder: f64,
 }
 
-/// The height under one roller that inclines a table with rollers `length` apart by `angle`.
+/// Returns the height under one roller that inclines a table with rollers `length` apart by `angle`.
 pub fn height(length: Mm, angle: Deg) -> Mm {
     length * angle.sin()
 }
 
-/// The nearest stack for an angle of 0° to 45°, on a table of 10 mm or more, as jobs have them.
+/// Returns the nearest stack for an angle of 0° to 45° on a table of at least 10 mm, the ranges of job files.
 pub fn sine_setting(length: Mm, angle: Deg, set: &GaugeSet) -> SineSetting {
     let height = height(length, angle);
     let stack = set.nearest_stack(height);
@@ -36,9 +36,9 @@ mod tests {
         GaugeSet::ALL.into_iter().find(|set| set.name == "metric-87").unwrap()
     }
 
-    /// 200·sin 30° is 100, one block. 200·sin 38.5° = 124.502 93: made 124.503, 0.07 microns more; a micron at 38.5° is
-    /// 206 265/(200 000·cos 38.5°) = 1.317 seconds, so 0.09 of them are left. sin 0.01° = 0.000 174 53: 0.0349 mm, for which
-    /// there is no block, so that the whole 36 seconds are left.
+    /// 200·sin 30° is 100, one block. 200·sin 38.5° = 124.502 93: stacked 124.503, 0.07 microns more; a
+    /// micron at 38.5° is 206 265/(200 000·cos 38.5°) = 1.317 seconds, so 0.09 of them remain. sin 0.01° =
+    /// 0.000 174 53: 0.0349 mm, for which no block exists, so that the whole 36 seconds remain.
     #[test]
     fn angles_worked_out_by_hand() {
         let at = |angle: f64| sine_setting(Mm(200.0), Deg(angle), &metric_87());
@@ -57,7 +57,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Forward: the sine of the angle that is made is the stack over the length, and with rollers 200 mm apart half a
+        /// The sine of the angle that is set is the stack over the length; with rollers 200 mm apart half a
         /// micron is at most 0.73 seconds, towards 45°.
         #[test]
         fn the_angle_made_is_the_wanted_one_and_what_is_left(angle in 1.0..45.0) {

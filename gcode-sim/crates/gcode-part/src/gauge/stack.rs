@@ -1,32 +1,34 @@
-//! The stack of a set's blocks that is nearest to a height, with as few blocks as make it.
+//! The stack of a set's blocks nearest to a height, with the fewest blocks.
 use super::{GaugeSet, Thickness};
 use gcode_lang::units::Mm;
 
-/// Blocks on top of each other, from the thickest to the thinnest.
+/// Blocks on top of each other.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Stack {
+    /// Blocks from the thickest to the thinnest.
     pub blocks: Vec<Thickness>,
 }
 
 impl Stack {
+    /// Returns the sum of the blocks.
     pub fn thickness(&self) -> Thickness {
         Thickness(self.blocks.iter().map(|block| block.0).sum())
     }
 }
 
 impl GaugeSet {
-    /// The stack nearest to a height, each block used once at most: of all stacks there are, not of those by a rule for the
-    /// hand.
+    /// Returns the stack nearest to a height, each block used once at most; all possible stacks compete.
     ///
-    /// First counts how near it is; then how few blocks it has; of two equally near ones with equally many blocks the lower
-    /// is taken; of two that are equally high, the one with the thickest block, then the thickest second one. Nothing is
-    /// nearest to a height below half the thinnest block. A height above all blocks together gets all of them.
+    /// Criteria, in this order: the least difference; the fewest blocks; of two equally near stacks with
+    /// equally many blocks, the lower; of two equally high ones, the one with the thickest block, then the
+    /// thickest second block. The stack is empty for a height below half the thinnest block. A height above
+    /// the sum of all blocks gets all of them.
     pub fn nearest_stack(&self, height: Mm) -> Stack {
         let blocks = self.blocks();
         let grid = self.step().0;
         let steps: Vec<usize> = blocks.iter().map(|block| (block.0 / grid) as usize).collect();
         let wanted = (height.0 * 2000.0 / f64::from(grid)).max(0.0);
-        // Nothing at all is nearer than what is twice too high.
+        // The empty stack is nearer than any stack of more than twice the height.
         let most = steps.iter().sum::<usize>().min((2.0 * wanted) as usize);
         let reached = HeightSet::all_heights(&steps, most);
         let below = (0..=(wanted as usize).min(most)).rev().find(|sum| reached.contains(*sum));
@@ -39,7 +41,8 @@ impl GaugeSet {
         Stack { blocks: indices.into_iter().map(|index| blocks[index]).collect() }
     }
 
-    /// The lowest height in whole steps of the set, from one to another, that no stack makes. No blocks make a height of 0.
+    /// Returns the lowest height between `from` and `to`, in whole steps of the set, that no stack makes;
+    /// `None` if all can be made. The empty stack makes a height of 0.
     pub fn first_gap(&self, from: Mm, to: Mm) -> Option<Thickness> {
         let grid = self.step().0;
         let steps: Vec<usize> = self.blocks().iter().map(|block| (block.0 / grid) as usize).collect();
@@ -49,7 +52,8 @@ impl GaugeSet {
     }
 }
 
-/// Which blocks make one of some heights that can be made, with as few of them as do; the thickest first.
+/// Returns the indices of the fewest blocks that make one of the given heights, the thickest first. Each
+/// height can be made.
 fn fewest_blocks(steps: &[usize], most: usize, heights: &[usize]) -> Vec<usize> {
     let mut counts = std::iter::successors(Some(4), |count| (*count < steps.len()).then_some(count * 2));
     let stack = counts.find_map(|count| {
@@ -61,9 +65,10 @@ fn fewest_blocks(steps: &[usize], most: usize, heights: &[usize]) -> Vec<usize> 
     stack.unwrap_or_default()
 }
 
-/// A stack as high as `sum`, of as many blocks as there are layers, the thickest first.
+/// Returns a stack of height `sum` with as many blocks as `layers`, the thickest first; `None` if none
+/// exists.
 ///
-/// The layers tell whether the rest can be made at all, be it with a block that is used already: then the next is tried.
+/// A layer contains a remainder also if it needs a block that is used already: then the next block is tried.
 fn pick_blocks(steps: &[usize], layers: &[HeightSet], sum: usize) -> Option<Vec<usize>> {
     let Some((rest, fewer)) = layers.split_last() else { return (sum == 0).then(Vec::new) };
     (0..steps.len()).rev().filter(|index| steps[*index] <= sum).find_map(|index| {
@@ -74,7 +79,7 @@ fn pick_blocks(steps: &[usize], layers: &[HeightSet], sum: usize) -> Option<Vec<
     })
 }
 
-/// A set of thicknesses up to some most, in steps of the set's grid: a bit for each.
+/// A set of heights up to `max`, in steps of the set's grid, one bit each.
 #[derive(Clone)]
 struct HeightSet {
     words: Vec<u64>,
@@ -86,14 +91,14 @@ impl HeightSet {
         Self { words: vec![0; most / 64 + 1], max: most }
     }
 
-    /// The stack without blocks.
+    /// Returns the set that contains height 0 alone.
     fn empty_stack(most: usize) -> Self {
         let mut sums = Self::empty(most);
         sums.words[0] = 1;
         sums
     }
 
-    /// What can be made at all.
+    /// Returns all heights that stacks of the blocks can have.
     fn all_heights(steps: &[usize], most: usize) -> Self {
         let mut sums = Self::empty_stack(most);
         for block in steps {
@@ -103,12 +108,12 @@ impl HeightSet {
         sums
     }
 
-    /// What can be made of no, one, two … `count` blocks.
+    /// Returns the heights of stacks of 0, 1, 2 … `count` blocks, a layer each.
     fn by_count(steps: &[usize], most: usize, count: usize) -> Vec<Self> {
         let mut layers = vec![Self::empty(most); count + 1];
         layers[0] = Self::empty_stack(most);
         for block in steps {
-            // From the top, so that what a block is put on doesn't contain it.
+            // From the top layer down, so that the layer below does not contain the block yet.
             for fewer in (0..count).rev() {
                 let (low, high) = layers.split_at_mut(fewer + 1);
                 high[0].add_block(&low[fewer], *block);
@@ -117,7 +122,7 @@ impl HeightSet {
         layers
     }
 
-    /// Adds every one of `below` with a block on top of it.
+    /// Adds every height of `below` with one block on top.
     fn add_block(&mut self, below: &Self, block: usize) {
         let (whole, bits) = (block / 64, block % 64);
         for (at, word) in below.words.iter().enumerate() {
@@ -154,7 +159,7 @@ mod tests {
         blocks.iter().map(Thickness::to_string).collect::<Vec<_>>().join(" + ")
     }
 
-    /// By the digits from the last one, as in a workshop; each of these can't be made of fewer.
+    /// By the digits from the last one, as in a workshop; none of these can be made of fewer blocks.
     #[test]
     fn stacks_that_are_known() {
         let mut everything = set("metric-32").blocks();
@@ -166,12 +171,14 @@ mod tests {
             ("metric-46", 58.345, "50 + 5 + 1.3 + 1.04 + 1.005"),
             ("metric-87", 100.0, "100"),
             ("metric-87", 0.0, ""),
-            // Nearer to nothing than to 0.5.
+            // Nearer to the empty stack than to 0.5.
             ("metric-87", 0.249, ""),
             ("metric-87", 0.251, "0.5"),
-            // Two blocks whose last digit is 7 make at most 2.107 or 2.107 + 0.1·n: a set of 46 has a gap here.
+            // Two blocks whose last digit is 7 make at most 2.107 or 2.107 + 0.1·n: a set of 46 has a gap
+            // here.
             ("metric-46", 2.217, "1.2 + 1.02"),
-            // Midway between 50 and 50.001 there is nothing nearer; one block is fewer than 50.001 = 40 + 9 + 1.001.
+            // Midway between 50 and 50.001 no stack is nearer; one block is fewer than 50.001 = 40 + 9 +
+            // 1.001.
             ("metric-87", 50.0005, "50"),
             ("metric-88", 50.0005, "40 + 9 + 1.0005"),
             // More than 25 + 50 + 75 + 100.
@@ -182,7 +189,8 @@ mod tests {
         }
     }
 
-    /// By hand, set of 87: 1.001 to 1.010 are blocks, 1.011 is none, and no two make so little; the thinnest is 0.5.
+    /// By hand, set of 87: 1.001 to 1.010 are blocks, 1.011 is not, and no two blocks are as thin; the
+    /// thinnest is 0.5.
     #[test]
     fn low_heights_have_gaps() {
         let set = set("metric-87");
@@ -217,7 +225,7 @@ mod tests {
         ],
     };
 
-    /// The best of all subsets, by the order that [`GaugeSet::nearest`] promises.
+    /// The best of all subsets, in the order that [`GaugeSet::nearest_stack`] documents.
     fn by_trying(height: f64) -> Vec<Thickness> {
         let mut blocks = DOZEN.blocks();
         blocks.reverse();
@@ -244,8 +252,8 @@ mod tests {
             prop_assert_eq!(DOZEN.nearest_stack(Mm(height)).blocks, by_trying(height), "{}", height);
         }
 
-        /// Of the largest set: the stack is as high as its blocks, none is used twice, and what can't be made to half a
-        /// micron isn't within reach of its fine blocks.
+        /// For the largest set: the stack is as high as its blocks, none is used twice, and every height is
+        /// reached to half a micron.
         #[test]
         fn a_set_of_112_makes_every_height_to_half_a_micron(height in 5.0..60.0) {
             let set = set("metric-112");

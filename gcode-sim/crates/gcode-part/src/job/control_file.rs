@@ -21,10 +21,11 @@ use gcode_lang::control::{
     ADDRESSES, CODE_RANGES, CodeCalls, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues, Settings,
 };
 
-/// Sets what the text of a control file says, the family of controls first and the rest in the order of the file.
+/// Applies the text of a control file to the settings, the dialect first and the rest in the order of the
+/// file.
 ///
 /// # Errors
-/// An unknown key or a value that a setting doesn't take, with its line and what is allowed.
+/// An unknown key or a value outside the range of its setting, with its line and the allowed values.
 pub fn apply(text: &str, settings: &mut Settings) -> Result<(), FileError> {
     let reader = Reader { text };
     let entries: BTreeMap<Spanned<String>, Value> = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
@@ -50,7 +51,7 @@ fn is_switch(key: &str) -> bool {
     key.starts_with('#') || ROWS.iter().any(|row| row.key.eq_ignore_ascii_case(key) && row.is_switch())
 }
 
-/// A control file as it is written: its schema is that of the settings.
+/// The control file as a schema: that of the settings.
 pub struct ControlFile;
 
 impl JsonSchema for ControlFile {
@@ -97,12 +98,12 @@ fn switch() -> serde_json::Value {
     json!({ "enum": [0, 1, false, true] })
 }
 
-/// The parameters and addresses that make calls, by their numbers and letters.
+/// Returns the schemas of the parameters and addresses that make calls, by number and letter.
 fn calls() -> impl Iterator<Item = (String, serde_json::Value)> {
     let whole = |values: RangeInclusive<i64>, what: String| json!({ "description": what, "type": "integer", "minimum": values.start(), "maximum": values.end() });
     let codes = SEQUENTIAL_CODES.iter().flat_map(move |family| {
         let (letter, taken) = (char::from(family.letter), CodeCalls::reserved_codes(family.letter));
-        // A parameter that is 0 holds no code.
+        // A parameter of 0 assigns no code.
         let taken: Vec<i64> =
             taken.map(i64::from).filter(|code| *code != 0).flat_map(|code| [code, -code]).collect();
         (family.first..=family.last).zip(family.program..).map(move |(number, program)| {

@@ -1,6 +1,8 @@
-//! Job files: what to make, on which machine and control. Read by both programs; neither's formulas live here.
+//! Job files: the part to make, its machine and its control. Both programs read them; the formulas of neither
+//! live here.
 //!
-//! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
+//! Unknown keys, missing keys and values out of range are errors that name the key, the line and the allowed
+//! values.
 mod alignment;
 mod burr;
 pub mod control_file;
@@ -28,26 +30,34 @@ pub use sheet::{AlternativeMachine, Minutes, Rates, SheetInfo};
 use crate::reader::{FileError, Reader, Spanned};
 use gcode_lang::control::{Dialect, Increment};
 
-/// A job, by its family.
+/// A job of one of the families.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Job {
+    /// Pin holes on an ellipsoid.
     PinHoles(PinHoles),
+    /// Radial holes in a hexagonal pattern on a cylinder.
     Honeycomb(Honeycomb),
+    /// A rotary burr.
     Burr(Burr),
+    /// Measurements of a part's position.
     Alignment(Alignment),
 }
 
-/// The control a job is for.
+/// Control of a job's programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobControl {
+    /// Family of controls.
     pub dialect: Dialect,
+    /// Least input increment.
     pub increment: Increment,
 }
 
-/// A rotary table: its letter, and the sign in B = sign · azimuth.
+/// A rotary table that brings a hole to the plane z = 0 with the command sign · azimuth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rotary {
+    /// Address letter: A, B or C.
     pub letter: char,
+    /// Sign of the command, 1 or −1.
     pub sign: i8,
 }
 
@@ -56,7 +66,7 @@ struct Family {
     family: Spanned<String>,
 }
 
-/// A job file as it is written: the schema of one of the families.
+/// The job file as a schema: that of one of the families.
 pub struct JobFile;
 
 impl JsonSchema for JobFile {
@@ -77,10 +87,15 @@ impl JsonSchema for JobFile {
     }
 }
 
+/// Values of the key `family`.
 pub const FAMILIES: [&str; 4] = ["pin-holes", "honeycomb", "burr", "alignment"];
 
 impl Job {
-    /// Reads a job file's text.
+    /// Parses the text of a job file.
+    ///
+    /// # Errors
+    /// A syntax error, or a key that is unknown, missing or out of range, with its line and the allowed
+    /// values.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let reader = Reader { text };
         let table: toml::Table = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
@@ -103,7 +118,7 @@ impl Job {
         }
     }
 
-    /// How far above the surface rapid becomes feed, mm.
+    /// Returns the height above the surface at which rapid motion becomes feed, mm.
     pub fn clearance(&self) -> f64 {
         match self {
             Self::PinHoles(job) => job.machine.clearance,
@@ -113,7 +128,7 @@ impl Job {
         }
     }
 
-    /// What the set-up sheet says beside what follows from the job.
+    /// Returns the additional data for the set-up sheet.
     pub fn sheet(&self) -> &SheetInfo {
         match self {
             Self::PinHoles(job) => &job.sheet,
@@ -123,6 +138,7 @@ impl Job {
         }
     }
 
+    /// Returns the control of the programs.
     pub fn control(&self) -> JobControl {
         match self {
             Self::PinHoles(job) => job.control,

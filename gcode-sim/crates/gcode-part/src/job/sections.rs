@@ -1,53 +1,39 @@
-//! Sections that job files of several families have: `[control]`, `[tolerance]`, the rotary table, and bounds of lengths.
+//! Sections shared by job files of several families: `[control]`, `[tolerance]`, the rotary table and heights
+//! above the part.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{JobControl, Rotary};
+use crate::reader::bounds::{Bounded, Depth, KeyRange, PositionTolerance, Retract, Sign};
 use crate::reader::{FileError, Reader, Spanned, names};
 use gcode_lang::control::{Dialect, Increment};
 
-/// What lengths may be: within what nine digits can say to a tenth of an increment.
-pub(super) const LENGTH: &str = "0.01 to 99999 mm";
-
-const TOLERANCE: &str = "0.0001 to 1000 mm";
-
-/// Letters a rotary axis may have.
+/// Letters of rotary axes.
 pub(super) const ROTARY_LETTERS: [(&str, char); 3] = [("A", 'A'), ("B", 'B'), ("C", 'C')];
 
-/// Whether a number is within bounds, the bounds included.
+/// Returns a predicate that is true from `low` to `high`, both included.
 pub(super) fn in_range(low: f64, high: f64) -> impl Fn(f64) -> bool {
     move |value| (low..=high).contains(&value)
 }
 
-/// A length of [`LENGTH`].
-pub(super) fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
-    reader.number(key, value, LENGTH, in_range(0.01, 99_999.0))
-}
-
-/// `machine.clearance` and `machine.retract`: how far above the surface the tool feeds from, and how far it goes away. mm.
+/// Returns `machine.clearance` and `machine.retract`, mm: the height at which the feed begins, and the
+/// retract height.
 pub(super) fn heights(
     reader: &Reader<'_>,
-    clearance: Option<&Spanned<f64>>,
-    retract: Option<&Spanned<f64>>,
+    clearance: Option<&Bounded<Depth>>,
+    retract: Option<&Bounded<Retract>>,
 ) -> Result<(f64, f64), FileError> {
-    let clearance =
-        reader.number_or("machine.clearance", clearance, "0.01 to 9999 mm", in_range(0.01, 9_999.0), 2.0)?;
-    let allowed = format!("{clearance} (the clearance) to 9999 mm");
-    let within = in_range(clearance, 9_999.0);
-    let retract = reader.number_or("machine.retract", retract, &allowed, within, clearance.max(50.0))?;
+    let clearance = clearance.map_or(2.0, Bounded::get);
+    let allowed = format!("{clearance} (the clearance) to {} mm", Retract::MAX);
+    let within = in_range(clearance, Retract::MAX);
+    let retract = match retract {
+        Some(retract) => reader.number("machine.retract", retract, &allowed, within)?,
+        None => clearance.max(50.0),
+    };
     Ok((clearance, retract))
 }
 
-/// 1 or −1.
-pub(super) fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Result<i8, FileError> {
-    match *value.as_ref() {
-        1 => Ok(1),
-        -1 => Ok(-1),
-        other => Err(reader.error(value, format!("key '{key}' is {other}: 1 or -1"))),
-    }
-}
-
-/// The control of the programs.
+/// The control the programs are for.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileControl {
@@ -76,15 +62,14 @@ pub(super) struct FileRotary {
     #[schemars(extend("enum" = names(&ROTARY_LETTERS)))]
     letter: Spanned<String>,
     /// 1, or -1 if a positive command rotates the part in the opposite direction.
-    #[schemars(extend("enum" = [1, -1]))]
-    sign: Spanned<i64>,
+    sign: Sign,
 }
 
 impl FileRotary {
     pub(super) fn check(&self, reader: &Reader<'_>) -> Result<Rotary, FileError> {
         Ok(Rotary {
             letter: reader.choice("machine.rotary.letter", &self.letter, &ROTARY_LETTERS)?,
-            sign: sign(reader, "machine.rotary.sign", &self.sign)?,
+            sign: self.sign.get(),
         })
     }
 }
@@ -94,24 +79,19 @@ impl FileRotary {
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTolerance {
     /// Diameter of the tolerance zone of a hole's axis (ISO 1101), mm.
-    #[schemars(range(min = 0.000_1, max = 1000.0))]
-    position: Spanned<f64>,
+    position: Bounded<PositionTolerance>,
     /// Tolerance of a hole's depth, either way, mm [default: 0.1].
-    #[schemars(range(min = 0.000_1, max = 1000.0))]
-    depth: Option<Spanned<f64>>,
+    depth: Option<Bounded<PositionTolerance>>,
 }
 
 impl FileTolerance {
-    /// Diameter of the zone, mm.
-    pub(super) fn position(&self, reader: &Reader<'_>) -> Result<f64, FileError> {
-        reader.number("tolerance.position", &self.position, TOLERANCE, in_range(1e-4, 1e3))
+    /// Returns the diameter of the tolerance zone, mm.
+    pub(super) fn position(&self) -> f64 {
+        self.position.get()
     }
 
-    /// Either way, mm.
-    pub(super) fn depth(&self, reader: &Reader<'_>) -> Result<f64, FileError> {
-        match &self.depth {
-            Some(depth) => reader.number("tolerance.depth", depth, TOLERANCE, in_range(1e-4, 1e3)),
-            None => Ok(0.1),
-        }
+    /// Returns the tolerance of a depth, either way, mm.
+    pub(super) fn depth(&self) -> f64 {
+        self.depth.as_ref().map_or(0.1, Bounded::get)
     }
 }

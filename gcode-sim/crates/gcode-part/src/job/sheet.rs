@@ -1,30 +1,37 @@
-//! The section `[sheet]` that a job of any family may have: what its set-up sheet says of people, time and money.
+//! The section `[sheet]` of a job of any family: additional data for the set-up sheet.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::sections::in_range;
-use crate::reader::{FileError, Reader, Spanned};
+use crate::reader::bounds::{Bounded, DurationMinutes, HourlyRate};
+use crate::reader::{FileError, Reader};
 
-/// What only people know of a job. Whatever is left out stands empty on the sheet, to be filled in by hand.
+/// Additional data for the set-up sheet. Omitted fields are printed empty, for entry by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SheetInfo {
+    /// Name of the part.
     pub part: Option<String>,
+    /// Number of the drawing.
     pub drawing: Option<String>,
+    /// Revision of the drawing.
     pub revision: Option<String>,
+    /// Material.
     pub material: Option<String>,
     /// The machine's name in the shop.
     pub machine: Option<String>,
+    /// Times that the simulation cannot determine.
     pub minutes: Minutes,
+    /// Machine-hour rates.
     pub rates: Option<Rates>,
 }
 
-/// What the simulation can't know of the time a part takes, in minutes.
+/// Times that the simulation cannot determine, in minutes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Minutes {
     /// Set-up and alignment of one part.
     pub setup: Option<f64>,
-    /// An operator stop, from the machine's standstill to its start.
+    /// Time of an operator stop, from standstill to start.
     pub stop: Option<f64>,
+    /// Time of a tool change.
     pub tool_change: Option<f64>,
 }
 
@@ -33,31 +40,34 @@ pub struct Minutes {
 pub struct Rates {
     /// Printed unchanged.
     pub currency: String,
-    /// A machine hour.
+    /// Price of a machine hour.
     pub rate: f64,
+    /// Alternative machines for the part.
     pub alternatives: Vec<AlternativeMachine>,
 }
 
 /// The same part on another machine. Omitted times are equal to those of the job's machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativeMachine {
+    /// Name of the machine in the shop.
     pub machine: String,
     /// Price of a machine hour, in the same currency.
     pub rate: f64,
-    /// Of the program, in minutes.
+    /// Time of the program, in minutes.
     pub run: Option<f64>,
+    /// Manual times on this machine.
     pub minutes: Minutes,
 }
 
 impl Rates {
-    /// Reads the text of a file of rates: the keys of a job's `[sheet.rates]`.
+    /// Parses a file of rates, which has the keys of a job's `[sheet.rates]`.
     ///
     /// # Errors
-    /// A key that is unknown, missing or out of range, with its line and what is allowed.
+    /// A key that is unknown, missing or out of range, with its line and the allowed values.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let reader = Reader { text };
         let file: FileRates = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
-        file.check(&reader, "")
+        Ok(file.rates())
     }
 }
 
@@ -76,14 +86,11 @@ pub(super) struct FileSheet {
     /// The machine's name in the shop.
     machine: Option<String>,
     /// Set-up and alignment of one part, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    setup_minutes: Option<Spanned<f64>>,
+    setup_minutes: Option<Bounded<DurationMinutes>>,
     /// An operator stop, from standstill to start, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    stop_minutes: Option<Spanned<f64>>,
+    stop_minutes: Option<Bounded<DurationMinutes>>,
     /// A tool change, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    tool_change_minutes: Option<Spanned<f64>>,
+    tool_change_minutes: Option<Bounded<DurationMinutes>>,
     /// Machine-hour rates.
     rates: Option<FileRates>,
 }
@@ -95,8 +102,7 @@ pub struct FileRates {
     /// Printed unchanged.
     currency: String,
     /// Price of a machine hour, in that currency.
-    #[schemars(range(min = 0.01, max = 1e9))]
-    rate: Spanned<f64>,
+    rate: Bounded<HourlyRate>,
     /// Alternative machines for the part.
     beside: Option<Vec<FileBeside>>,
 }
@@ -108,89 +114,62 @@ struct FileBeside {
     /// Its name in the shop.
     machine: String,
     /// Price of a machine hour, in the same currency.
-    #[schemars(range(min = 0.01, max = 1e9))]
-    rate: Spanned<f64>,
+    rate: Bounded<HourlyRate>,
     /// The program, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    run_minutes: Option<Spanned<f64>>,
+    run_minutes: Option<Bounded<DurationMinutes>>,
     /// Set-up and alignment of one part, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    setup_minutes: Option<Spanned<f64>>,
+    setup_minutes: Option<Bounded<DurationMinutes>>,
     /// An operator stop, from standstill to start, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    stop_minutes: Option<Spanned<f64>>,
+    stop_minutes: Option<Bounded<DurationMinutes>>,
     /// A tool change, minutes.
-    #[schemars(range(min = 0.0, max = 1_000_000.0))]
-    tool_change_minutes: Option<Spanned<f64>>,
+    tool_change_minutes: Option<Bounded<DurationMinutes>>,
 }
 
 impl FileSheet {
-    /// The section of a job; a job without it has nothing to say.
-    pub(super) fn of(section: Option<Self>, reader: &Reader<'_>) -> Result<SheetInfo, FileError> {
-        section.map_or_else(|| Ok(SheetInfo::default()), |sheet| sheet.check(reader))
-    }
-
-    fn check(self, reader: &Reader<'_>) -> Result<SheetInfo, FileError> {
-        let minutes = |key: &str, value: &Option<_>| minutes(reader, "sheet.", key, value.as_ref());
-        Ok(SheetInfo {
+    pub(super) fn info(self) -> SheetInfo {
+        SheetInfo {
             minutes: Minutes {
-                setup: minutes("setup_minutes", &self.setup_minutes)?,
-                stop: minutes("stop_minutes", &self.stop_minutes)?,
-                tool_change: minutes("tool_change_minutes", &self.tool_change_minutes)?,
+                setup: minutes(self.setup_minutes),
+                stop: minutes(self.stop_minutes),
+                tool_change: minutes(self.tool_change_minutes),
             },
-            rates: self.rates.map(|rates| rates.check(reader, "sheet.rates.")).transpose()?,
+            rates: self.rates.map(FileRates::rates),
             part: self.part,
             drawing: self.drawing,
             revision: self.revision,
             material: self.material,
             machine: self.machine,
-        })
+        }
     }
 }
 
 impl FileRates {
-    /// `prefix` is what stands before the keys' names in messages.
-    fn check(self, reader: &Reader<'_>, prefix: &str) -> Result<Rates, FileError> {
-        let beside = self.beside.unwrap_or_default().into_iter();
-        Ok(Rates {
-            rate: rate(reader, prefix, &self.rate)?,
-            alternatives: beside
-                .map(|beside| beside.check(reader, &format!("{prefix}beside.")))
-                .collect::<Result<_, _>>()?,
+    fn rates(self) -> Rates {
+        Rates {
+            rate: self.rate.get(),
+            alternatives: self.beside.unwrap_or_default().into_iter().map(FileBeside::machine).collect(),
             currency: self.currency,
-        })
+        }
     }
 }
 
 impl FileBeside {
-    fn check(self, reader: &Reader<'_>, prefix: &str) -> Result<AlternativeMachine, FileError> {
-        let minutes = |key: &str, value: &Option<_>| minutes(reader, prefix, key, value.as_ref());
-        Ok(AlternativeMachine {
-            rate: rate(reader, prefix, &self.rate)?,
-            run: minutes("run_minutes", &self.run_minutes)?,
+    fn machine(self) -> AlternativeMachine {
+        AlternativeMachine {
+            rate: self.rate.get(),
+            run: minutes(self.run_minutes),
             minutes: Minutes {
-                setup: minutes("setup_minutes", &self.setup_minutes)?,
-                stop: minutes("stop_minutes", &self.stop_minutes)?,
-                tool_change: minutes("tool_change_minutes", &self.tool_change_minutes)?,
+                setup: minutes(self.setup_minutes),
+                stop: minutes(self.stop_minutes),
+                tool_change: minutes(self.tool_change_minutes),
             },
             machine: self.machine,
-        })
+        }
     }
 }
 
-fn rate(reader: &Reader<'_>, prefix: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
-    reader.number(&format!("{prefix}rate"), value, "0.01 to 1000000000", in_range(0.01, 1e9))
-}
-
-fn minutes(
-    reader: &Reader<'_>,
-    prefix: &str,
-    key: &str,
-    value: Option<&Spanned<f64>>,
-) -> Result<Option<f64>, FileError> {
-    let read =
-        |value| reader.number(&format!("{prefix}{key}"), value, "0 to 1000000 minutes", in_range(0.0, 1e6));
-    value.map(read).transpose()
+fn minutes(value: Option<Bounded<DurationMinutes>>) -> Option<f64> {
+    value.as_ref().map(Bounded::get)
 }
 
 #[cfg(test)]

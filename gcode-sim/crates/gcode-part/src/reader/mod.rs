@@ -1,4 +1,5 @@
-//! Reads keys of a TOML file: every error names the key, its line, and what is allowed.
+//! Reads keys of a TOML file. Every error names the key, its line and the allowed values.
+pub mod bounds;
 mod wording;
 
 use std::borrow::Cow;
@@ -8,21 +9,24 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
-/// Why a job or machine file can't be used: one sentence with the key, its line, and what is allowed.
+/// Reason for which a job or machine file is unusable: one sentence with the key, its line and the allowed
+/// values.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", match line { Some(n) => format!("line {n}: "), None => String::new() })]
 pub struct FileError {
+    /// Line in the file, from 1; `None` if the error concerns the whole file.
     pub line: Option<usize>,
+    /// The sentence, without the line.
     pub message: String,
 }
 
-/// A value and where it stands in the text.
+/// A value with its location in the text.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(transparent)]
 pub struct Spanned<T>(toml::Spanned<T>);
 
 impl<T> Spanned<T> {
-    /// The bytes that it takes up.
+    /// Returns the bytes of the value in the text.
     pub fn span(&self) -> Range<usize> {
         self.0.span()
     }
@@ -34,7 +38,7 @@ impl<T> AsRef<T> for Spanned<T> {
     }
 }
 
-/// To a schema it is the value alone.
+/// The schema is that of the value alone.
 impl<T: JsonSchema> JsonSchema for Spanned<T> {
     fn inline_schema() -> bool {
         true
@@ -49,7 +53,7 @@ impl<T: JsonSchema> JsonSchema for Spanned<T> {
     }
 }
 
-/// So many values in brackets, and not one more: an array of serde's would leave the rest out in silence.
+/// An array of exactly `N` values; serde's own arrays ignore extra ones silently.
 #[derive(Clone, Debug)]
 pub struct FixedArray<T, const N: usize>(pub [T; N]);
 
@@ -76,31 +80,38 @@ impl<T: JsonSchema, const N: usize> JsonSchema for FixedArray<T, N> {
     }
 }
 
-/// The words of a fixed list, which [`Reader::choice`] takes.
+/// Returns the words of a fixed list for [`Reader::choice`].
 pub fn names<T>(all: &[(&'static str, T)]) -> Vec<&'static str> {
     all.iter().map(|(name, _)| *name).collect()
 }
 
-/// Turns places in the text into line numbers.
+/// Converts locations in the text to line numbers.
 pub struct Reader<'t> {
+    /// Text of the file.
     pub text: &'t str,
 }
 
 impl Reader<'_> {
+    /// Returns the line of a byte, from 1.
     pub fn line(&self, offset: usize) -> usize {
         self.text.as_bytes()[..offset.min(self.text.len())].iter().filter(|b| **b == b'\n').count() + 1
     }
 
+    /// Returns the error of the TOML reader in the words of a job file, with its line.
     pub fn syntax(&self, error: &toml::de::Error) -> FileError {
         let line = error.span().map(|s| self.line(s.start));
         FileError { line, message: wording::reword(self.text, error.span(), error.message().trim()) }
     }
 
+    /// Returns an error at the line of a value.
     pub fn error<T>(&self, at: &Spanned<T>, message: impl Into<String>) -> FileError {
         FileError { line: Some(self.line(at.span().start)), message: message.into() }
     }
 
-    /// A finite number within bounds, or an error that names the key and what is allowed.
+    /// Returns a finite number for which `within` is true, for bounds that another key sets.
+    ///
+    /// # Errors
+    /// Any other number, with the key and `allowed`.
     pub fn number(
         &self,
         key: &str,
@@ -115,19 +126,10 @@ impl Reader<'_> {
         Err(self.error(value, format!("key '{key}' is {number}: {allowed}")))
     }
 
-    /// As [`Reader::number`], of a key that may be left out.
-    pub fn number_or(
-        &self,
-        key: &str,
-        value: Option<&Spanned<f64>>,
-        allowed: &str,
-        within: impl Fn(f64) -> bool,
-        default: f64,
-    ) -> Result<f64, FileError> {
-        value.map_or(Ok(default), |value| self.number(key, value, allowed, within))
-    }
-
-    /// One of a fixed list of words.
+    /// Returns the choice that the word names.
+    ///
+    /// # Errors
+    /// A word that is not in the list, with the list.
     pub fn choice<T: Copy>(
         &self,
         key: &str,

@@ -1,13 +1,18 @@
-//! What the TOML reader complains of, in the words of a job file: the full name of the key, and what is allowed.
+//! Errors of the TOML reader in the words of a job file: the full name of the key, and the allowed values.
 use std::ops::Range;
 
-/// Rewords `message`, which is about the bytes `span` of `text`.
+use toml::de::{DeTable, DeValue};
+
+use super::bounds::OUT_OF_RANGE;
+
+/// Rewords `message` about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
-    // What the root lacks is reported at no byte at all.
-    let place = span.filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
+    // A key missing from the root is reported with an empty span.
+    let place =
+        span.clone().filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
     if let Some(field) = quoted(message, "missing field ") {
         let name = place.child_name(field);
-        // The one list of tables that a job can't do without.
+        // The one list of tables that a job requires.
         return if name == "hole" {
             "no table [[hole]]: one for each hole".to_owned()
         } else {
@@ -24,6 +29,9 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     {
         return format!("key '{}' has {found} values: {wanted} are required", place.name());
     }
+    if let Some(wrong) = message.strip_prefix(OUT_OF_RANGE) {
+        return format!("key '{}' is {wrong}", key_of_value(text, span.map_or(0, |s| s.start)));
+    }
     let Some(mismatch) = message.strip_prefix("invalid type: ") else { return message.to_owned() };
     let Some((found, expected)) = mismatch.split_once(", expected ") else { return message.to_owned() };
     let expected = match expected {
@@ -37,17 +45,36 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     format!("key '{}' is {}: {expected} is required", place.name(), found.replace('`', ""))
 }
 
-/// The first word in backquotes behind `before`.
+/// Returns the full name of the key whose value begins at this byte.
+fn key_of_value(text: &str, start: usize) -> String {
+    fn find<'t>(table: &'t DeTable<'_>, start: usize) -> Option<Vec<&'t str>> {
+        table.iter().find_map(|(key, value)| {
+            let tables: Vec<&DeTable<'_>> = match value.get_ref() {
+                DeValue::Table(inner) => vec![inner],
+                DeValue::Array(all) => all.iter().filter_map(|item| item.get_ref().as_table()).collect(),
+                _ => Vec::new(),
+            };
+            let below = tables.into_iter().find_map(|table| find(table, start));
+            let mut path = below.or_else(|| (value.span().start == start).then(Vec::new))?;
+            path.insert(0, key.get_ref().as_ref());
+            Some(path)
+        })
+    }
+    let table = DeTable::parse(text);
+    table.ok().and_then(|table| Some(find(table.get_ref(), start)?.join("."))).unwrap_or_default()
+}
+
+/// Returns the first word in backquotes after `before`.
 fn quoted<'m>(message: &'m str, before: &str) -> Option<&'m str> {
     message.strip_prefix(before)?.strip_prefix('`')?.split_once('`').map(|(field, _)| field)
 }
 
-/// Which table and which key a line is about.
+/// Table and key of a line.
 #[derive(Default)]
 struct KeyPath {
-    /// `surface` in `[surface]`, `hole` in `[[hole]]`; empty before the first.
+    /// `surface` in `[surface]`, `hole` in `[[hole]]`; empty before the first header.
     table: String,
-    /// The key the line sets; `None` where it is a table's header.
+    /// The key that the line sets; `None` for a header.
     key: Option<String>,
 }
 
@@ -75,7 +102,8 @@ impl KeyPath {
         join(&[&self.table, self.key.as_deref().unwrap_or("")])
     }
 
-    /// A key of the table that the line opens: by a header, or by an inline table as the key's value.
+    /// Returns the name of a key in the table that the line opens, by a header or by an inline table as the
+    /// key's value.
     fn child_name(&self, field: &str) -> String {
         match &self.key {
             Some(key) if !self.table.is_empty() => join(&[&self.table, key, field]),
@@ -83,7 +111,8 @@ impl KeyPath {
         }
     }
 
-    /// A key that the line or its table's header sets, dotted or not, or that an inline table on it holds.
+    /// Returns the name of a key that the line or its header sets, dotted or not, or that an inline table on
+    /// it contains.
     fn sibling_name(&self, field: &str) -> String {
         let path = self.name();
         let names: Vec<_> = path.split('.').map(str::trim).collect();

@@ -8,6 +8,7 @@ use super::spread::{FileSpread, LENGTH};
 use crate::machine::Machine;
 use crate::machine::sources::{ErrorSource, SampleParameters};
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::Bounded;
 use gcode_part::reader::{Reader, Spanned};
 
 /// Of a touch probe.
@@ -74,12 +75,7 @@ impl FileErrors {
         if let Some(linear) = &self.linear {
             let mut collector = collect();
             collector.linear(linear)?;
-            let wave = match &linear.wave {
-                Some(wave) => reader.number("errors.linear.wave", wave, "mm, 1 to 100000", |v| {
-                    (1.0..=100_000.0).contains(&v)
-                })?,
-                None => 500.0,
-            };
+            let wave = linear.wave.as_ref().map_or(500.0, Bounded::get);
             keep(collector.sources, seed(&linear.seed), wave);
         }
         if let Some(rotary) = &self.rotary {

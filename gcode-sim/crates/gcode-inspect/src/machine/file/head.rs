@@ -4,11 +4,12 @@ use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::{ROTARY_LETTERS, letter, sign};
+use super::{ROTARY_LETTERS, letter};
 use crate::machine::{Chain, Head, HeadKind};
 use gcode_lang::motion::Axes;
 use gcode_lang::units::Deg;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Angle, Bounded, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
 /// How the tool is inclined.
@@ -28,14 +29,11 @@ pub(super) struct FileHead {
     #[schemars(extend("enum" = ROTARY_LETTERS))]
     letter: Option<Spanned<String>>,
     /// 1, or -1 if the axis is reversed [default: 1].
-    #[schemars(extend("enum" = [1, -1]))]
-    sign: Option<Spanned<i64>>,
+    sign: Option<Sign>,
     /// The head's angle with the axis at 0, degrees [default: 0].
-    #[schemars(range(min = -360.0, max = 360.0))]
-    zero: Option<Spanned<f64>>,
+    zero: Option<Bounded<Angle>>,
     /// Its angle before the first stop, degrees.
-    #[schemars(range(min = -360.0, max = 360.0))]
-    angle: Option<Spanned<f64>>,
+    angle: Option<Bounded<Angle>>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -91,9 +89,6 @@ impl FileHead {
             Some(pivot) => reader.number("head.pivot", pivot, "mm, 0 or more", |v| v >= 0.0)?,
             None => 0.0,
         };
-        let angle = |key: &str, value: &Spanned<f64>| {
-            reader.number(key, value, "degrees from -360 to 360", |v| v.abs() <= 360.0).map(Deg)
-        };
         let needs = |key: &str| {
             reader.error(&self.kind, format!("kind = \"{}\" needs the key 'head.{key}'", self.kind.as_ref()))
         };
@@ -107,7 +102,7 @@ impl FileHead {
                 HeadKind::Fixed(unit.ok_or_else(|| reader.error(direction, allowed))?)
             }
             FileHeadKind::Manual => {
-                HeadKind::Manual { start: self.angle.as_ref().map(|a| angle("head.angle", a)).transpose()? }
+                HeadKind::Manual { start: self.angle.as_ref().map(|angle| Deg(angle.get())) }
             }
             FileHeadKind::Axis => {
                 let value = self.letter.as_ref().ok_or_else(|| needs("letter"))?;
@@ -122,8 +117,8 @@ impl FileHead {
                 }
                 HeadKind::Axis {
                     axis,
-                    sign: self.sign.as_ref().map_or(Ok(1.0), |s| sign(reader, "head.sign", s))?,
-                    zero: self.zero.as_ref().map_or(Ok(Deg::ZERO), |z| angle("head.zero", z))?,
+                    sign: self.sign.as_ref().map_or(1.0, |sign| f64::from(sign.get())),
+                    zero: Deg(self.zero.as_ref().map_or(0.0, Bounded::get)),
                 }
             }
         };
@@ -136,9 +131,9 @@ impl FileHead {
             self.pivot.as_ref().map(start),
             self.direction.as_ref().map(start),
             self.letter.as_ref().map(start),
-            self.sign.as_ref().map(start),
-            self.zero.as_ref().map(start),
-            self.angle.as_ref().map(start),
+            self.sign.as_ref().map(|sign| start(sign)),
+            self.zero.as_ref().map(|zero| start(zero)),
+            self.angle.as_ref().map(|angle| start(angle)),
         ];
         for (place, (key, kinds)) in given.into_iter().zip(KEYS) {
             if let (Some(place), false) = (place, kinds.contains(&kind)) {

@@ -4,10 +4,11 @@ use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::{AXES, lengths, letter, sign};
+use super::{AXES, letter, vector};
 use crate::machine::{AxisLink, Chain};
 use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
 /// An axis that carries the part.
@@ -26,11 +27,9 @@ pub(super) struct FileLink {
     slides: Option<Spanned<String>>,
     /// 1 if a positive command rotates the part right-handed, or moves it in the positive direction; otherwise
     /// -1.
-    #[schemars(extend("enum" = [1, -1]))]
-    sign: Spanned<i64>,
+    sign: Sign,
     /// A point on the axis, machine coordinates, mm [default: the part's origin].
-    #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
-    centre: Option<FixedArray<Spanned<f64>, 3>>,
+    centre: Option<FixedArray<Bounded<MachinePoint>, 3>>,
 }
 
 /// One of both; what slides has no centre.
@@ -61,7 +60,7 @@ impl FileLink {
             let message = format!("key 'table.letter': {} is used twice", axes.letter(axis));
             return Err(reader.error(&self.letter, message));
         }
-        let sign = sign(reader, "table.sign", &self.sign)?;
+        let sign = f64::from(self.sign.get());
         let kinds = (&self.turns, &self.slides);
         let (key, direction) = match kinds {
             (Some(about), None) => ("turns", about),
@@ -82,9 +81,7 @@ impl FileLink {
                 Err(reader.error(x, "key 'table.centre' is for 'turns' only"))
             }
             (_, "slides") => Ok(AxisLink::linear(axis, unit, sign)),
-            (Some(centre), _) => {
-                Ok(AxisLink::rotary(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
-            }
+            (Some(centre), _) => Ok(AxisLink::rotary(axis, unit, Point3::from(vector(centre)), sign)),
             (None, _) => Ok(AxisLink::rotary(axis, unit, origin, sign)),
         }
     }

@@ -29,8 +29,8 @@ use wheel::FileWheel;
 use super::{Chain, Head, HeadKind, Machine, Tool};
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex};
-use gcode_part::reader::FileError;
-use gcode_part::reader::{FixedArray, Reader, Spanned, names};
+use gcode_part::reader::bounds::{Bounded, KeyRange};
+use gcode_part::reader::{FileError, FixedArray, Reader, Spanned, names};
 
 /// The machine of a program. Every section is optional; without any it is the machine of the paper.
 #[derive(Deserialize, JsonSchema)]
@@ -75,7 +75,6 @@ struct FileControl {
 const AXES: [&str; 9] = ["X", "Y", "Z", "A", "B", "C", "U", "V", "W"];
 const ROTARY_LETTERS: [&str; 3] = ["A", "B", "C"];
 
-const LENGTH: &str = "mm, from -100000 to 100000";
 impl Machine {
     /// Reads a machine file's text.
     pub fn parse(text: &str) -> Result<Self, FileError> {
@@ -83,7 +82,7 @@ impl Machine {
         let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
         let control = file.control.unwrap_or_default();
         let axes = control.axes(&reader)?;
-        let part = file.part.unwrap_or_default().check(&reader)?;
+        let part = file.part.unwrap_or_default().placement();
         let table = match &file.table {
             Some(links) => {
                 let mut table = Chain::default();
@@ -125,7 +124,7 @@ impl Machine {
             head,
             tools,
             part,
-            probe: file.probe.map(|probe| probe.check(&reader)).transpose()?,
+            probe: file.probe.as_ref().map(FileProbe::probe),
         };
         if let Some(errors) = &file.errors {
             errors.apply(&reader, &mut machine)?;
@@ -134,25 +133,8 @@ impl Machine {
     }
 }
 
-fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
-    reader.number(key, value, LENGTH, |v| v.abs() <= 100_000.0)
-}
-
-fn lengths(
-    reader: &Reader<'_>,
-    key: &str,
-    values: &FixedArray<Spanned<f64>, 3>,
-) -> Result<Vector3<f64>, FileError> {
-    let FixedArray([x, y, z]) = values;
-    Ok(Vector3::new(length(reader, key, x)?, length(reader, key, y)?, length(reader, key, z)?))
-}
-
-fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Result<f64, FileError> {
-    match *value.as_ref() {
-        1 => Ok(1.0),
-        -1 => Ok(-1.0),
-        other => Err(reader.error(value, format!("key '{key}' is {other}: 1 or -1"))),
-    }
+fn vector<R: KeyRange<Number = f64>>(FixedArray([x, y, z]): &FixedArray<Bounded<R>, 3>) -> Vector3<f64> {
+    Vector3::new(x.get(), y.get(), z.get())
 }
 
 fn letter(
@@ -296,7 +278,10 @@ tilt = [0.0, 0.0, 1.0]
                 "table = []\n[offsets]\nG53 = { X = 1.0 }\n",
                 "line 2: key 'offsets.G53' is unknown: G54 to G59",
             ),
-            ("table = []\n[part]\ntilt = [0.0, nan, 0.0]\n", "line 3: key 'part.tilt' is NaN: degrees"),
+            (
+                "table = []\n[part]\ntilt = [0.0, nan, 0.0]\n",
+                "line 3: key 'part.tilt' is NaN: -360 to 360 degrees",
+            ),
             (
                 "table = []\n[[tool]]\nnumber = 1\nlength = 5.0\n",
                 "line 4: key 'tool.length' acts along the tool",

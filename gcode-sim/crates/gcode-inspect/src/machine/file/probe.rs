@@ -4,44 +4,30 @@ use serde::Deserialize;
 
 use crate::machine::Probe;
 use gcode_lang::units::Seconds;
-use gcode_part::reader::FileError;
-use gcode_part::reader::{Reader, Spanned};
+use gcode_part::reader::bounds::{Bounded, ProbeDelay, StylusLength};
 
 /// A touch probe.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileProbe {
     /// Of the stylus ball, mm; its centre is the tool's tip.
-    #[schemars(range(min = 0.0, max = 1000.0))]
-    radius: Spanned<f64>,
+    radius: Bounded<StylusLength>,
     /// Time from the contact until the control latches the position, seconds [default: 0].
-    #[schemars(range(min = 0.0, max = 10.0))]
-    delay: Option<Spanned<f64>>,
+    delay: Option<Bounded<ProbeDelay>>,
     /// Time from then until the axes stop, seconds [default: 0].
-    #[schemars(range(min = 0.0, max = 10.0))]
-    overrun: Option<Spanned<f64>>,
+    overrun: Option<Bounded<ProbeDelay>>,
     /// Largest deflection of the stylus before it breaks, mm [default: unlimited].
-    #[schemars(range(min = 0.0, max = 1000.0))]
-    give: Option<Spanned<f64>>,
+    give: Option<Bounded<StylusLength>>,
 }
 
 impl FileProbe {
-    pub(super) fn check(&self, reader: &Reader<'_>) -> Result<Probe, FileError> {
-        let seconds = |key: &str, value: &Option<Spanned<f64>>| match value {
-            Some(value) => {
-                reader.number(key, value, "seconds, 0 to 10", |v| (0.0..=10.0).contains(&v)).map(Seconds)
-            }
-            None => Ok(Seconds::ZERO),
-        };
-        let length = |key: &str, value: &Spanned<f64>| {
-            reader.number(key, value, "mm, 0 to 1000", |v| (0.0..=1000.0).contains(&v))
-        };
-        let mut probe = Probe::new(length("probe.radius", &self.radius)?);
-        probe.delay = seconds("probe.delay", &self.delay)?;
-        probe.overrun = seconds("probe.overrun", &self.overrun)?;
+    pub(super) fn probe(&self) -> Probe {
+        let seconds = |value: &Option<Bounded<ProbeDelay>>| Seconds(value.as_ref().map_or(0.0, Bounded::get));
+        let mut probe = Probe::new(self.radius.get());
+        (probe.delay, probe.overrun) = (seconds(&self.delay), seconds(&self.overrun));
         if let Some(give) = &self.give {
-            probe.overtravel_limit = length("probe.give", give)?;
+            probe.overtravel_limit = give.get();
         }
-        Ok(probe)
+        probe
     }
 }

@@ -7,6 +7,7 @@ use crate::machine::sources::{ErrorSource, Quantity};
 use crate::machine::{HeadKind, Machine};
 use gcode_lang::motion::AxisIndex;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Bounded, Wavelength};
 use gcode_part::reader::{Reader, Spanned};
 
 /// The set-up of the part.
@@ -38,8 +39,7 @@ pub(super) struct FileLinear {
     #[schemars(transform = LENGTH.bounds())]
     pub(super) z: Option<Spanned<FileSpread>>,
     /// Wavelength of the error along the axis, mm [default: 500].
-    #[schemars(range(min = 1.0, max = 100_000.0))]
-    pub(super) wave: Option<Spanned<f64>>,
+    pub(super) wave: Option<Bounded<Wavelength>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }

@@ -3,10 +3,11 @@ use nalgebra::Point3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{ROTARY_LETTERS, lengths, letter, sign};
+use super::{ROTARY_LETTERS, letter, vector};
 use crate::machine::{Chain, Head, HeadKind, Wheel};
 use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
+use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned};
 
 /// A grinder's wheel, stationary while the table moves the part.
@@ -15,14 +16,12 @@ use gcode_part::reader::{FixedArray, Reader, Spanned};
 #[schemars(extend("anyOf" = [{ "required": ["letter"] }, { "not": { "required": ["sign"] } }]))]
 pub(super) struct FileWheel {
     /// Its contact point, machine coordinates, mm.
-    #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
-    contact: FixedArray<Spanned<f64>, 3>,
+    contact: FixedArray<Bounded<MachinePoint>, 3>,
     /// The axis that swivels it about that point, A, B or C [default: none].
     #[schemars(extend("enum" = ROTARY_LETTERS))]
     letter: Option<Spanned<String>>,
     /// 1, or -1 if the axis is reversed [default: 1].
-    #[schemars(extend("enum" = [1, -1]))]
-    sign: Option<Spanned<i64>>,
+    sign: Option<Sign>,
 }
 
 impl FileWheel {
@@ -33,7 +32,7 @@ impl FileWheel {
         table: &Chain,
         head: &Head,
     ) -> Result<Wheel, FileError> {
-        let contact = Point3::from(lengths(reader, "wheel.contact", &self.contact)?);
+        let contact = Point3::from(vector(&self.contact));
         let swivels = match (&self.letter, &self.sign) {
             (None, None) => None,
             (None, Some(given)) => {
@@ -52,8 +51,7 @@ impl FileWheel {
                     );
                     return Err(reader.error(name, message));
                 }
-                let sign = given.as_ref().map_or(Ok(1.0), |s| sign(reader, "wheel.sign", s))?;
-                Some((axis, sign))
+                Some((axis, given.as_ref().map_or(1.0, |sign| f64::from(sign.get()))))
             }
         };
         Ok(Wheel { contact, swivel_axis: swivels })

@@ -2,18 +2,15 @@
 //! above.
 use nalgebra::Point3;
 
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::{HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING};
 use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::PointTree;
-use gcode_part::Surface;
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    surface: Option<Surface>,
-    objections: &mut Vec<HoleFinding>,
-) {
-    let Some(surface) = surface else { return };
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
+    let Some(surface) = inspection.reference.surface else { return };
     if comparison.missing.is_empty() {
         return;
     }
@@ -36,7 +33,7 @@ pub(in crate::verify) fn check(
         }
     }
     let Some(first) = first else { return };
-    let folded = fold(objections, &["hole-missing", "hole-extra"], |objection| {
+    let folded = fold(objections, &[&HOLE_MISSING, &HOLE_EXTRA], |objection| {
         objection.nominal.is_some_and(|index| wanted[index])
             || objection.extra.is_some_and(|index| drilled[index])
     });
@@ -47,7 +44,7 @@ pub(in crate::verify) fn check(
         false => format!("{low:.3} to {high:.3} mm"),
     };
     let message = format!("{feeds} along the tool axis ended {far} above the surface, over missing holes");
-    let mut finding = Diagnostic::error("hole-in-air", message).help(
+    let mut finding = Diagnostic::new(&HOLE_IN_AIR, message).help(
         "check the zero along the tool axis (the work offset), the tool length and its offset, and the depth",
     );
     finding.notes.extend(folded_note(folded));

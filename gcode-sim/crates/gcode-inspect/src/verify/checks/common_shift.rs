@@ -2,11 +2,15 @@
 use nalgebra::{Point3, Vector3};
 
 use super::mirrored::MirrorImage;
-use super::{Comparison, HoleFinding, explained_by_rows};
+use super::{Comparison, HoleFinding, HoleInspection, explained_by_rows};
+use crate::findings::{
+    HOLE_DEPTH, HOLE_EXTRA, HOLE_MISSING, HOLE_POSITION, HOLE_TILTED, HOLE_TWICE, HOLES_ALIKE, MIRROR_IMAGE,
+    ROTARY_SIGN, ROW_ANGLE, ROW_GROUP, ROW_PITCH, ROW_SEAM,
+};
 use crate::machine::Machine;
 use crate::verify::displacement::displacements;
 use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::units::Deg;
 use gcode_part::Pattern;
@@ -18,19 +22,19 @@ const MIN_GROUP_SIZE: usize = 3;
 const SAME_DEPTH: f64 = 0.02;
 
 /// What is found of a single hole in a wrong place.
-const POSITION_CODES: [&str; 4] = ["hole-position", "hole-tilted", "hole-missing", "hole-extra"];
+const POSITION_KINDS: [&FindingKind; 4] = [&HOLE_POSITION, &HOLE_TILTED, &HOLE_MISSING, &HOLE_EXTRA];
 
 /// More different ways to be wrong aren't one fault.
 const MAX_GROUPS: usize = 64;
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
+/// Findings about a whole pattern.
+const PATTERN_KINDS: [&FindingKind; 6] =
+    [&ROW_ANGLE, &ROW_PITCH, &ROW_GROUP, &ROW_SEAM, &ROTARY_SIGN, &MIRROR_IMAGE];
+
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, .. } = inspection;
     // What a whole pattern of rows has wrong is explained by its own checks.
-    let whole = ["row-angle", "row-pitch", "row-group", "row-seam", "rotary-sign", "mirror-image"];
-    let explained = objections.iter().position(|objection| whole.contains(&objection.finding.code.as_str()));
+    let explained = objections.iter().position(|objection| objection.is_one_of(&PATTERN_KINDS));
     let mut reported = match explained {
         Some(explained) => {
             let folded = fold_explained(comparison, objections) + fold_tilted(comparison, objections);
@@ -55,13 +59,13 @@ pub(in crate::verify) fn check(
 /// Puts the places behind what is wrong with the whole, as far as that puts them there.
 fn fold_explained(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> usize {
     if let Some(mirrored) = MirrorImage::of(comparison) {
-        return fold(objections, &POSITION_CODES, |objection| {
+        return fold(objections, &POSITION_KINDS, |objection| {
             objection.nominal.is_some_and(|wanted| mirrored.nominal[wanted])
                 || objection.extra.is_some_and(|extra| mirrored.actual[extra])
         });
     }
     match comparison.pattern.and_then(|pattern| explained_by_rows::explains(comparison, pattern)) {
-        Some(explains) => fold(objections, &POSITION_CODES, explains),
+        Some(explains) => fold(objections, &POSITION_KINDS, explains),
         None => 0,
     }
 }
@@ -79,14 +83,12 @@ fn fold_tilted(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> u
         is_tilt_only[pair.nominal] =
             (pair.deviation.depth_error - sinks).abs() <= comparison.tolerances.depth;
     }
-    fold(objections, &["hole-depth"], |objection| {
-        objection.nominal.is_some_and(|wanted| is_tilt_only[wanted])
-    })
+    fold(objections, &[&HOLE_DEPTH], |objection| objection.nominal.is_some_and(|wanted| is_tilt_only[wanted]))
 }
 
 fn report_common_depths(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> Vec<Diagnostic> {
     let mut has_depth_finding = vec![false; comparison.nominal.len()];
-    for objection in objections.iter().filter(|o| !o.is_folded && o.finding.code == "hole-depth") {
+    for objection in objections.iter().filter(|o| !o.is_folded && o.finding.kind == &HOLE_DEPTH) {
         objection.nominal.into_iter().for_each(|wanted| has_depth_finding[wanted] = true);
     }
     let wrong: Vec<_> = comparison.pairs.iter().filter(|pair| has_depth_finding[pair.nominal]).collect();
@@ -97,7 +99,7 @@ fn report_common_depths(comparison: &Comparison<'_>, objections: &mut [HoleFindi
         let error = group[0].deviation.depth_error;
         let members: Vec<usize> = group.iter().map(|pair| pair.nominal).collect();
         let is_one = membership(comparison.nominal.len(), &members);
-        let folded = fold(objections, &["hole-depth"], |o| o.nominal.is_some_and(|wanted| is_one[wanted]));
+        let folded = fold(objections, &[&HOLE_DEPTH], |o| o.nominal.is_some_and(|wanted| is_one[wanted]));
         let by = group.iter().map(|pair| pair.deviation.depth_error.abs());
         let (least, most) =
             by.fold((f64::INFINITY, 0.0f64), |(least, most), by| (least.min(by), most.max(by)));
@@ -111,7 +113,7 @@ fn report_common_depths(comparison: &Comparison<'_>, objections: &mut [HoleFindi
             if error > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
-        let mut finding = Diagnostic::error("holes-alike", message)
+        let mut finding = Diagnostic::new(&HOLES_ALIKE, message)
             .help("check the programmed depth, the zero along the tool axis, the tool length and its offset");
         let wanted = comparison.nominal[group[0].nominal].depth;
         finding.notes.extend(super::depth::mistaken_factor(wanted, wanted + error).map(str::to_owned));
@@ -143,7 +145,7 @@ fn report_common_shifts(
         let drilled: Vec<usize> = group.iter().map(|off| off.actual).collect();
         let is_wanted = membership(comparison.nominal.len(), &members);
         let is_drilled = membership(comparison.actual.len(), &drilled);
-        let folded = fold(objections, &POSITION_CODES, |o| {
+        let folded = fold(objections, &POSITION_KINDS, |o| {
             o.nominal.is_some_and(|wanted| is_wanted[wanted])
                 || o.extra.is_some_and(|extra| is_drilled[extra])
         });
@@ -169,9 +171,9 @@ fn report_repeated_set(comparison: &Comparison<'_>, objections: &mut [HoleFindin
         return None;
     }
     let is_again = membership(comparison.actual.len(), &extras);
-    let folded = fold(objections, &["hole-twice"], |o| o.extra.is_some_and(|extra| is_again[extra]));
+    let folded = fold(objections, &[&HOLE_TWICE], |o| o.extra.is_some_and(|extra| is_again[extra]));
     let set = describe_set(comparison, &members);
-    let mut finding = Diagnostic::error("hole-twice", format!("{set}: drilled a second time")).help(
+    let mut finding = Diagnostic::new(&HOLE_TWICE, format!("{set}: drilled a second time")).help(
         "remove the second call, or the second iteration of the loop: the same tool drills these holes twice",
     );
     finding.notes.extend(folded_note(folded));
@@ -180,7 +182,7 @@ fn report_repeated_set(comparison: &Comparison<'_>, objections: &mut [HoleFindin
 
 fn rotation_finding(set: &str, machine: &Machine, axis: AxisIndex, by: Deg) -> Diagnostic {
     let letter = machine.axes.letter(axis);
-    Diagnostic::error("holes-alike", format!("{set}: rotated by {letter}{:+.3}°", by.0))
+    Diagnostic::new(&HOLES_ALIKE, format!("{set}: rotated by {letter}{:+.3}°", by.0))
         .help(format!("correct {letter} in the program, or its zero in the work offset"))
 }
 
@@ -196,7 +198,7 @@ fn shift_finding(set: &str, offset: &Vector3<f64>, pattern: Option<&Pattern>) ->
         Some(_) if libm::hypot(offset.y, offset.z) > 0.0005 => ", off the cylinder axis",
         _ => "",
     };
-    Diagnostic::error("holes-alike", format!("{set}: shifted by {}{off_axis_note}", by.join(" "))).help(
+    Diagnostic::new(&HOLES_ALIKE, format!("{set}: shifted by {}{off_axis_note}", by.join(" "))).help(
         "correct the programmed point or the work offset: the shift is actual − nominal along the machine axes",
     )
 }

@@ -1,9 +1,11 @@
 //! What is cut before a hole is finished must lie inside the finished hole: the finishing tool doesn't put it back.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_CUT_ASIDE;
 use crate::verify::position::Deviation;
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for pair in &comparison.pairs {
         let (wanted, found) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
         for cut in &found.earlier_passes {
@@ -26,9 +28,10 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             // Another tool whose size isn't known may be as small as it likes.
             let unknown = cut.tool != found.tool && cut.diameter.is_none();
             let finding = match unknown {
-                true => Diagnostic::warning("hole-cut-aside", message)
+                true => Diagnostic::new(&HOLE_CUT_ASIDE, message)
+                    .with_severity(Severity::Warning)
                     .help("give the tool diameters in the machine file, so that this can be judged"),
-                false => Diagnostic::error("hole-cut-aside", message)
+                false => Diagnostic::new(&HOLE_CUT_ASIDE, message)
                     .help("correct the point of that pass: material cut outside the hole cannot be restored"),
             };
             let finding = finding.with_backtrace(cut.backtrace.clone());

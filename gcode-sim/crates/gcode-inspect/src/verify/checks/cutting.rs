@@ -1,6 +1,8 @@
 //! While a tool cuts it turns and is fed as the reference says of it, and the right length offset is in force.
 use std::collections::BTreeMap;
 
+use super::{HoleFinding, HoleInspection};
+use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFSET, SPINDLE_REVERSED};
 use crate::holes::CutConditions;
 use crate::machine::Machine;
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -13,11 +15,9 @@ const ROUNDING_ALLOWANCE: f64 = 0.005;
 /// … and beyond this part it is no other choice but a slip: an error. Tables of cutting data leave so much open.
 const ERROR_RATIO: f64 = 0.25;
 
-pub(in crate::verify) fn findings(
-    cuttings: &[CutConditions],
-    conduct: &ProcessLimits,
-    machine: &Machine,
-) -> Vec<Diagnostic> {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut Vec<HoleFinding>) {
+    let HoleInspection { machine, extraction, reference, .. } = inspection;
+    let (cuttings, conduct) = (&extraction.cut_conditions, &reference.process_limits);
     let checks = [reversed, speed, feed, peck, length, tool];
     let found = checks.iter().flat_map(|check| cuttings.iter().map(move |cutting| (check, cutting)));
     let mut told: Vec<(Diagnostic, u64)> = Vec::new();
@@ -36,12 +36,12 @@ pub(in crate::verify) fn findings(
         1 => finding,
         more => finding.note(format!("in {more} cuts; this is the first")),
     };
-    told.into_iter().map(counted).collect()
+    findings.extend(told.into_iter().map(counted).map(HoleFinding::of_motion));
 }
 
 fn reversed(cutting: &CutConditions, _: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
     (cutting.spindle_direction == SpindleDirection::Counterclockwise).then(|| {
-        Diagnostic::warning("spindle-reversed", format!("{} cuts with M04", name(cutting)))
+        Diagnostic::new(&SPINDLE_REVERSED, format!("{} cuts with M04", name(cutting)))
             .note("a right-hand drill rubs and breaks; the reference does not give the hand of the tool")
             .help("use M03, unless the tool is left-hand")
     })
@@ -53,7 +53,11 @@ fn speed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Optio
     // One that stands is told already.
     let severity = severity(found, wanted).filter(|_| cutting.spindle_direction != SpindleDirection::Off)?;
     let message = format!("{} cuts at S{found}; the job specifies S{wanted}", name(cutting));
-    Some(Diagnostic::new(severity, "drill-speed", message).help("correct S, or the tool's speed in the job"))
+    Some(
+        Diagnostic::new(&DRILL_SPEED, message)
+            .with_severity(severity)
+            .help("correct S, or the tool's speed in the job"),
+    )
 }
 
 fn feed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
@@ -67,7 +71,8 @@ fn feed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option
         (found * 1e3).round() / 1e3
     );
     Some(
-        Diagnostic::new(severity, "drill-feed", message)
+        Diagnostic::new(&DRILL_FEED, message)
+            .with_severity(severity)
             .help("correct F, or the tool's feed in the job; check that G94 and G21 are in force"),
     )
 }
@@ -81,14 +86,15 @@ fn peck(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option
             name(cutting),
             shown(cutting.max_cut)
         );
-        let finding = Diagnostic::new(severity, "drill-peck", message);
+        let finding = Diagnostic::new(&DRILL_PECK, message).with_severity(severity);
         return Some(finding.help("use G83 with the job's peck as Q, or correct drill.peck in the job"));
     }
     let peck = cutting.min_peck.filter(|peck| *peck < wanted && severity(*peck, wanted).is_some())?;
     let message =
         format!("{} drills in pecks of {} mm; the job specifies {wanted} mm", name(cutting), shown(peck));
     Some(
-        Diagnostic::warning("drill-peck", message)
+        Diagnostic::new(&DRILL_PECK, message)
+            .with_severity(Severity::Warning)
             .note("this costs time, and chips are cut twice")
             .help("correct Q, or drill.peck in the job; check Q for a missing decimal point"),
     )
@@ -104,13 +110,13 @@ fn tool(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option
     let names: Vec<_> = said.iter().map(|duty| format!("T{}", duty.number)).collect();
     let names = names.join(", ");
     Some(match cutting.tool {
-        None => Diagnostic::warning(
-            "job-tool",
+        None => Diagnostic::new(
+            &JOB_TOOL,
             format!("the part is cut before the first tool change; the job specifies {names}"),
         )
         .note("the tool in the spindle at the start is unknown")
         .help(format!("command T{} M06 before the first hole", first.number)),
-        Some(number) => Diagnostic::warning("job-tool", format!("T{number} cuts; the job specifies {names}"))
+        Some(number) => Diagnostic::new(&JOB_TOOL, format!("T{number} cuts; the job specifies {names}"))
             .note("speed and feed of this tool are not specified")
             .help("use the job's tool, or correct its number in the job"),
     })
@@ -134,7 +140,8 @@ fn length(cutting: &CutConditions, conduct: &ProcessLimits, machine: &Machine) -
     let tool = name(cutting);
     let note = "the machine file does not give the tool's length, so the simulated holes do not depend on \
                 the length offset";
-    let finding = |severity, message| Diagnostic::new(severity, "length-offset", message).note(note);
+    let finding =
+        |severity, message| Diagnostic::new(&LENGTH_OFFSET, message).with_severity(severity).note(note);
     match (cutting.compensation, asked) {
         (LengthCompensation::Minus(h), asked) => {
             let severity = if asked.is_some() { Severity::Error } else { Severity::Warning };

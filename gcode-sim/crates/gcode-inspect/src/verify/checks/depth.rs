@@ -1,8 +1,10 @@
 //! Every hole must be as deep as wanted.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_DEPTH;
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for pair in &comparison.pairs {
         let error = pair.deviation.depth_error;
         if error.abs() <= comparison.tolerances.depth {
@@ -17,7 +19,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             if error > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
-        let mut finding = Diagnostic::error("hole-depth", message)
+        let mut finding = Diagnostic::new(&HOLE_DEPTH, message)
             .help("check the programmed depth, the tool length and its offset")
             .with_backtrace(comparison.actual[pair.actual].backtrace.clone());
         if let Some(note) = mistaken_factor(nominal, nominal + error) {

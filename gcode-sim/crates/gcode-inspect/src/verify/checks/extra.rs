@@ -1,17 +1,19 @@
 //! Nothing may be drilled that nobody asked for.
 use nalgebra::Point3;
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
+use crate::findings::{HOLE_EXTRA, HOLE_TWICE};
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for index in &comparison.extra {
         let twice = comparison.nominal_on_line_of(*index).is_some();
-        let (code, help) = match twice {
-            true => ("hole-twice", "remove the second call: the same tool drills this hole twice"),
-            false => ("hole-extra", "remove it from the program, or correct its position"),
+        let (kind, help) = match twice {
+            true => (&HOLE_TWICE, "remove the second call: the same tool drills this hole twice"),
+            false => (&HOLE_EXTRA, "remove it from the program, or correct its position"),
         };
-        let finding = Diagnostic::error(code, explain(comparison, *index))
+        let finding = Diagnostic::new(kind, explain(comparison, *index))
             .help(help)
             .with_backtrace(comparison.actual[*index].backtrace.clone());
         objections.push(HoleFinding::of_extra(*index, finding));

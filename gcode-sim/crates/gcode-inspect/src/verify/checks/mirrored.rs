@@ -2,7 +2,8 @@
 //! once, instead of hole by hole only.
 use nalgebra::Unit;
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
+use crate::findings::{MIRROR_IMAGE, ROTARY_SIGN};
 use crate::holes::DrilledHole;
 use crate::machine::{LinkMotion, Machine};
 use crate::verify::HolePair;
@@ -53,11 +54,8 @@ impl MirrorImage {
     }
 }
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, .. } = inspection;
     let Some(MirrorImage { axis, agreeing: agree, .. }) = MirrorImage::of(comparison) else { return };
     let name = ["x", "y", "z"][axis];
     let lie = format!(
@@ -65,15 +63,13 @@ pub(in crate::verify) fn check(
         comparison.nominal.len()
     );
     let finding = match is_wrong_rotation_sign(comparison, machine, axis) {
-        true => Diagnostic::error(
-            "rotary-sign",
+        true => Diagnostic::new(
+            &ROTARY_SIGN,
             format!("{lie}; the rotary table direction is opposite to the one the program assumes"),
         )
         .help("reverse the table's sign in the machine file, or machine.rotary.sign in the job"),
-        false => {
-            Diagnostic::error("mirror-image", format!("{lie}; no rotation of the table has this effect"))
-                .help("check for a mirror image (G51.1) left in force, or a wrong sign of a coordinate")
-        }
+        false => Diagnostic::new(&MIRROR_IMAGE, format!("{lie}; no rotation of the table has this effect"))
+            .help("check for a mirror image (G51.1) left in force, or a wrong sign of a coordinate"),
     };
     let place = comparison.actual[comparison.extra[0]].backtrace.clone();
     objections.push(HoleFinding::unlocated(finding.with_backtrace(place)));

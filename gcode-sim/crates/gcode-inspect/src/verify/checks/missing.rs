@@ -1,11 +1,13 @@
 //! Every wanted hole must be there.
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_MISSING;
 use gcode_lang::diag::Diagnostic;
 use gcode_part::PointTree;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     // A hole drilled twice is known; it isn't the missing one in a wrong place.
     let extra = comparison.extra.iter().copied();
     let extra = extra.filter(|index| comparison.nominal_on_line_of(*index).is_none());
@@ -15,7 +17,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         let hole = &comparison.nominal[*wanted];
         let end = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
         let message = format!("hole {} is missing", comparison.id(*wanted));
-        let finding = Diagnostic::error("hole-missing", message);
+        let finding = Diagnostic::new(&HOLE_MISSING, message);
         let finding = match tree.nearest(&end) {
             Some((near, distance)) => {
                 let found = &comparison.actual[extra[near]];

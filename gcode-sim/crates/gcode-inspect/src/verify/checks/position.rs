@@ -1,9 +1,11 @@
 //! The axis of every hole must lie in its zone: judged unrounded, told apart by whether it leans or stands aside.
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
+use crate::findings::{HOLE_POSITION, HOLE_TILTED};
 use crate::verify::HolePair;
 use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     for pair in &comparison.pairs {
         if pair.deviation.zone_diameter() > comparison.tolerances.position {
             objections.push(HoleFinding::of_nominal(pair.nominal, finding(comparison, pair)));
@@ -27,11 +29,11 @@ fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
     let finding = if leans > deviation.at_entry.min(deviation.at_bottom)
         && leans > comparison.tolerances.position / 4.0
     {
-        Diagnostic::error("hole-tilted", format!("hole {id} is tilted by {:.3}°: {limits}", deviation.tilt.0))
+        Diagnostic::new(&HOLE_TILTED, format!("hole {id} is tilted by {:.3}°: {limits}", deviation.tilt.0))
             .help("check the head angle, and that the feed runs along the hole")
     } else {
         let [x, y, z] = [0, 1, 2].map(|i| deviation.entry[i] - wanted.entry[i]);
-        Diagnostic::error("hole-position", format!("hole {id} is out of position: {limits}"))
+        Diagnostic::new(&HOLE_POSITION, format!("hole {id} is out of position: {limits}"))
             .note(format!(
                 "actual − nominal at the entry, part coordinates: x {x:+.4}, y {y:+.4}, z {z:+.4} mm"
             ))

@@ -2,11 +2,12 @@
 //! the depth of the holes, and nothing it drilled is right.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
+use crate::findings::{HOLE_DEPTH, HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING, HOLES_ALIKE, LENGTH_OFFSET};
 use crate::holes::LengthMismatch;
 use crate::machine::Machine;
 use crate::verify::hole_finding::{fold, folded_note};
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::LengthCompensation;
 use gcode_part::ProcessLimits;
 
@@ -17,16 +18,12 @@ const MAX_LINE_OFFSET: f64 = 0.5;
 const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
 
 /// What is found of holes that are cut at a wrong depth.
-const DEPTH_CODES: [&str; 5] = ["hole-missing", "hole-extra", "hole-depth", "holes-alike", "hole-in-air"];
+const DEPTH_KINDS: [&FindingKind; 5] = [&HOLE_MISSING, &HOLE_EXTRA, &HOLE_DEPTH, &HOLES_ALIKE, &HOLE_IN_AIR];
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    mismatches: &[LengthMismatch],
-    conduct: &ProcessLimits,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
-    let wrong: Vec<&LengthMismatch> = mismatches.iter().filter(|reach| explains(comparison, reach)).collect();
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, extraction, reference } = inspection;
+    let mismatches = extraction.length_mismatches.iter();
+    let wrong: Vec<&LengthMismatch> = mismatches.filter(|reach| explains(comparison, reach)).collect();
     if wrong.is_empty() {
         return;
     }
@@ -37,15 +34,17 @@ pub(in crate::verify) fn check(
     let pair_of = |wanted: usize| comparison.pairs.iter().find(|pair| pair.nominal == wanted);
     // What is missing or wrong with many holes, a tool with the right offset may have to do with.
     let alone = comparison.pairs.iter().all(|pair| by_them(pair.actual));
-    fold(objections, &DEPTH_CODES, |objection| match (objection.extra, objection.nominal) {
+    fold(objections, &DEPTH_KINDS, |objection| match (objection.extra, objection.nominal) {
         (Some(extra), _) => by_them(extra),
         (None, Some(wanted)) => pair_of(wanted).map_or(alone, |pair| by_them(pair.actual)),
         (None, None) => alone,
     });
     // With those behind a finding that is folded itself.
     let folded = objections.iter().filter(|objection| objection.is_folded).count();
-    let mut told: Vec<HoleFinding> =
-        wrong.into_iter().map(|reach| HoleFinding::unlocated(finding(reach, conduct, machine))).collect();
+    let mut told: Vec<HoleFinding> = wrong
+        .into_iter()
+        .map(|reach| HoleFinding::unlocated(finding(reach, &reference.process_limits, machine)))
+        .collect();
     told[0].finding.notes.extend(folded_note(folded));
     objections.splice(0..0, told);
 }
@@ -77,7 +76,7 @@ fn finding(mismatch: &LengthMismatch, conduct: &ProcessLimits, machine: &Machine
         Some(duty) => format!("use the job's tool, T{}, or {help}", duty.number),
         None => help,
     };
-    Diagnostic::error("length-offset", message)
+    Diagnostic::new(&LENGTH_OFFSET, message)
         .note("this length error alone explains the missed depths; the length comes from the machine file")
         .help(help)
         .with_backtrace(mismatch.backtrace.clone())

@@ -1,6 +1,7 @@
 //! The rows of a honeycomb stand at the angle with which the pattern closes: another one is told with the distance it
 //! makes round the circumference and the diameter it would be right for.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::ROW_ANGLE;
 use crate::verify::causes::describe_causes;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
@@ -11,7 +12,8 @@ use gcode_part::Pattern;
 /// What rounding to the rotary's increment, 0.01° at the coarsest, may make of a turn.
 const ROUNDING_ALLOWANCE: Deg = Deg(0.03);
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let (usual, wanted) = (rows.typical_gap, rows.nominal_gap(pattern));
@@ -32,7 +34,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         format_angle(usual),
         wanted.0
     );
-    let finding = Diagnostic::error("row-angle", message).help(help(pattern));
+    let finding = Diagnostic::new(&ROW_ANGLE, message).help(help(pattern));
     let mut finding = locate_at_call(finding, &comparison.actual[rows.rows[1].first].backtrace);
     if is_whole(usual) && !is_whole(wanted) {
         let cut = if usual.0 < wanted.0 { "FIX or ROUND" } else { "FUP or ROUND" };

@@ -1,6 +1,7 @@
 //! A honeycomb has two groups of rows, one half a pitch later in x than the other: where all rows begin alike, one is
 //! missing, or stands where the other does.
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
+use crate::findings::ROW_GROUP;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
@@ -9,7 +10,8 @@ use gcode_part::Pattern;
 /// Rows that begin nearer to one another than this, in mm, begin alike.
 const SAME_SHIFT: f64 = 0.02;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern.filter(|_| !comparison.missing.is_empty()) else { return };
     let late = |x: f64| (0.25..0.75).contains(&(x / pattern.pitch).fract());
     let second = comparison.nominal.iter().filter(|hole| late(hole.entry[0])).count();
@@ -49,7 +51,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         ),
     };
     let finding = locate_at_call(
-        Diagnostic::error("row-group", message).help(help),
+        Diagnostic::new(&ROW_GROUP, message).help(help),
         &comparison.actual[first.first].backtrace,
     );
     objections.push(HoleFinding::unlocated(finding));
@@ -89,7 +91,7 @@ fn shifted_group(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternR
     let help = "begin the first group at x 0 and the second half a pitch later; the first hole of a row \
                 positions the others";
     Some(locate_at_call(
-        Diagnostic::error("row-group", message).help(help),
+        Diagnostic::new(&ROW_GROUP, message).help(help),
         &comparison.actual[first[group].first].backtrace,
     ))
 }

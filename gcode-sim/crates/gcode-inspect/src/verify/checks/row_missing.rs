@@ -1,18 +1,19 @@
 //! Whole rows of a honeycomb that nobody drilled are named as rows.
 use nalgebra::Point3;
 
-use super::{Comparison, HoleFinding};
+use super::{Comparison, HoleFinding, HoleInspection};
+use crate::findings::{HOLE_MISSING, ROW_ANGLE, ROW_GROUP, ROW_MISSING, ROW_SHORT};
 use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::units::Deg;
 use gcode_part::Pattern;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(last) = comparison.pairs.last() else { return };
     // Half of the pattern is told as that, and rows at other angles as those.
-    let explained = ["row-group", "row-angle", "row-short"];
-    if objections.iter().any(|objection| explained.contains(&objection.finding.code.as_str())) {
+    if objections.iter().any(|objection| objection.is_one_of(&[&ROW_GROUP, &ROW_ANGLE, &ROW_SHORT])) {
         return;
     }
     let rows = missing_rows(comparison, pattern);
@@ -22,7 +23,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     let row = |wanted: usize| pattern.row_of(&Point3::from(comparison.nominal[wanted].entry));
     let gone = |wanted: usize| rows.contains(&row(wanted));
     let count = comparison.missing.iter().filter(|wanted| gone(**wanted)).count();
-    let folded = fold(objections, &["hole-missing"], |objection| objection.nominal.is_some_and(gone));
+    let folded = fold(objections, &[&HOLE_MISSING], |objection| objection.nominal.is_some_and(gone));
     let (first, to) = (rows[0], rows[rows.len() - 1]);
     let at = |row: usize| Deg(360.0 * row as f64 / f64::from(pattern.rows));
     let message = match rows.as_slice() {
@@ -46,7 +47,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         true => format!("check whether the loop over the rows ends too early: rows count from 0 to {to}"),
         false => "check for a row that is skipped or drilled at another angle".to_owned(),
     };
-    let mut finding = Diagnostic::error("row-missing", message).help(help);
+    let mut finding = Diagnostic::new(&ROW_MISSING, message).help(help);
     finding.notes.extend(folded_note(folded));
     let place = &comparison.actual[last.actual].backtrace;
     objections.insert(0, HoleFinding::unlocated(locate_at_call(finding, place)));

@@ -1,5 +1,6 @@
 //! In a row the holes stand at the pitch with which the pattern closes: another one is told with what it adds up to.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::{ROW_ANGLE, ROW_PITCH};
 use crate::verify::causes::describe_causes;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
@@ -8,13 +9,14 @@ use gcode_lang::diag::Diagnostic;
 /// Pitches nearer than this, in mm, are the same: holes are rounded to the increment.
 const PITCH_TOLERANCE: f64 = 0.002;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let Some((spacing, row)) = rows.spacing else { return };
     // The pitch that follows from another number of rows is told with their angle.
     let follows = (spacing - pattern.closing_pitch(rows.rows.len() as u32)).abs() < PITCH_TOLERANCE;
-    if follows && objections.iter().any(|objection| objection.finding.code == "row-angle") {
+    if follows && objections.iter().any(|objection| objection.finding.kind == &ROW_ANGLE) {
         return;
     }
     let pitches = (pattern.length / pattern.pitch).floor();
@@ -28,7 +30,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         pattern.pitch
     );
     let mut finding =
-        locate_at_call(Diagnostic::error("row-pitch", message), &comparison.actual[row.first].backtrace);
+        locate_at_call(Diagnostic::new(&ROW_PITCH, message), &comparison.actual[row.first].backtrace);
     if let Some(asked) = pattern.specified_pitch
         && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
     {

@@ -1,5 +1,6 @@
 //! Round the cylinder the last row stands as far from the first as all others from their next: else there is a seam.
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::ROW_SEAM;
 use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
@@ -7,7 +8,8 @@ use gcode_lang::diag::Diagnostic;
 /// A gap that differs by less than this part of a row is no seam.
 const SHARE: f64 = 0.05;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let odd = |gap: f64| (gap - rows.typical_gap.0).abs() > SHARE * pattern.row_angle().0;
@@ -30,7 +32,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         rows.typical_gap.0,
         pattern.arc_length(rows.typical_gap)
     );
-    let finding = Diagnostic::error("row-seam", message).help(
+    let finding = Diagnostic::new(&ROW_SEAM, message).help(
         "make the angle from row to row divide 360: choose a whole number of rows, then compute the angle, \
          then the pitch",
     );

@@ -1,6 +1,8 @@
 //! The rotary turns the same way in the job and in the machine file.
 use nalgebra::{Unit, Vector3};
 
+use super::{HoleFinding, HoleInspection};
+use crate::findings::AXIS_SIGNS;
 use crate::machine::{LinkMotion, Machine};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Reference;
@@ -9,7 +11,11 @@ use gcode_part::Surface;
 /// Of an axis that stands more askew than this to the part's nobody can say which way it turns.
 const MIN_ALIGNMENT: f64 = 0.5;
 
-pub(in crate::verify) fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut Vec<HoleFinding>) {
+    findings.extend(finding(inspection.reference, inspection.machine).map(HoleFinding::of_motion));
+}
+
+fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
     let rotary = reference.process_limits.rotary?;
     let about = match reference.surface? {
         Surface::Ellipsoid { .. } => Vector3::y_axis(),
@@ -21,7 +27,7 @@ pub(in crate::verify) fn finding(reference: &Reference, machine: &Machine) -> Op
         let letter = rotary.letter;
         let message =
             format!("{letter} has sign {sign} in the machine file and {job} in the job: the directions are opposite");
-        Diagnostic::warning("axis-signs", message)
+        Diagnostic::new(&AXIS_SIGNS, message)
             .note("the results are for the machine file's direction; programs emitted from the job assume the job's")
             .help("rotate the part by hand, observe its direction and correct the wrong sign")
     })

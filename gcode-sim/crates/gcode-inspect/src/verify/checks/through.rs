@@ -2,7 +2,8 @@
 //! leaves the verdict alone. The part may be thinner than its surface says, a shell or cut off, so silence is no proof.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_THROUGH;
 use crate::verify::hole_finding::folded_note;
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Hole;
@@ -11,12 +12,9 @@ use gcode_part::Surface;
 /// Fewer holes are told one by one.
 const MIN_HOLES: usize = 3;
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    surface: Option<Surface>,
-    objections: &mut Vec<HoleFinding>,
-) {
-    let Some(surface) = surface else { return };
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
+    let Some(surface) = inspection.reference.surface else { return };
     let thin = |(wanted, hole): (usize, &Hole)| {
         // What ends inside the part doesn't go through: how thick it is there needn't be asked.
         if surface.value(&end(hole)) < 0.0 {
@@ -30,7 +28,7 @@ pub(in crate::verify) fn check(
         let depth = comparison.nominal[wanted].depth;
         let message =
             format!("{which} through: {depth} mm deep, the part is {thick:.1} mm thick along its axis");
-        Diagnostic::warning("hole-through", message)
+        Diagnostic::new(&HOLE_THROUGH, message)
             .help("check depth, radius and direction, unless the drawing specifies a through hole")
     };
     let many = MIN_HOLES <= through.len();

@@ -3,8 +3,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, HoleFinding};
-use crate::machine::Machine;
+use super::{HoleFinding, HoleInspection};
+use crate::findings::TOOL_SHORT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 
@@ -17,11 +17,8 @@ struct Deepest<'a> {
     holes: usize,
 }
 
-pub(in crate::verify) fn check(
-    comparison: &Comparison<'_>,
-    machine: &Machine,
-    objections: &mut Vec<HoleFinding>,
-) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let HoleInspection { comparison, machine, .. } = inspection;
     // A length of 0 is that of a tool whose tip is programmed.
     let length = |tool: u32| machine.find_tool(tool)?.length.filter(|length| 0.0 < *length);
     let mut short: BTreeMap<u32, (f64, Deepest<'_>)> = BTreeMap::new();
@@ -61,7 +58,7 @@ pub(in crate::verify) fn check(
              enter the part",
             comparison.id(wanted)
         );
-        let finding = Diagnostic::warning("tool-short", message)
+        let finding = Diagnostic::new(&TOOL_SHORT, message)
             .help(
                 "check that the length in the machine file runs from the spindle gauge line to the tip; \
                  otherwise use a longer tool",

@@ -4,14 +4,16 @@
 //! Sister tools are no fault, so it warns and leaves the verdict alone.
 use std::collections::BTreeMap;
 
-use super::{Comparison, HoleFinding};
+use super::{HoleFinding, HoleInspection};
+use crate::findings::HOLE_TOOLS;
 use crate::holes::DrilledHole;
 use gcode_lang::diag::Diagnostic;
 
 /// Fewer holes of one diameter don't show what is usual.
 const MIN_HOLES: usize = 3;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+    let comparison = &inspection.comparison;
     // Diameters are what somebody wrote down: equal ones are equal bits.
     let mut alike: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
     for (index, pair) in comparison.pairs.iter().enumerate() {
@@ -36,7 +38,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
                 lacks.join(", "),
                 f64::from_bits(diameter)
             );
-            let finding = Diagnostic::warning("hole-tools", message)
+            let finding = Diagnostic::new(&HOLE_TOOLS, message)
                 .help("check for a missing call")
                 .with_backtrace(comparison.actual[pair.actual].backtrace.clone());
             objections.push(HoleFinding::of_nominal(pair.nominal, finding));

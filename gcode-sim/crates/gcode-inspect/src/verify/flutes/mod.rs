@@ -11,7 +11,7 @@ mod verdict;
 pub use common::CommonDeviation;
 pub use spacing::FluteSpacing;
 pub use speed::{SpeedRange, WorstSpeed};
-pub use verdict::{FluteVerdict, HelixSample, LawAngles, NominalFlutes, describe_code};
+pub use verdict::{FluteVerdict, HelixSample, LawAngles, NominalFlutes, describe_kind};
 
 use nalgebra::Point3;
 

@@ -4,9 +4,13 @@ use serde::Serialize;
 
 use super::Inspection;
 use super::speed::SPEED_TOLERANCE;
+use crate::findings::{
+    BURR_OFFSET, FLUTE_END, FLUTE_EXTRA, FLUTE_HEAD, FLUTE_HELIX, FLUTE_INDEX, FLUTE_MISSING, FLUTE_SPEED,
+    FLUTE_SURFACE, FLUTE_TWICE, FLUTES_MEET, SPINDLE_STOPPED, WHEEL_FEED, WHEEL_INTO_BURR, WHEEL_SPEED,
+};
 use crate::flutes::{GrindingResult, Window};
 use crate::verify::verdict::{Answer, Finding, finding_of, limit_per_kind};
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
 use gcode_part::Flutes;
@@ -106,9 +110,9 @@ impl FluteVerdict {
         };
         let mut mentioned: Vec<&str> = Vec::new();
         for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
-            let what = describe_code(&finding.code).unwrap_or(&finding.code);
+            let what = describe_kind(finding.kind).unwrap_or(&finding.code);
             // The numbers say what is missing and what is too many.
-            let is_counted = matches!(finding.code.as_str(), "flute-missing" | "flute-extra");
+            let is_counted = [&FLUTE_MISSING, &FLUTE_EXTRA].contains(&finding.kind);
             if !is_counted && !mentioned.contains(&what) {
                 mentioned.push(what);
                 text.push_str(", ");
@@ -119,26 +123,28 @@ impl FluteVerdict {
     }
 }
 
-/// The code of a finding on flutes in few words; `None` of others.
-pub fn describe_code(code: &str) -> Option<&'static str> {
-    Some(match code {
-        "flute-missing" => "a flute is missing",
-        "flute-extra" => "an extra flute",
-        "flute-twice" => "a flute is ground twice",
-        "flute-surface" => "contact off the tooth bottom",
-        "flute-helix" => "helix angle out of tolerance",
-        "flute-index" => "spacing out of tolerance",
-        "flute-end" => "an end out of position",
-        "flute-head" => "head angle out of tolerance",
-        "flute-speed" => "speed out of tolerance",
-        "wheel-speed" => "wheel speed out of tolerance",
-        "wheel-feed" => "feed into the blank out of tolerance",
-        "burr-offset" => "the burr's position differs from the job's",
-        "spindle-stopped" => "the wheel is stopped",
-        "flutes-meet" => "neighbours overlap",
-        "wheel-into-burr" => "the wheel enters the burr",
-        _ => return None,
-    })
+/// Short descriptions of findings about flutes.
+const SHORT: [(&FindingKind, &str); 15] = [
+    (&FLUTE_MISSING, "a flute is missing"),
+    (&FLUTE_EXTRA, "an extra flute"),
+    (&FLUTE_TWICE, "a flute is ground twice"),
+    (&FLUTE_SURFACE, "contact off the tooth bottom"),
+    (&FLUTE_HELIX, "helix angle out of tolerance"),
+    (&FLUTE_INDEX, "spacing out of tolerance"),
+    (&FLUTE_END, "an end out of position"),
+    (&FLUTE_HEAD, "head angle out of tolerance"),
+    (&FLUTE_SPEED, "speed out of tolerance"),
+    (&WHEEL_SPEED, "wheel speed out of tolerance"),
+    (&WHEEL_FEED, "feed into the blank out of tolerance"),
+    (&BURR_OFFSET, "the burr's position differs from the job's"),
+    (&SPINDLE_STOPPED, "the wheel is stopped"),
+    (&FLUTES_MEET, "neighbours overlap"),
+    (&WHEEL_INTO_BURR, "the wheel enters the burr"),
+];
+
+/// Returns a short description of a finding about flutes; `None` for other findings.
+pub fn describe_kind(kind: &FindingKind) -> Option<&'static str> {
+    SHORT.iter().find(|(known, _)| *known == kind).map(|(_, words)| *words)
 }
 
 impl NominalFlutes {

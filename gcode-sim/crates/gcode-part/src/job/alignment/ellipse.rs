@@ -1,29 +1,26 @@
-//! `[ellipse]` of an alignment job: the outline that an edge finder follows. It may be left out, and so may each key.
+//! `[ellipse]` of an alignment job: the outline that an edge finder follows. The section and each of its keys
+//! are optional.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Chord, EllipsePath};
 use crate::job::sections::in_range;
 use crate::job::{FileError, JobControl, Reader, Surface};
-use crate::reader::Spanned;
+use crate::reader::bounds::{Bounded, ChordError, KeyRange, PathFeed, Radius};
 
 /// The outline in the plane z = 0 that an edge finder follows.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileEllipse {
     /// x of its start, mm [default: that of F].
-    #[schemars(range(min = 0.0, max = 99_999.0))]
-    from: Option<Spanned<f64>>,
+    from: Option<Bounded<Radius>>,
     /// x of its end, mm [default: that of E].
-    #[schemars(range(min = 0.0, max = 99_999.0))]
-    to: Option<Spanned<f64>>,
+    to: Option<Bounded<Radius>>,
     /// Tolerance of the ball position, mm: no less than the least increment [default: 0.002, or two
     /// increments].
-    #[schemars(range(min = 0.000_1, max = 1.0))]
-    chord_error: Option<Spanned<f64>>,
+    chord_error: Option<Bounded<ChordError>>,
     /// mm/min [default: 200].
-    #[schemars(range(min = 1.0, max = 10_000.0))]
-    feed: Option<Spanned<f64>>,
+    feed: Option<Bounded<PathFeed>>,
 }
 
 impl FileEllipse {
@@ -35,27 +32,22 @@ impl FileEllipse {
         chord: Chord,
     ) -> Result<EllipsePath, FileError> {
         let allowed = format!("0 to the equatorial radius a = {} mm", surface.a);
-        let radius = |key: &str, value: &Option<Spanned<f64>>, default: f64| {
-            reader.number_or(key, value.as_ref(), &allowed, in_range(0.0, surface.a), default)
+        let radius = |key: &str, value: &Option<Bounded<Radius>>, default: f64| match value {
+            Some(value) => reader.number(key, value, &allowed, in_range(0.0, surface.a)),
+            None => Ok(default),
         };
-        let increment = control.increment.size();
+        let (increment, most) = (control.increment.size(), ChordError::MAX);
         let path = EllipsePath {
             from: radius("ellipse.from", &self.from, chord.f_radius)?,
             to: radius("ellipse.to", &self.to, chord.e_radius)?,
-            chord_error: reader.number_or(
-                "ellipse.chord_error",
-                self.chord_error.as_ref(),
-                &format!("{increment} (the least increment) to 1 mm"),
-                in_range(increment, 1.0),
-                f64::max(0.002, 2.0 * increment),
-            )?,
-            feed: reader.number_or(
-                "ellipse.feed",
-                self.feed.as_ref(),
-                "1 to 10000 mm/min",
-                in_range(1.0, 1e4),
-                200.0,
-            )?,
+            chord_error: match &self.chord_error {
+                Some(error) => {
+                    let allowed = format!("{increment} (the least increment) to {most} mm");
+                    reader.number("ellipse.chord_error", error, &allowed, in_range(increment, most))?
+                }
+                None => f64::max(0.002, 2.0 * increment),
+            },
+            feed: self.feed.as_ref().map_or(200.0, Bounded::get),
         };
         if path.from == path.to {
             let message = format!(
@@ -74,7 +66,7 @@ impl FileEllipse {
 mod tests {
     use crate::job::Job;
 
-    /// A job with these lines in its section `[ellipse]`.
+    /// Parses a job whose section `[ellipse]` has these lines.
     fn job(increment: &str, section: &str) -> Result<Job, String> {
         let text = format!(
             "family = \"alignment\"\n\

@@ -1,4 +1,4 @@
-//! Reads the job file of the family `alignment`: every key checked, its line named.
+//! Reads the job file of the family `alignment`. Errors name the key and its line.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -8,13 +8,17 @@ use super::runout::FileRunout;
 use super::{Alignment, Chord, SineTable};
 use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
-use crate::job::sections::{FileControl, in_range, length, sign};
+use crate::job::sections::{FileControl, in_range};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader, Surface};
 use crate::reader::Spanned;
+use crate::reader::bounds::{
+    Bounded, Candidates, ChordError, KeyRange, Length, ProbeFeed, ProbeLength, Radius, Sign, SineTableAngle,
+    SineTableLength, Uneven,
+};
 use gcode_lang::units::{Deg, Mm};
 
-/// The part along y that the surface's normal must have where O8202 touches it along y.
+/// Least y component of the surface's normal at a point that O8202 touches along y.
 const STEEP: f64 = 0.3;
 
 /// Measurements of the position of a part on its machine.
@@ -54,17 +58,13 @@ pub(in crate::job) struct File {
 #[serde(deny_unknown_fields)]
 struct FileProbe {
     /// Of the stylus ball, mm.
-    #[schemars(range(min = 0.01, max = 1000.0))]
-    radius: Spanned<f64>,
+    radius: Bounded<ProbeLength>,
     /// Of a touch, mm/min [default: 100].
-    #[schemars(range(min = 0.01, max = 1000.0))]
-    feed: Option<Spanned<f64>>,
+    feed: Option<Bounded<ProbeFeed>>,
     /// Distance in front of and behind the nominal surface where a touch begins and ends, mm [default: 10].
-    #[schemars(range(min = 0.01, max = 1000.0))]
-    search: Option<Spanned<f64>>,
+    search: Option<Bounded<ProbeLength>>,
     /// Standard deviation of a touch, mm; not below the least increment [default: 0.002, or the increment].
-    #[schemars(range(min = 0.0001, max = 1.0))]
-    noise: Option<Spanned<f64>>,
+    noise: Option<Bounded<ChordError>>,
 }
 
 /// The table that sets the angle of the part's axis.
@@ -72,17 +72,14 @@ struct FileProbe {
 #[serde(deny_unknown_fields)]
 struct FileSineTable {
     /// Between the rollers, mm.
-    #[schemars(range(min = 10.0, max = 2000.0))]
-    length: Spanned<f64>,
+    length: Bounded<SineTableLength>,
     /// The angle, degrees.
-    #[schemars(range(min = 0.0, max = 45.0))]
-    phi: Spanned<f64>,
+    phi: Bounded<SineTableAngle>,
     /// The set of gauge blocks.
     #[schemars(extend("enum" = GaugeSet::ALL.map(|set| set.name)))]
     gauge_blocks: Spanned<String>,
     /// 1 if higher blocks rotate the part from x towards y, -1 if they rotate it back [default: 1].
-    #[schemars(extend("enum" = [1, -1]))]
-    sign: Option<Spanned<i64>>,
+    sign: Option<Sign>,
 }
 
 /// The chord between two points E and F of the surface in the plane z = 0.
@@ -90,21 +87,16 @@ struct FileSineTable {
 #[serde(deny_unknown_fields)]
 struct FileChord {
     /// x of E, mm: at most the equatorial radius.
-    #[schemars(range(min = 0.0, max = 99_999.0))]
-    e_radius: Spanned<f64>,
+    e_radius: Bounded<Radius>,
     /// x of F, mm, different from that of E.
-    #[schemars(range(min = 0.0, max = 99_999.0))]
-    f_radius: Spanned<f64>,
+    f_radius: Bounded<Radius>,
     /// Radius of the circle of candidates round each, mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    circle: Spanned<f64>,
+    circle: Bounded<Length>,
     /// Number of candidates round each.
-    #[schemars(range(min = 1, max = 10))]
-    candidates: Spanned<i64>,
+    candidates: Bounded<Candidates>,
     /// Largest difference of the part's height over the model between E and F, mm, if they were touched
     /// [default: 0.05, or 1.5 times what a part set right by the run-out leaves].
-    #[schemars(range(min = 0.001, max = 100.0))]
-    uneven: Option<Spanned<f64>>,
+    uneven: Option<Bounded<Uneven>>,
 }
 
 /// Reads the text of a job of this family.
@@ -114,40 +106,30 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, FileError>
     let control = file.control.check(reader)?;
     let chord = file.chord.check(reader, surface)?;
     let probe = &file.probe;
-    let of_probe = |key: &str, value: &Spanned<f64>, unit: &str| {
-        reader.number(key, value, &format!("0.01 to 1000 {unit}"), in_range(0.01, 1000.0))
-    };
-    let probe_radius = of_probe("probe.radius", &probe.radius, "mm")?;
-    let probe_search = match &probe.search {
-        Some(search) => of_probe("probe.search", search, "mm")?,
-        None => 10.0,
-    };
+    let probe_search = probe.search.as_ref().map_or(10.0, Bounded::get);
     file.chord.touchable(reader, surface, chord, probe_search)?;
-    let increment = control.increment.size();
+    let (increment, most) = (control.increment.size(), ChordError::MAX);
     let ellipse = file.ellipse.check(reader, control, surface, chord)?;
     Ok(Alignment {
         control,
         machine: file.machine.check(reader)?,
-        probe_radius,
-        probe_feed: match &probe.feed {
-            Some(feed) => of_probe("probe.feed", feed, "mm/min")?,
-            None => 100.0,
-        },
+        probe_radius: probe.radius.get(),
+        probe_feed: probe.feed.as_ref().map_or(100.0, Bounded::get),
         probe_search,
         probe_noise: match &probe.noise {
-            // The control notes a touch no finer than its increment.
+            // The control records a touch no finer than its least increment.
             Some(noise) => {
-                let allowed = format!("{increment} (the least increment) to 1 mm");
-                reader.number("probe.noise", noise, &allowed, in_range(increment, 1.0))?
+                let allowed = format!("{increment} (the least increment) to {most} mm");
+                reader.number("probe.noise", noise, &allowed, in_range(increment, most))?
             }
             None => f64::max(0.002, increment),
         },
         sine_table: file.sine_table.check(reader)?,
         chord,
         runout: file.runout.check(reader, surface)?,
-        limits: file.limits.check(reader, surface, ellipse)?,
+        limits: file.limits.limits(surface, ellipse),
         ellipse,
-        sheet: FileSheet::of(file.sheet, reader)?,
+        sheet: file.sheet.map(FileSheet::info).unwrap_or_default(),
         surface,
     })
 }
@@ -156,16 +138,10 @@ impl FileSineTable {
     fn check(&self, reader: &Reader<'_>) -> Result<SineTable, FileError> {
         let sets = GaugeSet::ALL.map(|set| (set.name, set));
         let table = SineTable {
-            length: reader.number(
-                "sine_table.length",
-                &self.length,
-                "10 to 2000 mm",
-                in_range(10.0, 2000.0),
-            )?,
-            // A sine bar loses its accuracy towards the upright.
-            phi: reader.number("sine_table.phi", &self.phi, "0 to 45 degrees", in_range(0.0, 45.0))?,
+            length: self.length.get(),
+            phi: self.phi.get(),
             gauge_blocks: reader.choice("sine_table.gauge_blocks", &self.gauge_blocks, &sets)?,
-            sign: self.sign.as_ref().map_or(Ok(1), |value| sign(reader, "sine_table.sign", value))?,
+            sign: self.sign.as_ref().map_or(1, Sign::get),
         };
         let (height, most) = (gauge::height(Mm(table.length), Deg(table.phi)).0, table.gauge_blocks.total());
         if height > most.mm() {
@@ -193,7 +169,6 @@ impl FileChord {
     fn check(&self, reader: &Reader<'_>, surface: Surface) -> Result<Chord, FileError> {
         let allowed = format!("0 to the equatorial radius a = {} mm", surface.a);
         let radius = |key: &str, value| reader.number(key, value, &allowed, in_range(0.0, surface.a));
-        let candidates = *self.candidates.as_ref();
         let e_radius = radius("chord.e_radius", &self.e_radius)?;
         let f_radius = radius("chord.f_radius", &self.f_radius)?;
         if e_radius == f_radius {
@@ -202,28 +177,22 @@ impl FileChord {
             );
             return Err(reader.error(&self.f_radius, message));
         }
-        let circle = length(reader, "chord.circle", &self.circle)?;
+        let left = || f64::max(0.05, (1.5e3 * chord_unevenness(surface, e_radius, f_radius)).ceil() / 1e3);
         Ok(Chord {
             e_radius,
             f_radius,
-            circle,
-            // Three common variables a point, thirty for each end of the chord.
-            candidates: u32::try_from(candidates).ok().filter(|n| (1..=10).contains(n)).ok_or_else(|| {
-                reader.error(&self.candidates, format!("key 'chord.candidates' is {candidates}: 1 to 10"))
-            })?,
-            uneven: reader.number_or(
-                "chord.uneven",
-                self.uneven.as_ref(),
-                "0.001 to 100 mm",
-                in_range(0.001, 100.0),
-                f64::max(0.05, (1.5e3 * chord_unevenness(surface, e_radius, f_radius)).ceil() / 1e3),
-            )?,
+            circle: self.circle.get(),
+            candidates: self.candidates.get() as u32,
+            uneven: self.uneven.as_ref().map_or_else(left, Bounded::get),
         })
     }
 }
 
-/// How much higher over one of E and F than over the other a part stands, mm, that is off by what the run-out may leave: 0.004°
-/// about z and 0.01 mm in x. At x it stands higher by δ·x·(1 − b²/a²) and by dx·(b²/a²)·x/y.
+/// Returns the difference of the part's height over the model between E and F, mm, after a run-out with its
+/// usual remainder.
+///
+/// The remainder is a tilt of 0.004° about z and a shift of 0.01 mm in x. At x they raise the part by δ·x·(1
+/// − b²/a²) and by dx·(b²/a²)·x/y.
 fn chord_unevenness(surface: Surface, e: f64, f: f64) -> f64 {
     let Surface { a, b } = surface;
     let squares = (b * b) / (a * a);
@@ -233,7 +202,8 @@ fn chord_unevenness(surface: Surface, e: f64, f: f64) -> f64 {
 }
 
 impl FileChord {
-    /// Whether O8202 can touch the candidates: along y, each in its own circle, within the probe's search.
+    /// Checks that O8202 can touch the candidates: along y, each in its own circle, within the probe's
+    /// search.
     fn touchable(
         &self,
         reader: &Reader<'_>,
@@ -317,8 +287,9 @@ angles = [-25.0, 25.0, 11]
         assert_eq!((job.runout.from, job.runout.to), (-25.0, 25.0));
     }
 
-    /// A slender part, a 700 and b 1500: E at 512.4 and F at 318 are 0.004° in rad·194.4·3.592 = 0.048 75 uneven by the tilt, and
-    /// 0.01·4.592·(512.4/1021.93 − 318/1336.25) = 0.012 10 by the shift: 1.5 times both is 0.0913.
+    /// A slender part, a 700 and b 1500: for E at 512.4 and F at 318 the tilt gives 0.004° in rad·194.4·3.592
+    /// = 0.048 75, and the shift 0.01·4.592·(512.4/1021.93 − 318/1336.25) = 0.012 10: 1.5 times both is
+    /// 0.0913.
     #[test]
     fn a_slender_part_may_be_as_uneven_as_the_run_out_leaves_it() {
         let text = JOB

@@ -1,11 +1,10 @@
-//! `[limits]` of an alignment job: what a part that is set up may be off by. It may be left out, and so may each key.
+//! `[limits]` of an alignment job: tolerances of the set-up. The section and each of its keys are optional.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{AlignmentLimits, EllipsePath};
-use crate::job::sections::in_range;
-use crate::job::{FileError, Reader, Surface};
-use crate::reader::Spanned;
+use crate::job::Surface;
+use crate::reader::bounds::{Bounded, ShiftLimit, TiltLimit};
 use gcode_lang::units::Deg;
 
 /// Tolerances of the set-up of a part.
@@ -13,47 +12,33 @@ use gcode_lang::units::Deg;
 #[serde(deny_unknown_fields)]
 pub(super) struct FileLimits {
     /// Tolerance of the shift in x and in z after the last run-out, mm [default: 0.025].
-    #[schemars(range(min = 0.001, max = 10.0))]
-    shift: Option<Spanned<f64>>,
+    shift: Option<Bounded<ShiftLimit>>,
     /// Tolerance of the tilt about x and about z after the last run-out, degrees [default: the tilt that alone
     /// gives `dial` on the ellipse, 0.001 to 0.1].
-    #[schemars(range(min = 0.001, max = 1.0))]
-    tilt: Option<Spanned<f64>>,
+    tilt: Option<Bounded<TiltLimit>>,
     /// Tolerance of the dial reading along the ellipse, mm [default: 0.03].
-    #[schemars(range(min = 0.001, max = 10.0))]
-    dial: Option<Spanned<f64>>,
+    dial: Option<Bounded<ShiftLimit>>,
 }
 
 impl FileLimits {
-    /// The defaults are those of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*: 0.03 along the ellipse, and a
-    /// run-out of 0.05, twice the shift.
-    pub(super) fn check(
-        &self,
-        reader: &Reader<'_>,
-        surface: Surface,
-        path: EllipsePath,
-    ) -> Result<AlignmentLimits, FileError> {
-        let limit = |key: &str, value: &Option<Spanned<f64>>, (most, unit): (f64, &str), default: f64| {
-            let allowed = format!("0.001 to {most} {unit}");
-            reader.number_or(key, value.as_ref(), &allowed, in_range(0.001, most), default)
-        };
-        let dial = limit("limits.dial", &self.dial, (10.0, "mm"), 0.03)?;
-        Ok(AlignmentLimits {
-            shift: limit("limits.shift", &self.shift, (10.0, "mm"), 0.025)?,
-            tilt: limit("limits.tilt", &self.tilt, (1.0, "degrees"), dial_reading(dial, surface, path))?,
-            dial,
-        })
+    /// Returns the limits, with the defaults of *Improved Processing Technology of Positioning Pin Hole on
+    /// Melon Mold*: 0.03 along the ellipse, and a run-out of 0.05, twice the shift.
+    pub(super) fn limits(&self, surface: Surface, path: EllipsePath) -> AlignmentLimits {
+        let dial = self.dial.as_ref().map_or(0.03, Bounded::get);
+        let tilt = self.tilt.as_ref().map_or_else(|| dial_reading(dial, surface, path), Bounded::get);
+        AlignmentLimits { shift: self.shift.as_ref().map_or(0.025, Bounded::get), tilt, dial }
     }
 }
 
-/// The tilt about z, degrees, in full thousandths, that alone makes the dial show so much where it shows most: it reads δ·(x·n_y − y·n_x).
+/// Returns the tilt about z, degrees, rounded down to thousandths, whose largest dial reading on the path is
+/// `dial`. The dial reads δ·(x·n_y − y·n_x).
 fn dial_reading(dial: f64, Surface { a, b }: Surface, path: EllipsePath) -> f64 {
     let arm = |x: f64| {
         let y = b * (1.0 - (x / a) * (x / a)).sqrt();
         let (across, up) = (x / (a * a), y / (b * b));
         ((x * up - y * across) / (across * across + up * up).sqrt()).abs()
     };
-    // Of a sphere no tilt shows.
+    // A tilt of a sphere gives no reading.
     let tilt = Deg::from_rad(dial / arm(path.from).max(arm(path.to)).max(f64::MIN_POSITIVE)).0;
     ((tilt * 1e3).floor() / 1e3).clamp(0.001, 0.1)
 }
@@ -62,7 +47,7 @@ fn dial_reading(dial: f64, Surface { a, b }: Surface, path: EllipsePath) -> f64 
 mod tests {
     use crate::job::Job;
 
-    /// A job with these lines behind those of `tests/complete`'s sections.
+    /// Parses a job with these lines after the required sections.
     fn job(section: &str) -> Result<Job, String> {
         let text = format!(
             "family = \"alignment\"\n\
@@ -83,8 +68,8 @@ mod tests {
         [job.limits.shift, job.limits.tilt, job.limits.dial]
     }
 
-    /// At E, x 812.4 and y 516.48, the normal is (0.5235, 0.8520): 812.4·0.8520 − 516.48·0.5235 = 421.8, and 0.03/421.8 rad are 0.004 07°;
-    /// 0.05 are 0.006 79°.
+    /// At E, x 812.4 and y 516.48, the normal is (0.5235, 0.8520): 812.4·0.8520 − 516.48·0.5235 = 421.8, and
+    /// 0.03/421.8 rad are 0.004 07°; 0.05 are 0.006 79°.
     #[test]
     fn left_out_they_are_those_of_the_paper() {
         assert_eq!(limits(""), [0.025, 0.004, 0.03]);

@@ -1,4 +1,4 @@
-//! The job file of the family `alignment`: what is known of the part that is to be set up, and what it is measured with.
+//! The job file of the family `alignment`: the part to be set up and its measuring devices.
 mod ellipse;
 mod file;
 mod limits;
@@ -12,82 +12,97 @@ use crate::gauge::GaugeSet;
 /// A part to be aligned; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alignment {
+    /// Control of the programs.
     pub control: JobControl,
+    /// Machine.
     pub machine: PinMachine,
+    /// Surface of the part.
     pub surface: Surface,
     /// Radius of the stylus ball.
     pub probe_radius: f64,
-    /// mm/min of a touch.
+    /// Feed of a touch, mm/min.
     pub probe_feed: f64,
-    /// A touch begins this far before where the surface should be, and ends as far behind it.
+    /// Distance before and behind the nominal surface at which a touch begins and ends.
     pub probe_search: f64,
     /// Standard deviation of a touch.
     pub probe_noise: f64,
+    /// Table that sets the angle of the part's axis.
     pub sine_table: SineTable,
+    /// Chord E–F and its candidates.
     pub chord: Chord,
+    /// Run-out measurement.
     pub runout: Runout,
+    /// Path of the edge finder.
     pub ellipse: EllipsePath,
+    /// Tolerances of the set-up.
     pub limits: AlignmentLimits,
+    /// Additional data for the set-up sheet.
     pub sheet: SheetInfo,
 }
 
 /// The table that sets the angle between the part's bottom face and its axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineTable {
-    /// Between the rollers.
+    /// Distance between the rollers.
     pub length: f64,
+    /// Nominal angle, 0 to 45.
     pub phi: f64,
+    /// Set of gauge blocks.
     pub gauge_blocks: GaugeSet,
-    /// 1 where higher blocks turn the part from x towards y, −1 where they turn it back.
+    /// 1 if higher blocks rotate the part from x towards y, −1 if they rotate it back.
     pub sign: i8,
 }
 
 /// The chord between two points E and F of the surface in the plane z = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chord {
-    /// Their x.
+    /// x of E.
     pub e_radius: f64,
+    /// x of F.
     pub f_radius: f64,
-    /// Radius of the circle on which the candidates lie round each.
+    /// Radius of the circle of candidates round each.
     pub circle: f64,
+    /// Number of candidates round each, 1 to 10.
     pub candidates: u32,
-    /// How much higher over the model the part may stand at one end than at the other, of points that were touched.
+    /// Largest difference of the part's height over the model between two touched points, one at each end.
     pub uneven: f64,
 }
 
 /// The ellipse in the plane z = 0 along which the ball of an edge finder is fed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipsePath {
-    /// x of the surface where it begins and where it ends.
+    /// x of the surface at the start.
     pub from: f64,
+    /// x of the surface at the end.
     pub to: f64,
-    /// How far the ball may be off its distance from the surface, rounding included.
+    /// Tolerance of the ball's distance from the surface, rounding included.
     pub chord_error: f64,
-    /// mm/min.
+    /// Feed, mm/min.
     pub feed: f64,
 }
 
-/// An indicator held against the part while the table turns.
+/// Run-out measurement: an indicator on the part while the table rotates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Runout {
-    /// The two y of the indicator.
+    /// Both y of the indicator.
     pub heights: [f64; 2],
-    /// Where the rotary stands at the first reading and at the last.
+    /// Position of the rotary at the first reading.
     pub from: f64,
+    /// Position of the rotary at the last reading.
     pub to: f64,
-    /// At each height; 3 to 100.
+    /// Readings at each height, 3 to 100.
     pub readings: u32,
-    /// The largest shift of the part in y that the fit is believed to find.
+    /// Largest shift of the part in y that the fit accepts.
     pub y_shift: f64,
 }
 
-/// What a part that is set up may be off by: the set-up sheet prints it beside the readings.
+/// Tolerances of the set-up, which the set-up sheet prints beside the readings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlignmentLimits {
-    /// #580 and #581 of the last run-out, mm.
+    /// Limit of #580 and #581 of the last run-out, mm.
     pub shift: f64,
-    /// #582 and #583 of the last run-out, degrees.
+    /// Limit of #582 and #583 of the last run-out, degrees.
     pub tilt: f64,
-    /// The dial along the ellipse, mm.
+    /// Limit of the dial reading along the ellipse, mm.
     pub dial: f64,
 }

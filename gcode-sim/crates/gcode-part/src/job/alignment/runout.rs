@@ -1,10 +1,10 @@
-//! `[runout]` of an alignment job: where the part is touched while the table turns.
+//! `[runout]` of an alignment job: the touches of the part while the table rotates.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Runout;
-use crate::job::sections::in_range;
 use crate::job::{FileError, Reader, Surface};
+use crate::reader::bounds::{Bounded, PartShift};
 use crate::reader::{FixedArray, Spanned};
 
 /// An indicator on the part while the table rotates.
@@ -18,8 +18,7 @@ pub(super) struct FileRunout {
     #[schemars(inner(range(min = -360.0, max = 360.0)))]
     angles: Spanned<FixedArray<f64, 3>>,
     /// The largest shift of the part in y that the fit accepts, mm [default: 0.4].
-    #[schemars(range(min = 0.01, max = 100.0))]
-    y_shift: Option<Spanned<f64>>,
+    y_shift: Option<Bounded<PartShift>>,
 }
 
 impl FileRunout {
@@ -62,9 +61,7 @@ impl FileRunout {
             );
             return Err(reader.error(&self.angles, message));
         }
-        let shift = self.y_shift.as_ref();
-        let y_shift =
-            reader.number_or("runout.y_shift", shift, "0.01 to 100 mm", in_range(0.01, 100.0), 0.4)?;
+        let y_shift = self.y_shift.as_ref().map_or(0.4, Bounded::get);
         Ok(Runout { heights, from, to, readings: readings as u32, y_shift })
     }
 }

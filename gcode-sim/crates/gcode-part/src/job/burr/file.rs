@@ -1,11 +1,15 @@
-//! Reads the job file of the family `burr`: every key checked, its line named.
+//! Reads the job file of the family `burr`. Errors name the key and its line.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm};
-use crate::job::sections::{FileControl, in_range, sign};
+use crate::job::sections::{FileControl, in_range};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, JobControl, Reader};
+use crate::reader::bounds::{
+    AngleTolerance, Bounded, BurrDiameter, BurrLength, ChordError, ContactSpeed, FluteCount, KeyRange,
+    PlungeRate, SideRadius, Sign, TableOffset, TipAngle, TipRadius, ToothDepth, WheelClearance, WheelSpeed,
+};
 use crate::reader::{Spanned, names};
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::units::Deg;
@@ -37,14 +41,11 @@ pub(in crate::job) struct File {
 #[serde(deny_unknown_fields)]
 struct FileBurr {
     /// Of cylinder and nose, mm.
-    #[schemars(range(min = 0.5, max = 200.0))]
-    diameter: Spanned<f64>,
+    diameter: Bounded<BurrDiameter>,
     /// Of the flutes, mm, nose included: no less than the nose.
-    #[schemars(range(min = 0.0, max = 500.0))]
-    length: Spanned<f64>,
+    length: Bounded<BurrLength>,
     /// Their number, limited by the room at the tip.
-    #[schemars(range(min = 1, max = 360))]
-    flutes: Spanned<i64>,
+    flutes: Bounded<FluteCount>,
     /// Degrees, 1 to 60, or -60 to -1 for a left-hand burr.
     #[schemars(extend("anyOf" = [{ "minimum": 1, "maximum": 60 }, { "minimum": -60, "maximum": -1 }]))]
     helix: Spanned<f64>,
@@ -52,14 +53,11 @@ struct FileBurr {
     #[schemars(extend("enum" = names(&FluteLaw::ALL)))]
     law: Spanned<String>,
     /// Polar angle at which a flute ends, before the pole, degrees.
-    #[schemars(range(min = 1.0, max = 85.0))]
-    tip_angle: Spanned<f64>,
+    tip_angle: Bounded<TipAngle>,
     /// Between programmed points, mm: no less than the least increment.
-    #[schemars(range(min = 0.000_1, max = 1.0))]
-    chord_error: Spanned<f64>,
+    chord_error: Bounded<ChordError>,
     /// mm, no more than the radius [default: 0].
-    #[schemars(range(min = 0.0, max = 100.0))]
-    tooth_depth: Option<Spanned<f64>>,
+    tooth_depth: Option<Bounded<ToothDepth>>,
     /// Instead of the ball: the tooth-bottom ellipse as two tangent arcs.
     profile: Option<Spanned<FileProfile>>,
 }
@@ -69,13 +67,12 @@ struct FileBurr {
 #[serde(deny_unknown_fields)]
 struct FileMachine {
     /// From the C axis to the end of the cylinder at C = 0, X and Y, mm.
-    #[schemars(length(equal = 2), inner(range(min = -2000.0, max = 2000.0)))]
-    c_offset: Spanned<Vec<Spanned<f64>>>,
+    #[schemars(length(equal = 2))]
+    c_offset: Spanned<Vec<Bounded<TableOffset>>>,
     /// Directions of the axes: 1, or -1 if reversed.
     signs: Option<FileSigns>,
     /// Clearance of the wheel between passes, mm [default: 2].
-    #[schemars(range(min = 0.1, max = 500.0))]
-    clearance: Option<Spanned<f64>>,
+    clearance: Option<Bounded<WheelClearance>>,
     /// As in [burr]; allowed once.
     profile: Option<Spanned<FileProfile>>,
 }
@@ -85,70 +82,58 @@ struct FileMachine {
 #[serde(deny_unknown_fields)]
 struct FileProfile {
     /// Radius of the side, mm: above half the diameter.
-    #[schemars(range(min = 0.25, max = 2000.0))]
-    large: Spanned<f64>,
+    large: Bounded<SideRadius>,
     /// Radius of the tip, mm: below half the diameter.
-    #[schemars(range(min = 0.05, max = 100.0))]
-    small: Spanned<f64>,
+    small: Bounded<TipRadius>,
 }
 
 /// 1, or -1 for an axis that goes the other way [default: 1].
-#[derive(Deserialize, JsonSchema)]
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileSigns {
     /// Of X.
     #[serde(rename = "X")]
-    #[schemars(extend("enum" = [1, -1]))]
-    x: Option<Spanned<i64>>,
+    x: Option<Sign>,
     /// Of Y.
     #[serde(rename = "Y")]
-    #[schemars(extend("enum" = [1, -1]))]
-    y: Option<Spanned<i64>>,
+    y: Option<Sign>,
     /// Of A.
     #[serde(rename = "A")]
-    #[schemars(extend("enum" = [1, -1]))]
-    a: Option<Spanned<i64>>,
+    a: Option<Sign>,
     /// Of B.
     #[serde(rename = "B")]
-    #[schemars(extend("enum" = [1, -1]))]
-    b: Option<Spanned<i64>>,
+    b: Option<Sign>,
     /// Of C.
     #[serde(rename = "C")]
-    #[schemars(extend("enum" = [1, -1]))]
-    c: Option<Spanned<i64>>,
+    c: Option<Sign>,
 }
 
 /// Form and conditions of the program.
-#[derive(Deserialize, JsonSchema)]
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProgram {
     /// loop: a macro computes the points; moves: every move is written out, for a control without LN [default: loop where it can be].
     #[schemars(extend("enum" = names(&FORMS)))]
     form: Option<Spanned<String>>,
     /// Of the contact along the flute, mm/min [default: 200].
-    #[schemars(range(min = 1.0, max = 20_000.0))]
-    speed: Option<Spanned<f64>>,
+    speed: Option<Bounded<ContactSpeed>>,
     /// Of the approach, mm/min [default: 30].
-    #[schemars(range(min = 0.1, max = 5_000.0))]
-    plunge: Option<Spanned<f64>>,
+    plunge: Option<Bounded<PlungeRate>>,
     /// r/min [default: 3000].
-    #[schemars(range(min = 1.0, max = 99_999.0))]
-    wheel: Option<Spanned<f64>>,
+    wheel: Option<Bounded<WheelSpeed>>,
 }
 
 /// How far flutes may be off, either way.
-#[derive(Deserialize, JsonSchema)]
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileTolerance {
     /// Of the helix angle, degrees [default: 0.3].
-    #[schemars(range(min = 0.001, max = 10.0))]
-    helix: Option<Spanned<f64>>,
+    helix: Option<Bounded<AngleTolerance>>,
     /// Of the gap between neighbours, degrees [default: 0.05].
-    #[schemars(range(min = 0.001, max = 10.0))]
-    index: Option<Spanned<f64>>,
+    index: Option<Bounded<AngleTolerance>>,
 }
 
-/// The job of a burr, whose control is the default one unless the file says more.
+/// Returns the job of a burr; the control defaults to fanuc-31i with IS-B.
 pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, FileError> {
     let file: File = toml::from_str(reader.text).map_err(|e| reader.syntax(&e))?;
     let control = match &file.control {
@@ -171,10 +156,11 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, FileError> {
     )?;
     let shape = burr.shape(reader, profile)?;
     let increment = control.increment.size();
+    let most = ChordError::MAX;
     let chord =
-        format!("{increment} to 1 mm: rounding to the least increment of {increment} uses half of it");
+        format!("{increment} to {most} mm: rounding to the least increment of {increment} uses half of it");
     let chord_error =
-        reader.number("burr.chord_error", &burr.chord_error, &chord, in_range(increment, 1.0))?;
+        reader.number("burr.chord_error", &burr.chord_error, &chord, in_range(increment, most))?;
     Ok(Burr {
         control,
         shape,
@@ -183,22 +169,10 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, FileError> {
         law: reader.choice("burr.law", &burr.law, &FluteLaw::ALL)?,
         chord_error,
         grinder: file.machine.check(reader)?,
-        program: FileProgram::check(file.program.as_ref(), reader, control.dialect)?,
-        tolerance: FileTolerance::check(file.tolerance.as_ref(), reader)?,
-        sheet: FileSheet::of(file.sheet, reader)?,
+        program: file.program.unwrap_or_default().check(reader, control.dialect)?,
+        tolerance: file.tolerance.unwrap_or_default().tolerance(),
+        sheet: file.sheet.map(FileSheet::info).unwrap_or_default(),
     })
-}
-
-/// A key that may be left out.
-fn optional(
-    reader: &Reader<'_>,
-    key: &str,
-    value: Option<&Spanned<f64>>,
-    (low, high, unit): (f64, f64, &str),
-    default: f64,
-) -> Result<f64, FileError> {
-    let allowed = format!("{low} to {high} {unit}");
-    value.map_or(Ok(default), |value| reader.number(key, value, &allowed, in_range(low, high)))
 }
 
 impl FileBurr {
@@ -207,60 +181,51 @@ impl FileBurr {
         reader: &Reader<'_>,
         profile: Option<&Spanned<FileProfile>>,
     ) -> Result<BurrShape, FileError> {
-        let diameter =
-            reader.number("burr.diameter", &self.diameter, "0.5 to 200 mm", in_range(0.5, 200.0))?;
-        let radius = diameter / 2.0;
+        let radius = self.diameter.get() / 2.0;
         let nose = profile.map_or(Ok(Nose::Ball), |profile| profile.as_ref().check(reader, radius))?;
         let long = nose_length(radius, nose);
-        let allowed = format!("{long:.3} (the nose alone) to 500 mm");
-        // As long as the nose is to the digit that a job would say it with.
+        let most = BurrLength::MAX;
+        let allowed = format!("{long:.3} (the nose alone) to {most} mm");
+        // The nose length is compared with the precision that a job would specify.
         let length =
-            reader.number("burr.length", &self.length, &allowed, in_range(long - 0.000_5, 500.0))?.max(long);
-        Ok(BurrShape {
-            radius,
-            length,
-            nose,
-            tip_angle: reader.number(
-                "burr.tip_angle",
-                &self.tip_angle,
-                "1 to 85 degrees: at the pole a flute has no width",
-                in_range(1.0, 85.0),
-            )?,
-            tooth_depth: optional(
-                reader,
-                "burr.tooth_depth",
-                self.tooth_depth.as_ref(),
-                (0.0, radius, "mm (the radius)"),
-                0.0,
-            )?,
-        })
+            reader.number("burr.length", &self.length, &allowed, in_range(long - 0.000_5, most))?.max(long);
+        let tooth_depth = match &self.tooth_depth {
+            Some(depth) => {
+                let allowed = format!("0 to {radius} mm (the radius)");
+                reader.number("burr.tooth_depth", depth, &allowed, in_range(0.0, radius))?
+            }
+            None => 0.0,
+        };
+        Ok(BurrShape { radius, length, nose, tip_angle: self.tip_angle.get(), tooth_depth })
     }
 
-    /// As many as have room beside each other at the tip, were they as wide as twice the chord error.
+    /// Returns the number of flutes, limited by the room at the tip: each takes up to four chord errors of
+    /// circumference.
     fn count(&self, reader: &Reader<'_>, shape: &BurrShape, chord_error: f64) -> Result<u32, FileError> {
         let end = match shape.nose {
             Nose::Ball => shape.radius,
             Nose::Arcs { small, .. } => small,
         };
         let round = std::f64::consts::TAU * end * Deg(shape.tip_angle).sin();
-        let most = (round / (4.0 * chord_error)).floor().clamp(1.0, 360.0);
-        let flutes = *self.flutes.as_ref();
+        let limit = FluteCount::MAX as f64;
+        let most = (round / (4.0 * chord_error)).floor().clamp(1.0, limit);
+        let flutes = self.flutes.get();
         u32::try_from(flutes).ok().filter(|n| 1 <= *n && f64::from(*n) <= most).ok_or_else(|| {
-            let message = match most < 360.0 {
+            let message = match most < limit {
                 _ if flutes < 1 => format!("key 'burr.flutes' is {flutes}: a burr has at least 1"),
                 true => format!(
                     "key 'burr.flutes' is {flutes}: at most {most:.0}, because they end on a circle of \
                      {round:.3} mm circumference and each needs up to four chord errors of it: fewer \
                      flutes, a larger tip_angle or a smaller chord_error"
                 ),
-                false => format!("key 'burr.flutes' is {flutes}: at most 360"),
+                false => format!("key 'burr.flutes' is {flutes}: at most {limit}"),
             };
             reader.error(&self.flutes, message)
         })
     }
 }
 
-/// How far the nose reaches beyond the end of the cylinder.
+/// Returns the length of the nose beyond the end of the cylinder.
 fn nose_length(radius: f64, nose: Nose) -> f64 {
     match nose {
         Nose::Ball => radius,
@@ -276,14 +241,14 @@ impl FileProfile {
         let large = reader.number(
             "profile.large",
             &self.large,
-            &format!("above {radius} (half the diameter) to 2000 mm"),
-            |v| radius < v && v <= 2000.0,
+            &format!("above {radius} (half the diameter) to {} mm", SideRadius::MAX),
+            |v| radius < v && v <= SideRadius::MAX,
         )?;
         let small = reader.number(
             "profile.small",
             &self.small,
-            &format!("0.05 to less than {radius} mm (half the diameter)"),
-            |v| 0.05 <= v && v < radius,
+            &format!("{} to less than {radius} mm (half the diameter)", TipRadius::MIN),
+            |v| TipRadius::MIN <= v && v < radius,
         )?;
         Ok(Nose::Arcs { large, small })
     }
@@ -298,31 +263,21 @@ impl FileMachine {
             );
             return Err(reader.error(&self.c_offset, message));
         };
-        let offset = |value: &Spanned<f64>| {
-            reader.number("machine.c_offset", value, "-2000 to 2000 mm", in_range(-2000.0, 2000.0))
-        };
-        let of = |key: &str, value: Option<&Spanned<i64>>| {
-            value.map_or(Ok(1), |value| sign(reader, &format!("machine.signs.{key}"), value))
-        };
-        let given = self.signs.as_ref();
+        let none = FileSigns::default();
+        let signs = self.signs.as_ref().unwrap_or(&none);
+        let of = |sign: &Option<Sign>| sign.as_ref().map_or(1, Sign::get);
         Ok(Grinder {
-            c_offset: [offset(x)?, offset(y)?],
+            c_offset: [x.get(), y.get()],
             signs: AxisSigns {
-                x: of("X", given.and_then(|s| s.x.as_ref()))?,
-                y: of("Y", given.and_then(|s| s.y.as_ref()))?,
-                a: of("A", given.and_then(|s| s.a.as_ref()))?,
-                b: of("B", given.and_then(|s| s.b.as_ref()))?,
-                c: of("C", given.and_then(|s| s.c.as_ref()))?,
+                x: of(&signs.x),
+                y: of(&signs.y),
+                a: of(&signs.a),
+                b: of(&signs.b),
+                c: of(&signs.c),
             },
-            are_signs_specified: given.is_some(),
+            are_signs_specified: self.signs.is_some(),
             is_clearance_specified: self.clearance.is_some(),
-            clearance: optional(
-                reader,
-                "machine.clearance",
-                self.clearance.as_ref(),
-                (0.1, 500.0, "mm"),
-                2.0,
-            )?,
+            clearance: self.clearance.as_ref().map_or(2.0, Bounded::get),
         })
     }
 }
@@ -330,10 +285,10 @@ impl FileMachine {
 const FORMS: [(&str, ProgramForm); 2] = [("loop", ProgramForm::Loop), ("moves", ProgramForm::Moves)];
 
 impl FileProgram {
-    fn check(file: Option<&Self>, reader: &Reader<'_>, dialect: Dialect) -> Result<BurrProgram, FileError> {
-        // The function LN isn't in that control's manual.
+    fn check(&self, reader: &Reader<'_>, dialect: Dialect) -> Result<BurrProgram, FileError> {
+        // The manual of that control has no function LN.
         let without_loop = dialect == Dialect::HaasNgc;
-        let form = match file.and_then(|file| file.form.as_ref()) {
+        let form = match &self.form {
             Some(form) => match reader.choice("program.form", form, &FORMS)? {
                 ProgramForm::Loop if without_loop => {
                     let message =
@@ -345,29 +300,23 @@ impl FileProgram {
             None if without_loop => ProgramForm::Moves,
             None => ProgramForm::Loop,
         };
-        let number = |key: &str, value: Option<&Spanned<f64>>, bounds, default| {
-            optional(reader, &format!("program.{key}"), value, bounds, default)
-        };
         Ok(BurrProgram {
             form,
-            speed: number("speed", file.and_then(|f| f.speed.as_ref()), (1.0, 20_000.0, "mm/min"), 200.0)?,
-            is_speed_specified: file.is_some_and(|f| f.speed.is_some()),
-            plunge: number("plunge", file.and_then(|f| f.plunge.as_ref()), (0.1, 5_000.0, "mm/min"), 30.0)?,
-            is_plunge_specified: file.is_some_and(|f| f.plunge.is_some()),
-            wheel: number("wheel", file.and_then(|f| f.wheel.as_ref()), (1.0, 99_999.0, "r/min"), 3000.0)?,
-            is_wheel_specified: file.is_some_and(|f| f.wheel.is_some()),
+            speed: self.speed.as_ref().map_or(200.0, Bounded::get),
+            is_speed_specified: self.speed.is_some(),
+            plunge: self.plunge.as_ref().map_or(30.0, Bounded::get),
+            is_plunge_specified: self.plunge.is_some(),
+            wheel: self.wheel.as_ref().map_or(3000.0, Bounded::get),
+            is_wheel_specified: self.wheel.is_some(),
         })
     }
 }
 
 impl FileTolerance {
-    fn check(file: Option<&Self>, reader: &Reader<'_>) -> Result<BurrTolerance, FileError> {
-        let number = |key: &str, value: Option<&Spanned<f64>>, default| {
-            optional(reader, &format!("tolerance.{key}"), value, (0.001, 10.0, "degrees"), default)
-        };
-        Ok(BurrTolerance {
-            helix: number("helix", file.and_then(|f| f.helix.as_ref()), 0.3)?,
-            index: number("index", file.and_then(|f| f.index.as_ref()), 0.05)?,
-        })
+    fn tolerance(&self) -> BurrTolerance {
+        BurrTolerance {
+            helix: self.helix.as_ref().map_or(0.3, Bounded::get),
+            index: self.index.as_ref().map_or(0.05, Bounded::get),
+        }
     }
 }

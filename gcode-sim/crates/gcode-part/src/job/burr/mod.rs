@@ -8,26 +8,34 @@ use super::{JobControl, SheetInfo};
 /// A ball-end rotary burr; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Burr {
+    /// Control of the programs.
     pub control: JobControl,
+    /// Tooth-bottom shape.
     pub shape: BurrShape,
+    /// Number of flutes.
     pub flutes: u32,
-    /// Against the burr's axis; below 0 for a left-hand burr.
+    /// Helix angle to the burr's axis; negative for a left-hand burr.
     pub helix: f64,
+    /// Law of the helix angle on the nose.
     pub law: FluteLaw,
-    /// How far the path of the contact may be from the flute it approximates, rounding included.
+    /// Tolerance of the contact path's distance from the flute, rounding included.
     pub chord_error: f64,
+    /// Machine.
     pub grinder: Grinder,
+    /// Form and conditions of the program.
     pub program: BurrProgram,
+    /// Tolerances of the flutes.
     pub tolerance: BurrTolerance,
+    /// Additional data for the set-up sheet.
     pub sheet: SheetInfo,
 }
 
 impl Burr {
-    /// Over how long a stretch of a flute its helix angle is measured, mm.
+    /// Returns the length of the stretch over which a flute's helix angle is measured, mm.
     ///
-    /// A path that may stray from the flute by the chord error has no direction at a point: it has one over lengths
-    /// against which that error is small. 0.5 mm, or 250 chord errors where that is more, keep what straying alone can
-    /// make of the angle below 0.23°, away from the tip.
+    /// A path that may deviate from the flute by the chord error has no defined direction at a point; it has
+    /// one over a length against which that error is small. 0.5 mm, or 250 chord errors where that is more,
+    /// keep the error of the angle below 0.23°, away from the tip.
     pub fn gauge(&self) -> f64 {
         (250.0 * self.chord_error).max(0.5)
     }
@@ -36,99 +44,111 @@ impl Burr {
 /// The tooth bottom: a cylinder and a nose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BurrShape {
-    /// Of the cylinder.
+    /// Radius of the cylinder.
     pub radius: f64,
-    /// Of the flutes along the axis, nose included.
+    /// Length of the flutes along the axis, nose included.
     pub length: f64,
+    /// Nose beyond the cylinder.
     pub nose: Nose,
-    /// Between the nose's normal, where a flute ends, and the axis.
+    /// Angle between the axis and the nose's normal at the end of a flute.
     pub tip_angle: f64,
-    /// How far the blank stands above the tooth bottom.
+    /// Height of the blank above the tooth bottom.
     pub tooth_depth: f64,
 }
 
-/// What the cylinder ends in.
+/// Shape of the nose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Nose {
     /// A half ball of the cylinder's radius.
     Ball,
-    /// An ellipse in the meridian plane, approximated by two arcs: the large one tangent to the cylinder, the small one
-    /// tangent to the large one and centred on the axis.
+    /// An ellipse in the meridian plane, approximated by two arcs with radii `large` and `small`. The large
+    /// arc is tangent to the cylinder; the small one is tangent to the large one and centred on the axis.
     Arcs { large: f64, small: f64 },
 }
 
-/// How a flute turns on the nose.
+/// Law of the helix angle on the nose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FluteLaw {
-    /// The helix angle stays the same up to the tip: a loxodrome.
+    /// The helix angle is the same up to the tip: a loxodrome.
     ConstantHelix,
-    /// As the paper has it: the angle of A is tan B times the way along the axis over the local radius.
+    /// The law of the paper: the angle of A is tan B times the travel along the axis over the local radius.
     Published,
 }
 
 impl FluteLaw {
+    /// All laws with their names in job files.
     pub const ALL: [(&str, Self); 2] =
         [("constant-helix", Self::ConstantHelix), ("published", Self::Published)];
 
+    /// Returns the name in job files.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, law)| *law == self).map_or("", |(name, _)| name)
     }
 }
 
-/// X and Y slide a table C that carries the burr, A turns the burr, B swivels the wheel.
+/// A 5-axis grinder: X and Y move a table C that carries the burr, A rotates the burr, B swivels the wheel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grinder {
-    /// From the C axis to the end of the burr's cylinder (a ball's centre), x and y at C = 0.
+    /// x and y from the C axis to the end of the burr's cylinder (centre of a ball nose) at C0.
     pub c_offset: [f64; 2],
+    /// Directions of the axes.
     pub signs: AxisSigns,
-    /// Whether the job says them: where it doesn't, the default is no demand on other programs.
+    /// True if the job specifies the signs; a default does not constrain other programs.
     pub are_signs_specified: bool,
-    /// How far from the blank rapid becomes feed, and the burr stands off while it is turned.
+    /// Distance from the blank at which rapid motion becomes feed, and at which the burr is indexed.
     pub clearance: f64,
-    /// Whether the job says that.
+    /// True if the job specifies the clearance.
     pub is_clearance_specified: bool,
 }
 
-/// 1 where an axis obeys the formulas, −1 where it runs the other way.
+/// Directions of the axes: 1 for an axis that follows the formulas, −1 for a reversed one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AxisSigns {
+    /// Sign of X.
     pub x: i8,
+    /// Sign of Y.
     pub y: i8,
+    /// Sign of A.
     pub a: i8,
+    /// Sign of B.
     pub b: i8,
+    /// Sign of C.
     pub c: i8,
 }
 
+/// Form and conditions of a burr program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BurrProgram {
+    /// Form of the moves.
     pub form: ProgramForm,
-    /// Of the contact along the flute, mm/min.
+    /// Speed of the contact along the flute, mm/min.
     pub speed: f64,
-    /// Whether the job says that speed: where it doesn't, the default is no demand on other programs.
+    /// True if the job specifies that speed; a default does not constrain other programs.
     pub is_speed_specified: bool,
-    /// Into the blank, mm/min.
+    /// Feed into the blank, mm/min.
     pub plunge: f64,
-    /// Whether the job says it.
+    /// True if the job specifies the plunge feed.
     pub is_plunge_specified: bool,
-    /// Of the wheel, r/min.
+    /// Wheel speed, r/min.
     pub wheel: f64,
-    /// Whether the job says it.
+    /// True if the job specifies the wheel speed.
     pub is_wheel_specified: bool,
 }
 
-/// How the moves of a flute are written.
+/// Form in which the moves of a flute are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProgramForm {
-    /// The control computes them, in a resident macro.
+    /// A resident macro computes the moves on the control.
     Loop,
-    /// Every move stands in the program.
+    /// Every move is written out in the program.
     Moves,
 }
 
+/// Tolerances of a burr's flutes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BurrTolerance {
-    /// Of the helix angle, either way, degrees.
+    /// Tolerance of the helix angle, either way, degrees.
     pub helix: f64,
-    /// Of a flute's place round the burr, either way, degrees.
+    /// Tolerance of a flute's azimuth, either way, degrees.
     pub index: f64,
 }

@@ -1,11 +1,15 @@
-//! Reads the job file of the family `honeycomb`: every key checked, its line named.
+//! Reads the job file of the family `honeycomb`. Errors name the key and its line.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing, SpecifiedFields};
-use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, in_range, length};
+use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, in_range};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader};
+use crate::reader::bounds::{
+    Bounded, Depth, Divisions, DrillNumber, FeedRate, KeyRange, Length, OuterDiameter, Radius, Retract,
+    SpindleSpeed,
+};
 use crate::reader::{Spanned, names};
 
 /// A hexagonal pattern of radial holes on a cylinder about x.
@@ -39,11 +43,9 @@ struct FileMachine {
     /// The axis that rotates the part.
     rotary: FileRotary,
     /// Distance from the surface where the feed begins, mm [default: 2].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    clearance: Option<Spanned<f64>>,
+    clearance: Option<Bounded<Depth>>,
     /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    retract: Option<Spanned<f64>>,
+    retract: Option<Bounded<Retract>>,
     /// The M codes that clamp and release the rotary [default: none].
     clamp: Option<FileClamp>,
 }
@@ -65,17 +67,13 @@ struct FileClamp {
 #[serde(deny_unknown_fields)]
 struct FileCylinder {
     /// Diameter of the pitch, mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    diameter: Spanned<f64>,
+    diameter: Bounded<Length>,
     /// mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    length: Spanned<f64>,
+    length: Bounded<Length>,
     /// Where the holes begin, mm, no less than diameter [default: diameter].
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    outer: Option<Spanned<f64>>,
+    outer: Option<Bounded<OuterDiameter>>,
     /// Of a tube, mm, no more than diameter [default: 0, solid].
-    #[schemars(range(min = 0.0, max = 99_999.0))]
-    bore: Option<Spanned<f64>>,
+    bore: Option<Bounded<Radius>>,
 }
 
 /// How the holes stand to one another: by pitch or by divisions, the other one follows.
@@ -84,11 +82,9 @@ struct FileCylinder {
 #[schemars(extend("oneOf" = [{ "required": ["pitch"] }, { "required": ["divisions"] }]))]
 struct FilePattern {
     /// Between neighbours, mm, above the drill diameter; adjusted so that the pattern closes.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    pitch: Option<Spanned<f64>>,
+    pitch: Option<Bounded<Length>>,
     /// Rows of one group round the circumference.
-    #[schemars(range(min = 2, max = 100_000))]
-    divisions: Option<Spanned<i64>>,
+    divisions: Option<Bounded<Divisions>>,
     /// Metric of the distance between neighbours: arc on the surface, or chord.
     #[schemars(extend("enum" = names(&Metric::ALL)))]
     metric: Spanned<String>,
@@ -99,30 +95,24 @@ struct FilePattern {
 #[serde(deny_unknown_fields)]
 struct FileDrill {
     /// mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    diameter: Spanned<f64>,
+    diameter: Bounded<Length>,
     /// mm, below the radius of the part.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    depth: Spanned<f64>,
+    depth: Bounded<Length>,
     /// Of the tool and of its length offset [default: 1].
-    #[schemars(range(min = 1, max = 400))]
-    number: Option<Spanned<i64>>,
+    number: Option<Bounded<DrillNumber>>,
     /// A whole number of r/min [default: 1000].
-    #[schemars(range(min = 1.0, max = 99_999.0), extend("multipleOf" = 1))]
-    speed: Option<Spanned<f64>>,
+    speed: Option<Bounded<SpindleSpeed>>,
     /// mm/min [default: 60].
-    #[schemars(range(min = 0.01, max = 240_000.0))]
-    feed: Option<Spanned<f64>>,
+    feed: Option<Bounded<FeedRate>>,
     /// Of G83, mm, which a hole deeper than three diameters gets [default: the diameter].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    peck: Option<Spanned<f64>>,
+    peck: Option<Bounded<Depth>>,
 }
 
-/// M codes that end, call or rigid-tap.
+/// M codes that end a program, call one or select rigid tapping.
 const RESERVED_M_CODES: [i64; 5] = [19, 29, 30, 98, 99];
-/// mm/min, in the paper.
+/// Feed in the paper, mm/min.
 const DEFAULT_FEED: f64 = 60.0;
-/// r/min; the paper names none.
+/// Default speed, r/min; the paper gives none.
 const DEFAULT_SPEED: f64 = 1000.0;
 
 /// Reads the text of a job of this family.
@@ -135,11 +125,11 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Honeycomb, FileError>
         machine: file.machine.check(reader)?,
         spacing: spacing(reader, &file.pattern, &cylinder, &drill)?,
         metric: reader.choice("pattern.metric", &file.pattern.as_ref().metric, &Metric::ALL)?,
-        position_tolerance: file.tolerance.position(reader)?,
-        depth_tolerance: file.tolerance.depth(reader)?,
+        position_tolerance: file.tolerance.position(),
+        depth_tolerance: file.tolerance.depth(),
         cylinder,
         drill,
-        sheet: FileSheet::of(file.sheet, reader)?,
+        sheet: file.sheet.map(FileSheet::info).unwrap_or_default(),
     })
 }
 
@@ -181,11 +171,12 @@ impl FileClamp {
 
 impl FileCylinder {
     fn check(&self, reader: &Reader<'_>) -> Result<Cylinder, FileError> {
-        let diameter = length(reader, "cylinder.diameter", &self.diameter)?;
+        let diameter = self.diameter.get();
         let outer = match &self.outer {
             Some(outer) => {
-                let allowed = format!("from the diameter of {diameter} mm to 99999 mm");
-                reader.number("cylinder.outer", outer, &allowed, in_range(diameter, 99_999.0))?
+                let most = OuterDiameter::MAX;
+                let allowed = format!("from the diameter of {diameter} mm to {most} mm");
+                reader.number("cylinder.outer", outer, &allowed, in_range(diameter, most))?
             }
             None => diameter,
         };
@@ -204,48 +195,26 @@ impl FileCylinder {
             }
             None => 0.0,
         };
-        Ok(Cylinder { diameter, length: length(reader, "cylinder.length", &self.length)?, outer, bore })
+        Ok(Cylinder { diameter, length: self.length.get(), outer, bore })
     }
 }
 
 impl FileDrill {
     fn check(&self, reader: &Reader<'_>, cylinder: &Cylinder) -> Result<Drill, FileError> {
-        let diameter = length(reader, "drill.diameter", &self.diameter)?;
-        let radius = cylinder.outer / 2.0;
-        let depth = length(reader, "drill.depth", &self.depth)?;
+        let (diameter, depth, radius) = (self.diameter.get(), self.depth.get(), cylinder.outer / 2.0);
         if depth >= radius {
             let message = format!(
                 "key 'drill.depth' is {depth}: below the radius of {radius} mm, because the holes meet on the axis"
             );
             return Err(reader.error(&self.depth, message));
         }
-        let number = match &self.number {
-            Some(number) if !(1..=400).contains(number.as_ref()) => {
-                let message = format!("key 'drill.number' is {}: 1 to 400", number.as_ref());
-                return Err(reader.error(number, message));
-            }
-            Some(number) => *number.as_ref() as u32,
-            None => 1,
-        };
-        let or = |key: &str, value: &Option<Spanned<f64>>, allowed: &str, least: f64, most: f64, or: f64| {
-            value.as_ref().map_or(Ok(or), |value| reader.number(key, value, allowed, in_range(least, most)))
-        };
-        let speed = match &self.speed {
-            Some(speed) => {
-                let allowed = "a whole number from 1 to 99999 r/min";
-                reader.number("drill.speed", speed, allowed, |v| {
-                    in_range(1.0, 99_999.0)(v) && v.fract() == 0.0
-                })?
-            }
-            None => DEFAULT_SPEED,
-        };
         Ok(Drill {
-            number,
+            number: self.number.as_ref().map_or(1, |number| number.get() as u32),
             diameter,
             depth,
-            speed,
-            feed: or("drill.feed", &self.feed, "0.01 to 240000 mm/min", 0.01, 240_000.0, DEFAULT_FEED)?,
-            peck: or("drill.peck", &self.peck, "0.01 to 9999 mm", 0.01, 9_999.0, diameter)?,
+            speed: self.speed.as_ref().map_or(DEFAULT_SPEED, Bounded::get),
+            feed: self.feed.as_ref().map_or(DEFAULT_FEED, Bounded::get),
+            peck: self.peck.as_ref().map_or(diameter, Bounded::get),
             specified: SpecifiedFields {
                 has_number: self.number.is_some(),
                 has_speed: self.speed.is_some(),
@@ -256,7 +225,8 @@ impl FileDrill {
     }
 }
 
-/// The pitch or the divisions; whether the pattern that follows is possible, the part's geometry tells.
+/// Returns the pitch or the divisions. The geometry of the part decides later whether the pattern is
+/// possible.
 fn spacing(
     reader: &Reader<'_>,
     pattern: &Spanned<FilePattern>,
@@ -272,16 +242,9 @@ fn spacing(
         (None, None) => {
             Err(reader.error(pattern, "key 'pattern.pitch' is missing: give it, or 'divisions' instead"))
         }
-        (None, Some(divisions)) => {
-            let number = *divisions.as_ref();
-            if (2..=100_000).contains(&number) {
-                return Ok(Spacing::Divisions(number as u32));
-            }
-            let allowed = "a whole number from 2 to 100000";
-            Err(reader.error(divisions, format!("key 'pattern.divisions' is {number}: {allowed}")))
-        }
+        (None, Some(divisions)) => Ok(Spacing::Divisions(divisions.get() as u32)),
         (Some(key), None) => {
-            let pitch = length(reader, "pattern.pitch", key)?;
+            let pitch = key.get();
             let told = |allowed: String| {
                 Err(reader.error(key, format!("key 'pattern.pitch' is {pitch}: {allowed}")))
             };
@@ -302,7 +265,9 @@ fn spacing(
     }
 }
 
-/// Rows of one group are √3 pitches apart; one and a half of them fill the circumference. In whole micrometres.
+/// Returns the largest pitch with two rows of each group, in whole micrometres.
+///
+/// Rows of one group are √3 pitches apart; one and a half of them fill the circumference.
 fn largest_pitch(diameter: f64) -> f64 {
     let most = std::f64::consts::PI * diameter / (1.5 * 3.0f64.sqrt());
     (most * 1e3).floor() / 1e3

@@ -8,73 +8,88 @@ use super::{JobControl, Rotary, SheetInfo};
 /// A honeycomb on a cylinder about x; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Honeycomb {
+    /// Control of the programs.
     pub control: JobControl,
+    /// Machine.
     pub machine: CombMachine,
+    /// Part.
     pub cylinder: Cylinder,
+    /// Specified pitch or divisions.
     pub spacing: Spacing,
+    /// Metric of the distance between neighbours.
     pub metric: Metric,
+    /// Tool and holes.
     pub drill: Drill,
     /// Diameter of the tolerance zone.
     pub position_tolerance: f64,
-    /// How far a hole's depth may be off.
+    /// Tolerance of a hole's depth, either way.
     pub depth_tolerance: f64,
+    /// Additional data for the set-up sheet.
     pub sheet: SheetInfo,
 }
 
+/// Machine of a honeycomb job; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CombMachine {
+    /// Rotary table.
     pub rotary: Rotary,
-    /// How far above the surface rapid becomes feed.
+    /// Height above the surface at which rapid motion becomes feed.
     pub clearance: f64,
-    /// Whether the job says that.
+    /// True if the job specifies the clearance.
     pub is_clearance_specified: bool,
-    /// How far above the surface the tool is while the rotary turns.
+    /// Height above the surface while the rotary table rotates.
     pub retract: f64,
-    /// Whether the job says that: where it doesn't, the default is no demand on other programs.
+    /// True if the job specifies the retract height; a default does not constrain other programs.
     pub is_retract_specified: bool,
+    /// M codes of the rotary clamp; `None` if the job names none.
     pub clamp: Option<Clamp>,
 }
 
-/// The M codes that hold the rotary and let it go.
+/// M codes that clamp and release the rotary table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Clamp {
+    /// M code that clamps.
     pub on: u32,
+    /// M code that releases.
     pub off: u32,
 }
 
+/// Cylinder or tube; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
-    /// On which the pitch is to hold.
+    /// Diameter at which the pitch applies.
     pub diameter: f64,
-    /// Holes stand at 0 ≤ x ≤ length.
+    /// Holes lie at 0 ≤ x ≤ length.
     pub length: f64,
-    /// Where the holes begin.
+    /// Diameter at which the holes begin.
     pub outer: f64,
-    /// 0 where the cylinder is solid.
+    /// Bore diameter; 0 for a solid cylinder.
     pub bore: f64,
 }
 
-/// What was asked for: the other one follows from it.
+/// Specified dimension of the pattern; the other one follows from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spacing {
-    /// Between neighbours, before the pattern is closed.
+    /// Distance between neighbours before the pattern is closed, mm.
     Pitch(f64),
     /// Rows of one group round the circumference.
     Divisions(u32),
 }
 
-/// How the distance of neighbours counts.
+/// Metric of the distance between neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
-    /// On the developed surface.
+    /// Length on the developed surface.
     Arc,
-    /// Straight, as a calliper measures.
+    /// Straight distance, as a calliper measures it.
     Chord,
 }
 
 impl Metric {
+    /// All metrics with their names in job files.
     pub const ALL: [(&str, Self); 2] = [("arc", Self::Arc), ("chord", Self::Chord)];
 
+    /// Returns the name in job files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Arc => "arc",
@@ -83,27 +98,35 @@ impl Metric {
     }
 }
 
+/// Tool of a honeycomb job and the holes it makes; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drill {
-    /// Its number, and that of its length offset.
+    /// Number of the tool and of its length offset.
     pub number: u32,
+    /// Diameter of the drill.
     pub diameter: f64,
+    /// Depth of the holes.
     pub depth: f64,
-    /// r/min.
+    /// Spindle speed, r/min.
     pub speed: f64,
-    /// mm/min.
+    /// Feed, mm/min.
     pub feed: f64,
-    /// Of G83, which a hole deeper than three diameters gets.
+    /// Depth of cut of G83, used for holes deeper than three diameters.
     pub peck: f64,
+    /// Fields that the job specifies.
     pub specified: SpecifiedFields,
 }
 
-/// Which of its numbers the job says: where it doesn't, the default is no demand on other programs.
+/// Fields of [`Drill`] that the job specifies; a default does not constrain other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SpecifiedFields {
+    /// True if the job specifies the number.
     pub has_number: bool,
+    /// True if the job specifies the speed.
     pub has_speed: bool,
+    /// True if the job specifies the feed.
     pub has_feed: bool,
+    /// True if the job specifies the depth of cut.
     pub has_peck: bool,
 }
 
@@ -175,11 +198,7 @@ depth = 12.0
                 "pitch = 10.0\ndivisions = 91",
                 "line 14: key 'pattern.divisions' excludes 'pitch': each follows from the other",
             ),
-            (
-                "pitch = 10.0",
-                "divisions = 1",
-                "line 13: key 'pattern.divisions' is 1: a whole number from 2 to 100000",
-            ),
+            ("pitch = 10.0", "divisions = 1", "line 13: key 'pattern.divisions' is 1: 2 to 100000"),
             (
                 "pitch = 10.0",
                 "pitch = 4.9",

@@ -1,4 +1,4 @@
-//! Reads the job file of the family `pin-holes`: every key checked, its line named.
+//! Reads the job file of the family `pin-holes`. Errors name the key and its line.
 use std::collections::BTreeSet;
 
 use schemars::{JsonSchema, Schema};
@@ -7,11 +7,10 @@ use serde_json::json;
 
 use super::tools::{FileTool, HoleToolSpec, assign, default_tools};
 use super::{AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool};
-use crate::job::sections::{
-    FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, in_range, length,
-};
+use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, in_range};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader};
+use crate::reader::bounds::{Azimuth, Bounded, Depth, Length, Radius, Retract, ToolLength};
 use crate::reader::{Spanned, names};
 
 /// Pin holes in a surface of revolution: drilled along its axis or its normals.
@@ -52,11 +51,9 @@ pub(in crate::job) struct FileMachine {
     /// How the tool is inclined [default: by hand].
     head: Option<FileHead>,
     /// Distance from the surface where the feed begins, mm [default: 2].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    clearance: Option<Spanned<f64>>,
+    clearance: Option<Bounded<Depth>>,
     /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    retract: Option<Spanned<f64>>,
+    retract: Option<Bounded<Retract>>,
 }
 
 /// How the tool is inclined.
@@ -71,8 +68,7 @@ struct FileHead {
     #[schemars(extend("enum" = names(&ROTARY_LETTERS)))]
     letter: Option<Spanned<String>>,
     /// From the head's pivot to the spindle's gauge line, mm [default: 0].
-    #[schemars(range(min = 0.0, max = 9_999.0))]
-    pivot: Option<Spanned<f64>>,
+    pivot: Option<Bounded<ToolLength>>,
 }
 
 /// The surface that the holes begin in.
@@ -83,11 +79,9 @@ pub(in crate::job) struct FileSurface {
     #[schemars(extend("enum" = ["ellipsoid"]))]
     kind: Spanned<String>,
     /// Equatorial radius, mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    a: Spanned<f64>,
+    a: Bounded<Length>,
     /// Polar radius, mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    b: Spanned<f64>,
+    b: Bounded<Length>,
 }
 
 /// One hole.
@@ -97,20 +91,16 @@ struct FileHole {
     /// Its name, unique.
     id: Spanned<String>,
     /// Distance of its entry from the axis of revolution, mm: at most the equatorial radius.
-    #[schemars(range(min = 0.0, max = 99_999.0))]
-    radius: Spanned<f64>,
+    radius: Bounded<Radius>,
     /// Azimuth about that axis, degrees.
-    #[schemars(range(min = -3600.0, max = 3600.0))]
-    azimuth: Spanned<f64>,
+    azimuth: Bounded<Azimuth>,
     /// axial: along the axis of revolution; normal: along the surface's normal.
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
     axis: Spanned<String>,
     /// mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    diameter: Spanned<f64>,
+    diameter: Bounded<Length>,
     /// From the surface along the axis, mm.
-    #[schemars(range(min = 0.01, max = 9_999.0))]
-    depth: Spanned<f64>,
+    depth: Bounded<Depth>,
     /// The numbers of the tools that make it [default: every tool that is not larger than it].
     tools: Option<Spanned<Vec<i64>>>,
 }
@@ -129,7 +119,7 @@ const HEADS: [(&str, bool); 2] = [("manual", false), ("axis", true)];
 const DIRECTIONS: [(&str, AxisDirection); 2] =
     [("axial", AxisDirection::Axial), ("normal", AxisDirection::Normal)];
 
-/// Of a head of kind axis, and of no other.
+/// Adds the rule that `letter` belongs to a head of kind axis and to no other.
 fn letter_goes_with_axis(schema: &mut Schema) {
     let of = |kind: &str| json!({ "kind": { "enum": [kind] } });
     let cases = json!([
@@ -156,18 +146,18 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, FileError> 
         control: file.control.check(reader)?,
         machine: file.machine.check(reader)?,
         surface,
-        position_tolerance: file.tolerance.position(reader)?,
-        depth_tolerance: file.tolerance.depth(reader)?,
+        position_tolerance: file.tolerance.position(),
+        depth_tolerance: file.tolerance.depth(),
         tools,
         are_tools_specified: file.tool.is_some(),
         macros: MacroSettings { common },
         holes,
-        sheet: FileSheet::of(file.sheet, reader)?,
+        sheet: file.sheet.map(FileSheet::info).unwrap_or_default(),
     })
 }
 
 impl File {
-    /// The tools in the order of use, and for each hole the numbers of those that make it.
+    /// Returns the tools in the order of use, and for each hole the numbers of its tools.
     fn tools(&self, reader: &Reader<'_>) -> Result<(Vec<Tool>, Vec<Vec<u32>>), FileError> {
         let Some(first) = self.hole.first() else {
             return Err(FileError { line: None, message: "no holes: add a [[hole]]".into() });
@@ -178,7 +168,6 @@ impl File {
                 let message = format!("key 'hole.id': '{}' is used twice", hole.id.as_ref());
                 return Err(reader.error(&hole.id, message));
             }
-            length(reader, "hole.diameter", &hole.diameter)?;
         }
         let wanted: Vec<_> = self.hole.iter().map(FileHole::tool_spec).collect();
         let Some(tools) = &self.tool else { return default_tools(reader, &wanted) };
@@ -192,7 +181,7 @@ impl File {
                 return Err(reader.error(tool.number(), message));
             }
         }
-        let tools = tools.iter().map(|tool| tool.check(reader)).collect::<Result<Vec<_>, _>>()?;
+        let tools: Vec<Tool> = tools.iter().map(FileTool::tool).collect();
         let of_holes = assign(reader, &tools, &wanted)?;
         Ok((tools, of_holes))
     }
@@ -201,7 +190,7 @@ impl File {
 impl FileSurface {
     pub(in crate::job) fn check(&self, reader: &Reader<'_>) -> Result<Surface, FileError> {
         reader.choice("surface.kind", &self.kind, &[("ellipsoid", ())])?;
-        Ok(Surface { a: length(reader, "surface.a", &self.a)?, b: length(reader, "surface.b", &self.b)? })
+        Ok(Surface { a: self.a.get(), b: self.b.get() })
     }
 }
 
@@ -226,12 +215,7 @@ impl FileMachine {
 
 impl FileHead {
     fn check(&self, reader: &Reader<'_>, rotary: char) -> Result<Head, FileError> {
-        let pivot = match &self.pivot {
-            Some(pivot) => {
-                reader.number("machine.head.pivot", pivot, "0 to 9999 mm", in_range(0.0, 9_999.0))?
-            }
-            None => 0.0,
-        };
+        let pivot = self.pivot.as_ref().map_or(0.0, Bounded::get);
         let by_axis = reader.choice("machine.head.kind", &self.kind, &HEADS)?;
         let kind = match (&self.letter, by_axis) {
             (None, false) => HeadKind::Manual,
@@ -268,15 +252,10 @@ impl FileHole {
         Ok(HoleSpec {
             id: self.id.as_ref().clone(),
             radius: reader.number("hole.radius", &self.radius, &radii, in_range(0.0, a))?,
-            azimuth: reader.number(
-                "hole.azimuth",
-                &self.azimuth,
-                "-3600 to 3600 degrees",
-                in_range(-3600.0, 3600.0),
-            )?,
+            azimuth: self.azimuth.get(),
             axis: reader.choice("hole.axis", &self.axis, &DIRECTIONS)?,
-            diameter: *self.diameter.as_ref(),
-            depth: reader.number("hole.depth", &self.depth, "0.01 to 9999 mm", in_range(0.01, 9_999.0))?,
+            diameter: self.diameter.get(),
+            depth: self.depth.get(),
             tools,
         })
     }

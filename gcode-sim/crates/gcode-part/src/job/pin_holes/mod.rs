@@ -9,22 +9,29 @@ use super::{JobControl, Rotary, SheetInfo};
 /// Pin holes on an ellipsoid of revolution; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinHoles {
+    /// Control of the programs.
     pub control: JobControl,
+    /// Machine.
     pub machine: PinMachine,
+    /// Surface in which the holes begin.
     pub surface: Surface,
     /// Diameter of the tolerance zone.
     pub position_tolerance: f64,
-    /// How far a hole's depth may be off.
+    /// Tolerance of a hole's depth, either way.
     pub depth_tolerance: f64,
+    /// Tools in the order of use.
     pub tools: Vec<Tool>,
-    /// Whether the job says them: where it doesn't, those of the paper are no demand on other programs.
+    /// True if the job specifies the tools; those of the paper do not constrain other programs.
     pub are_tools_specified: bool,
+    /// Common variables of the macros.
     pub macros: MacroSettings,
+    /// Holes in the order of drilling.
     pub holes: Vec<HoleSpec>,
+    /// Additional data for the set-up sheet.
     pub sheet: SheetInfo,
 }
 
-/// (x² + z²)/a² + y²/b² = 1.
+/// Ellipsoid of revolution about y: (x² + z²)/a² + y²/b² = 1; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Equatorial radius.
@@ -33,58 +40,69 @@ pub struct Surface {
     pub b: f64,
 }
 
+/// Machine of a pin-hole or alignment job; lengths in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinMachine {
+    /// Rotary table.
     pub rotary: Rotary,
+    /// Head that inclines the tool.
     pub head: Head,
-    /// How far from the surface, along the hole, rapid becomes feed.
+    /// Distance from the surface along the hole at which rapid motion becomes feed.
     pub clearance: f64,
-    /// How far from the surface, along the hole, the tool retracts before the rotary table turns.
+    /// Distance from the surface along the hole to which the tool retracts before the rotary table rotates.
     pub retract: f64,
-    /// Whether the job says that: where it doesn't, the default is no demand on other programs.
+    /// True if the job specifies the retract height; a default does not constrain other programs.
     pub is_retract_specified: bool,
+    /// True if the job specifies the clearance.
     pub is_clearance_specified: bool,
 }
 
-/// The head that tilts the tool in the xy plane.
+/// A head that inclines the tool in the xy plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Head {
+    /// Manual setting or axis.
     pub kind: HeadKind,
-    /// From the pivot to the gauge line of the spindle. With `pivot = 0` and tools of length 0 the programmed
-    /// point is the tool's tip, whose place is then set again after each turn of the head.
+    /// Distance from the pivot to the gauge line of the spindle. With `pivot = 0` and tools of length 0 the
+    /// programmed point is the tool's tip, which is set again after each rotation of the head.
     pub pivot: f64,
 }
 
+/// Setting of the head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeadKind {
-    /// Set by hand at an operator stop.
+    /// An operator sets the head by hand at a stop.
     Manual,
     /// An axis of the control; its angle counts from x towards y.
     Axis(char),
 }
 
-/// A tool in the order of use.
+/// A tool; lengths in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
+    /// Number of the tool and of its length offset.
     pub number: u32,
+    /// Diameter.
     pub diameter: f64,
-    /// From the gauge line of the spindle to the tip.
+    /// Distance from the gauge line of the spindle to the tip.
     pub length: f64,
-    /// r/min.
+    /// Spindle speed, r/min.
     pub speed: f64,
-    /// mm/min into the hole.
+    /// Feed into the hole, mm/min.
     pub feed: f64,
-    /// mm/min out of the hole.
+    /// Feed out of the hole, mm/min.
     pub retract_feed: f64,
+    /// Name in messages and on the set-up sheet.
     pub name: String,
 }
 
+/// Common variables of the macros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MacroSettings {
-    /// The first of the two common variables that the macros use: the head angle asked for, and the one set.
+    /// First of two common variables: the specified head angle, and the set one.
     pub common: u32,
 }
 
+/// Direction of a hole's axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisDirection {
     /// Parallel to y.
@@ -93,16 +111,22 @@ pub enum AxisDirection {
     Normal,
 }
 
+/// A hole as the job specifies it; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HoleSpec {
+    /// Unique name.
     pub id: String,
-    /// From the axis of revolution.
+    /// Distance of the entry from the axis of revolution.
     pub radius: f64,
+    /// Azimuth about the axis of revolution.
     pub azimuth: f64,
+    /// Direction of the axis.
     pub axis: AxisDirection,
+    /// Diameter.
     pub diameter: f64,
+    /// Depth from the surface along the axis.
     pub depth: f64,
-    /// The numbers of the tools that make it, in the order of use; the last one has its diameter.
+    /// Numbers of the tools in the order of use; the last one has the hole's diameter.
     pub tools: Vec<u32>,
 }
 
@@ -111,7 +135,7 @@ mod tests {
     use super::PinHoles;
     use crate::job::Job;
 
-    /// The smallest job with one line replaced.
+    /// Parses the smallest job with one replacement and returns its error message, or "no error".
     fn told(from: &str, to: &str) -> String {
         let job = MINIMAL.replace(from, to);
         assert_ne!(job, MINIMAL, "'{from}' is not in the job");
@@ -184,7 +208,7 @@ depth = 15.0
     }
 
     proptest::proptest! {
-        /// A job that somebody mistyped is an error with a message, or a job; never a panic.
+        /// A mistyped job is an error with a message, or a job; never a panic.
         #[test]
         fn a_mistyped_job_is_told_or_read(place in 0usize..270, gone in 0usize..9, typed in "[ -~\n]{0,4}") {
             let start = place.min(MINIMAL.len());
@@ -196,7 +220,7 @@ depth = 15.0
             }
         }
 
-        /// Radii, azimuths and depths come out as they went in.
+        /// Radii, azimuths and depths are read exactly.
         #[test]
         fn numbers_are_read_exactly(radius in 0.0..1158.8f64, azimuth in -720.0..720.0f64, depth in 0.01..99.0f64) {
             let text = MINIMAL

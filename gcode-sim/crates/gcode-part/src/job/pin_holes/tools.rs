@@ -1,90 +1,68 @@
-//! The tools of a pin-hole job, and which of them make which hole.
+//! The tools of a pin-hole job and their assignment to holes.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Tool;
-use crate::job::sections::{in_range, length};
 use crate::job::{FileError, Reader};
 use crate::reader::Spanned;
+use crate::reader::bounds::{Bounded, FeedRate, Length, SpindleSpeed, ToolLength, ToolNumber};
 
 /// A tool.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTool {
     /// Its number, and that of its length offset; unique.
-    #[schemars(range(min = 1, max = 9999))]
-    number: Spanned<i64>,
+    number: Bounded<ToolNumber>,
     /// mm.
-    #[schemars(range(min = 0.01, max = 99_999.0))]
-    diameter: Spanned<f64>,
+    diameter: Bounded<Length>,
     /// From the gauge line to the tip, mm [default: 0].
-    #[schemars(range(min = 0.0, max = 9_999.0))]
-    length: Option<Spanned<f64>>,
+    length: Option<Bounded<ToolLength>>,
     /// A whole number of r/min.
-    #[schemars(range(min = 1.0, max = 99_999.0), extend("multipleOf" = 1))]
-    speed: Spanned<f64>,
+    speed: Bounded<SpindleSpeed>,
     /// Into the hole, mm/min.
-    #[schemars(range(min = 0.01, max = 240_000.0))]
-    feed: Spanned<f64>,
+    feed: Bounded<FeedRate>,
     /// Out of the hole, mm/min [default: 200, or feed if that is more].
-    #[schemars(range(min = 0.01, max = 240_000.0))]
-    retract_feed: Option<Spanned<f64>>,
+    retract_feed: Option<Bounded<FeedRate>>,
     /// Its name in messages and on the sheet [default: TOOL and its number].
     name: Option<String>,
 }
 
-/// What a hole says about its tools.
+/// The keys of a hole that select its tools.
 pub(super) struct HoleToolSpec<'f> {
     pub(super) id: &'f str,
-    pub(super) diameter: &'f Spanned<f64>,
+    pub(super) diameter: &'f Bounded<Length>,
     pub(super) tools: Option<&'f Spanned<Vec<i64>>>,
 }
 
-/// mm/min into the hole, in the paper.
+/// Feed into the hole in the paper, mm/min.
 const DEFAULT_FEED: f64 = 10.0;
-/// mm/min out of the hole: nothing is cut there.
+/// Feed out of the hole, mm/min; the tool does not cut there.
 const DEFAULT_RETRACT_FEED: f64 = 200.0;
-/// r/min, in the paper.
+/// Speed in the paper, r/min.
 const DEFAULT_SPEED: f64 = 1500.0;
 
 impl FileTool {
-    pub(super) fn check(&self, reader: &Reader<'_>) -> Result<Tool, FileError> {
-        let number = *self.number.as_ref();
-        if !(1..=9999).contains(&number) {
-            return Err(reader.error(&self.number, format!("key 'tool.number' is {number}: 1 to 9999")));
-        }
-        let feed_range = "0.01 to 240000 mm/min";
-        let feed = reader.number("tool.feed", &self.feed, feed_range, in_range(0.01, 240_000.0))?;
-        Ok(Tool {
+    pub(super) fn tool(&self) -> Tool {
+        let (number, feed) = (self.number.get(), self.feed.get());
+        Tool {
             number: number as u32,
-            diameter: length(reader, "tool.diameter", &self.diameter)?,
-            length: match &self.length {
-                Some(length) => {
-                    reader.number("tool.length", length, "0 to 9999 mm", in_range(0.0, 9_999.0))?
-                }
-                None => 0.0,
-            },
-            speed: reader.number("tool.speed", &self.speed, "a whole number from 1 to 99999 r/min", |v| {
-                in_range(1.0, 99_999.0)(v) && v.fract() == 0.0
-            })?,
+            diameter: self.diameter.get(),
+            length: self.length.as_ref().map_or(0.0, Bounded::get),
+            speed: self.speed.get(),
             feed,
-            retract_feed: match &self.retract_feed {
-                Some(value) => {
-                    reader.number("tool.retract_feed", value, feed_range, in_range(0.01, 240_000.0))?
-                }
-                None => feed.max(DEFAULT_RETRACT_FEED),
-            },
+            retract_feed: self.retract_feed.as_ref().map_or(feed.max(DEFAULT_RETRACT_FEED), Bounded::get),
             name: self.name.clone().unwrap_or_else(|| format!("TOOL {number}")),
-        })
+        }
     }
 
-    pub(super) fn number(&self) -> &Spanned<i64> {
+    pub(super) fn number(&self) -> &Bounded<ToolNumber> {
         &self.number
     }
 }
 
-/// The tools of the paper (drill Φ5.9, then a three-flute end mill Φ6; 1500 r/min, 10 mm/min along the axis), a pair
-/// for each diameter of the job, and the tools of each hole.
+/// Returns the tools of the paper, a pair for each diameter of the job, and the tool numbers of each hole.
+///
+/// The paper uses a drill Φ5.9, then a three-flute end mill Φ6, at 1500 r/min and 10 mm/min along the axis.
 pub(super) fn default_tools(
     reader: &Reader<'_>,
     holes: &[HoleToolSpec<'_>],
@@ -95,7 +73,7 @@ pub(super) fn default_tools(
         if let Some(tools) = hole.tools {
             return Err(reader.error(tools, "key 'hole.tools' names tools of [[tool]], but there are none"));
         }
-        let diameter = *hole.diameter.as_ref();
+        let diameter = hole.diameter.get();
         let index = diameters.iter().position(|d| *d == diameter).unwrap_or_else(|| {
             diameters.push(diameter);
             diameters.len() - 1
@@ -105,7 +83,7 @@ pub(super) fn default_tools(
     }
     let tools = diameters.iter().enumerate().flat_map(|(index, diameter)| {
         let first = 2 * index as u32 + 1;
-        // Both differences in tenths of a millimetre, so that 6 becomes 5.9 and not 5.8999….
+        // Rounded to tenths of a micrometre, so that 6 gives 5.9 and not 5.8999….
         let drill = if *diameter > 1.0 { (diameter * 1e4 - 1e3).round() / 1e4 } else { diameter * 0.9 };
         [tool(first, drill, "DRILL"), tool(first + 1, *diameter, "END MILL")]
     });
@@ -124,8 +102,10 @@ fn tool(number: u32, diameter: f64, name: &str) -> Tool {
     }
 }
 
-/// The tools of each hole: those it names, else every tool that isn't larger than it. The last one must have its
-/// diameter, or the hole would be left too small or cut too large.
+/// Returns the tool numbers of each hole: those it names, else every tool that is not larger than it.
+///
+/// # Errors
+/// The last tool of a hole has another diameter, which would leave the hole too small or cut it too large.
 pub(super) fn assign(
     reader: &Reader<'_>,
     tools: &[Tool],
@@ -135,7 +115,7 @@ pub(super) fn assign(
 }
 
 fn assign_one(reader: &Reader<'_>, tools: &[Tool], hole: &HoleToolSpec<'_>) -> Result<Vec<u32>, FileError> {
-    let diameter = *hole.diameter.as_ref();
+    let diameter = hole.diameter.get();
     let numbers: Vec<u32> = match hole.tools {
         Some(named) => {
             for number in named.as_ref() {

@@ -2,6 +2,7 @@
 use super::super::Inspection;
 use super::super::spacing::SAME_FLUTE;
 use super::twice;
+use crate::findings::{FLUTE_EXTRA, FLUTE_MISSING};
 use crate::flutes::CollisionKind;
 use gcode_lang::diag::{Diagnostic, Site};
 
@@ -11,7 +12,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         findings.push(missing(inspection, found, wanted));
     }
     if wanted < found {
-        let finding = Diagnostic::error("flute-extra", format!("{found} flutes, {wanted} specified"));
+        let finding = Diagnostic::new(&FLUTE_EXTRA, format!("{found} flutes, {wanted} specified"));
         let (pass, finding) = match passes_beside(inspection) {
             Some((pass, other, apart)) => {
                 let note = format!(
@@ -52,7 +53,7 @@ fn passes_beside(inspection: &Inspection<'_>) -> Option<(usize, usize, f64)> {
 }
 
 fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnostic {
-    let missing = |message: String| Diagnostic::error("flute-missing", message);
+    let missing = |message: String| Diagnostic::new(&FLUTE_MISSING, message);
     let sites =
         inspection.spacing.missing_points(inspection.nominal).into_iter().map(|at| Site::new(None, at));
     let dives = inspection.actual.collisions.iter();

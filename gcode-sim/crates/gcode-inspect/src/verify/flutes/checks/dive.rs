@@ -1,6 +1,7 @@
 //! Between the passes the wheel's contact stays off the burr: off the blank in rapid motion, and in a feed too but
 //! straight in where a pass begins and straight out where one ends.
 use super::super::Inspection;
+use crate::findings::{WHEEL_INTO_BURR, WHEEL_NEAR_BURR};
 use crate::flutes::CollisionKind;
 use gcode_lang::diag::{Diagnostic, Site};
 
@@ -62,12 +63,12 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             | CollisionKind::LowClearance => (0 < again).then(|| format!("and {again} more of this block")),
         };
         let finding = match dive.kind {
-            CollisionKind::LowClearance => Diagnostic::warning("wheel-near-burr", message),
+            CollisionKind::LowClearance => Diagnostic::new(&WHEEL_NEAR_BURR, message),
             CollisionKind::Rapid
             | CollisionKind::RapidPass(_)
             | CollisionKind::BelowToothBottom
             | CollisionKind::Sideways(_)
-            | CollisionKind::PlungeWithoutPass => Diagnostic::error("wheel-into-burr", message),
+            | CollisionKind::PlungeWithoutPass => Diagnostic::new(&WHEEL_INTO_BURR, message),
         };
         let finding = finding
             .help(help)

@@ -3,6 +3,7 @@ use nalgebra::Point3;
 
 use super::super::Inspection;
 use super::report_passes;
+use crate::findings::FLUTE_END;
 use crate::flutes::{FirstOccurrence, GrindingPass};
 use gcode_lang::diag::Diagnostic;
 
@@ -16,7 +17,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         Some((message, FirstOccurrence { backtrace: pass.backtrace.clone(), point: at }))
     };
     findings.extend(report_passes(inspection, wrong, |message| {
-        Diagnostic::error("flute-end", message)
+        Diagnostic::new(&FLUTE_END, message)
             .help("check the length of the cylinder (X) and the last C: 90° minus the tip angle")
     }));
 }

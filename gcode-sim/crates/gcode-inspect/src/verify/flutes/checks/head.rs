@@ -2,6 +2,7 @@
 use super::super::Inspection;
 use super::helix::do_heads_match;
 use super::report_passes;
+use crate::findings::FLUTE_HEAD;
 use crate::flutes::{FirstOccurrence, GrindingPass};
 use gcode_lang::diag::Diagnostic;
 
@@ -16,7 +17,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         Some((message, FirstOccurrence { backtrace: pass.backtrace.clone(), point: at }))
     };
     findings.extend(report_passes(inspection, wrong, |message| {
-        Diagnostic::error("flute-head", message)
+        Diagnostic::new(&FLUTE_HEAD, message)
             .help("set B once before each pass, to the helix angle on the cylinder")
     }));
 }

@@ -1,6 +1,7 @@
 //! The helix angle along every flute is that of the law asked for.
 use super::super::common::helix_hand;
 use super::super::{CommonDeviation, Inspection};
+use crate::findings::FLUTE_HELIX;
 use crate::flutes::GrindingPass;
 use gcode_lang::diag::{Diagnostic, Site};
 use gcode_lang::units::Deg;
@@ -19,7 +20,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         tolerance.0
     );
     let mut all: Vec<_> = inspection.helix.worst_by_pass.iter().filter(|w| tolerance < w.error()).collect();
-    let error = |message: String| Diagnostic::error("flute-helix", message);
+    let error = |message: String| Diagnostic::new(&FLUTE_HELIX, message);
     let finding = match common_error(inspection) {
         Some((message, help)) => describe_heads(inspection)
             .into_iter()

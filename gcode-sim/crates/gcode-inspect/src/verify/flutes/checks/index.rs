@@ -1,5 +1,6 @@
 //! The flutes are evenly spaced all along.
 use super::super::Inspection;
+use crate::findings::FLUTE_INDEX;
 use gcode_lang::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -22,7 +23,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 step.nominal.0.abs(),
                 wanted.index_tolerance.0
             );
-            Diagnostic::error("flute-index", message)
+            Diagnostic::new(&FLUTE_INDEX, message)
                 .note(format!("{:.3}° are left from the last flute to the first", gap.actual.0))
                 .help("check the index of A: 360° divided by the number of flutes")
                 .with_backtrace(inspection.actual.passes[step.pass].backtrace.clone())
@@ -43,7 +44,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                     (wanted.count == 2).then(|| format!("either flute may be right: {name} is ground later"))
                 }
             };
-            let finding = Diagnostic::error("flute-index", message)
+            let finding = Diagnostic::new(&FLUTE_INDEX, message)
                 .help("check A in this block, and the start of the flute")
                 .with_backtrace(trace.backtrace(&trace.samples[gap.first_sample]).clone());
             note.into_iter().fold(finding, Diagnostic::note)

@@ -1,5 +1,6 @@
 //! The job and the machine file agree on where the burr is from the C axis.
 use super::super::Inspection;
+use crate::findings::BURR_OFFSET;
 use gcode_lang::diag::Diagnostic;
 
 /// Measured no finer than this, mm.
@@ -18,7 +19,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         rounded_mm(y)
     );
     findings.push(
-        Diagnostic::error("burr-offset", message)
+        Diagnostic::new(&BURR_OFFSET, message)
             .note(
                 "the results are for the machine file's position; with the job's position the same moves \
                  grind a different burr",

@@ -1,5 +1,6 @@
 //! The axes run the same way in the job and in the machine file.
 use super::super::Inspection;
+use crate::findings::AXIS_SIGNS;
 use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -17,7 +18,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     let message =
         format!("{names} {verb} in opposite directions in the machine file and in the job's machine.signs");
     findings.push(
-        Diagnostic::warning("axis-signs", message)
+        Diagnostic::new(&AXIS_SIGNS, message)
             .note("the results are for the machine file's directions; programs emitted from the job assume the job's")
             .help("command each axis by hand, observe its direction and correct the wrong sign"),
     );

@@ -1,6 +1,7 @@
 //! The contact runs along the flutes at the job's speed.
 use super::super::Inspection;
 use super::super::speed::SPEED_TOLERANCE;
+use crate::findings::FLUTE_SPEED;
 use gcode_lang::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -25,7 +26,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         inspection.actual.passes.len()
     );
     findings.push(
-        Diagnostic::error("flute-speed", message)
+        Diagnostic::new(&FLUTE_SPEED, message)
             .note(all)
             .help(
                 "check F in this block, and that the code it is written for is in force: G93 (F moves a \

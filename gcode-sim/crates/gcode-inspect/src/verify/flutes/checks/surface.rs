@@ -1,6 +1,7 @@
 //! The contact stays on the tooth bottom, between the programmed points too.
 use super::super::Inspection;
 use super::super::cause::Cause;
+use crate::findings::FLUTE_SURFACE;
 use crate::flutes::{GrindingPass, ROUNDING_ERROR, Sample};
 use gcode_lang::diag::{Diagnostic, Site};
 
@@ -25,7 +26,7 @@ pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnost
 fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic {
     let wanted = inspection.nominal;
     let (allowed, radius) = (wanted.surface_tolerance, wanted.profile.radius());
-    let error = |message: String| Diagnostic::error("flute-surface", message);
+    let error = |message: String| Diagnostic::new(&FLUTE_SURFACE, message);
     let (side, off) =
         if worst.deviation < 0.0 { ("below", -worst.deviation) } else { ("above", worst.deviation) };
     if let Some(depth) = inspection.common_height {

@@ -1,6 +1,7 @@
 //! The wheel turns while it grinds, the way round that emitted programs have it.
 use super::super::Inspection;
 use super::report_passes;
+use crate::findings::WHEEL_REVERSED;
 use crate::holes::spindle::spindle_stopped_finding;
 use gcode_lang::diag::Diagnostic;
 
@@ -20,7 +21,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         |pass| pass.reversed_wheel.clone().map(|begun| ((), begun)),
         |()| {
             let message = "the wheel grinds with M04; the programs emitted for a burr use M03";
-            Diagnostic::warning("wheel-reversed", message)
+            Diagnostic::new(&WHEEL_REVERSED, message)
                 .note("the job does not give the wheel's direction of rotation")
                 .help("use M03, unless the wheel is meant to run in reverse")
         },

@@ -1,6 +1,7 @@
 //! No flute is ground a second time.
 use super::super::Inspection;
 use super::super::spacing::RepeatedPass;
+use crate::findings::FLUTE_TWICE;
 use gcode_lang::diag::{Diagnostic, Severity, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -30,7 +31,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             "remove the pass from the program; check for one iteration too many in a loop over the flutes",
         ),
     };
-    let finding = Diagnostic::new(severity, "flute-twice", sentence(*first)).help(help);
+    let finding = Diagnostic::new(&FLUTE_TWICE, sentence(*first)).with_severity(severity).help(help);
     let finding = match (is_round, round.repeated.len() - 1) {
         (true, _) => finding.note(format!("every flute is ground {of_first} times")),
         (false, 0) => finding,

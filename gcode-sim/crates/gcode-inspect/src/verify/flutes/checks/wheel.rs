@@ -1,7 +1,8 @@
 //! The wheel turns and goes into the blank as fast as the job says.
 use super::super::Inspection;
+use crate::findings::{WHEEL_FEED, WHEEL_SPEED};
 use crate::verify::checks::cutting::severity;
-use gcode_lang::diag::{Diagnostic, Site};
+use gcode_lang::diag::{Diagnostic, FindingKind, Site};
 use gcode_lang::motion::Backtrace;
 
 /// Something that the program does, and where.
@@ -23,7 +24,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             })
         });
         let message = |found| format!("the wheel grinds at S{found}; the job specifies S{wanted}");
-        let told = report_worst("wheel-speed", wanted, speeds.collect(), message);
+        let told = report_worst(&WHEEL_SPEED, wanted, speeds.collect(), message);
         findings.extend(told.map(|finding| finding.help("correct S, or program.wheel in the job")));
     }
     if let Some(wanted) = wanted.plunge {
@@ -35,7 +36,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         let message = |found| {
             format!("the wheel is fed into the blank at {found} mm/min; the job specifies {wanted} mm/min")
         };
-        let told = report_worst("wheel-feed", wanted, plunges.collect(), message);
+        let told = report_worst(&WHEEL_FEED, wanted, plunges.collect(), message);
         findings.extend(told.map(|finding| {
             finding
                 .help("correct F, or program.plunge in the job; check that G94 is in force here, and not G93")
@@ -45,7 +46,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
 
 /// One finding at the one that is most times too fast or too slow.
 fn report_worst(
-    code: &'static str,
+    kind: &'static FindingKind,
     nominal: f64,
     all: Vec<ActualValue<'_>>,
     message: impl Fn(f64) -> String,
@@ -57,7 +58,7 @@ fn report_worst(
     let most = wrong.iter().map(times).fold(0.0, f64::max);
     let first = wrong.iter().find(|done| most <= times(done) * (1.0 + 1e-9))?;
     let shown = (first.actual * 1e3).round() / 1e3;
-    let finding = Diagnostic::new(severity(first.actual, nominal)?, code, message(shown));
+    let finding = Diagnostic::new(kind, message(shown)).with_severity(severity(first.actual, nominal)?);
     let finding = match wrong.len() - 1 {
         0 => finding,
         more => finding.note(format!("the same or a smaller difference occurs {more} more times")),

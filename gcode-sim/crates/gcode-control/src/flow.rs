@@ -1,13 +1,51 @@
 //! The programs on the way to the block at hand: frames, nesting, returns.
 use std::sync::Arc;
 
-use super::run::RunEnd;
 use super::variables::Locals;
-use super::{Control, Executor};
-use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{Call, CallChain};
+use gcode_lang::motion::{Backtrace, Call, CallChain};
 use gcode_lang::program::{OpIndex, ProgramId};
 use gcode_lang::source::Span;
+
+/// Where the program is: the block at work, the frame that it belongs to, and those that wait for it.
+#[derive(Clone, Debug)]
+pub(super) struct ProgramFlow {
+    /// The block last begun.
+    pub(super) block: Span,
+    /// The program at work.
+    pub(super) frame: Frame,
+    /// The frames that wait for it, the main program's first.
+    pub(super) callers: Vec<Frame>,
+    pub(super) modal_calls: Vec<ModalCall>,
+    /// M99 of the main program, counted.
+    pub(super) main_passes: u32,
+}
+
+impl ProgramFlow {
+    pub(super) fn new(main: ProgramId) -> Self {
+        Self {
+            block: Span::default(),
+            frame: Frame::main(main),
+            callers: Vec::new(),
+            modal_calls: Vec::new(),
+            main_passes: 0,
+        }
+    }
+
+    /// The block last begun and the calls that led to it.
+    pub(super) fn backtrace(&self) -> Backtrace {
+        Backtrace { block: self.block, calls: self.frame.calls.clone() }
+    }
+
+    /// Whether the same blocks follow; `counts_passes` where the number of passes of the main program ends the run.
+    pub(super) fn continues_like(&self, other: &Self, counts_passes: bool) -> bool {
+        let Self { block: _, frame, callers, modal_calls, main_passes } = self;
+        frame.continues_like(&other.frame)
+            && callers.len() == other.callers.len()
+            && callers.iter().zip(&other.callers).all(|(a, b)| a.continues_like(b))
+            && *modal_calls == other.modal_calls
+            && (!counts_passes || *main_passes == other.main_passes)
+    }
+}
 
 /// One program on the way to the block at hand.
 #[derive(Clone, Debug)]
@@ -117,17 +155,7 @@ impl Frame {
     }
 }
 
-impl Executor {
-    pub(super) fn check_levels(&self, is_macro: bool) -> Result<(), Alarm> {
-        if is_macro && self.vars.level() >= self.settings.macro_levels {
-            return Err(Alarm::TooManyMacroCalls { limit: self.settings.macro_levels });
-        }
-        if self.callers.len() >= self.settings.call_levels {
-            return Err(Alarm::TooManyCalls { limit: self.settings.call_levels });
-        }
-        Ok(())
-    }
-
+impl ProgramFlow {
     pub(super) fn callee_frame(
         &self,
         program: ProgramId,
@@ -154,93 +182,65 @@ impl Executor {
         self.callers.push(std::mem::replace(&mut self.frame, frame));
     }
 
-    /// Back from a subprogram or macro to the program that called it.
-    pub(super) fn pop(&mut self) {
-        match self.frame.kind {
-            FrameKind::Macro => self.vars.pop_level(),
-            FrameKind::Modal(index) => {
-                let locals = self.vars.locals();
-                if let Some(call) = self.modal_calls.get_mut(index)
-                    && self.settings.undocumented.modal_keeps_locals
-                {
-                    call.locals = locals;
-                }
-                self.vars.pop_level();
-            }
-            FrameKind::Main | FrameKind::Subprogram => {}
-        }
-        if let Some(caller) = self.callers.pop() {
-            self.frame = caller;
-        }
-    }
-
-    /// M99 without P in a called program: the next pass, or back.
-    pub(super) fn repeat_or_pop(&mut self) {
-        let frame = &mut self.frame;
-        if frame.repeats == 0 {
-            return self.pop();
-        }
-        frame.repeats -= 1;
-        let start = frame.start;
-        frame.loops = [None; 3];
-        frame.next = start;
-        if let Some(arguments) = frame.arguments.clone() {
-            self.vars.set_locals(&arguments);
-        }
+    /// The modal call that a block of this program can trigger.
+    #[inline]
+    pub(super) fn triggered_call(&self) -> Option<usize> {
+        self.frame.modal_call_count.min(self.modal_calls.len()).checked_sub(1)
     }
 }
 
-impl Control {
-    /// Where M99 P leads, before anything of its block has happened; `None` where it leads nowhere.
-    pub(super) fn find_return(&self, number: Option<u32>) -> Result<Option<OpIndex>, Alarm> {
-        let Some(number) = number.filter(|_| !self.is_last_cycle()) else { return Ok(None) };
-        let program = self.memory.get(self.return_frame().program);
-        let found = program.find_number(number, 0);
-        found.map(Some).ok_or(Alarm::SequenceNumberNotFound { number })
+/// G66: waits for moves.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ModalCall {
+    pub(super) program: ProgramId,
+    pub(super) repeats: u32,
+    pub(super) locals: Locals,
+    /// G66.1: every block calls, and its words are the arguments.
+    pub(super) is_every_block: bool,
+    /// The kind of code that stored it, where it is no G66 or G66.1.
+    pub(super) origins: CallOrigins,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::variables::VACANT;
+
+    fn modal_call() -> ModalCall {
+        let origins = CallOrigins::default();
+        ModalCall { program: ProgramId(1), repeats: 1, locals: VACANT, is_every_block: false, origins }
     }
 
-    /// Whether M99 of the main program ends the run.
-    fn is_last_cycle(&self) -> bool {
-        let last = self
-            .executor
-            .settings
-            .main_program_cycles
-            .is_some_and(|cycles| self.executor.cycles + 1 >= cycles);
-        last && self.executor.frame.kind == FrameKind::Main
+    #[test]
+    fn a_call_keeps_the_block_it_came_from() {
+        let mut flow = ProgramFlow::new(ProgramId(0));
+        let from = Span { start: 3, end: 8, ..Span::default() };
+        let frame =
+            flow.callee_frame(ProgramId(1), 0, FrameKind::Subprogram, 2, CallOrigins::default(), from);
+        assert_eq!(frame.repeats, 1, "passes after this one");
+        flow.push(frame);
+        assert_eq!((flow.callers.len(), flow.frame.program), (1, ProgramId(1)));
+        assert_eq!(flow.backtrace().calls.map(|call| call.calling_block), Some(from));
     }
 
-    /// The frame in which the run goes on after M99.
-    fn return_frame(&self) -> &Frame {
-        match self.executor.frame.kind {
-            FrameKind::Main => &self.executor.frame,
-            _ => self.executor.callers.last().unwrap_or(&self.executor.frame),
-        }
+    #[test]
+    fn a_modal_call_is_triggered_by_the_blocks_of_its_caller_only() {
+        let mut flow = ProgramFlow::new(ProgramId(0));
+        assert_eq!(flow.triggered_call(), None);
+        flow.modal_calls.push(modal_call());
+        assert_eq!(flow.triggered_call(), Some(0));
+        flow.frame.modal_call_count = 0;
+        assert_eq!(flow.triggered_call(), None, "the macro of the first modal call triggers none");
     }
 
-    /// M99, and M99 P with its number and the place that [`Control::find_return`] has found.
-    pub(super) fn return_to(&mut self, to: Option<(u32, OpIndex)>) -> Option<RunEnd> {
-        let is_main = self.executor.frame.kind == FrameKind::Main;
-        let ends_run = self.is_last_cycle();
-        if is_main {
-            self.executor.cycles += 1;
-        }
-        if ends_run {
-            return Some(RunEnd::ProgramEnd);
-        }
-        let Some((number, target)) = to else {
-            if is_main {
-                self.executor.frame.jump(0);
-            } else {
-                self.executor.repeat_or_pop();
-            }
-            return None;
-        };
-        let program = self.memory.get(self.return_frame().program);
-        if !is_main {
-            self.executor.pop();
-        }
-        self.executor.note_ambiguous_jump(program, number, target);
-        self.executor.frame.jump(target);
-        None
+    #[test]
+    fn passes_of_the_main_program_count_where_they_end_the_run() {
+        let flow = ProgramFlow::new(ProgramId(0));
+        let later =
+            ProgramFlow { main_passes: 1, block: Span { start: 9, ..Span::default() }, ..flow.clone() };
+        assert!(flow.continues_like(&later, false));
+        assert!(!flow.continues_like(&later, true));
+        let calls = ProgramFlow { modal_calls: vec![modal_call()], ..flow.clone() };
+        assert!(!flow.continues_like(&calls, false));
     }
 }

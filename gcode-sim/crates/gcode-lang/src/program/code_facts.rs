@@ -1,0 +1,332 @@
+//! Facts of G codes for readers that do not execute them: words, use of axis words, lookahead, transforms, timing.
+
+/// Set of address letters, one bit each, A the lowest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Letters(u32);
+
+impl Letters {
+    /// No letter.
+    pub const NONE: Self = Self(0);
+
+    /// Returns the set of some letters A to Z.
+    pub const fn of(letters: &[u8]) -> Self {
+        let (mut bits, mut place) = (0, 0);
+        while place < letters.len() {
+            bits |= 1 << (letters[place] - b'A');
+            place += 1;
+        }
+        Self(bits)
+    }
+
+    /// Returns the bits of the set, A the lowest.
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// Returns true if the letter is in the set.
+    pub const fn has(self, letter: u8) -> bool {
+        letter.is_ascii_uppercase() && self.0 >> (letter - b'A') & 1 == 1
+    }
+}
+
+/// Use that a code makes of the axis words of its block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisWords {
+    /// Move by the modal codes.
+    Move,
+    /// Hole of a drilling cycle.
+    Hole,
+    /// End position that does not depend on the start position.
+    Position,
+    /// End position in G90; in G91 the end depends on the start position.
+    PositionInAbsolute,
+    /// Offsets or parameters; no axis moves.
+    Tables,
+    /// Coordinates, times or an intermediate point; the words alone do not determine the end position.
+    Other,
+}
+
+/// Behaviour of a code in a block that names no axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WithoutAxes {
+    /// Normal: the code needs no axis.
+    Same,
+    /// No effect, which is rarely intended.
+    Nothing,
+    /// The current position is the centre.
+    CentreDefaulted,
+    /// All axes on some controls, no effect on others.
+    AllOrNothing,
+}
+
+/// Words of a block that are lengths, angles or seconds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Measured {
+    /// Axes, centres and radii, as in a move.
+    AsInMove,
+    /// Axes only; the other words are factors.
+    Axes,
+    /// Values of the table that L selects: axes of work offsets, R of tool offsets.
+    ByTable,
+    /// X and U, in seconds.
+    Seconds,
+    /// None.
+    Nothing,
+}
+
+/// Words that belong to a code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CodeWords {
+    /// Letters that a control refuses in a block without such a code.
+    pub own: Letters,
+    /// Letters permitted beside the code and without effect in a run.
+    pub without_effect: Letters,
+    /// Letters that are angles beside the code and lengths elsewhere.
+    pub angles: Letters,
+    /// True if a control refuses T in the same block.
+    pub refuses_tool: bool,
+    /// Words that are lengths, angles or seconds.
+    pub measured: Measured,
+}
+
+impl CodeWords {
+    /// A code without words of its own.
+    pub const NONE: Self = Self {
+        own: Letters::NONE,
+        without_effect: Letters::NONE,
+        angles: Letters::NONE,
+        refuses_tool: false,
+        measured: Measured::AsInMove,
+    };
+}
+
+/// Effect of a code on cutter compensation and corner words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LookaheadUse {
+    /// The block is part of the path, with or without a move.
+    Path,
+    /// The block moves without compensation and ends lookahead.
+    Suspends,
+    /// The simulator does not execute the code in cutter compensation.
+    Refused,
+    /// A control raises an alarm for the code in cutter compensation.
+    Alarms,
+    /// Dwell: one such block may stand between a corner word and the next move.
+    Dwell,
+    /// Arc at the corner before the next move.
+    CornerArc,
+}
+
+/// Transforms of coordinates under which a code is permitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoordinateUse {
+    /// Any transform.
+    Free,
+    /// Any but G51 (operator's manual, scaling).
+    NotScaled,
+    /// None of G51, G68 and G51.1, as for reference returns and changes of the coordinate system (operator's
+    /// manual, coordinate system rotation and programmable mirror image).
+    NotTransformed,
+}
+
+/// Order of a block relative to the preceding moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Timing {
+    /// The block is read while they are in progress.
+    ReadAhead,
+    /// The block waits for their end.
+    Waits,
+    /// As [`Timing::ReadAhead`]; its axis words move no axis.
+    MovesNothing,
+}
+
+/// Effect on a machine that the events of a run do not show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unsimulated {
+    /// None.
+    No,
+    /// Corner accuracy or lookahead, with the values of these letters.
+    Path(Letters),
+    /// Effect of the code itself, with the values of these letters.
+    Code(Letters),
+    /// Possible change of offsets or parameters.
+    Writes,
+}
+
+/// Facts of one code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CodeFacts {
+    /// Use of axis words.
+    pub axis_words: AxisWords,
+    /// Behaviour without axis words.
+    pub without_axes: WithoutAxes,
+    /// Other words.
+    pub words: CodeWords,
+    /// Effect on lookahead.
+    pub lookahead: LookaheadUse,
+    /// Permitted transforms.
+    pub coordinates: CoordinateUse,
+    /// Order relative to preceding moves.
+    pub timing: Timing,
+    /// Effect on a machine that the events do not show.
+    pub unsimulated: Unsimulated,
+}
+
+use AxisWords::{Hole, Move, Other, Position, PositionInAbsolute, Tables};
+use CoordinateUse::{Free, NotScaled, NotTransformed};
+use LookaheadUse::{Alarms, CornerArc, Dwell, Path, Refused, Suspends};
+use Timing::{MovesNothing, ReadAhead, Waits};
+use WithoutAxes::{AllOrNothing, CentreDefaulted, Nothing, Same};
+
+const VALUES: Letters = Letters::of(b"EIPQR");
+const NO_LETTERS: Letters = Letters::NONE;
+
+/// Modal code.
+pub(super) const MODAL: CodeFacts = CodeFacts {
+    axis_words: Move,
+    without_axes: Same,
+    words: CodeWords::NONE,
+    lookahead: Path,
+    coordinates: Free,
+    timing: ReadAhead,
+    unsimulated: Unsimulated::No,
+};
+
+pub(super) const CYCLE: CodeFacts = CodeFacts { axis_words: Hole, ..MODAL };
+pub(super) const WORK: CodeFacts = CodeFacts { coordinates: NotTransformed, ..MODAL };
+pub(super) const MIRROR: CodeFacts = CodeFacts { without_axes: Nothing, ..MODAL };
+pub(super) const SCALING_OFF: CodeFacts =
+    CodeFacts { words: CodeWords { refuses_tool: true, ..CodeWords::NONE }, ..MODAL };
+pub(super) const SCALING: CodeFacts = CodeFacts {
+    without_axes: CentreDefaulted,
+    words: CodeWords { measured: Measured::Axes, ..CodeWords::NONE },
+    ..MODAL
+};
+pub(super) const ROTATION: CodeFacts = CodeFacts {
+    without_axes: CentreDefaulted,
+    words: CodeWords { angles: Letters::of(b"R"), ..CodeWords::NONE },
+    ..MODAL
+};
+pub(super) const TILT: CodeFacts =
+    CodeFacts { words: CodeWords { angles: Letters::of(b"IJK"), ..CodeWords::NONE }, ..MODAL };
+
+/// Code without effect in a run.
+pub(super) const WITHOUT_EFFECT: CodeFacts = CodeFacts {
+    words: CodeWords { without_effect: Letters::of(b"IPQR"), ..CodeWords::NONE },
+    unsimulated: Unsimulated::Code(VALUES),
+    ..MODAL
+};
+pub(super) const EXACT_STOP: CodeFacts =
+    CodeFacts { unsimulated: Unsimulated::Path(NO_LETTERS), ..WITHOUT_EFFECT };
+pub(super) const CONTOUR_CONTROL: CodeFacts =
+    CodeFacts { unsimulated: Unsimulated::Path(VALUES), ..WITHOUT_EFFECT };
+pub(super) const SMOOTH_CONTOUR_CONTROL: CodeFacts =
+    CodeFacts { words: CodeWords { measured: Measured::Nothing, ..WITHOUT_EFFECT.words }, ..CONTOUR_CONTROL };
+pub(super) const LOOK_AHEAD: CodeFacts = CodeFacts { unsimulated: Unsimulated::Path(VALUES), ..MODAL };
+pub(super) const SMOOTHNESS: CodeFacts = CodeFacts {
+    words: CodeWords { own: Letters::of(b"E"), without_effect: Letters::of(b"EP"), ..CodeWords::NONE },
+    ..LOOK_AHEAD
+};
+pub(super) const TOOL_OFFSET: CodeFacts = CodeFacts { lookahead: Alarms, ..MODAL };
+
+pub(super) const DWELL: CodeFacts = CodeFacts {
+    axis_words: Other,
+    without_axes: Same,
+    words: CodeWords {
+        own: Letters::of(b"U"),
+        refuses_tool: true,
+        measured: Measured::Seconds,
+        ..CodeWords::NONE
+    },
+    lookahead: Dwell,
+    coordinates: Free,
+    timing: Waits,
+    unsimulated: Unsimulated::No,
+};
+pub(super) const DATA_INPUT: CodeFacts = CodeFacts {
+    axis_words: Tables,
+    without_axes: Same,
+    words: CodeWords {
+        own: Letters::of(b"L"),
+        refuses_tool: true,
+        measured: Measured::ByTable,
+        ..CodeWords::NONE
+    },
+    lookahead: Path,
+    coordinates: Free,
+    timing: Waits,
+    unsimulated: Unsimulated::Writes,
+};
+pub(super) const DATA_INPUT_END: CodeFacts = CodeFacts {
+    axis_words: Other,
+    without_axes: Same,
+    words: CodeWords::NONE,
+    lookahead: Path,
+    coordinates: Free,
+    timing: ReadAhead,
+    unsimulated: Unsimulated::No,
+};
+
+/// G30.
+pub(super) const SECOND_REFERENCE: CodeFacts = CodeFacts {
+    axis_words: Position,
+    without_axes: Nothing,
+    words: CodeWords::NONE,
+    lookahead: Suspends,
+    coordinates: NotTransformed,
+    timing: ReadAhead,
+    unsimulated: Unsimulated::Code(Letters::of(b"P")),
+};
+pub(super) const CHECK_REFERENCE: CodeFacts =
+    CodeFacts { unsimulated: Unsimulated::Code(NO_LETTERS), ..SECOND_REFERENCE };
+pub(super) const REFERENCE: CodeFacts = CodeFacts { without_axes: AllOrNothing, ..CHECK_REFERENCE };
+pub(super) const FROM_REFERENCE: CodeFacts = CodeFacts { axis_words: Other, ..CHECK_REFERENCE };
+
+pub(super) const SKIP: CodeFacts = CodeFacts {
+    axis_words: PositionInAbsolute,
+    without_axes: Nothing,
+    words: CodeWords::NONE,
+    lookahead: Suspends,
+    coordinates: Free,
+    timing: Waits,
+    unsimulated: Unsimulated::No,
+};
+pub(super) const MACHINE_SYSTEM: CodeFacts = CodeFacts { coordinates: NotTransformed, ..SKIP };
+pub(super) const ONE_SIDE: CodeFacts = CodeFacts {
+    axis_words: PositionInAbsolute,
+    without_axes: Nothing,
+    words: CodeWords::NONE,
+    lookahead: Refused,
+    coordinates: NotScaled,
+    timing: ReadAhead,
+    unsimulated: Unsimulated::Path(NO_LETTERS),
+};
+/// G52, G92 and G92.1.
+pub(super) const SET_SYSTEM: CodeFacts = CodeFacts {
+    axis_words: Other,
+    without_axes: Nothing,
+    words: CodeWords::NONE,
+    lookahead: Path,
+    coordinates: NotTransformed,
+    timing: MovesNothing,
+    unsimulated: Unsimulated::Writes,
+};
+pub(super) const CORNER_ARC: CodeFacts = CodeFacts {
+    axis_words: Other,
+    without_axes: Same,
+    words: CodeWords::NONE,
+    lookahead: CornerArc,
+    coordinates: NotScaled,
+    timing: ReadAhead,
+    unsimulated: Unsimulated::No,
+};
+/// G12, G13, G70 and G71 of a Haas.
+pub(super) const PATTERN: CodeFacts = CodeFacts {
+    axis_words: PositionInAbsolute,
+    without_axes: Same,
+    words: CodeWords { own: Letters::of(b"L"), ..CodeWords::NONE },
+    lookahead: Path,
+    coordinates: NotScaled,
+    timing: ReadAhead,
+    unsimulated: Unsimulated::No,
+};

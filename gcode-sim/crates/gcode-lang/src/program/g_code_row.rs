@@ -1,0 +1,172 @@
+//! Row of a G code: its effect and the facts that others read.
+use super::code_facts::CodeFacts;
+use super::cycles::Cycle;
+use super::modes::{
+    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, Motion, Plane, Polar, ReturnTo, Rotation,
+    Scaling, SpindleMode, StrokeCheck, Unit,
+};
+use crate::control::CodeSet;
+
+/// Effect of a G code.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Effect {
+    /// Group 01: motion mode.
+    Motion(Motion),
+    /// Group 02: plane.
+    Plane(Plane),
+    /// Group 03: absolute or incremental.
+    Distance(Distance),
+    /// Group 04: stored stroke check.
+    StrokeCheck(StrokeCheck),
+    /// Group 05: feed mode.
+    FeedMode(FeedMode),
+    /// Group 06: inch or metric.
+    Unit(Unit),
+    /// Group 07: cutter compensation.
+    Cutter(CutterSide),
+    /// Group 08: tool length compensation.
+    Length(Length),
+    /// Group 09: drilling cycle; `None` is G80.
+    Cycle(Option<&'static Cycle>),
+    /// Group 10: return level of cycles.
+    ReturnTo(ReturnTo),
+    /// Group 11: scaling.
+    Scaling(Scaling),
+    /// Group 13: spindle speed mode.
+    SpindleMode(SpindleMode),
+    /// Group 14: G54 to G59 as 1 to 6.
+    Work(u8),
+    /// Group 14: G54.1 and G154 with their P.
+    AdditionalWork,
+    /// Group 14: G110 to G129 of a Haas, which are G154 P1 to P20.
+    NumberedWork(u16),
+    /// Group 15: cutting mode.
+    Cutting(CuttingMode),
+    /// Group 16: rotation or tilted plane.
+    Rotation(Rotation),
+    /// Group 17: polar coordinates.
+    Polar(Polar),
+    /// Group 22: mirror image.
+    Mirror(Mirror),
+    /// Group 00: effect in its own block only.
+    OneShot(OneShot),
+    /// Feed and lookahead control without an effect on the path.
+    NoEffect,
+    /// G08: [`Effect::NoEffect`] with a P.
+    LookAhead,
+    /// G187 of a Haas, with P and E.
+    Smoothness,
+    /// Call; lowering has separated it unless the code is computed.
+    Call,
+    /// A control may have the code; the simulator does not execute it.
+    NotSimulated,
+}
+
+impl Effect {
+    /// Returns the modal group of a code that stays in force; `None` for any other.
+    pub fn group(self) -> Option<u32> {
+        Some(match self {
+            Self::Motion(_) => 1,
+            Self::Plane(_) => 2,
+            Self::Distance(_) => 3,
+            Self::StrokeCheck(_) => 4,
+            Self::FeedMode(_) => 5,
+            Self::Unit(_) => 6,
+            Self::Cutter(_) => 7,
+            Self::Length(_) => 8,
+            Self::Cycle(_) => 9,
+            Self::ReturnTo(_) => 10,
+            Self::Scaling(_) => 11,
+            Self::SpindleMode(_) => 13,
+            Self::Work(_) | Self::AdditionalWork | Self::NumberedWork(_) => 14,
+            Self::Cutting(_) => 15,
+            Self::Rotation(_) => 16,
+            Self::Polar(_) => 17,
+            Self::Mirror(_) => 22,
+            Self::OneShot(_)
+            | Self::NoEffect
+            | Self::LookAhead
+            | Self::Smoothness
+            | Self::Call
+            | Self::NotSimulated => return None,
+        })
+    }
+}
+
+/// Group 00: code that acts in its own block only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OneShot {
+    /// G04: dwell.
+    Dwell,
+    /// G10: data input.
+    DataInput,
+    /// G11: end of data input.
+    DataInputEnd,
+    /// G27: reference position check.
+    CheckReference,
+    /// G28: move to the reference position.
+    Reference,
+    /// G29: move from the reference position.
+    FromReference,
+    /// G30: move to the second, third or fourth reference position.
+    SecondReference,
+    /// G31: skip.
+    Skip,
+    /// G52: local coordinate system.
+    LocalSystem,
+    /// G53: machine coordinates.
+    MachineSystem,
+    /// G92: set the coordinate system.
+    SetSystem,
+    /// G39: corner arc in cutter compensation.
+    CornerArc,
+    /// G92.1: preset the coordinate system.
+    PresetSystem,
+    /// G60: positioning from one side.
+    OneSide,
+    /// G12 and G13 of a Haas.
+    CirclePocket(Motion),
+    /// G70 and G71 of a Haas.
+    BoltHoles(HolePattern),
+}
+
+/// Arrangement of a pattern's holes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HolePattern {
+    /// Evenly spaced on the full circle.
+    Circle,
+    /// Spaced by a specified angle.
+    Arc,
+}
+
+/// Row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct GCodeRow {
+    /// G code × 10: 541 is G54.1.
+    pub code: u32,
+    /// Effect in a run.
+    pub effect: Effect,
+    /// Facts for readers of the code that do not execute it.
+    pub facts: CodeFacts,
+    /// Description in a few words.
+    pub help: &'static str,
+    /// Controls with this meaning of the code.
+    pub code_sets: &'static [CodeSet],
+}
+
+impl GCodeRow {
+    /// Returns the modal group of a code that stays in force; `None` for any other.
+    pub fn group(&self) -> Option<u32> {
+        self.effect.group()
+    }
+}
+
+/// Returns the number of a code × 10 as written, `54.1`.
+pub fn spelled(code: u32) -> String {
+    if code.is_multiple_of(10) { format!("{}", code / 10) } else { format!("{}.{}", code / 10, code % 10) }
+}
+
+/// Returns a code × 10 as programs write it: `G28`, `G00`, `G05.1`.
+pub fn name(code: u32) -> String {
+    if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
+}
