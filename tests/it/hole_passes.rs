@@ -75,7 +75,8 @@ fn of_two_words_each_effect_is_told() {
         effects(PART, &both),
         [
             "hole-pass: hole 1: pass 1 of 2, by T1, ends at a different point: X +0.0100 | move-shifted: moves end at a \
-          different point: up to X 0.0100 Z 4.0000 (4 rapids, a feed)"
+          different point: X +0.0100 (2 rapids, a feed) | move-shifted: a rapid ends at a different point: X +0.0100 \
+          Z -4.0000 | move-shifted: a rapid ends at a different point: Z -4.0000"
         ]
     );
     let one = PART.replace("G81 X10. Y0 Z-4. R2.", "G81 X10. Y0 Z-4. R-2.");
