@@ -74,3 +74,8 @@ pub(super) fn coordinates(values: &Position, axes: &Axes, least: f64, signed: bo
 pub(super) fn short(rate: f64) -> f64 {
     (rate * 1e4).round() / 1e4
 }
+
+/// Describes the sign of a change of depth.
+pub(super) fn deeper(mm: f64) -> &'static str {
+    if mm > 0.0 { "deeper" } else { "less deep" }
+}

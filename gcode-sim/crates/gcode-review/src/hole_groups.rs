@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::cause::Cause;
 use super::change::{Effect, listed};
-use super::descriptions::coordinates;
+use super::descriptions::{coordinates, deeper};
 use super::pass_changes::PassChange;
 use super::steps::near;
 use gcode_lang::motion::{Axes, Position};
@@ -157,17 +157,13 @@ fn shown(way: &Vector3<f64>) -> String {
     format!("{x:+.4} {y:+.4} {z:+.4} mm")
 }
 
-pub(super) fn deeper(mm: f64) -> &'static str {
-    if mm > 0.0 { "deeper" } else { "less deep" }
-}
-
 /// `hole 5`, `holes 1, 2, 5`.
 pub(super) fn named(holes: &[usize]) -> String {
     let names: Vec<String> = holes.iter().map(|hole| (hole + 1).to_string()).collect();
     format!("{} {}", if holes.len() == 1 { "hole" } else { "holes" }, listed(&names))
 }
 
-/// Nobody wants to read −0.
+/// Returns 0 instead of −0 and of values that would be printed as −0.
 pub(super) fn plain(value: f64) -> f64 {
     if value.abs() < 5e-5 { 0.0 } else { value }
 }

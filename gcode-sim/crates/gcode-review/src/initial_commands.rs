@@ -1,39 +1,10 @@
 //! What a program commands first, and what of it moves rely on without: a mode, a place, an offset that it finds as it was left.
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::align::StepPair;
 use super::change::Effect;
+use super::first_command::{CommandKind, FirstCommand};
 use super::modal_conditions::ModalAspect;
 use super::record::Record;
 use gcode_control::{Modal, modal_code};
-
-/// The kind of command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum CommandKind {
-    /// A modal code.
-    Mode,
-    /// An absolute position of an axis.
-    Axis,
-    /// A value of an offset.
-    Offset,
-}
-
-/// The first command of a mode, an axis or an offset.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FirstCommand {
-    pub what: CommandKind,
-    /// What is commanded: the group of a mode, `03`, an axis, an offset, `G10 L2 P1 X`.
-    pub name: String,
-    /// As written in programs.
-    pub text: String,
-    /// Number of moves before it.
-    pub moves: usize,
-    /// Its block, by its number in the record.
-    pub place: usize,
-}
 
 /// What the old revision commands before moves that both make, and the new one doesn't.
 pub(super) fn compare(old: &Record, new: &Record, links: &[StepPair]) -> Vec<Effect> {

@@ -15,6 +15,7 @@ mod edits;
 mod effects;
 mod end_state;
 mod entries;
+mod first_command;
 mod hole_groups;
 mod hole_order;
 mod holes;

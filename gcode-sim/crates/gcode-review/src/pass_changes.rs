@@ -3,7 +3,7 @@ use nalgebra::Point3;
 
 use super::align::common;
 use super::descriptions::coordinates;
-use super::hole_groups::deeper;
+use super::descriptions::deeper;
 use super::passes::Passes;
 use super::record::Record;
 use super::steps::{Step, difference, dot, is_as_far_above, near};

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::initial_commands::FirstCommand;
+use super::first_command::FirstCommand;
 use super::modal_conditions::ModalConditions;
 use super::recorder::{EndCause, ExecutedBlocks, FirstExecutions, MOST_STEPS, Recorder, SharedRecorder};
 use super::steps::{Step, StepKind};

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use super::initial_commands::{CommandKind as What, FirstCommand};
+use super::first_command::{CommandKind as What, FirstCommand};
 use super::modal_conditions::ModalConditions;
 use super::steps::{Step, StepKind, UnsimulatedKind, difference};
 use gcode_control::{
