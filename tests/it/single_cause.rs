@@ -250,8 +250,9 @@ fn what_one_lost_or_new_word_or_block_does_is_one_entry() {
     assert_eq!(
         effects(&program("G90 X10."), &program("X11.")),
         [
-            "move-shifted: moves end at a different point: up to X 11.0000 (a rapid, 2 feeds) | move-lost: a rapid to \
-          X0.0000 Y0.0000 is removed | mode: the program ends in G91 instead of G90"
+            "move-shifted: a rapid ends at a different point: X +1.0000 | move-shifted: a feed ends at a different \
+             point: X +11.0000 (2 moves) | move-lost: a rapid to X0.0000 Y0.0000 is removed | mode: the program ends \
+             in G91 instead of G90"
         ]
     );
 }
