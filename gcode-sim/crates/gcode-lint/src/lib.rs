@@ -13,7 +13,7 @@
 //! let text = *b"O1\nG0 X1.5\nGOTO 90\nM30\n";
 //! let result = gcode_lint::check("O1.nc", text, &Settings::default(), &mut NoLibrary);
 //! assert_eq!(result.findings.len(), 1);
-//! assert_eq!(result.findings[0].code, "missing-n");
+//! assert_eq!(result.findings[0].code(), "missing-n");
 //! assert_eq!(result.findings[0].message, "PS0128: sequence number N90 is not in O0001");
 //! ```
 #![warn(missing_docs)]
