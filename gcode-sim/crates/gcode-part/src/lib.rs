@@ -1,7 +1,38 @@
-//! Job files and the nominal part: what the drawing asks for, computed from the geometry of the part and nothing else.
+//! Job files and the nominal part, computed from the geometry of the part alone.
 //!
-//! In goes the text of a job file or of a hole list; out come the surface, the holes or flutes in the part's frame, and the
-//! limits of the process. The crate knows no NC code and shares no formula with the generator.
+//! In goes the text of a job file or of a hole list. Out come the surface, the nominal holes or flutes in the part's
+//! frame, and the limits of the process. The crate knows no NC code and shares no formula with the generator.
+//!
+//! [`job`] reads job files and [`reader`] the keys of any TOML file; [`NominalPart`] and [`ProbedPart`] derive the
+//! part from a job. [`gauge`] stacks gauge blocks for a sine table.
+//!
+//! ```
+//! use gcode_part::NominalPart;
+//!
+//! let job = r#"
+//! family = "pin-holes"
+//! control = { dialect = "fanuc-31i", increment = "IS-B" }
+//! machine = { rotary = { letter = "B", sign = 1 } }
+//! surface = { kind = "ellipsoid", a = 5.0, b = 4.0 }
+//! tolerance = { position = 0.1 }
+//!
+//! [[hole]]
+//! id = "1"
+//! radius = 3.0
+//! azimuth = 0.0
+//! axis = "axial"
+//! diameter = 2.0
+//! depth = 1.5
+//! "#;
+//! let reference = NominalPart::parse(job).unwrap().into_holes().unwrap();
+//! let hole = &reference.holes[0];
+//! // The height of the ellipse at x = 3 is 4·√(1 − (3/5)²) = 3.2.
+//! assert!((hole.entry[1] - 3.2).abs() < 1e-9);
+//! assert_eq!((hole.axis, hole.depth), ([0.0, 1.0, 0.0], 1.5));
+//! assert_eq!(reference.position, Some(0.1));
+//! ```
+#![warn(missing_docs)]
+
 mod clusters;
 mod distance;
 mod flutes;

@@ -1,4 +1,4 @@
-//! A hole as it will be drilled: where the axes are sent for it, and where that puts it on a machine with errors.
+//! Planned position of the axes for a hole, and the resulting hole on a machine with errors.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::BudgetError;
@@ -8,7 +8,8 @@ use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
 use gcode_part::Hole;
 
-/// Where the axes stand where the feed begins and where it ends, rounded to the increment as the control does.
+/// Positions of the axes at the start and at the end of the feed, rounded to the increment as the control
+/// does.
 #[derive(Clone, Debug)]
 pub(super) struct HolePlan<'h> {
     nominal: &'h Hole,
@@ -25,7 +26,7 @@ impl<'h> HolePlan<'h> {
         let mut setup = Setup { tool, ..Setup::default() };
         let reach = |tip: Point3<f64>, setup: &Setup| machine.inverse(tip, out, setup);
         let bottom = reach(entry - out.into_inner() * wanted.depth, &setup);
-        // Where the table can turn the hole to the head in two ways, the program takes that on the side of +x.
+        // Of the two table positions the program uses the one on the side of +x.
         let end = bottom.into_iter().reduce(|best, other| if other[0] > best[0] { other } else { best });
         let end = end.ok_or_else(out_of_reach)?;
         let direction = machine.part_frame(&end).rotation * out.into_inner();
@@ -47,8 +48,10 @@ impl<'h> HolePlan<'h> {
         id(self.nominal)
     }
 
-    /// The hole that this machine makes; `None` where its axis runs across the wanted one. Its axis is the tool's where that is
-    /// known, else the feed's, as in [`crate::holes`].
+    /// Returns the deviation of the hole that this machine makes; `None` if its axis is across the nominal
+    /// one.
+    ///
+    /// Its axis is that of the tool if known, else that of the feed, as in [`crate::holes`].
     pub(super) fn deviation(&self, machine: &Machine) -> Option<Deviation> {
         let frame = machine.part_frame(&self.end);
         let [start, end] =
@@ -66,10 +69,11 @@ fn id(hole: &Hole) -> String {
     hole.id.clone().unwrap_or_default()
 }
 
-/// As the control rounds. A head that is an axis stands at a rounded angle before the program computes where the tip is.
+/// Rounds a position as the control does. A head that is an axis is at its rounded angle before the program
+/// computes the tip.
 fn round_position(machine: &Machine, setup: &Setup, mut at: Position) -> Position {
     let increment = machine.increment.size();
-    // What is left of the arithmetic mustn't decide a half increment.
+    // Rounding errors of the arithmetic must not decide a half increment.
     let round = |value: f64| ((value / increment * 1e6).round() / 1e6).round() * increment;
     if let HeadKind::Axis { axis, .. } = machine.head.kind {
         let tip = machine.tool_pose(&at, setup).tip;

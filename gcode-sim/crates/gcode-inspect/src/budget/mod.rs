@@ -1,8 +1,9 @@
-//! The error budget: how far the holes of many parts would be off, on machines and set-ups that differ as an error file says.
+//! Error budget: position deviations of the holes of many parts, on machines and set-ups with the errors of
+//! an error file.
 //!
-//! Every sample is one part: its set-up is drawn once, the machine's own errors anew for each hole. A hole is judged as
-//! `verify` judges it. What is drawn depends on the seed, the sample, the hole and the source alone, so that the answer is
-//! the same on any number of threads.
+//! Every sample is one part: its set-up is drawn once, the machine's own errors anew for each hole. Holes are
+//! judged as in `verify`. A draw depends only on the seed, the sample, the hole and the source, so that the
+//! result is the same for any number of threads.
 mod hole_plan;
 mod shares;
 mod statistics;
@@ -21,56 +22,69 @@ use crate::machine::random::RandomStream;
 use crate::machine::sources::ErrorSource;
 use gcode_part::Hole;
 
-/// More samples than this would need more memory than a computer in a shop has: 16 bytes each.
+/// Limit of the number of samples, 16 bytes of memory each.
 pub const MAX_SAMPLES: usize = 20_000_000;
 
-/// What is asked for.
+/// Input of a budget.
 #[derive(Clone, Copy, Debug)]
 pub struct BudgetRequest<'q> {
-    /// The machine as the program believes it: without errors.
+    /// The machine without errors.
     pub machine: &'q Machine,
+    /// Nominal holes.
     pub holes: &'q [Hole],
-    /// How far above the surface each hole's feed begins, mm.
+    /// Height above the surface at which each hole's feed begins, mm.
     pub clearance: f64,
+    /// Errors of machine and set-up.
     pub sources: &'q [ErrorSource],
-    /// 1 to [`MOST_SAMPLES`].
+    /// Number of samples, 1 to [`MAX_SAMPLES`].
     pub samples: usize,
+    /// Seed of the random errors.
     pub seed: u64,
+    /// Number of threads.
     pub threads: NonZeroUsize,
     /// Diameter of the tolerance zone, mm.
     pub tolerance: f64,
 }
 
-/// Position as ISO 1101 has it, diameters in mm.
+/// Result of a budget: positions in the sense of ISO 1101, diameters in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Budget {
+    /// Holes in the order of the request.
     pub holes: Vec<HoleBudget>,
-    /// The worst hole of each part.
+    /// Statistics of the worst hole of each part.
     pub parts: Statistics,
-    /// Over all holes, the largest share first.
+    /// Shares over all holes, the largest first.
     pub shares: Vec<ErrorShare>,
 }
 
+/// Result for one hole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HoleBudget {
+    /// Id of the hole.
     pub id: String,
+    /// Position over all samples.
     pub statistics: Statistics,
-    /// Without any of the errors: what rounding to the increment leaves.
+    /// Position without errors: the effect of rounding to the increment.
     pub nominal: f64,
-    /// Of each source, in the order of the error file.
+    /// Share of each source, in the order of the error file.
     pub shares: Vec<ErrorShare>,
 }
 
-/// Why there is no budget.
+/// Reason for which a budget is impossible.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BudgetError {
+    /// The machine cannot reach the hole along its axis.
     #[error("hole '{id}': the machine cannot reach it along the hole axis")]
     OutOfReach { id: String },
+    /// The errors are too large for a position to be defined.
     #[error("hole '{id}': the errors are so large that no position can be computed")]
     NoPosition { id: String },
 }
 
-/// Draws the samples and judges them; `progress` counts the holes that are done, for a bar.
+/// Draws the samples and judges them. `progress` counts completed samples, for a progress bar.
+///
+/// # Errors
+/// A hole out of reach, and errors too large for a position.
 pub fn budget(question: &BudgetRequest<'_>, progress: &AtomicUsize) -> Result<Budget, BudgetError> {
     let planned = question
         .holes
@@ -99,7 +113,7 @@ pub fn budget(question: &BudgetRequest<'_>, progress: &AtomicUsize) -> Result<Bu
     Ok(Budget { holes, parts, shares })
 }
 
-/// The position of one hole in every sample, and with it the worst of each part.
+/// Computes the position of one hole in every sample, and updates the worst position of each part.
 fn sample_hole(
     question: &BudgetRequest<'_>,
     hole: &HolePlan<'_>,
@@ -140,11 +154,11 @@ fn sample_hole(
     });
 }
 
-/// Starting a thread takes as long as drawing some hundred samples.
+/// Samples per thread below which starting the thread takes longer than drawing them.
 const MIN_SAMPLES_PER_THREAD: usize = 256;
 
-/// Draws of single holes lie beyond those of sources.
+/// Stream of single holes, beyond the streams of the sources.
 const HOLE_STREAM: u64 = 1000;
 
-/// So many samples are counted at a time.
+/// Samples counted at a time.
 const PROGRESS_STEP: usize = 4096;

@@ -1,5 +1,6 @@
-//! How much each source has in a hole's deviation: the classical sum of squares, from the sensitivities of the very same
-//! kinematics that the samples go through.
+//! Share of each source in a hole's deviation: the classical sum of squares.
+//!
+//! The sensitivities come from the same kinematics as the samples.
 use nalgebra::Vector3;
 
 use super::hole_plan::HolePlan;
@@ -8,18 +9,18 @@ use crate::machine::Machine;
 use crate::machine::sources::{ErrorSource, Quantity};
 use gcode_lang::units::Deg;
 
-/// One source's part.
+/// Share of one source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorShare {
-    /// The key that names it in the error file.
+    /// Key that names the source in the error file.
     pub source: String,
-    /// How far it moves the hole's axis, mm: the root of the mean square at the worse end.
+    /// Displacement of the hole's axis, mm: the root of the mean square at the worse end.
     pub displacement: f64,
-    /// Its square among the squares of all: 0 to 1.
+    /// Its square over the sum of all squares, 0 to 1.
     pub share: f64,
 }
 
-/// At that end of the hole where all sources together move its axis farther.
+/// Returns the shares at that end of the hole where all sources together displace its axis more.
 pub(super) fn hole_shares(question: &BudgetRequest<'_>, hole: &HolePlan<'_>) -> Vec<ErrorShare> {
     let squares: Vec<[f64; 2]> =
         question.sources.iter().map(|source| mean_squares(question.machine, hole, source)).collect();
@@ -33,7 +34,8 @@ pub(super) fn hole_shares(question: &BudgetRequest<'_>, hole: &HolePlan<'_>) -> 
     question.sources.iter().zip(&squares).map(share).collect()
 }
 
-/// Over all holes: the sums of their squares, each at its own worse end.
+/// Returns the shares over all holes: the sums of their squares, each at its own worse end; the largest
+/// first.
 pub(super) fn total_shares(holes: &[HoleBudget]) -> Vec<ErrorShare> {
     let Some(first) = holes.first() else { return Vec::new() };
     let square = |index: usize| -> f64 {
@@ -53,7 +55,8 @@ pub(super) fn total_shares(holes: &[HoleBudget]) -> Vec<ErrorShare> {
     all
 }
 
-/// The mean square of the way that one source moves the axis at entry and bottom, by central differences.
+/// Returns the mean squares of the axis displacement at entry and bottom due to one source, by central
+/// differences.
 fn mean_squares(machine: &Machine, hole: &HolePlan<'_>, source: &ErrorSource) -> [f64; 2] {
     let size = source.distribution.mean_square().sqrt();
     let moved = |direction: Deg| -> [f64; 2] {
@@ -68,7 +71,7 @@ fn mean_squares(machine: &Machine, hole: &HolePlan<'_>, source: &ErrorSource) ->
     if source.quantity != Quantity::RunOut {
         return moved(Deg::ZERO);
     }
-    // In a direction that nobody knows: half the square along each of two directions.
+    // The direction is unknown: half the square along each of two directions.
     let (along, across) = (moved(Deg::ZERO), moved(Deg(90.0)));
     [0, 1].map(|end| (along[end] + across[end]) / 2.0)
 }

@@ -1,25 +1,29 @@
-//! What is told of many positions: mean and percentiles, exact, from the samples themselves.
+//! Statistics of many positions: mean and percentiles, exact, from the samples themselves.
 
-/// Of one hole over all samples; diameters in mm.
+/// Statistics of one hole over all samples; diameters in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
+    /// Mean.
     pub mean: f64,
-    /// Half of the samples are no larger.
+    /// Median: half of the samples are no larger.
     pub p50: f64,
+    /// 95th percentile.
     pub p95: f64,
-    /// 99.7 %: three standard deviations of a Gaussian.
+    /// 99.7th percentile: three standard deviations of a Gaussian.
     pub p997: f64,
+    /// Largest sample.
     pub max: f64,
-    /// The share of the samples within the tolerance.
+    /// Share of the samples within the tolerance, 0 to 1.
     pub share_in_tolerance: f64,
 }
 
 impl Statistics {
-    /// Of at least one sample; leaves them in another order.
+    /// Returns the statistics of at least one sample; reorders the samples.
     ///
-    /// A percentile is a sample: the smallest that so many per cent of all samples don't exceed (nearest rank).
+    /// A percentile is a sample: the smallest one that this percentage of all samples does not exceed
+    /// (nearest rank).
     pub(super) fn of(samples: &mut [f64], tolerance: f64) -> Self {
-        // Summed in the order of the samples, so that the number of threads changes no bit.
+        // The sum runs in the order of the samples, so that the number of threads changes no bit.
         let mean = samples.iter().sum::<f64>() / samples.len() as f64;
         let within = samples.iter().filter(|phi| **phi <= tolerance).count() as f64 / samples.len() as f64;
         let max = samples.iter().copied().fold(0.0, f64::max);
@@ -57,7 +61,7 @@ mod tests {
         assert_eq!(found.share_in_tolerance, 1.0);
     }
 
-    /// Of 7 numbers half are 3.5, so four must not be larger; 95 % and more are all 7.
+    /// Half of 7 numbers is 3.5, so four must not be larger; 95 % and more are all 7.
     #[test]
     fn ranks_are_rounded_up() {
         let found = Statistics::of(&mut [7.0, 1.0, 6.0, 2.0, 5.0, 3.0, 4.0], 0.5);

@@ -1,10 +1,11 @@
-//! Budgets whose answer is known: one source or two, and distributions that tables have.
+//! Budgets with known results: one or two sources, and distributions from tables.
 use super::*;
 use crate::machine::error::Distribution;
 use crate::machine::sources::Quantity;
 use gcode_lang::units::Deg;
 
-/// An axial hole at azimuth 0, or 180, of places that are whole increments: rounding leaves nothing.
+/// Returns an axial hole at azimuth 0 or 180 whose coordinates are whole increments: rounding changes
+/// nothing.
 fn hole(x: f64) -> Hole {
     Hole {
         id: Some("1".to_owned()),
@@ -37,14 +38,14 @@ fn source(quantity: Quantity, spread: Distribution) -> ErrorSource {
 
 const N: usize = 60_000;
 
-/// Four standard errors of a percentile: √(q·(1 − q)/N) over the density there.
+/// Asserts a percentile within four standard errors: √(q·(1 − q)/N) over the density there.
 fn percentile(found: f64, expected: f64, q: f64, density: f64) {
     let error = (q * (1.0 - q) / N as f64).sqrt() / density;
     assert!((found - expected).abs() < 4.0 * error, "{found} is not {expected} within {error}");
 }
 
-/// Of X alone, Gaussian with σ: Φ = 2·|x| is half-normal. Mean 2σ·√(2/π); the percentiles of |x|/σ are those of the
-/// normal distribution for 75 %, 97.5 % and 99.85 %.
+/// For X alone, Gaussian with σ: Φ = 2·|x| is half-normal. Mean 2σ·√(2/π); the percentiles of |x|/σ are those
+/// of the normal distribution for 75 %, 97.5 % and 99.85 %.
 #[test]
 fn one_gaussian_axis_gives_the_half_normal_distribution() {
     let sigma = 0.01;
@@ -69,7 +70,7 @@ fn one_gaussian_axis_gives_the_half_normal_distribution() {
     }
 }
 
-/// Of a shift in x and in z, both Gaussian with σ: Φ is twice a Rayleigh variable, whose percentile q is
+/// For a shift in x and in z, both Gaussian with σ: Φ is twice a Rayleigh variable, whose percentile q is
 /// σ·√(−2·ln(1 − q)) and whose mean σ·√(π/2).
 #[test]
 fn two_gaussian_shifts_give_the_rayleigh_distribution() {
@@ -87,7 +88,7 @@ fn two_gaussian_shifts_give_the_rayleigh_distribution() {
         }
         assert!((hole.shares[0].share - 0.5).abs() < 1e-9);
     }
-    // One part has one set-up: both its holes are off by the same, and so is the worst of them.
+    // One part has one set-up: both its holes have the same deviation, and so has the worst of them.
     assert!((found.parts.p95 - found.holes[0].statistics.p95).abs() < 1e-9);
     // Within Φ0.1 is within 2.5 σ: 1 − exp(−3.125).
     assert!(
@@ -96,7 +97,8 @@ fn two_gaussian_shifts_give_the_rayleigh_distribution() {
     );
 }
 
-/// A run-out from 0 to 0.15 evenly, in any direction, is an eccentricity of 0 to 0.075, so Φ is 0 to 0.15 evenly.
+/// A run-out uniform from 0 to 0.15, in any direction, is an eccentricity of 0 to 0.075, so Φ is uniform from
+/// 0 to 0.15.
 #[test]
 fn a_run_out_is_a_position_of_the_same_size() {
     let found = found(&[hole(300.0)], &[source(Quantity::RunOut, Distribution::Uniform(0.15))], N, 2);
@@ -104,12 +106,12 @@ fn a_run_out_is_a_position_of_the_same_size() {
     percentile(statistics.p50, 0.075, 0.5, 1.0 / 0.15);
     percentile(statistics.p95, 0.1425, 0.95, 1.0 / 0.15);
     assert!(statistics.max <= 0.15 + 1e-9);
-    // The mean square of the way is (0.15/2)²/3.
+    // The mean square of the displacement is (0.15/2)²/3.
     assert!((found.shares[0].displacement - 0.075 / 3f64.sqrt()).abs() < 1e-9);
 }
 
-/// A head that stands 0.1° beyond its angle, its tip where it was told (no pivot, no tool length): the tool lies across the
-/// hole, whose mouth is 15·tan 0.1° aside.
+/// A head 0.1° beyond its angle, its tip in its nominal position (no pivot, no tool length): the tool is
+/// inclined to the hole, whose mouth is off by 15·tan 0.1°.
 #[test]
 fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
     for angle in [0.1, -0.1] {
@@ -120,7 +122,7 @@ fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
     }
 }
 
-/// The sum of the sources' squares is the mean square that the samples show, for a hole where one end decides.
+/// The sum of the sources' squares is the mean square of the samples, for a hole where one end decides.
 #[test]
 fn the_shares_add_up_to_what_the_samples_show() {
     let sources = [

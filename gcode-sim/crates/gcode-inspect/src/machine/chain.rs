@@ -1,4 +1,4 @@
-//! A chain of axes as data: each turns or slides what stands on it.
+//! Chains of axes: each axis rotates or slides what it carries.
 use nalgebra::{Point3, Rotation3, Translation3, Unit, Vector3};
 
 use super::Frame;
@@ -6,44 +6,49 @@ use super::error::PeriodicError;
 use gcode_lang::motion::{Axes, AxisIndex, Position};
 use gcode_lang::units::Deg;
 
-/// Axes that stand on one another, from the bed outwards.
+/// Axes that carry each other, from the bed outwards.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chain(pub Vec<AxisLink>);
 
 /// One axis of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisLink {
+    /// Axis of the control.
     pub axis: AxisIndex,
+    /// Rotation or translation.
     pub motion: LinkMotion,
-    /// 1 or −1: which way a positive command goes.
+    /// Direction of a positive command, 1 or −1.
     pub sign: f64,
-    /// How far beyond its commanded place the axis stands, counted as commands are.
+    /// Actual minus commanded position of the axis, in the sense of its commands.
     pub error: PeriodicError,
 }
 
+/// Motion of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkMotion {
-    /// Right-handed about a line through `centre`, in degrees.
+    /// Right-handed rotation about `about` through `centre`, in degrees.
     Rotary { about: Unit<Vector3<f64>>, centre: Point3<f64> },
-    /// In mm.
+    /// Translation along `along`, in mm.
     Linear { along: Unit<Vector3<f64>> },
 }
 
-/// A right-handed rotation.
+/// Returns a right-handed rotation.
 pub(super) fn rotation_about(axis: &Unit<Vector3<f64>>, angle: Deg) -> Rotation3<f64> {
     Rotation3::from_axis_angle(axis, angle.to_rad())
 }
 
 impl AxisLink {
+    /// Returns a rotary axis without errors.
     pub fn rotary(axis: AxisIndex, about: Unit<Vector3<f64>>, centre: Point3<f64>, sign: f64) -> Self {
         Self { axis, motion: LinkMotion::Rotary { about, centre }, sign, error: PeriodicError::default() }
     }
 
+    /// Returns a linear axis without errors.
     pub fn linear(axis: AxisIndex, along: Unit<Vector3<f64>>, sign: f64) -> Self {
         Self { axis, motion: LinkMotion::Linear { along }, sign, error: PeriodicError::default() }
     }
 
-    /// Where what stands on the link is, on a link that stands at `frame`.
+    /// Returns the frame of what the link carries, for a link whose base is at `frame`.
     fn frame_on(&self, frame: &Frame, at: &Position) -> Frame {
         let value = self.sign * (at[self.axis] + self.error.value_at(at[self.axis]));
         match &self.motion {
@@ -58,19 +63,20 @@ impl AxisLink {
 }
 
 impl Chain {
-    /// The sign of an axis that turns; `None` where the chain has no such axis.
+    /// Returns the sign of a rotary axis; `None` if the chain has no such axis.
     pub fn rotary_sign(&self, axis: AxisIndex) -> Option<f64> {
         let turns = |link: &&AxisLink| link.axis == axis && matches!(link.motion, LinkMotion::Rotary { .. });
         self.0.iter().find(turns).map(|link| link.sign)
     }
 
-    /// The table of the paper's machine: B turns the part about y through its origin, if the control has a B.
+    /// Returns the table of the paper's machine: B, if the control has it, rotates the part about y through
+    /// `origin`.
     pub fn default_table(axes: &Axes, origin: Point3<f64>) -> Self {
         let b = axes.find(b'B').map(|axis| AxisLink::rotary(axis, Vector3::y_axis(), origin, 1.0));
         Self(b.into_iter().collect())
     }
 
-    /// X Y Z along their own directions, without those that carry the part.
+    /// Returns X, Y and Z along their own directions, without those that carry the part.
     pub fn default_slides(axes: &Axes, table: &Chain) -> Self {
         let letters = [(b'X', Vector3::x_axis()), (b'Y', Vector3::y_axis()), (b'Z', Vector3::z_axis())];
         let found = letters.into_iter().filter_map(|(letter, along)| Some((axes.find(letter)?, along)));
@@ -82,12 +88,12 @@ impl Chain {
         )
     }
 
-    /// From what stands on the chain to what the chain stands on.
+    /// Returns the transformation from the frame that the chain carries to the frame of its base.
     pub fn frame(&self, at: &Position) -> Frame {
         self.0.iter().fold(Frame::identity(), |frame, link| link.frame_on(&frame, at))
     }
 
-    /// How far the slides of the chain go for a difference of positions; what turns is left out.
+    /// Returns the displacement of the slides for a difference of positions; rotary axes are ignored.
     pub fn displacement(&self, by: &Position) -> Vector3<f64> {
         self.0.iter().fold(Vector3::zeros(), |sum, link| match &link.motion {
             LinkMotion::Linear { along } => sum + along.into_inner() * (link.sign * by[link.axis]),
@@ -95,16 +101,17 @@ impl Chain {
         })
     }
 
+    /// Returns true if the chain contains the axis.
     pub fn has_axis(&self, axis: AxisIndex) -> bool {
         self.0.iter().any(|link| link.axis == axis)
     }
 
-    /// Whether any axis of the chain stands differently in `b` than in `a`.
+    /// Returns true if any axis of the chain differs between `a` and `b`.
     pub fn is_moved(&self, a: &Position, b: &Position) -> bool {
         self.0.iter().any(|link| a[link.axis] != b[link.axis])
     }
 
-    /// A point of each axis about which it turns.
+    /// Returns a point on the line of each rotary axis.
     pub fn rotation_centres(&self) -> impl Iterator<Item = &Point3<f64>> {
         self.0.iter().filter_map(|link| match &link.motion {
             LinkMotion::Rotary { centre, .. } => Some(centre),
@@ -112,13 +119,13 @@ impl Chain {
         })
     }
 
-    /// The axes that turn what stands on the chain.
+    /// Returns the rotary axes of the chain.
     pub fn rotary_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
         let turns = self.0.iter().filter(|link| matches!(link.motion, LinkMotion::Rotary { .. }));
         turns.map(|link| link.axis)
     }
 
-    /// The sum of the angles its rotary axes turn by between two positions.
+    /// Returns the sum of the rotations of all rotary axes between two positions.
     pub fn total_rotation(&self, a: &Position, b: &Position) -> Deg {
         let turns = self.0.iter().filter(|link| matches!(link.motion, LinkMotion::Rotary { .. }));
         turns.fold(Deg::ZERO, |sum, link| sum + Deg(b[link.axis] - a[link.axis]).abs())

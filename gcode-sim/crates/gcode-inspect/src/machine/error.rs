@@ -1,19 +1,20 @@
-//! What a machine and a set-up are off by: how an error is distributed, and how it goes on from place to place.
+//! Errors of a machine and a set-up: their distribution and their variation along an axis.
 use super::random::RandomStream;
 use gcode_lang::units::Deg;
 
-/// How one error is distributed; lengths in mm, angles in degrees.
+/// Distribution of an error; lengths in mm, angles in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Distribution {
-    /// Always this value: known, and not corrected.
+    /// A constant: known and not corrected.
     Fixed(f64),
-    /// Gaussian round 0 with this standard deviation.
+    /// Gaussian about 0 with this standard deviation.
     Normal(f64),
-    /// Anything from minus this to plus this, all alike.
+    /// Uniform between minus and plus this value.
     Uniform(f64),
 }
 
 impl Distribution {
+    /// Draws one value.
     pub fn sample(self, draw: RandomStream) -> f64 {
         match self {
             Self::Fixed(value) => value,
@@ -22,7 +23,7 @@ impl Distribution {
         }
     }
 
-    /// The mean of its square.
+    /// Returns the mean of the squared value.
     pub fn mean_square(self) -> f64 {
         match self {
             Self::Fixed(value) | Self::Normal(value) => value * value,
@@ -31,13 +32,16 @@ impl Distribution {
     }
 }
 
-/// An error as a function of where an axis stands: a level, and a wave upon it. The default is no error.
+/// An error as a function of the axis position: a level and a cosine wave. The default is no error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodicError {
+    /// Mean value, mm or degrees.
     pub level: f64,
+    /// Amplitude of the wave, mm or degrees.
     pub amplitude: f64,
+    /// Phase at position 0.
     pub phase: Deg,
-    /// How far the axis goes for one wave, in mm or degrees.
+    /// Wavelength along the axis, mm or degrees.
     pub period: f64,
 }
 
@@ -48,14 +52,16 @@ impl Default for PeriodicError {
 }
 
 impl PeriodicError {
+    /// Returns an error that is the same at every position.
     pub fn constant(level: f64) -> Self {
         Self { level, ..Self::default() }
     }
 
-    /// One machine's error, drawn so that at every place it is distributed as `spread` says.
+    /// Draws one machine's error such that at every position it has the distribution `spread`.
     ///
-    /// A normal one: the two coordinates of a normally distributed point of the plane, turned by the place, stay
-    /// normal. A uniform one: every coordinate of a point evenly on a sphere is uniform (Archimedes).
+    /// Normal: the coordinates of a normally distributed point of the plane, rotated by the position, stay
+    /// normal. Uniform: every coordinate of a uniformly distributed point on a sphere is uniform
+    /// (Archimedes).
     pub fn sample(spread: Distribution, length: f64, draw: RandomStream) -> Self {
         let (level, swing) = match spread {
             Distribution::Fixed(value) => (value, 0.0),
@@ -68,7 +74,7 @@ impl PeriodicError {
         Self { level, amplitude: swing, phase: draw.branch(1).angle(), period: length }
     }
 
-    /// The error while the axis stands at `place`.
+    /// Returns the error at a position of the axis.
     pub fn value_at(&self, place: f64) -> f64 {
         if self.amplitude == 0.0 {
             return self.level;
@@ -81,7 +87,8 @@ impl PeriodicError {
 mod tests {
     use super::*;
 
-    /// Over 200 000 machines the error at one place has the quartiles of its distribution: ±0.6745 σ, ±half the range.
+    /// Over 200 000 machines the error at one position has the quartiles of its distribution: ±0.6745 σ, ±
+    /// half the range.
     #[test]
     fn at_every_place_an_error_is_distributed_as_the_file_says() {
         for place in [0.0, 123.456, -900.0] {

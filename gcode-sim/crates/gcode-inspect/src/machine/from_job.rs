@@ -1,4 +1,4 @@
-//! The machine that a job is for, from the job file itself: as exact as the program believes it to be.
+//! The machine that a job assumes, without errors.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::{AxisLink, Chain, Head, HeadKind, Machine, Placement, Probe, Tool};
@@ -6,8 +6,8 @@ use gcode_lang::units::Deg;
 use gcode_part::job::{self, Job, Rotary};
 
 impl Machine {
-    /// The arrangement that goes with the job's family; `None` where the control has no such axis, and for a burr, which needs
-    /// the machine file that stands beside its programs.
+    /// Returns the arrangement of the job's family. `None` if the control lacks the rotary axis, and for a
+    /// burr, which needs the machine file next to its programs.
     pub fn from_job(job: &Job) -> Option<Self> {
         let nominal =
             Self { dialect: job.control().dialect, increment: job.control().increment, ..Self::default() };
@@ -33,7 +33,7 @@ impl Machine {
                 })
             }
             Job::Honeycomb(job) => {
-                // The programs' Z0 is on the cylinder's surface.
+                // Z0 of the programs is on the surface of the cylinder.
                 let origin = Point3::new(0.0, 0.0, -job.cylinder.outer / 2.0);
                 let diameter = Some(job.drill.diameter);
                 Some(Self {
@@ -45,7 +45,7 @@ impl Machine {
                 })
             }
             Job::Burr(_) => None,
-            // The programmed point is the centre of the ball; the head stays as it is.
+            // The programmed point is the centre of the ball; the head does not move.
             Job::Alignment(job) => Some(Self {
                 table: nominal.rotary_table(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
                 probe: Some(Probe::new(job.probe_radius)),

@@ -1,4 +1,5 @@
-//! The head that holds the tool: which way the tool points, and how far its pivot is from the gauge line.
+//! The head that holds the tool: the direction of the tool, and the distance of the pivot from the gauge
+//! line.
 use nalgebra::{Unit, Vector3};
 
 use super::Setup;
@@ -6,40 +7,43 @@ use super::error::PeriodicError;
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::units::Deg;
 
+/// Head of a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
+    /// Kind of head.
     pub kind: HeadKind,
-    /// From the pivot to the spindle's gauge line.
+    /// Distance from the pivot to the spindle's gauge line, mm.
     pub pivot: f64,
-    /// How far beyond its angle a head that turns stands.
+    /// Actual minus nominal angle of a head that rotates, degrees.
     pub error: PeriodicError,
 }
 
+/// Kind of head and its setting.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HeadKind {
-    /// Nothing is known: the tool is taken to point along each cutting feed.
+    /// Unknown: the tool is assumed to point along each cutting feed.
     Free,
-    /// Never moves; the direction points from the tip to the spindle.
+    /// Fixed direction, from the tip to the spindle.
     Fixed(Unit<Vector3<f64>>),
-    /// Set by hand at an operator stop, in the plane of X and Y; `start` is how it stands before.
+    /// Set by hand at an operator stop, in the plane of X and Y; `start` is the angle before the first stop.
     Manual { start: Option<Deg> },
-    /// An axis of the control, in the plane of X and Y: at 0 the tool stands at the angle `zero`.
+    /// An axis of the control that tilts the tool in the plane of X and Y; `zero` is the tool's angle at 0.
     Axis { axis: AxisIndex, sign: f64, zero: Deg },
 }
 
-/// What a message to the operator asks of the head.
+/// Meaning of a message to the operator for the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeadMessage {
-    /// It is about something else.
+    /// The message does not concern the head.
     Unrelated,
-    /// `SET HEAD TO #140` with one variable that has a value.
+    /// The message, such as `SET HEAD TO #140`, names one variable with a value.
     Angle(Deg),
-    /// It is about the head, and no angle can be read from it.
+    /// The message concerns the head, but gives no angle.
     Unclear,
 }
 
 impl HeadMessage {
-    /// `named` are the variables that the text names, with their values.
+    /// Interprets a message; `named` are the variables in its text, with their values.
     pub fn parse(text: &str, named: &[(u32, f64)]) -> Self {
         if !Head::is_head_message(text) {
             return Self::Unrelated;
@@ -52,11 +56,13 @@ impl HeadMessage {
 }
 
 impl Head {
+    /// Returns a head without errors.
     pub fn new(kind: HeadKind, pivot: f64) -> Self {
         Self { kind, pivot, error: PeriodicError::default() }
     }
 
-    /// From the tip to the spindle. An angle h counts from +x towards +y: (cos h, sin h, 0).
+    /// Returns the direction from the tip to the spindle; `None` if it is unknown. The angle h counts from +x
+    /// towards +y: (cos h, sin h, 0).
     pub fn direction(&self, at: &Position, setup: &Setup) -> Option<Unit<Vector3<f64>>> {
         match &self.kind {
             HeadKind::Free => setup.head_angle.map(|angle| self.direction_at(angle)),
@@ -71,13 +77,13 @@ impl Head {
         Unit::new_unchecked(Vector3::new(angle.cos(), angle.sin(), 0.0))
     }
 
-    /// Whether a message to the operator is about the head: it has the word HEAD.
+    /// Returns true if a message to the operator contains the word HEAD.
     pub fn is_head_message(text: &str) -> bool {
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
         words.any(|word| word.eq_ignore_ascii_case("HEAD"))
     }
 
-    /// Whether the operator can set its angle: a head about which nothing is known might well be such a one.
+    /// Returns true if the operator can set the angle; a head of kind free may be such a head.
     pub fn is_set_by_hand(&self) -> bool {
         matches!(self.kind, HeadKind::Free | HeadKind::Manual { .. })
     }

@@ -1,5 +1,5 @@
-//! The way back in closed form, for the arrangements that have one: a tip and a direction on the part, the axes
-//! that bring the tool there.
+//! Inverse kinematics in closed form, for the arrangements that have one: from a tip and a direction on the
+//! part to the axes.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::{HeadKind, LinkMotion, Machine, Setup};
@@ -7,12 +7,13 @@ use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
 
 impl Machine {
-    /// Every position at which a tool that points out of the part along `axis` stands with its tip at `tip`, on a
-    /// machine whose axes have no errors.
+    /// Returns every position at which a tool pointing out of the part along `axis` has its tip at `tip`, on
+    /// a machine without errors.
     ///
-    /// Closed for one rotary table under three slides and a head that tilts in the plane of X and Y: the table has
-    /// to turn `axis` into that plane, which has two solutions. Along the table's own axis any angle does; the
-    /// answer then brings the tip itself into the plane z of the table's centre. Empty where there is none.
+    /// The closed form covers one rotary table under three slides, and a head that tilts in the plane of X
+    /// and Y. The table has to rotate `axis` into that plane, which has two solutions. If `axis` is the
+    /// table's own axis, any angle fits; the solution then rotates the tip itself into the plane z of the
+    /// table's centre. Empty if no solution exists.
     pub fn inverse(&self, tip: Point3<f64>, axis: Unit<Vector3<f64>>, setup: &Setup) -> Vec<Position> {
         let [table] = self.table.0.as_slice() else { return Vec::new() };
         let LinkMotion::Rotary { about, centre } = &table.motion else { return Vec::new() };
@@ -37,7 +38,7 @@ impl Machine {
         positions.collect()
     }
 
-    /// The slides and the head for a table that stands at `at`.
+    /// Solves the slides and the head for a table position in `at`; `None` if the tip cannot be reached.
     fn solve_slides(
         &self,
         tip: Point3<f64>,
@@ -69,10 +70,9 @@ impl Machine {
     }
 }
 
-/// The angles by which `v` must be turned about `about` so that its z becomes 0; none where turning doesn't change
-/// its z.
+/// Returns the rotations about `about` that make the z of `v` 0; empty if rotation does not change its z.
 fn angles_to_plane(about: &Unit<Vector3<f64>>, v: Vector3<f64>) -> Vec<Deg> {
-    // The z of the turned vector is m + p·cos γ + q·sin γ (Rodrigues).
+    // The z of the rotated vector is m + p·cos γ + q·sin γ (Rodrigues).
     let along = about.into_inner() * about.dot(&v);
     let across = v - along;
     let (m, p, q) = (along.z, across.z, about.cross(&across).z);
@@ -84,7 +84,7 @@ fn angles_to_plane(about: &Unit<Vector3<f64>>, v: Vector3<f64>) -> Vec<Deg> {
     vec![middle + half, middle - half]
 }
 
-/// The angle about `about` that turns `v` towards `goal`; none where one of them lies along `about`.
+/// Returns the rotation about `about` that brings `v` towards `goal`; empty if one of them is along `about`.
 fn angle_between(about: &Unit<Vector3<f64>>, v: Vector3<f64>, goal: Vector3<f64>) -> Vec<Deg> {
     let (from, to) = (about.cross(&v), about.cross(&goal));
     if from.norm() < 1e-12 || to.norm() < 1e-12 {
@@ -101,7 +101,7 @@ mod tests {
     use crate::machine::{AxisLink, Head, Placement};
 
     proptest! {
-        /// Forward is the definition: what inverse answers must bring the tool there.
+        /// Forward kinematics is the definition: the solution must bring the tool there.
         #[test]
         fn forward_of_inverse_is_where_it_should_be(
             (x, y, z) in (-900.0..900.0, 1.0..900.0, -900.0..900.0),
@@ -134,7 +134,7 @@ mod tests {
             let found = machine.inverse(Point3::new(x, y, z), axis, &setup);
             prop_assert_eq!(found.len(), 2);
             for at in found {
-                // A head set by hand has to be set to the direction in the plane; forward says which that is.
+                // A head set by hand is set to the direction in the plane, which forward kinematics gives.
                 let here = machine.part_frame(&at).rotation * axis.into_inner();
                 prop_assert!(here.z.abs() < 1e-12);
                 setup.head_angle = Some(Deg::atan2(here.y, here.x));
@@ -162,7 +162,7 @@ mod tests {
         assert!(machine.inverse(Point3::new(5.0, 5.0, 0.0), sideways, &Setup::default()).is_empty());
     }
 
-    /// A honeycomb hole: radial in a part that turns about X, drilled along Z.
+    /// A honeycomb hole: radial in a part that rotates about X, drilled along Z.
     #[test]
     fn a_fixed_head_needs_the_table_alone_for_a_radial_hole() {
         let mut machine = Machine::default();
@@ -171,7 +171,7 @@ mod tests {
         let out = Unit::new_unchecked(Vector3::new(0.0, Deg(50.0).sin(), Deg(50.0).cos()));
         let tip = Point3::from(out.into_inner() * 250.0 + Vector3::x() * 20.0);
         let found = machine.inverse(tip, out, &Setup::default());
-        // Turning (y, z) about +x by 50° takes (sin 50°, cos 50°) to (0, 1).
+        // Rotating (y, z) about +x by 50° takes (sin 50°, cos 50°) to (0, 1).
         let expected = [20.0, 0.0, 250.0, 50.0];
         assert_eq!(found.len(), 1);
         assert!(expected.iter().enumerate().all(|(i, v)| (found[0][i] - v).abs() < 1e-9), "{found:?}");

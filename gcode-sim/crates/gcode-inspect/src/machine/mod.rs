@@ -1,5 +1,6 @@
-//! The machine as data: which axes carry the part, which carry the tool, the head, the tools, and where the part
-//! stands. Forward kinematics is the definition; everything else has to agree with it.
+//! The machine: the axes that carry the part and the tool, the head, the tools, and the position of the part.
+//!
+//! Forward kinematics is the definition; every other computation has to agree with it.
 mod chain;
 pub(crate) mod error;
 mod file;
@@ -29,76 +30,93 @@ use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex, Position};
 use gcode_lang::units::Deg;
 
-/// Turns and shifts a point; lengths in mm.
+/// Rotation and translation of a point; lengths in mm.
 pub type Frame = IsometryMatrix3<f64>;
 
-/// One machine: the control's axes, what each of them carries, and the set-up of the job on it.
+/// A machine: the axes of its control, what each of them carries, and the set-up of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {
+    /// Axes of the control.
     pub axes: Axes,
+    /// Family of controls.
     pub dialect: Dialect,
+    /// Least input increment.
     pub increment: Increment,
-    /// The axes that carry the part, from the bed outwards.
+    /// Axes that carry the part, from the bed outwards.
     pub table: Chain,
-    /// What carries the tool: the slides X Y Z that don't carry the part.
+    /// Axes that carry the tool: those of X, Y and Z that do not carry the part.
     pub slides: Chain,
+    /// Head that holds the tool.
     pub head: Head,
-    /// Of a grinder.
+    /// Wheel of a grinder.
     pub wheel: Option<Wheel>,
+    /// Tool table.
     pub tools: Vec<Tool>,
+    /// Work offsets at the start of a run.
     pub offsets: Vec<WorkOffset>,
+    /// Position of the part.
     pub part: Placement,
+    /// Touch probe.
     pub probe: Option<Probe>,
 }
 
 /// A tool of the machine's tool table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tool {
+    /// Number of the tool.
     pub number: u32,
-    /// From the spindle's gauge line to the tip. Unknown: as long as the length offset in effect says.
+    /// Distance from the spindle's gauge line to the tip, mm; `None` for the length of the tool length offset
+    /// in effect.
     pub length: Option<f64>,
+    /// Diameter, mm; `None` if unknown.
     pub diameter: Option<f64>,
 }
 
-/// What the control's work offset holds when the run begins, on the axes named.
+/// A work offset at the start of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorkOffset {
     /// 54 to 59.
     pub code: u32,
+    /// Values of the axes named, mm or degrees; the others are 0.
     pub values: Vec<(AxisIndex, f64)>,
 }
 
-/// Where the part stands on its table.
+/// Position of the part on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// The part's origin in machine coordinates with all axes of the table at 0, as the program believes it.
+    /// Nominal origin of the part in machine coordinates, with all axes of the table at 0.
     pub origin: Point3<f64>,
-    /// Where the real part stands against that: tilted about x, then y, then z through its origin, then shifted.
+    /// Shift of the actual part from the nominal position, applied after the tilt.
     pub shift: Vector3<f64>,
+    /// Tilt of the actual part about x, then y, then z, through its origin.
     pub tilt: [Deg; 3],
 }
 
-/// What decides where the tip is besides the axes: set by the operator, by M06 and by the length offset.
+/// State besides the axes that determines the tip: set by the operator, by M06 and by the length offset.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Setup {
-    /// The angle of a head that is set by hand, once it has been set.
+    /// Angle of a head set by hand; `None` before the first setting.
     pub head_angle: Option<Deg>,
+    /// Tool in the spindle; `None` if unknown.
     pub tool: Option<u32>,
-    /// The tool length offset that is part of every machine position.
+    /// Tool length offset contained in every machine position.
     pub offset: Position,
 }
 
-/// Where the tool is.
+/// Tip and direction of the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
+    /// Tip of the tool.
     pub tip: Point3<f64>,
-    /// From the tip towards the spindle: the direction that points out of the part. `None`: not known.
+    /// Direction from the tip to the spindle, out of the part; `None` if unknown.
     pub axis: Option<Unit<Vector3<f64>>>,
 }
 
 impl Default for Machine {
-    /// The machine of the paper: X Y Z carry the tool, B about Y carries the part, whose origin is on B's axis and
-    /// at machine zero; A and C are axes of the control that carry nothing. How the head stands is not known.
+    /// Returns the machine of the paper.
+    ///
+    /// X, Y and Z carry the tool. B about Y carries the part, whose origin is on B's axis and at machine
+    /// zero. A and C are axes of the control that carry nothing. The direction of the head is unknown.
     fn default() -> Self {
         let axes = Axes::default();
         Self {
@@ -124,7 +142,8 @@ impl Default for Placement {
 }
 
 impl Placement {
-    /// From the part's frame to machine coordinates with all axes of the table at 0.
+    /// Returns the transformation from the part's frame to machine coordinates with all axes of the table at
+    /// 0.
     pub fn frame(&self) -> Frame {
         let [x, y, z] = self.tilt;
         let turn = chain::rotation_about(&Vector3::z_axis(), z)
@@ -135,16 +154,16 @@ impl Placement {
 }
 
 impl Machine {
-    /// From the part's frame to machine coordinates while the axes stand at `at`.
+    /// Returns the transformation from the part's frame to machine coordinates with the axes at `at`.
     pub fn part_frame(&self, at: &Position) -> Frame {
         self.table.frame(at) * self.part.frame()
     }
 
-    /// Where the tool stands in machine coordinates.
+    /// Returns the pose of the tool in machine coordinates.
     ///
-    /// The axes' position is the head's pivot; the tip is the pivot's distance from the gauge line and the tool's
-    /// length away from it, along the tool. While the tool's direction isn't known, the tip is where the control
-    /// believes it to be: the position less the length offset.
+    /// The position of the axes is the head's pivot. The tip is the pivot's distance from the gauge line plus
+    /// the tool length away from it, along the tool. If the direction of the tool is unknown, the tip is the
+    /// control's own: the position minus the length offset.
     pub fn tool_pose(&self, at: &Position, setup: &Setup) -> Pose {
         let carried = self.slides.frame(at) * Point3::origin();
         match self.head.direction(at, setup) {
@@ -156,32 +175,33 @@ impl Machine {
         }
     }
 
-    /// Where the tool stands on the part.
+    /// Returns the pose of the tool in the part's frame.
     pub fn forward(&self, at: &Position, setup: &Setup) -> Pose {
         self.tool_pose(at, setup).relative_to(&self.part_frame(at))
     }
 
-    /// The tool's length: from the tool table, else what the length offset says (a tool measured right).
+    /// Returns the tool length from the tool table, or else that of the length offset, mm.
     pub fn tool_length(&self, setup: &Setup) -> f64 {
         let known = self.length_of(setup.tool);
         known.unwrap_or_else(|| self.slides.displacement(&setup.offset).norm())
     }
 
+    /// Returns the tool with this number; `None` if the tool table lacks it.
     pub fn find_tool(&self, number: u32) -> Option<&Tool> {
         self.tools.iter().find(|tool| tool.number == number)
     }
 
-    /// Of the tool in the spindle, mm; `None` where nothing says which, or how long it is.
+    /// Returns the length of the tool in the spindle, mm; `None` if the tool or its length is unknown.
     pub fn length_of(&self, tool: Option<u32>) -> Option<f64> {
         self.find_tool(tool?)?.length
     }
 
-    /// The same of its diameter.
+    /// Returns the diameter of the tool in the spindle, mm; `None` if the tool or its diameter is unknown.
     pub fn diameter_of(&self, tool: Option<u32>) -> Option<f64> {
         self.find_tool(tool?)?.diameter
     }
 
-    /// Whether the axis moves the tool or the part.
+    /// Returns true if the axis moves the tool, the part, the head or the wheel.
     pub fn is_axis_used(&self, axis: AxisIndex) -> bool {
         let head = matches!(self.head.kind, HeadKind::Axis { axis: head, .. } if head == axis);
         let wheel =
@@ -191,7 +211,7 @@ impl Machine {
 }
 
 impl Pose {
-    /// The same tool seen from a frame that stands at `frame`.
+    /// Returns the pose in the coordinates of `frame`.
     pub fn relative_to(&self, frame: &Frame) -> Self {
         Self {
             tip: frame.inverse_transform_point(&self.tip),

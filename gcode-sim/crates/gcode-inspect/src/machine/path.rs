@@ -1,5 +1,5 @@
-//! The tool's path on the part between programmed points: the axes move linearly in machine coordinates, the tool
-//! doesn't.
+//! Path of the tool on the part between programmed points: linear in machine coordinates, in general curved
+//! on the part.
 use nalgebra::Point3;
 
 use super::error::PeriodicError;
@@ -10,13 +10,16 @@ use gcode_lang::units::Deg;
 /// One motion of the axes: straight in axis space, or an arc in the plane of two of them.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisMotion<'a> {
+    /// Start position.
     pub from: &'a Position,
+    /// End position.
     pub to: &'a Position,
+    /// Arc of two of the axes; `None` for linear motion.
     pub arc: Option<&'a PlanarArc>,
 }
 
 impl AxisMotion<'_> {
-    /// Where the axes stand after the part `t` of the motion, 0 to 1.
+    /// Returns the position after the fraction `t` of the motion, 0 to 1.
     pub fn position(&self, t: f64) -> Position {
         let mut at = *self.from;
         for (axis, (from, to)) in self.from.0.iter().zip(&self.to.0).enumerate() {
@@ -32,7 +35,7 @@ impl AxisMotion<'_> {
         at
     }
 
-    /// The arc's radius where it begins.
+    /// Returns the radius of the arc at its start; 0 without an arc.
     fn radius(&self) -> f64 {
         self.arc.map_or(0.0, |arc| {
             libm::hypot(self.from[arc.plane.0] - arc.centre.0, self.from[arc.plane.1] - arc.centre.1)
@@ -41,8 +44,10 @@ impl AxisMotion<'_> {
 }
 
 impl Machine {
-    /// Tells `each` the tool's poses on the part along a motion, the first at its start, so close together that
-    /// the path strays from the chord between two of them by no more than `tolerance` mm.
+    /// Calls `each` with poses of the tool on the part along a motion, from start to end.
+    ///
+    /// The poses are so close together that the path deviates from the chord between two of them by at most
+    /// `tolerance` mm.
     pub fn for_each_pose(
         &self,
         travel: &AxisMotion<'_>,
@@ -57,7 +62,7 @@ impl Machine {
         }
     }
 
-    /// Whether the tool goes straight on the part: neither the table nor the head turns, and no arc.
+    /// Returns true if the tool moves straight on the part: no rotation of table or head, and no arc.
     pub fn is_straight(&self, travel: &AxisMotion<'_>) -> bool {
         travel.arc.is_none() && self.total_rotation(travel) == Deg::ZERO
     }
@@ -70,9 +75,11 @@ impl Machine {
         self.table.total_rotation(travel.from, travel.to) + head
     }
 
-    /// A path p(t) strays from its chord by at most |p''|·Δt²/8. With the table and the head turning by γ in all,
-    /// the slides going b, and levers no longer than ρ, |p''| is at most γ²·ρ + 2·γ·b; an arc of sweep s and
-    /// radius R adds s²·R, and the error of an axis its own bend.
+    /// Returns the number of chords from which the path deviates by at most `tolerance` mm.
+    ///
+    /// A path p(t) deviates from its chord by at most |p''|·Δt²/8. If table and head rotate by γ in all, the
+    /// slides travel b, and no lever is longer than ρ, |p''| is at most γ²·ρ + 2·γ·b. An arc of sweep s and
+    /// radius R adds s²·R, and the error of an axis its own curvature.
     pub fn chord_count(&self, travel: &AxisMotion<'_>, setup: &Setup, tolerance: f64) -> u32 {
         let turn = self.total_rotation(travel).to_rad();
         let sweep = travel.arc.map_or(0.0, |arc| arc.sweep.to_rad());
@@ -87,7 +94,8 @@ impl Machine {
         (bend / (8.0 * tolerance)).sqrt().ceil().clamp(1.0, 100_000.0) as u32
     }
 
-    /// How much the errors of the axes bend the way: a wave of swing A over n waves has |p''| of A·(2·π·n)² at most.
+    /// Returns the curvature due to errors of the axes: a wave of amplitude A over n periods has |p''| of at
+    /// most A·(2·π·n)².
     fn wave_bend(&self, travel: &AxisMotion<'_>, setup: &Setup) -> f64 {
         let lever = self.max_lever(travel.from, setup).max(self.max_lever(travel.to, setup))
             + self.slide_length(travel);
@@ -109,7 +117,7 @@ impl Machine {
         sum
     }
 
-    /// How far the slides go, on both sides, from end to end.
+    /// Returns the travel of the slides of both chains between the ends.
     fn slide_length(&self, travel: &AxisMotion<'_>) -> f64 {
         let mut by = Position::default();
         for (axis, (from, to)) in travel.from.0.iter().zip(&travel.to.0).enumerate() {
@@ -118,7 +126,8 @@ impl Machine {
         self.slides.displacement(&by).norm() + self.table.displacement(&by).norm()
     }
 
-    /// The tip's distance from the farthest centre of the table, and the head's own reach.
+    /// Returns the tip's distance from the farthest centre of the table, or the head's own reach if that is
+    /// longer.
     fn max_lever(&self, at: &Position, setup: &Setup) -> f64 {
         let tip = self.tool_pose(at, setup).tip;
         let arm = |centre: &Point3<f64>| (tip - centre).norm();
@@ -150,7 +159,7 @@ mod tests {
         machine.for_each_pose(&travel, &Setup::default(), 0.05, |pose| points.push(pose.tip));
         assert!(points.len() > 10 && points.len() < 200, "{}", points.len());
         for step in 0..=997 {
-            // By hand: at B the tip (x, y, 0) stands on the part at azimuth B.
+            // By hand: at B the tip (x, y, 0) is on the part at azimuth B.
             let t = f64::from(step) / 997.0;
             let (x, b) = (700.0 - 200.0 * t, Deg(75.0 * t));
             let exact = Point3::new(x * b.cos(), 20.0 - 20.0 * t, x * b.sin());

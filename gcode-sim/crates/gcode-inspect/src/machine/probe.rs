@@ -1,25 +1,26 @@
-//! The touch probe as data.
+//! The touch probe.
 use super::error::Distribution;
 use gcode_lang::units::Seconds;
 
 /// A touch probe; the tool's tip is the centre of its ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probe {
-    /// Of the stylus ball, mm.
+    /// Radius of the stylus ball, mm.
     pub radius: f64,
-    /// From contact until the control notes the position.
+    /// Time from contact until the control latches the position.
     pub delay: Seconds,
-    /// From then until the axes stand still, at the commanded feed all the time.
+    /// Time from then until the axes stop, at the commanded feed throughout.
     pub overrun: Seconds,
-    /// How far the stylus can be pushed before it breaks, mm.
+    /// Largest deflection of the stylus before it breaks, mm.
     pub overtravel_limit: f64,
     /// Error of each touch along its direction, mm.
     pub noise: Distribution,
+    /// Seed of the random errors.
     pub seed: u64,
 }
 
 impl Probe {
-    /// A ball that notes its contact at once and exactly.
+    /// Returns a probe whose contact is latched at once and exactly.
     pub fn new(radius: f64) -> Self {
         let (delay, overrun) = (Seconds::ZERO, Seconds::ZERO);
         Self {

@@ -1,47 +1,51 @@
-//! Random numbers by their place: each is a function of a seed and of what it is for, so that neither the order in which
-//! they are asked for nor the number of threads changes any of them.
+//! Random numbers as a function of a seed and their purpose: neither the order of the draws nor the number of
+//! threads changes any of them.
 use gcode_lang::units::Deg;
 
-/// One place in a tree of random numbers.
+/// A node in a tree of random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RandomStream(u64);
 
-/// 2⁶⁴ over the golden ratio, odd: steps by it fall evenly.
+/// 2⁶⁴ over the golden ratio, odd: its multiples are evenly distributed.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
 impl RandomStream {
+    /// Returns the root of a seed.
     pub fn new(seed: u64) -> Self {
         Self(mix(seed))
     }
 
-    /// Another place for every `index`.
+    /// Returns the child node `index`, different for every index.
     pub fn branch(self, index: u64) -> Self {
         Self(mix(self.0.wrapping_add(index.wrapping_add(1).wrapping_mul(STEP))))
     }
 
-    /// Between 0 and 1, both excluded.
+    /// Returns a number between 0 and 1, both excluded.
     pub fn uniform(self) -> f64 {
         ((mix(self.0.wrapping_add(STEP)) >> 11) as f64 + 0.5) / (1u64 << 53) as f64
     }
 
-    /// Evenly between 0 and a full turn.
+    /// Returns an angle, uniform between 0 and a full revolution.
     pub fn angle(self) -> Deg {
         Deg(360.0 * self.uniform())
     }
 
-    /// How far from the origin a point of the standard normal distribution of the plane lies (Rayleigh).
+    /// Returns the distance from the origin of a point of the standard normal distribution of the plane
+    /// (Rayleigh).
     pub fn radius(self) -> f64 {
         (-2.0 * libm::log(self.uniform())).sqrt()
     }
 
-    /// Standard normal: the x of such a point (Box and Muller).
+    /// Returns a standard normal number: the x of such a point (Box and Muller).
     pub fn normal(self) -> f64 {
         self.branch(0).radius() * self.branch(1).angle().cos()
     }
 }
 
-/// The finalizer of SplitMix64 (Steele, Lea, Flood: *Fast Splittable Pseudorandom Number Generators*): every bit of
-/// the answer depends on every bit of the question.
+/// Returns the finaliser of SplitMix64 (Steele, Lea, Flood: *Fast Splittable Pseudorandom Number
+/// Generators*).
+///
+/// Every bit of the result depends on every bit of the argument.
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -52,8 +56,8 @@ fn mix(mut z: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Mean, variance, skewness and kurtosis of the standard normal distribution are 0, 1, 0, 3; of 10⁶ draws they
-    /// are so within four standard errors √(1, 2, 6, 24)/1000.
+    /// Mean, variance, skewness and kurtosis of the standard normal distribution are 0, 1, 0, 3; those of 10⁶
+    /// draws are within four standard errors √(1, 2, 6, 24)/1000.
     #[test]
     fn a_million_normal_draws_have_the_moments_they_should() {
         let root = RandomStream::new(1);
@@ -89,7 +93,7 @@ mod tests {
         }
     }
 
-    /// Neighbouring places know nothing of one another: the correlation of 10⁶ pairs is 0 within four of 1/1000.
+    /// Neighbouring nodes are independent: the correlation of 10⁶ pairs is 0 within four of 1/1000.
     #[test]
     fn neighbours_are_independent() {
         let value = |sample: u64, source: u64| RandomStream::new(5).branch(sample).branch(source).normal();

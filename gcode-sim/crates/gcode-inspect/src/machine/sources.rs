@@ -1,4 +1,5 @@
-//! Sources of error: what of a machine and of a part's set-up can be off, and what that does to a machine.
+//! Error sources: the quantities of a machine and a set-up that can be in error, and their effect on a
+//! machine.
 use nalgebra::{Unit, Vector3};
 
 use super::error::{Distribution, PeriodicError};
@@ -7,44 +8,46 @@ use super::{LinkMotion, Machine, chain};
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::units::Deg;
 
-/// One thing that can be off; directions are counted 0 to 2 for x, y, z of the machine.
+/// A quantity that can be in error; directions are counted 0 to 2 for x, y, z of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// Where the part stands against where the program believes it, at 0 of the table.
+    /// Actual minus nominal position of the part, with the table at 0.
     Shift(usize),
-    /// How the part is turned against that, about a line through its origin.
+    /// Tilt of the part from its nominal orientation, about a line through its origin.
     Tilt(usize),
-    /// The part's centre stands aside of the axis by half of this, in a direction that nobody knows.
+    /// Run-out: the part's centre is off the axis by half of it, in an unknown direction.
     RunOut,
-    /// A linear axis stands beyond its commanded place.
+    /// Actual minus commanded position of a linear axis.
     Linear(AxisIndex),
-    /// The rotary axis stands beyond its commanded angle.
+    /// Actual minus commanded angle of the rotary axis.
     Index,
-    /// Where the rotary axis is, against where the program believes it.
+    /// Actual minus nominal position of the rotary axis.
     Centre(usize),
-    /// How the rotary axis is turned against that, about a line through its centre.
+    /// Tilt of the rotary axis from its nominal direction, about a line through its centre.
     AxisTilt(usize),
-    /// The head stands beyond its angle.
+    /// Actual minus nominal angle of the head.
     Head,
 }
 
-/// A thing that can be off, and how far.
+/// A quantity and the distribution of its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorSource {
+    /// The quantity.
     pub quantity: Quantity,
+    /// Its error, mm or degrees.
     pub distribution: Distribution,
 }
 
-/// What a group of sources is drawn from.
+/// Parameters from which a group of sources is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SampleParameters {
     pub(super) seed: u64,
-    /// How far a linear axis goes for one wave of its error, mm.
+    /// Wavelength of the error along a linear axis, mm.
     pub(super) wave: f64,
 }
 
 impl Quantity {
-    /// The key that names it in a file, `part.shift.x`.
+    /// Returns the key that names the quantity in a file, such as `part.shift.x`.
     pub fn name(self, machine: &Machine) -> String {
         let letter = |direction: usize| ['x', 'y', 'z'][direction];
         match self {
@@ -59,12 +62,13 @@ impl Quantity {
         }
     }
 
-    /// Set up once for a part, or built into the machine; the others are off anew at each hole.
+    /// Returns true for errors of the set-up or of the machine's geometry; the others are drawn anew for each
+    /// hole.
     pub fn is_per_part(self) -> bool {
         !matches!(self, Self::Linear(_) | Self::Index | Self::Head)
     }
 
-    /// The place of its random numbers in the tree of a seed.
+    /// Returns the index of the quantity's random numbers in the tree of a seed.
     fn stream_index(self) -> u64 {
         match self {
             Self::Shift(direction) => direction as u64,
@@ -80,14 +84,14 @@ impl Quantity {
 }
 
 impl ErrorSource {
-    /// Draws its value, the same at every place of the axes, and puts it into the machine.
+    /// Draws an error that is the same at every position of the axes, and adds it to the machine.
     pub fn draw_into(&self, machine: &mut Machine, draw: RandomStream) {
         let draw = draw.branch(self.quantity.stream_index());
         let direction = if self.quantity == Quantity::RunOut { draw.branch(2).angle() } else { Deg::ZERO };
         machine.add_error(self.quantity, self.distribution.sample(draw), direction);
     }
 
-    /// One machine with this error: of an axis as a function of its place.
+    /// Adds the error of one machine, which for an axis is a function of its position.
     pub(super) fn apply_by_position(&self, machine: &mut Machine, drawn: SampleParameters) {
         let draw = RandomStream::new(drawn.seed).branch(self.quantity.stream_index());
         match self.quantity {
@@ -110,7 +114,7 @@ impl ErrorSource {
 }
 
 impl Machine {
-    /// The one axis that turns the part; `None` where none or several do.
+    /// Returns the one axis that rotates the part; `None` if there are none or several.
     pub fn rotary_axis(&self) -> Option<AxisIndex> {
         let mut turns = self
             .table
@@ -122,7 +126,7 @@ impl Machine {
         turns.next().is_none().then_some(first)
     }
 
-    /// Makes it as exact as `nominal`, a machine of the same arrangement, without asking for memory.
+    /// Resets the errors to those of `nominal`, a machine of the same arrangement, without allocation.
     pub fn reset(&mut self, nominal: &Self) {
         self.part = nominal.part;
         self.head.error = nominal.head.error;
@@ -130,7 +134,7 @@ impl Machine {
         self.slides.0.clone_from_slice(&nominal.slides.0);
     }
 
-    /// Whether it does what it is told, to a part that stands where it should.
+    /// Returns true if no axis has an error and the part is in its nominal position.
     pub fn is_exact(&self) -> bool {
         let exact = |error: &PeriodicError| error.level == 0.0 && error.amplitude == 0.0;
         let part = self.part.shift == Vector3::zeros() && self.part.tilt == [Deg::ZERO; 3];
@@ -138,7 +142,7 @@ impl Machine {
             && self.table.0.iter().chain(&self.slides.0).all(|link| exact(&link.error))
     }
 
-    /// Puts one more error into the machine; `direction` is that of a run-out, about the rotary axis.
+    /// Adds an error to the machine; `direction` is that of a run-out, about the rotary axis.
     pub fn add_error(&mut self, quantity: Quantity, value: f64, direction: Deg) {
         match quantity {
             Quantity::Shift(along) => self.part.shift[along] += value,
@@ -185,7 +189,7 @@ impl Machine {
     }
 }
 
-/// A unit vector across another.
+/// Returns a unit vector perpendicular to `about`.
 fn perpendicular(about: &Unit<Vector3<f64>>) -> Vector3<f64> {
     let other = if about.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() };
     (other - about.into_inner() * about.dot(&other)).normalize()
@@ -216,28 +220,29 @@ mod tests {
         assert!((found - Point3::from(expected)).norm() < 1e-9, "{found} is not {expected:?}");
     }
 
-    /// The tool stands at machine x = 100 each time; the answers are the part's own coordinates, by hand.
+    /// The tool is at machine x = 100 each time; the expected values are part coordinates, by hand.
     #[test]
     fn each_source_moves_the_tool_on_the_part_as_worked_out_by_hand() {
-        // The part stands 0.05 farther in x, so the tool is 0.05 less far on it: at B = 0 in x …
+        // The part is 0.05 farther in x, so the tool is 0.05 less far on it: at B = 0 in x …
         near(tip(&with(Quantity::Shift(0), 0.05), 100.0, 0.0), [99.95, 0.0, 0.0]);
         // … and at B = 180, where the part's +x points to machine −x, at −100 − 0.05.
         near(tip(&with(Quantity::Shift(0), 0.05), 100.0, 180.0), [-100.05, 0.0, 0.0]);
         near(tip(&with(Quantity::Shift(0), -0.05), 100.0, 180.0), [-99.95, 0.0, 0.0]);
-        // An X that stands 0.02 too far.
+        // X is 0.02 too far.
         near(tip(&with(Quantity::Linear(0), 0.02), 100.0, 0.0), [100.02, 0.0, 0.0]);
-        // B stands at 90 for 89.
+        // B is at 90 instead of 89.
         near(tip(&with(Quantity::Index, 1.0), 100.0, 89.0), [0.0, 0.0, 100.0]);
-        // B's axis lies at x = 0.3: at 0 that moves nothing, at 180 the part's origin stands at x = 0.6.
+        // B's axis lies at x = 0.3: at 0 that moves nothing, at 180 the part's origin is at x = 0.6.
         near(tip(&with(Quantity::Centre(0), 0.3), 100.0, 0.0), [100.0, 0.0, 0.0]);
         near(tip(&with(Quantity::Centre(0), 0.3), 100.0, 180.0), [-99.4, 0.0, 0.0]);
-        // B's axis leans by 1° about z, its top towards −x: half a turn about it brings the part's own axis 2° over.
+        // B's axis is tilted by 1° about z, its top towards −x: half a revolution about it tilts the part's
+        // own axis by 2°.
         near(tip(&with(Quantity::AxisTilt(2), 1.0), 100.0, 0.0), [100.0, 0.0, 0.0]);
         let (c, s) = (Deg(2.0).cos(), Deg(2.0).sin());
         near(tip(&with(Quantity::AxisTilt(2), 1.0), 100.0, 180.0), [-100.0 * c, -100.0 * s, 0.0]);
-        // The part is turned by 90° about z: machine x is its −y.
+        // The part is rotated by 90° about z: machine x is its −y.
         near(tip(&with(Quantity::Tilt(2), 90.0), 100.0, 0.0), [0.0, -100.0, 0.0]);
-        // A run-out of 0.4 in the direction 0: the centre 0.2 aside in x.
+        // A run-out of 0.4 in the direction 0: the centre is 0.2 off in x.
         near(tip(&with(Quantity::RunOut, 0.4), 100.0, 0.0), [99.8, 0.0, 0.0]);
     }
 
@@ -247,7 +252,7 @@ mod tests {
         machine.head.pivot = 200.0;
         let setup = Setup { head_angle: Some(Deg(90.0)), ..Setup::default() };
         let tip = machine.tool_pose(&Position::default(), &setup).tip;
-        // The tool points along 90.1°: its tip hangs 200 mm below, 200·sin 0.1° to +x.
+        // The tool points along 90.1°: its tip is 200 mm below, 200·sin 0.1° to +x.
         near(tip, [200.0 * Deg(0.1).sin(), -200.0 * Deg(0.1).cos(), 0.0]);
     }
 }

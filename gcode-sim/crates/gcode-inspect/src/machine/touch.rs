@@ -1,4 +1,4 @@
-//! A probe on its way to the part: where its ball touches, and when the control hears of it.
+//! Contact of a touch probe: where its ball touches the part, and when the control latches the position.
 use nalgebra::Point3;
 
 use super::path::AxisMotion;
@@ -7,11 +7,12 @@ use super::{Machine, Probe, Setup};
 use gcode_lang::motion::{SkipMove, SkipSignal};
 use gcode_part::{Surface, bisect};
 
-/// The ball's way is taken as chords that stray from it by no more than this, mm.
+/// Largest deviation of the ball's path from its chords, mm.
 const CHORD_TOLERANCE: f64 = 1e-5;
 
 impl Machine {
-    /// What G31 with this probe finds. `touches` counts the touches of the run: each has noise of its own.
+    /// Returns the result of G31 with this probe; `touches` is the number of earlier touches of the run, each
+    /// with its own noise.
     pub fn probe(
         &self,
         probe: &Probe,
@@ -39,7 +40,7 @@ impl Machine {
                 overtravel_limit: probe.overtravel_limit,
             };
         }
-        // A signal that comes when the block has ended already skips nothing.
+        // A signal after the end of the block skips nothing.
         if noted > 1.0 {
             SkipSignal::Missed
         } else {
@@ -47,12 +48,11 @@ impl Machine {
         }
     }
 
-    /// The part of a motion, 0 to 1, after which a ball round the tool's tip touches the surface; 0 where it is pushed in
-    /// from the beginning.
+    /// Returns the fraction of a motion, 0 to 1, at which a ball round the tool's tip touches the surface.
     ///
-    /// The way is cut into chords so short that they are as good as the curve. Along each the distance from a convex
-    /// body is a convex function, so that its least value can be found, and the contact before it: however shallow,
-    /// none is jumped over.
+    /// 0 if the ball is inside at the start, `None` if it does not touch. The path is cut into chords short
+    /// enough to replace the curve. Along each, the distance from a convex body is a convex function, so its
+    /// minimum can be found, and the contact before it: no contact is missed, however shallow.
     pub fn touch(
         &self,
         travel: &AxisMotion<'_>,
@@ -62,7 +62,8 @@ impl Machine {
     ) -> Option<f64> {
         let tip = |part: f64| self.forward(&travel.position(part), setup).tip;
         let mut from = tip(0.0);
-        // A position is rounded to the increment: a ball that just touched may stand so far in, and goes out freely.
+        // A position is rounded to the increment: a ball that just touched may be inside by that much, and
+        // leaves freely.
         if surface.nearest(&from).distance - radius < -self.increment.size() {
             return Some(0.0);
         }
@@ -78,12 +79,12 @@ impl Machine {
     }
 }
 
-/// Where on a straight way, 0 to 1, the ball comes to touch.
+/// Returns the fraction of a straight travel, 0 to 1, at which the ball touches; `None` if it does not.
 fn contact_on_chord(surface: &Surface, radius: f64, from: &Point3<f64>, to: &Point3<f64>) -> Option<f64> {
     let along = to - from;
     let nearest = |t: f64| surface.nearest(&(from + along * t));
     let open = |t: f64| nearest(t).distance > radius;
-    // The gap can't close by more than the way gone.
+    // The gap closes by at most the travel.
     let leaves = nearest(0.0).normal.dot(&along) >= 0.0;
     if leaves || nearest(0.0).distance + nearest(1.0).distance > 2.0 * radius + along.norm() {
         return None;
@@ -120,7 +121,7 @@ mod tests {
         assert!(found.is_some_and(|found| (found - expected).abs() < 1e-9), "{found:?} is not {expected}");
     }
 
-    /// Down on the pole from 450 to 350: the centre of a ball of 3 stops at 403, after 47 of 100 mm.
+    /// Down to the pole from 450 to 350: the centre of a ball of 3 stops at 403, after 47 of 100 mm.
     #[test]
     fn straight_on_the_pole_and_on_the_equator() {
         let machine = Machine::default();
@@ -131,7 +132,7 @@ mod tests {
         assert_eq!(touch(&machine, at(0.0, 450.0, 0.0, 0.0), at(0.0, 403.001, 0.0, 0.0), 3.0), None);
     }
 
-    /// Past the pole in x at a height that is a tenth of a micron too low or too high for a ball of 3 mm.
+    /// Past the pole in x at a height that is a tenth of a micrometre too low or too high for a ball of 3 mm.
     #[test]
     fn what_only_just_touches_is_not_jumped_over() {
         let machine = Machine::default();
@@ -143,9 +144,9 @@ mod tests {
         assert!((found + 0.354_400_9).abs() < 1e-4, "{found}");
     }
 
-    /// The part stands eccentric on the table; B turns it into a ball that stands still. By hand: the pole at (40, ·, 0)
-    /// of the table comes to machine (40·cos B, ·, −40·sin B), and a sphere round it of 100 + 5 reaches the ball at
-    /// (0, 0, −130) when 40² + 130² − 2·40·130·sin B = 105².
+    /// The part is eccentric on the table; B rotates it into a stationary ball. By hand: the pole at (40, ·,
+    /// 0) of the table moves to machine (40·cos B, ·, −40·sin B), and a sphere round it of 100 + 5 reaches
+    /// the ball at (0, 0, −130) when 40² + 130² − 2·40·130·sin B = 105².
     #[test]
     fn the_table_turns_the_part_into_the_ball() {
         let sphere = Surface::Ellipsoid { a: 100.0, b: 100.0 };
@@ -155,9 +156,9 @@ mod tests {
         let travel = AxisMotion { from: &from, to: &to, arc: None };
         let found = machine.touch(&travel, &Setup::default(), &sphere, 5.0).unwrap() * 90.0;
         let sine = (1600.0 + 16_900.0 - 11_025.0) / 10_400.0;
-        // The chords stray by 1e-5 mm, and a degree closes the gap by 0.6 mm.
+        // The chords deviate by 1e-5 mm, and a degree closes the gap by 0.6 mm.
         assert!((found - Deg::asin(sine).0).abs() < 3e-5, "{found}");
-        // The other way round the part goes away from it.
+        // In the other direction the part moves away from it.
         let back = at(0.0, 0.0, -130.0, -90.0);
         let travel = AxisMotion { from: &from, to: &back, arc: None };
         assert_eq!(machine.touch(&travel, &Setup::default(), &sphere, 5.0), None);
@@ -173,7 +174,7 @@ mod tests {
         assert_eq!(from(402.9, 450.0), Some(0.0), "pushed in: the signal is there already");
     }
 
-    /// A machine whose X swings by 0.02 mm: the ball touches where the real X does.
+    /// A machine whose X has a wave of 0.02 mm: the ball touches at the actual X.
     #[test]
     fn errors_of_the_axes_move_the_contact() {
         let text = "[errors.linear]\nx = { uniform = 0.02 }\nwave = 300\nseed = 5\n";
@@ -184,7 +185,7 @@ mod tests {
         assert!(error.abs() > 1e-3 && (x + error - 503.0).abs() < 2e-5, "{x} and {error}");
     }
 
-    /// 600 mm/min are 10 mm a second; the way of 100 mm takes 10 s.
+    /// 600 mm/min are 10 mm per second; the travel of 100 mm takes 10 s.
     fn probed(probe: &Probe, touches: u64) -> SkipSignal {
         let (from, to) = (at(0.0, 450.0, 0.0, 0.0), at(0.0, 350.0, 0.0, 0.0));
         let feed = SkipMove { from: &from, to: &to, rate: MmPerMin(600.0), seconds: Seconds(10.0) };
@@ -198,7 +199,7 @@ mod tests {
         let SkipSignal::Received { latched: noted, stop_fraction: stopped } = probed(&probe, 0) else {
             panic!("it touches")
         };
-        // 0.2 and 0.5 mm on from the contact after 47 mm.
+        // 0.2 and 0.5 mm beyond the contact at 47 mm.
         assert!((noted - 0.472).abs() < 1e-9 && (stopped - 0.477).abs() < 1e-9, "{noted} {stopped}");
         probe.overtravel_limit = 0.6;
         let SkipSignal::StylusBroken { deflection: pushed, overtravel_limit: give, .. } = probed(&probe, 0)
@@ -206,7 +207,7 @@ mod tests {
             panic!("0.7 is more than 0.6")
         };
         assert!((pushed - 0.7).abs() < 1e-9 && give == 0.6);
-        // A delay beyond the end of the way: no signal while the block lasts.
+        // A delay beyond the end of the travel: no signal during the block.
         (probe.delay, probe.overtravel_limit) = (Seconds(6.0), f64::INFINITY);
         assert_eq!(probed(&probe, 0), SkipSignal::Missed);
     }
@@ -227,8 +228,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// An independent search: the ball is walked along its way in 2000 steps and asked at each whether any of
-        /// the surface is within its radius, by Newton steps on the surface itself.
+        /// An independent search: the ball moves in 2000 steps, and at each the distance of the surface is
+        /// found by Newton steps on the surface itself.
         #[test]
         fn a_walk_in_small_steps_finds_the_same_contact(
             (latitude, azimuth, b) in (-1.5..1.5f64, -3.0..3.0f64, -180.0..180.0),
@@ -252,15 +253,15 @@ mod tests {
                     prop_assert!(found <= walked + 1e-9 && walked - found < 6e-4, "{} {}", found, walked);
                 }
                 (None, None) => {}
-                // Between two steps of the walk a touch may be so shallow that the walk misses it.
+                // Between two steps a touch may be so shallow that the stepwise search misses it.
                 (Some(found), None) => prop_assert!(by_newton(&point(found)) < radius + 1e-6),
                 (None, Some(_)) => prop_assert!(false, "a contact was jumped over"),
             }
         }
     }
 
-    /// The signed distance by Lagrange's conditions q + λ·∇q = p, ∇ the surface's gradient, solved by Newton in λ from
-    /// outside; inside it is enough to be negative.
+    /// Returns the signed distance by Lagrange's conditions q + λ·∇q = p, ∇ the surface's gradient, solved by
+    /// Newton in λ from outside; inside, any negative number.
     fn by_newton(p: &Point3<f64>) -> f64 {
         if BODY.value(p) <= 0.0 {
             return BODY.value(p);

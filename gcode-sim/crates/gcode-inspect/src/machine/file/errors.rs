@@ -1,4 +1,4 @@
-//! Errors as a file names them: the `[errors]` of a machine file, and the error file of a budget.
+//! Errors in files: the `[errors]` of a machine file, and the error file of a budget.
 use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::Value;
@@ -53,7 +53,7 @@ pub struct File {
     head: Option<FileHead>,
 }
 
-/// A machine's errors are drawn when its file is read, a budget's again and again: what only the first needs is left out.
+/// Removes the keys that only a machine file needs, whose errors are drawn once when it is read.
 fn without_draws(schema: &mut Schema) {
     let keys = schema.get_mut("properties").and_then(Value::as_object_mut);
     keys.into_iter().for_each(|keys| keys.retain(|key, _| !["wave", "seed"].contains(&key.as_str())));
@@ -64,7 +64,7 @@ fn seed(seed: &Option<Spanned<u64>>) -> u64 {
 }
 
 impl FileErrors {
-    /// Draws the errors and puts them into the machine.
+    /// Draws the errors and adds them to the machine.
     pub(super) fn apply(&self, reader: &Reader<'_>, machine: &mut Machine) -> Result<(), FileError> {
         let nominal = machine.clone();
         let collect = || Collector { reader, machine: &nominal, prefix: "errors.", sources: Vec::new() };
@@ -106,7 +106,10 @@ impl FileErrors {
     }
 }
 
-/// Reads the error file of a budget for this machine.
+/// Parses the error file of a budget for this machine.
+///
+/// # Errors
+/// Keys that are unknown, out of range, for a machine file only, or about a part that the machine lacks.
 pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<ErrorSource>, FileError> {
     let reader = Reader { text };
     let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
@@ -174,7 +177,7 @@ seed = 2
         let mut at = Position::default();
         at[4] = 90.001;
         let origin = machine.part_frame(&at) * nalgebra::Point3::origin();
-        // About (0.3, 0, 0), the axis leaning by 0.1° to −x: from there the origin is −0.3 away in x.
+        // About (0.3, 0, 0), the axis tilted by 0.1° to −x: from there the origin is −0.3 away in x.
         let (s, c) = (gcode_lang::units::Deg(0.1).sin(), gcode_lang::units::Deg(0.1).cos());
         let along = 0.3 * s;
         assert!(

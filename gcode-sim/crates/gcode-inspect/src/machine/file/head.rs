@@ -1,4 +1,4 @@
-//! The machine file's `[head]`: what kind it is, and which keys go with that.
+//! The machine file's `[head]`: its kind, and the keys of each kind.
 use nalgebra::{Unit, Vector3};
 use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
@@ -51,7 +51,7 @@ const KINDS: [(&str, FileHeadKind); 4] = [
     ("axis", FileHeadKind::Axis),
 ];
 
-/// Which kinds the keys go with, in the order of [`FileHead`].
+/// Kinds to which each key belongs, in the order of [`FileHead`].
 const KEYS: [(&str, &[FileHeadKind]); 6] = [
     ("pivot", &[FileHeadKind::Fixed, FileHeadKind::Manual, FileHeadKind::Axis]),
     ("direction", &[FileHeadKind::Fixed]),
@@ -61,7 +61,7 @@ const KEYS: [(&str, &[FileHeadKind]); 6] = [
     ("angle", &[FileHeadKind::Manual]),
 ];
 
-/// The key that a kind can't do without.
+/// Returns the key that a kind requires.
 fn required_key(kind: FileHeadKind) -> Option<&'static str> {
     match kind {
         FileHeadKind::Free | FileHeadKind::Manual => None,
@@ -70,7 +70,7 @@ fn required_key(kind: FileHeadKind) -> Option<&'static str> {
     }
 }
 
-/// Each kind with the keys that it needs, and without those that mean nothing for it.
+/// Adds for each kind its required keys, and excludes those without meaning for it.
 fn by_kind(schema: &mut Schema) {
     let case = |(name, kind): &(&str, FileHeadKind)| {
         let others = KEYS.iter().filter(|(_, kinds)| !kinds.contains(kind));
@@ -125,7 +125,7 @@ impl FileHead {
         Ok(Head::new(kind, pivot))
     }
 
-    /// A key that means nothing for this kind of head is a mistake, not an extra.
+    /// Rejects a key that has no meaning for this kind of head.
     fn check_keys(&self, reader: &Reader<'_>, kind: FileHeadKind) -> Result<(), FileError> {
         let given = [
             self.pivot.as_ref().map(start),

@@ -1,4 +1,4 @@
-//! `[[table]]`: the axes that carry the part, the outermost last.
+//! `[[table]]`: the axes that carry the part, from the bed outwards.
 use nalgebra::{Point3, Unit, Vector3};
 use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
@@ -32,7 +32,7 @@ pub(super) struct FileLink {
     centre: Option<FixedArray<Bounded<MachinePoint>, 3>>,
 }
 
-/// One of both; what slides has no centre.
+/// Requires one of `turns` and `slides`; an axis that slides has no centre.
 fn turns_or_slides(schema: &mut Schema) {
     let cases = json!([
         { "required": ["turns"], "not": { "required": ["slides"] } },

@@ -1,6 +1,7 @@
-//! The machine file: axes, table, head, tools, offsets and the part's place, as TOML.
+//! The machine file: axes, table, head, tools, offsets and the position of the part, as TOML.
 //!
-//! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
+//! Unknown keys, missing keys and values out of range are errors that name the key, the line and the allowed
+//! values.
 mod errors;
 mod head;
 mod link;
@@ -71,12 +72,17 @@ struct FileControl {
     axes: Option<Spanned<String>>,
 }
 
-/// Letters that axes may have, and those of axes that turn.
+/// Letters of axes.
 const AXES: [&str; 9] = ["X", "Y", "Z", "A", "B", "C", "U", "V", "W"];
+/// Letters of rotary axes.
 const ROTARY_LETTERS: [&str; 3] = ["A", "B", "C"];
 
 impl Machine {
-    /// Reads a machine file's text.
+    /// Parses the text of a machine file.
+    ///
+    /// # Errors
+    /// A syntax error, or a key that is unknown, missing or out of range, with its line and the allowed
+    /// values.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let reader = Reader { text };
         let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;

@@ -1,4 +1,4 @@
-//! `[offsets]`: what the work coordinate systems G54 to G59 are set to.
+//! `[offsets]`: the work offsets G54 to G59.
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -10,7 +10,7 @@ use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
 use gcode_part::reader::{Reader, Spanned};
 
-/// Work offsets by their codes, each with what axes stand at.
+/// Work offsets by code, each with its axes.
 #[derive(Deserialize)]
 #[serde(transparent)]
 pub(super) struct FileOffsets(Table);
@@ -37,10 +37,10 @@ impl JsonSchema for FileOffsets {
     }
 }
 
-/// The most that an offset may be, either way: mm or degrees.
+/// Largest offset, either way, mm or degrees.
 const MAX_OFFSET: f64 = 100_000.0;
 
-/// `G54 = { X = 500.0, B = 12.0 }`: axes that aren't named stay at 0.
+/// Returns the offsets of `G54 = { X = 500.0, B = 12.0 }`; axes that are not named are 0.
 pub(super) fn work_offsets(
     reader: &Reader<'_>,
     axes: &Axes,

@@ -1,4 +1,4 @@
-//! `[part]`: where the part lies on the machine, and how far off.
+//! `[part]`: position of the part on the machine, and its misalignment.
 use nalgebra::Point3;
 use schemars::JsonSchema;
 use serde::Deserialize;

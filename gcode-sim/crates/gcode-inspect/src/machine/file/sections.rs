@@ -1,4 +1,4 @@
-//! The sections of errors that a machine file and the error file of a budget share, and the sources in them.
+//! Sections of errors shared by the machine file and the error file of a budget, and their error sources.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -72,11 +72,11 @@ pub(super) struct FileHead {
     pub(super) seed: Option<Spanned<u64>>,
 }
 
-/// Collects sources, and checks that the machine has what they are about.
+/// Collects error sources, and checks that the machine has the parts that they concern.
 pub(super) struct Collector<'r, 'm> {
     pub(super) reader: &'r Reader<'r>,
     pub(super) machine: &'m Machine,
-    /// `errors.` in a machine file.
+    /// Prefix of keys in messages: `errors.` in a machine file.
     pub(super) prefix: &'static str,
     pub(super) sources: Vec<ErrorSource>,
 }
@@ -148,7 +148,7 @@ impl Collector<'_, '_> {
         self.add("head.angle", &head.angle, Quantity::Head, ANGLE)
     }
 
-    /// What an error needs that the machine hasn't got.
+    /// Returns a message about the part that an error needs and the machine lacks.
     fn missing_part(&self, quantity: Quantity) -> Option<&'static str> {
         match quantity {
             Quantity::RunOut | Quantity::Index | Quantity::Centre(_) | Quantity::AxisTilt(_) => {

@@ -1,4 +1,4 @@
-//! How an error is distributed, as a file writes it: `{ normal = 0.01 }`.
+//! Distribution of an error in a file: `{ normal = 0.01 }`.
 use schemars::transform::Transform;
 use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
@@ -33,7 +33,7 @@ pub(super) struct FileVector {
     pub(super) z: Option<Spanned<FileSpread>>,
 }
 
-/// What an error is measured in, and the most that can be meant.
+/// Unit of an error and its largest plausible value.
 #[derive(Clone, Copy)]
 pub(super) struct QuantityLimits {
     allowed: &'static str,
@@ -44,7 +44,7 @@ pub(super) const LENGTH: QuantityLimits = QuantityLimits { allowed: "mm, 100 at 
 pub(super) const ANGLE: QuantityLimits = QuantityLimits { allowed: "degrees, 45 at most", max: 45.0 };
 
 impl QuantityLimits {
-    /// Puts the bounds into the schema of a spread, or of each spread of a vector.
+    /// Adds the bounds to the schema of a distribution, or of each distribution of a vector.
     pub(super) fn bounds(self) -> impl Transform {
         move |schema: &mut Schema| self.bound(schema)
     }

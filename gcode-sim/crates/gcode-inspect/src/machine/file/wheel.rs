@@ -1,4 +1,4 @@
-//! The machine file's `[wheel]`: where a grinder's wheel touches the part, and which axis swivels it.
+//! The machine file's `[wheel]`: the contact point of a grinder's wheel, and the axis that swivels it.
 use nalgebra::Point3;
 use schemars::JsonSchema;
 use serde::Deserialize;
