@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 /// Block of a program that made a hole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-/// Program as in messages, such as `O8300`.
 pub struct Origin {
-    /// Line in the file, from 1.
+    /// Program as in messages, such as `O8300`.
     pub program: String,
-    /// Tool in the spindle; `None` if unknown.
+    /// Line in the file, from 1.
     pub line: u32,
+    /// Tool in the spindle; `None` if unknown.
     pub tool: Option<u32>,
 }
 

@@ -5,10 +5,18 @@ use nalgebra::{Point3, Unit, Vector3};
 /// A convex body; lengths in mm, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    /// Ellipsoid of revolution about y with the equatorial radius `a` and the polar radius `b`.
-    Ellipsoid { a: f64, b: f64 },
+    /// Ellipsoid of revolution about y.
+    Ellipsoid {
+        /// Equatorial radius.
+        a: f64,
+        /// Polar radius.
+        b: f64,
+    },
     /// Cylinder of unlimited length about x; the space beyond its ends is unknown.
-    Cylinder { radius: f64 },
+    Cylinder {
+        /// Radius of the cylinder.
+        radius: f64,
+    },
 }
 
 impl Surface {

@@ -32,8 +32,11 @@ pub struct FitUncertainty {
 /// Reason for which a fit is impossible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FitError {
-    /// The ball passes the part at `height`, mm.
-    NoContact { height: f64 },
+    /// The ball passes the part.
+    NoContact {
+        /// Height of the reading, mm.
+        height: f64,
+    },
     /// One of the five unknowns has the same readings as others, or nearly: its deviation would exceed 300
     /// times the noise.
     Degenerate,

@@ -63,7 +63,12 @@ pub enum Nose {
     Ball,
     /// An ellipse in the meridian plane, approximated by two arcs with radii `large` and `small`. The large
     /// arc is tangent to the cylinder; the small one is tangent to the large one and centred on the axis.
-    Arcs { large: f64, small: f64 },
+    Arcs {
+        /// Radius of the arc that is tangent to the cylinder, mm.
+        large: f64,
+        /// Radius of the arc at the tip, mm.
+        small: f64,
+    },
 }
 
 /// Law of the helix angle on the nose.
