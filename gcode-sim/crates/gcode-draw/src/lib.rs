@@ -19,10 +19,10 @@
 //! let hole = DrawnHole {
 //!     id: "1".to_owned(),
 //!     nominal: Some(nominal),
-//!     found: Some(actual),
-//!     standing: HoleStatus::Good,
-//!     phi: Some(0.0447),
-//!     turn: None,
+//!     actual: Some(actual),
+//!     status: HoleStatus::Good,
+//!     position_deviation: Some(0.0447),
+//!     rotary_angle: None,
 //!     remarks: Vec::new(),
 //! };
 //! let view =
