@@ -14,7 +14,7 @@
 //! let program = "O1\nS1000 M03\nG90 G54 G00 X10. Y20. Z50.\nG81 Z-15. R2. F100.\nM30\n";
 //! let request = Request::new("O1.nc", program.as_bytes(), machine);
 //! let simulation = simulate(&request, &mut NoLibrary, None)?;
-//! let holes = simulation.list().holes;
+//! let holes = simulation.hole_list().holes;
 //! // Without a surface a hole begins where the cutting feed begins: at the R point level.
 //! assert_eq!(holes[0].entry, [10.0, 20.0, 2.0]);
 //! assert_eq!(holes[0].depth, 17.0);
