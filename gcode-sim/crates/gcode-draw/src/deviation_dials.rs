@@ -140,14 +140,14 @@ mod tests {
     use crate::scene::ZoneDeviation;
 
     fn mark(at: [f64; 2], standing: HoleStatus) -> Mark {
-        let misfit = Some(ZoneDeviation { entry: [0.01, 0.0], bottom: [0.01, 0.0] });
+        let deviation = Some(ZoneDeviation { entry: [0.01, 0.0], bottom: [0.01, 0.0] });
         Mark {
             position: at,
             radius: 3.0,
             status: standing,
             label: Vec::new(),
             direction: None,
-            deviation: misfit,
+            deviation,
             actual: None,
         }
     }

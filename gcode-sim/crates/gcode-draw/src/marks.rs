@@ -40,8 +40,8 @@ pub(super) fn draw_marks(
     let mut drawn: Vec<DrawnMark> = Vec::new();
     for (index, mark) in scene.marks.iter().enumerate() {
         let hole = match (dials.dial(index), mark.deviation) {
-            (Some(dial), Some(misfit)) => {
-                draw_dial(mark, misfit, dial, dials.badge(index, frame.text_size), frame, field)
+            (Some(dial), Some(deviation)) => {
+                draw_dial(mark, deviation, dial, dials.badge(index, frame.text_size), frame, field)
             }
             _ => draw_sign(mark, index, frame, dials, &drawn, field),
         };
@@ -54,7 +54,7 @@ pub(super) fn draw_marks(
 /// Draws the zone's circle with the hole in its centre, the deviation, and the status symbol on the rim.
 fn draw_dial(
     mark: &Mark,
-    misfit: ZoneDeviation,
+    deviation: ZoneDeviation,
     (times, zone): (f64, f64),
     badge: f64,
     frame: &Frame,
@@ -77,7 +77,7 @@ fn draw_dial(
         }
         _ => {
             let enlarge = times * frame.scale.factor;
-            let (lines, beyond) = deviation_commands(mark.status, misfit, enlarge, centre, zone, text);
+            let (lines, beyond) = deviation_commands(mark.status, deviation, enlarge, centre, zone, text);
             inks.extend(lines);
             if let Some(tip) = beyond {
                 field.block(Obstacle::Segment(centre, tip));
@@ -87,7 +87,7 @@ fn draw_dial(
     }
     let directed = projected_axis(mark).is_some();
     let mut taken = Vec::new();
-    let [right, up] = misfit.entry;
+    let [right, up] = deviation.entry;
     if zone / 3.0 < libm::hypot(right, up) * times * frame.scale.factor {
         taken.push(Deg::atan2(up, right));
     }
@@ -124,7 +124,7 @@ fn displacement_line(centre: Px, found: Px, hole: f64, text: f64, field: &mut La
 /// shows as a line across its dial. A deviation longer than drawn ends in an arrow, whose tip is returned.
 fn deviation_commands(
     standing: HoleStatus,
-    misfit: ZoneDeviation,
+    deviation: ZoneDeviation,
     enlarge: f64,
     centre: Px,
     zone: f64,
@@ -134,7 +134,7 @@ fn deviation_commands(
     let width = (0.12 * text).max(1.4);
     let mut inks = Vec::new();
     let mut beyond = None;
-    let ends = [misfit.entry, misfit.bottom].map(|[right, up]| {
+    let ends = [deviation.entry, deviation.bottom].map(|[right, up]| {
         let (x, y) = (right * enlarge, -up * enlarge);
         let length = libm::hypot(x, y);
         let short =
@@ -269,7 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_verdict_covers_neither_arrow_nor_misfit() {
+    fn the_verdict_covers_neither_arrow_nor_deviation() {
         assert_eq!(badge_angle(&[]), Deg(45.0));
         assert_eq!(badge_angle(&[Deg(10.0)]), Deg(135.0));
         assert_eq!(badge_angle(&[Deg(10.0), Deg(100.0)]), Deg(-135.0));

@@ -274,11 +274,14 @@ mod tests {
 
     /// 0.02 mm towards larger azimuth at 90°, which is −z there, and 0.03 mm in x.
     #[test]
-    fn a_misfit_points_where_the_hole_is() {
+    fn a_deviation_points_where_the_hole_is() {
         let mut found = hole(20.03, 90.0, 100.0);
         found.entry[2] -= 0.02;
-        let misfit = scene(drawn(hole(20.0, 90.0, 100.0), found)).marks[0].deviation.unwrap();
-        assert!((misfit.entry[0] - 0.02).abs() < 1e-9 && (misfit.entry[1] + 0.03).abs() < 1e-9, "{misfit:?}");
+        let deviation = scene(drawn(hole(20.0, 90.0, 100.0), found)).marks[0].deviation.unwrap();
+        assert!(
+            (deviation.entry[0] - 0.02).abs() < 1e-9 && (deviation.entry[1] + 0.03).abs() < 1e-9,
+            "{deviation:?}"
+        );
     }
 
     /// 628 mm round and 30 mm long: three strips of 120°.

@@ -109,9 +109,12 @@ mod tests {
         let (z, from) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
         for axis in [z, from] {
             let (nominal, found) = (drilled([30.0, 5.0, 0.0], axis), drilled([30.02, 5.01, 0.0], axis));
-            let misfit = Side::Z.zone_deviation(&nominal, &found).unwrap();
-            for end in [misfit.entry, misfit.bottom] {
-                assert!((end[0] - 0.02).abs() < 1e-9 && (end[1] - 0.01).abs() < 1e-9, "{axis:?}: {misfit:?}");
+            let deviation = Side::Z.zone_deviation(&nominal, &found).unwrap();
+            for end in [deviation.entry, deviation.bottom] {
+                assert!(
+                    (end[0] - 0.02).abs() < 1e-9 && (end[1] - 0.01).abs() < 1e-9,
+                    "{axis:?}: {deviation:?}"
+                );
             }
         }
     }

@@ -354,24 +354,24 @@ mod tests {
     }
 
     #[test]
-    fn an_axial_hole_shows_its_misfit_as_it_is() {
+    fn an_axial_hole_shows_its_deviation_as_it_is() {
         let up = [0.0, 1.0, 0.0];
-        let misfit =
+        let deviation =
             Side::Y.zone_deviation(&hole([420.0, 675.0, 0.0], up), &hole([420.03, 677.0, 0.04], up)).unwrap();
-        for end in [misfit.entry, misfit.bottom] {
-            assert!((end[0] - 0.03).abs() < 1e-9 && (end[1] + 0.04).abs() < 1e-9, "{misfit:?}");
+        for end in [deviation.entry, deviation.bottom] {
+            assert!((end[0] - 0.03).abs() < 1e-9 && (end[1] + 0.04).abs() < 1e-9, "{deviation:?}");
         }
     }
 
     /// A hole tilted 60° outwards to +x: 0.05 mm along its own meridian projects to 0.025 mm and is drawn as
     /// 0.05 mm.
     #[test]
-    fn a_steep_hole_keeps_the_length_of_its_misfit() {
+    fn a_steep_hole_keeps_the_length_of_its_deviation() {
         let axis = [0.75f64.sqrt(), 0.5, 0.0];
         let down_the_meridian = [0.5 * 0.05, -(0.75f64.sqrt()) * 0.05, 0.0];
         let found = hole([1000.0 + down_the_meridian[0], 300.0 + down_the_meridian[1], 0.0], axis);
-        let misfit = Side::Y.zone_deviation(&hole([1000.0, 300.0, 0.0], axis), &found).unwrap();
-        assert!((misfit.entry[0] - 0.05).abs() < 1e-9 && misfit.entry[1].abs() < 1e-9, "{misfit:?}");
+        let deviation = Side::Y.zone_deviation(&hole([1000.0, 300.0, 0.0], axis), &found).unwrap();
+        assert!((deviation.entry[0] - 0.05).abs() < 1e-9 && deviation.entry[1].abs() < 1e-9, "{deviation:?}");
     }
 
     /// Tilted by 0.3° about its entry: at 15 mm depth that is 15·tan 0.3° = 0.0785 mm, to the other side.
@@ -379,8 +379,8 @@ mod tests {
     fn a_tilted_hole_is_off_at_its_bottom() {
         let tilt = gcode_lang::units::Deg(0.3);
         let found = hole([420.0, 675.0, 0.0], [tilt.sin(), tilt.cos(), 0.0]);
-        let misfit = Side::Y.zone_deviation(&hole([420.0, 675.0, 0.0], [0.0, 1.0, 0.0]), &found).unwrap();
-        assert!(libm::hypot(misfit.entry[0], misfit.entry[1]) < 1e-9);
-        assert!((misfit.bottom[0] + 15.0 * tilt.tan()).abs() < 1e-9, "{misfit:?}");
+        let deviation = Side::Y.zone_deviation(&hole([420.0, 675.0, 0.0], [0.0, 1.0, 0.0]), &found).unwrap();
+        assert!(libm::hypot(deviation.entry[0], deviation.entry[1]) < 1e-9);
+        assert!((deviation.bottom[0] + 15.0 * tilt.tan()).abs() < 1e-9, "{deviation:?}");
     }
 }
