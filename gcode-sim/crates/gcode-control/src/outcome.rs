@@ -33,7 +33,7 @@ pub enum Outcome {
     /// M02, M30, the M99 that ends the run, or the program's end.
     End,
     Alarm(AlarmStop),
-    /// The limit of blocks or of moves, [`Progress::stop`], or a loop that provably never ends ([`Control::endless_loop`](super::Control::endless_loop)).
+    /// The limit of blocks or of moves, [`Progress::cancel`], or a loop that provably never ends ([`Control::endless_loop`](super::Control::endless_loop)).
     Limit,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! **In:** a [`Request`], which holds the program's bytes, the control's settings and the machine, and a
 //! [`Library`] of called programs. **Out:** a [`Run`] with the control in its end state, or a run with the
-//! extracted holes ([`simulate`]), the ground flutes ([`grind`]) or the readings of an edge finder ([`follow`]).
+//! extracted holes ([`simulate`]), the ground flutes ([`grind`]) or the readings of an edge finder ([`read_stylus`]).
 //! Each result verifies itself against a reference and reports findings as [`Diagnostic`]s.
 //!
 //! ```

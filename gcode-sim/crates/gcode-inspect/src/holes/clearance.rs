@@ -30,7 +30,7 @@ const DISTANCE_RESOLUTION: f64 = 1e-3;
 pub struct CloseMotion {
     pub backtrace: Backtrace,
     pub kind: CloseMotionKind,
-    /// From the tool's tip to the surface, mm; a little below 0 where it touches. Of [`CloseMotionKind::Low`] along the tool.
+    /// From the tool's tip to the surface, mm; a little below 0 where it touches. Of [`CloseMotionKind::LowRetract`] along the tool.
     pub tip_clearance: f64,
     /// From the edge of the tool, were its end flat, where its direction and diameter are known, mm.
     pub edge_clearance: Option<f64>,

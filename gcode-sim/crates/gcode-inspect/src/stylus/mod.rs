@@ -1,6 +1,6 @@
 //! Motion → readings: what an edge finder shows whose ball is fed along the part's surface.
 //!
-//! Feeds along the surface are a pass; approach and retract cross it. What is farther away than [`REACH`] or lies across
+//! Feeds along the surface are a pass; approach and retract cross it. What is farther away than [`MAX_READING_DISTANCE`] or lies across
 //! has no reading: where the path should have gone on there, that is an error.
 use gcode_lang::alarm::kinds::LIMIT;
 mod ball;
@@ -57,7 +57,7 @@ pub struct Reading {
     pub ball_centre: Point3<f64>,
     /// From the ball to the surface: above 0 there is a gap, below 0 the ball is pushed in.
     pub value: f64,
-    /// Which of [`ReadingPass::places`] moved here.
+    /// Which of [`ReadingPass::backtraces`] moved here.
     pub move_index: usize,
 }
 
