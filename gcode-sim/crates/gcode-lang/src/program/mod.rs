@@ -37,7 +37,7 @@ use self::blocks::Blocks;
 use self::loops::Loops;
 use crate::alarm::LocatedAlarm;
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{PrintKind, ProgramName};
+use crate::syntax::ast::{self, PrintKind, ProgramName};
 
 /// Index of an operation in its program.
 pub type OpIndex = usize;
@@ -303,6 +303,11 @@ impl Program {
     /// Returns an operation lowered by [`Program::lower_block`]; `None` if it is not, or no longer, lowered.
     pub fn op(&self, index: OpIndex) -> Option<&Op> {
         self.blocks.op(index)
+    }
+
+    /// Iterates over the trees of all blocks, read again from the text.
+    pub fn trees(&self) -> impl Iterator<Item = ast::Block> + '_ {
+        (0..).map_while(|index| self.blocks.tree(index))
     }
 
     fn numbers(&self) -> &[(u32, u32)] {

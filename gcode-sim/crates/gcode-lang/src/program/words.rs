@@ -142,6 +142,17 @@ impl Words {
         self.uncommon.as_ref().is_none_or(|rest| rest.call.is_none() && rest.skipped_form.is_none())
     }
 
+    /// Iterates over the G codes written as numbers, each with its meaning on each control.
+    pub fn g_codes(&self) -> impl Iterator<Item = RowLookup> + '_ {
+        self.list.iter().filter_map(|word| match word.value {
+            WordOperand::G(_, found) => Some(found),
+            WordOperand::Literal(_)
+            | WordOperand::Number(_)
+            | WordOperand::Variable { .. }
+            | WordOperand::Code(_) => None,
+        })
+    }
+
     /// Returns the call of the block.
     pub fn call(&self) -> Option<&CallOp> {
         self.uncommon.as_ref()?.call.as_ref()

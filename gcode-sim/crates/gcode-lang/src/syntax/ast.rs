@@ -189,6 +189,27 @@ pub struct Expr {
     pub span: Span,
 }
 
+impl Expr {
+    /// Iterates over the direct parts in the order written: operands, arguments, the number of a variable.
+    pub fn operands(&self) -> impl Iterator<Item = &Self> {
+        let (first, second, third) = match &self.kind {
+            ExprKind::Literal(_) | ExprKind::AxisNumber(_) => (None, None, None),
+            ExprKind::Named(name) => (name.index.as_ref(), None, None),
+            ExprKind::Variable(part)
+            | ExprKind::Negate(part)
+            | ExprKind::Plus(part)
+            | ExprKind::Bracket(part)
+            | ExprKind::Call(_, CallForm::One(part)) => (Some(part), None, None),
+            ExprKind::Binary(_, left, right)
+            | ExprKind::Call(_, CallForm::Slash(left, right) | CallForm::Comma(left, right)) => {
+                (Some(left), Some(right), None)
+            }
+            ExprKind::Parameter { number, bit, axis } => (Some(number), bit.as_ref(), axis.as_ref()),
+        };
+        [first, second, third].into_iter().flatten().map(|part| &**part)
+    }
+}
+
 /// Variants of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
