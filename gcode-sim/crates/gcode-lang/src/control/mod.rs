@@ -74,37 +74,19 @@ impl Dialect {
     pub const ALL: [(&'static str, Self); 3] =
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
 
+    /// Families of a code that every control has.
+    pub(crate) const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::HaasNgc];
+    /// Fanuc controls.
+    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
+    /// Controls with five simultaneous axes.
+    pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
+    /// Haas controls.
+    pub(crate) const HAAS: &'static [Self] = &[Self::HaasNgc];
+
     /// Returns the name, `fanuc-31i`.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, dialect)| *dialect == self).map_or("", |(name, _)| name)
     }
-}
-
-/// Set of G and M codes of a control.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CodeSet {
-    /// Codes of a 31i.
-    #[default]
-    Fanuc31i,
-    /// Codes of a 0i-F.
-    Fanuc0iF,
-    /// Codes of a Haas.
-    Haas,
-}
-
-impl CodeSet {
-    /// All code sets with their names on the command line.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::Haas)];
-
-    /// Code sets of a row that applies to every control.
-    pub(crate) const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
-    /// Code sets of the Fanuc controls.
-    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
-    /// Code sets of the controls with five simultaneous axes.
-    pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
-    /// Code set of the Haas controls.
-    pub(crate) const HAAS: &'static [Self] = &[Self::Haas];
 }
 
 /// Numbering of the tool offset variables.
@@ -146,8 +128,8 @@ pub struct StrokeLimits {
 pub struct Settings {
     /// Family of the control.
     pub dialect: Dialect,
-    /// Set of G and M codes.
-    pub codes: CodeSet,
+    /// Family whose G and M codes the control has.
+    pub codes: Dialect,
     /// Least input increment.
     pub increment: Increment,
     /// Axes in the order of their numbers.
@@ -280,7 +262,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             dialect: Dialect::default(),
-            codes: CodeSet::default(),
+            codes: Dialect::default(),
             increment: Increment::default(),
             axes: Axes::default(),
             rolls_over: [false; MAX_AXES],

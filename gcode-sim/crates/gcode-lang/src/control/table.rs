@@ -1,5 +1,5 @@
 //! Named settings: the parameter in the manual, the key on the command line, and how the value is read.
-use super::{ArgumentScale, CodeSet, Dialect, Increment, OffsetVariables, Settings};
+use super::{ArgumentScale, Dialect, Increment, OffsetVariables, Settings};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
@@ -142,7 +142,7 @@ const REPEAT_LETTERS: [(&str, u8); 2] = [("K", b'K'), ("L", b'L')];
 #[rustfmt::skip]
 pub const ROWS: &[SettingRow] = &[
     choice!("DIALECT", "the family of controls", Dialect::ALL, |s, v| s.apply_dialect(v)),
-    choice!("CODES", "the set of G and M codes", CodeSet::ALL, |s, v| s.codes = v),
+    choice!("CODES", "the set of G and M codes", Dialect::ALL, |s, v| s.codes = v),
     choice!("INCREMENT", "1013: the least input increment", Increment::ALL, |s, v| s.increment = v),
     switch!("DPI", "3401#0, setting 162 of a Haas: numbers without a decimal point are mm, degrees, seconds", uses_calculator_input),
     switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", returns_signed_angles),

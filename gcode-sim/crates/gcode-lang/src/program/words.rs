@@ -265,7 +265,7 @@ impl Lowering {
         };
         let axis = match &word.axis {
             Some(axis) => {
-                let axis = self.operand(axis, ExprContext::Macro)?;
+                let axis = self.operand(axis, ExprContext::MACRO)?;
                 self.axes.push(axis);
                 Some(self.axes.len() as u32 - 1)
             }
