@@ -3,7 +3,6 @@ mod code_calls;
 mod dialect;
 mod parameters;
 mod table;
-mod undocumented;
 
 use crate::motion::{Axes, AxisIndex, MAX_AXES, Position};
 use crate::units::{MmPerMin, round_scaled};
@@ -12,8 +11,7 @@ pub use code_calls::{
     ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
 };
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
-pub use table::{ROWS, SettingError, SettingRow, SettingValues};
-pub use undocumented::{ArgumentScale, UndocumentedChoices};
+pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
 
 /// Least input increment (parameter 1013).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -110,6 +108,23 @@ impl OffsetVariables {
             Self::Haas => (tool <= 200).then_some(2_000 + tool),
         }
     }
+}
+
+/// Unit of a macro argument without a decimal point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArgumentScale {
+    /// The number itself.
+    Whole,
+    /// The unit of the word F in the active feed mode.
+    Feed,
+    /// Least increments of a length.
+    Increments,
+}
+
+impl ArgumentScale {
+    /// All units with their names on the command line.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("whole", Self::Whole), ("feed", Self::Feed), ("increments", Self::Increments)];
 }
 
 /// Stroke limits in machine coordinates, mm or degrees; `None` for an axis without a limit.
