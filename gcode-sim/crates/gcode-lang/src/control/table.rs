@@ -229,7 +229,7 @@ macro_rules! undocumented_choices {
         /// Choices of the simulator where manuals are silent or contradict one another.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub struct UndocumentedChoices {
-            $(#[doc = concat!("True: ", $meaning, ".")] pub $field: bool,)+
+            $(#[doc = concat!("`", $key, "`: `", $meaning, "`.")] pub $field: bool,)+
             /// Unit of an argument E without a decimal point.
             pub argument_e: ArgumentScale,
             /// Unit of an argument F without a decimal point.
