@@ -49,6 +49,16 @@ fn without_comments(text: &str) -> String {
     text.chars().filter(is_kept).collect()
 }
 
+/// Returns the start of a text up to the first other character.
+fn leading(text: &str, fits: fn(char) -> bool) -> &str {
+    &text[..text.len() - text.trim_start_matches(fits).len()]
+}
+
+/// Returns the end of a text after the last other character.
+fn trailing(text: &str, fits: fn(char) -> bool) -> &str {
+    &text[text.trim_end_matches(fits).len()..]
+}
+
 /// Returns true for an alarm about notation.
 fn is_read_failure(alarm: &Alarm) -> bool {
     matches!(
@@ -119,7 +129,7 @@ fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
 fn number_with_n(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let number =
         alarm_line.rest.strip_prefix('N').filter(|_| matches!(alarm, Alarm::Expression { .. }))?.trim_start();
-    let digits: String = number.chars().take_while(char::is_ascii_digit).collect();
+    let digits = leading(number, |c| c.is_ascii_digit());
     (alarm_line.before.trim_end().ends_with("GOTO") && !digits.is_empty())
         .then(|| format!("write GOTO {digits}, without N"))
 }
@@ -130,9 +140,8 @@ fn misplaced_comma(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> 
         .rest
         .strip_prefix(',')
         .filter(|_| is_read_failure(alarm) || matches!(alarm, Alarm::CornerWords))?;
-    let whole: String = alarm_line.before.chars().rev().take_while(char::is_ascii_digit).collect();
-    let whole: String = whole.chars().rev().collect();
-    let part: String = behind.chars().take_while(char::is_ascii_digit).collect();
+    let is_digit = |c: char| c.is_ascii_digit();
+    let (whole, part) = (trailing(alarm_line.before, is_digit), leading(behind, is_digit));
     if !part.is_empty() && !whole.is_empty() {
         return Some(format!("write {whole}.{part}: the decimal separator is a point"));
     }
@@ -148,11 +157,8 @@ fn exponent(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     }
     let line = alarm_line.whole;
     line.match_indices('E').find_map(|(at, _)| {
-        let number = |c: &char| matches!(c, '0'..='9' | '.');
-        let mantissa: String = line[..at].chars().rev().take_while(number).collect();
-        let mantissa: String = mantissa.chars().rev().collect();
-        let power: String =
-            line[at + 1..].chars().take_while(|c| matches!(c, '0'..='9' | '-' | '+')).collect();
+        let mantissa = trailing(&line[..at], |c| matches!(c, '0'..='9' | '.'));
+        let power = leading(&line[at + 1..], |c| matches!(c, '0'..='9' | '-' | '+'));
         let written = format!("{mantissa}E{power}");
         let value: f64 = written.parse().ok().filter(|_| !mantissa.is_empty())?;
         Some(format!("write {value} for {written}: numbers have no exponent"))
@@ -185,7 +191,7 @@ fn else_case(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
 fn two_signs(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::IllegalMinus { letter } = alarm else { return None };
     let value = alarm_line.rest.strip_prefix('-').filter(|_| alarm_line.before.trim_end().ends_with('-'))?;
-    let value: String = value.chars().take_while(|c| matches!(c, '0'..='9' | '.')).collect();
+    let value = leading(value, |c| matches!(c, '0'..='9' | '.'));
     Some(format!("write one sign: {letter}-{value}, or {letter}-[-{value}]"))
 }
 

@@ -47,7 +47,6 @@ pub type OpIndex = usize;
 pub struct Program {
     /// O number or name.
     pub name: ProgramName,
-    number: Option<u32>,
     /// First sequence number other than 0.
     first_number: Option<u32>,
     /// Place from the O word, or the first block, to the end of the last block.
@@ -265,17 +264,17 @@ impl Program {
     ///
     /// `None` for a program with a name.
     pub fn number(&self) -> Option<u32> {
-        self.number
+        match self.name {
+            ProgramName::Number(number) => Some(number),
+            ProgramName::Name(_) => None,
+            ProgramName::Unnamed => self.first_number,
+        }
     }
 
     /// Returns the number that #4115 reads: the O number, the first N of a program without O, 0 for a named
     /// program.
     pub fn shown_number(&self) -> u32 {
-        match self.name {
-            ProgramName::Number(number) => number,
-            ProgramName::Name(_) => 0,
-            ProgramName::Unnamed => self.first_number.unwrap_or(0),
-        }
+        self.number().unwrap_or(0)
     }
 
     /// Returns the label that a control displays: `O8101`, `<BRACKET-OP1>`; `MAIN` for an unnamed program.

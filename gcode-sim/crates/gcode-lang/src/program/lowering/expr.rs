@@ -231,7 +231,7 @@ impl Lowering {
         if let Some(name) = new {
             self.record_syntax(DialectSyntax::NewFunction(name), span);
         }
-        if let Some(name) = new.or(extended_function_name(function)) {
+        if let Some(name) = new.or(is_extended(function).then(|| function.name())) {
             self.record_syntax(DialectSyntax::MoreFunction(name), span);
         }
         match (function, form, context.address) {
@@ -257,8 +257,7 @@ impl Lowering {
                 Ok(depth)
             }
             (_, CallForm::Slash(..) | CallForm::Comma(..), _) => {
-                Err(Alarm::ArgumentFormat { function: format!("{function:?}").to_uppercase() }
-                    .located_at(span))
+                Err(Alarm::ArgumentFormat { function: function.name().into() }.located_at(span))
             }
         }
     }
@@ -347,15 +346,8 @@ impl Lowering {
     }
 }
 
-/// Returns the name of a function outside the basic set, `None` for any other.
-fn extended_function_name(function: Function) -> Option<&'static str> {
-    Some(match function {
-        Function::Fup => "FUP",
-        Function::Ln => "LN",
-        Function::Exp => "EXP",
-        Function::Bin => "BIN",
-        Function::Bcd => "BCD",
-        Function::Adp => "ADP",
-        _ => return None,
-    })
+/// Returns true for a function outside the basic set.
+fn is_extended(function: Function) -> bool {
+    use Function::{Adp, Bcd, Bin, Exp, Fup, Ln};
+    matches!(function, Fup | Ln | Exp | Bin | Bcd | Adp)
 }
