@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_ends_at_the_first_of_its_ends_wherever_it_stands() {
+    fn a_line_ends_at_its_first_line_end() {
         for length in 0..40 {
             for end in [&b"\n"[..], b"\r", b"\r\n\n", b"", b"\n\x0b\x0c\x8a\x8d\r\r\r\r"] {
                 let text = [&b"X\x0b\x0c\x0e\x09\x8a\x8d\xff".repeat(5)[..length], end].concat();

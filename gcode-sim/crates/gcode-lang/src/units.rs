@@ -167,7 +167,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_double_is_rounded_as_the_standard_library_does(value in any::<f64>(), near in -4e15..4e15) {
+        fn any_double_rounds_as_in_the_standard_library(value in any::<f64>(), near in -4e15..4e15) {
             for value in [value, near, near / 1e9] {
                 prop_assert_eq!(round(value).to_bits(), value.round().to_bits());
             }
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_is_that_of_the_standard_library_bit_for_bit() {
+    fn rounding_at_halves_and_limits_has_the_bits_of_the_standard_library() {
         const LIMIT: f64 = FRACTION_LIMIT;
         let small = [0.0, 0.5, 1.0, 1.5, 2.5, 1e9 + 0.5];
         let large = [LIMIT / 2.0 - 0.5, LIMIT, 1e300, f64::INFINITY, f64::MAX];

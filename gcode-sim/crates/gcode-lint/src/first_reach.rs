@@ -23,15 +23,15 @@ pub(super) struct FirstReach<'a> {
 
 impl<'a> FirstReach<'a> {
     pub(super) fn new(unit: &'a ProgramUnit<'a>, states: &'a States) -> Self {
-        let circle = strongly_connected_components(&unit.flow);
+        let component = strongly_connected_components(&unit.flow);
         let mut entries: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
         for place in 0..unit.flow.block_count() {
-            let left = unit.flow.successors(place).filter(|to| circle[*to] != circle[place]);
+            let left = unit.flow.successors(place).filter(|to| component[*to] != component[place]);
             for to in left {
-                entries.entry(circle[to]).or_default().push(place);
+                entries.entry(component[to]).or_default().push(place);
             }
         }
-        let mut first = Self { unit, states, component: circle, entries, set_reads: BTreeSet::new() };
+        let mut first = Self { unit, states, component, entries, set_reads: BTreeSet::new() };
         first.set_reads = first.find_set_reads();
         first
     }
@@ -50,8 +50,8 @@ impl<'a> FirstReach<'a> {
             }
         }
         let mut set = BTreeSet::new();
-        for ((circle, local), blocks) in readers {
-            let known = self.trace(circle, local, &blocks);
+        for ((component, local), blocks) in readers {
+            let known = self.trace(component, local, &blocks);
             let found =
                 blocks.into_iter().filter(|block| known.get(block).is_some_and(|bits| *bits != UNSET));
             set.extend(found.map(|block| (block, local)));
@@ -72,35 +72,33 @@ impl<'a> FirstReach<'a> {
 
     /// Traces a local once more around a component, with some blocks as ends, and returns its bits at each
     /// node.
-    fn trace(&self, circle: usize, local: u32, ends: &BTreeSet<OpIndex>) -> BTreeMap<OpIndex, u8> {
-        let mut component_state = ComponentState {
-            components: &self.component,
-            component: circle,
-            known: BTreeMap::new(),
-            pending: Vec::new(),
+    fn trace(&self, component: usize, local: u32, ends: &BTreeSet<OpIndex>) -> BTreeMap<OpIndex, u8> {
+        let is_inside = |place: OpIndex| self.component.get(place) == Some(&component);
+        let next = |from: OpIndex, state: &Locals| {
+            steps(self.unit, from, state).into_iter().map(|(to, after)| (to, after.bits_of(local)))
         };
-        for start in self.unit.entry_blocks.iter().filter(|start| self.component[**start] == circle) {
-            component_state.join(*start, self.bits(*start, local));
+        let mut open: Vec<_> =
+            self.unit.entry_blocks.iter().map(|start| (*start, self.bits(*start, local))).collect();
+        for entry in self.entries.get(&component).into_iter().flatten() {
+            open.extend(self.states[*entry].iter().flat_map(|state| next(*entry, state)));
         }
-        for entry in self.entries.get(&circle).into_iter().flatten() {
-            let Some(state) = &self.states[*entry] else { continue };
-            self.propagate(*entry, state, local, &mut component_state);
-        }
-        while let Some(at) = component_state.pending.pop() {
-            if ends.contains(&at) {
+        let mut known: BTreeMap<OpIndex, u8> = BTreeMap::new();
+        while let Some((place, bits)) = open.pop() {
+            if !is_inside(place) {
                 continue;
             }
-            let Some(mut state) = self.states[at] else { continue };
-            state.0[local as usize] = component_state.known[&at];
-            self.propagate(at, &state, local, &mut component_state);
+            let known = known.entry(place).or_default();
+            let has_grown = *known | bits != *known;
+            *known |= bits;
+            if has_grown
+                && !ends.contains(&place)
+                && let Some(mut state) = self.states[place]
+            {
+                state.0[local as usize] = *known;
+                open.extend(next(place, &state));
+            }
         }
-        component_state.known
-    }
-
-    fn propagate(&self, from: OpIndex, state: &Locals, local: u32, around: &mut ComponentState<'_>) {
-        for (to, after) in steps(self.unit, from, state) {
-            around.join(to, after.bits_of(local));
-        }
+        known
     }
 
     fn bits(&self, place: OpIndex, local: u32) -> u8 {
@@ -111,26 +109,4 @@ impl<'a> FirstReach<'a> {
 /// Returns true if a local may be unset and may be set.
 fn is_unclear(bits: u8) -> bool {
     bits & UNSET != 0 && bits != UNSET
-}
-
-/// Bits of a local at the nodes of one component.
-struct ComponentState<'a> {
-    components: &'a [usize],
-    component: usize,
-    known: BTreeMap<OpIndex, u8>,
-    /// Nodes whose bits have grown.
-    pending: Vec<OpIndex>,
-}
-
-impl ComponentState<'_> {
-    fn join(&mut self, place: OpIndex, bits: u8) {
-        if self.components.get(place) != Some(&self.component) {
-            return;
-        }
-        let known = self.known.entry(place).or_default();
-        if *known | bits != *known {
-            *known |= bits;
-            self.pending.push(place);
-        }
-    }
 }

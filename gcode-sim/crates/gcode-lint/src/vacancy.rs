@@ -7,6 +7,7 @@ use gcode_lang::program::{OpIndex, OpKind};
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Relation, Statement};
 
 use super::context::ProgramUnit;
+use super::control_flow::raises_alarm;
 use super::{literal, variables};
 
 /// Possible values of a local, as bits.
@@ -32,10 +33,8 @@ impl Locals {
         }
     }
 
-    fn join(&mut self, other: &Self) -> bool {
-        let before = *self;
+    fn join(&mut self, other: &Self) {
         self.0.iter_mut().zip(other.0).for_each(|(mine, others)| *mine |= others);
-        *self != before
     }
 
     fn add_bits(&mut self, bits: u8) {
@@ -58,14 +57,9 @@ pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
         let Some(Some(state)) = states.get(block).copied() else { continue };
         for (to, state) in steps(unit, block, &state) {
             let Some(known) = states.get_mut(to) else { continue };
-            let changed = match known {
-                Some(known) => known.join(&state),
-                None => {
-                    *known = Some(state);
-                    true
-                }
-            };
-            if changed {
+            let before = *known;
+            known.get_or_insert(state).join(&state);
+            if *known != before {
                 open.push(to);
             }
         }
@@ -91,36 +85,26 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
                 // IF jumps if its condition is true, WHILE if it is false.
                 let taken = (to == block + 1) != is_jump;
                 let sure = to != block + 1 || !unit.flow.block_successors[block].jumps.contains(&to);
-                if sure && on_true == Some(!taken) {
-                    return None;
-                }
-                let mut state = *state;
-                refine(condition, taken, &mut state);
-                Some((to, state))
+                let is_impossible = sure && on_true == Some(!taken);
+                (!is_impossible).then(|| (to, refined(condition, taken, state)))
             };
             to().filter_map(split).collect()
         }
         (OpKind::Statement(_), Some(Statement::IfThen { condition, then })) => {
-            let mut when_true = *state;
-            refine(condition, true, &mut when_true);
-            let mut when_false = *state;
-            refine(condition, false, &mut when_false);
             let answer = truth(condition, state);
             let mut steps = Vec::new();
             if answer != Some(false) {
-                match variables::statement_assignment(then) {
-                    Some((target, value)) => assign(target, value, &mut when_true),
-                    None => steps
-                        .extend(unit.flow.block_successors[block].jumps.iter().map(|to| (*to, when_true))),
-                }
-                if !super::control_flow::raises_alarm(op.kind())
-                    && variables::statement_assignment(then).is_some()
-                {
-                    steps.push((block + 1, when_true));
+                let mut state = refined(condition, true, state);
+                if let Some((target, value)) = variables::statement_assignment(then) {
+                    assign(target, value, &mut state);
+                    steps.extend((!raises_alarm(op.kind())).then_some((block + 1, state)));
+                } else {
+                    let jumps = &unit.flow.block_successors[block].jumps;
+                    steps.extend(jumps.iter().map(|to| (*to, state)));
                 }
             }
             if answer != Some(true) {
-                steps.push((block + 1, when_false));
+                steps.push((block + 1, refined(condition, false, state)));
             }
             steps
         }
@@ -267,9 +251,15 @@ fn compare(left: KnownValue, relation: Relation, right: KnownValue) -> Option<bo
 
 /// Returns true if a condition can only be true with the local set, as `#9 NE #0`.
 pub(crate) fn guards(condition: &Condition, local: u32) -> bool {
-    let mut state = Locals([UNSET | ANY_VALUE; 34]);
-    refine(condition, true, &mut state);
-    state.bits_of(local) & UNSET == 0
+    let state = Locals([UNSET | ANY_VALUE; 34]);
+    refined(condition, true, &state).bits_of(local) & UNSET == 0
+}
+
+/// Returns a state restricted to the locals for which a condition has the result `answer`.
+fn refined(condition: &Condition, answer: bool, state: &Locals) -> Locals {
+    let mut state = *state;
+    refine(condition, answer, &mut state);
+    state
 }
 
 /// Restricts a state to the locals for which a condition has the result `answer`.

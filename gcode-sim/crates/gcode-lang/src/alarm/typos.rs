@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_letter_o_for_a_zero() {
+    fn a_letter_o_in_a_number_has_a_remedy() {
         assert!(help(Alarm::MixedStatements, "G90 GO1 X10. F100.", "G90").contains("write G01"));
         assert!(help(no_value(), "GOO X10.", "O X").contains("write G00"));
         assert!(help(no_value(), "M3O", "O\n").contains("write M30"));
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn characters_that_only_look_right() {
+    fn similar_characters_have_a_remedy() {
         assert!(
             help(no_number('X'), "G00 X\u{2212}10.", "X")
                 .contains("U+2212 is not a character of a control: type the minus")
@@ -274,14 +274,14 @@ mod tests {
     }
 
     #[test]
-    fn commas_for_points_and_between_words() {
+    fn misplaced_commas_have_a_remedy() {
         assert_eq!(help(not_a_word(), "G00 X10,5", ",5"), "write 10.5: the decimal separator is a point");
         assert!(help(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("not separated by commas"));
         assert!(!help(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("not separated by commas"));
     }
 
     #[test]
-    fn what_other_languages_have() {
+    fn notation_of_other_languages_has_a_remedy() {
         assert_eq!(
             help(Alarm::MixedStatements, "#1=1E3", "#1"),
             "write 1000 for 1E3: numbers have no exponent"
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_can_not_be_meant() {
+    fn impossible_numbers_have_a_remedy() {
         assert_eq!(
             help(Alarm::IllegalMinus { letter: 'Z' }, "G00 Z--5", "-5"),
             "write one sign: Z-5, or Z-[-5]"

@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn no_range_takes_what_ends_or_calls_by_itself() {
+    fn a_range_excludes_ends_and_calls() {
         let mut calls = CodeCalls::default();
         for (parameter, value) in [(6044, 1), (6045, 3000), (6046, 200), (6038, 60), (6039, 4000), (6040, 10)]
         {
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_ends_and_a_code_of_its_own_goes_first() {
+    fn a_single_code_precedes_a_range() {
         let mut calls = CodeCalls::default();
         for (parameter, value) in [(6038, -900), (6039, 3000), (6040, 10), (6047, 200), (6048, 50), (6049, 2)]
         {
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ends_or_calls_by_itself_is_refused() {
+    fn ends_and_calls_cannot_call_programs() {
         let mut calls = CodeCalls::default();
         for key in ["G65", "M99", "M30", "M0", "X1", "M1.5", "M-5"] {
             assert_eq!(calls.set_code(key, 9020), None, "{key}");

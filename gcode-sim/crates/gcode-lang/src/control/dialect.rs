@@ -66,14 +66,14 @@ mod tests {
     /// The 0i-F has 48 additional work coordinate systems and its own codes; the rest is that of a 31i.
     #[test]
     fn a_0i_f_is_a_31i_with_fewer_work_systems() {
-        let mut wanted = Settings::default();
-        wanted.set("CODES", "fanuc-0i-f").unwrap();
-        wanted.set("WORK-SYSTEMS", "48").unwrap();
-        wanted.dialect = Dialect::Fanuc0iF;
+        let mut expected = Settings::default();
+        expected.set("CODES", "fanuc-0i-f").unwrap();
+        expected.set("WORK-SYSTEMS", "48").unwrap();
+        expected.dialect = Dialect::Fanuc0iF;
         let mut settings = Settings::default();
         settings.apply_dialect(Dialect::HaasNgc);
         settings.apply_dialect(Dialect::Fanuc0iF);
-        assert_eq!(settings, wanted);
+        assert_eq!(settings, expected);
     }
 
     #[test]
@@ -92,7 +92,7 @@ mod tests {
             settings.apply_dialect(row.dialect);
             assert_eq!(settings.dialect, row.dialect);
             settings.apply_dialect(Dialect::default());
-            assert_eq!(settings, Settings::default(), "{:?} leaves something behind", row.dialect);
+            assert_eq!(settings, Settings::default(), "{:?} leaves something after", row.dialect);
         }
     }
 }

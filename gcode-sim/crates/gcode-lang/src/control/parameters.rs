@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn each_row_reads_what_its_setting_says() {
+    fn each_row_reads_the_value_of_its_setting() {
         for row in ROWS {
             let ParameterAccess::Key(key, read) = row.access else { continue };
             let values = if key == "19625" { ["3", "8"] } else { ["0", "1"] };

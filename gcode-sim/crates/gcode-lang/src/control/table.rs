@@ -393,7 +393,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_have_names() {
+    fn settings_are_set_by_key() {
         let mut settings = Settings::default();
         for (key, value) in
             [("NAT", "1"), ("BDT", "1+3"), ("ROA", "A"), ("5115", "0.2"), ("#1005", "1"), ("G201", "9010")]
@@ -407,16 +407,16 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_names_the_key_and_what_is_allowed() {
+    fn a_refusal_names_the_key_and_the_permitted_values() {
         let mut settings = Settings::default();
-        let told = |r: Result<(), SettingError>| r.unwrap_err().to_string();
-        assert_eq!(told(settings.set("NAT", "2")), "setting NAT is '2': 0 or 1");
-        assert!(told(settings.set("NOPE", "1")).starts_with("no setting 'NOPE'"));
-        assert!(told(settings.set("ROA", "X")).contains("letters of rotary axes"));
+        let error = |r: Result<(), SettingError>| r.unwrap_err().to_string();
+        assert_eq!(error(settings.set("NAT", "2")), "setting NAT is '2': 0 or 1");
+        assert!(error(settings.set("NOPE", "1")).starts_with("no setting 'NOPE'"));
+        assert!(error(settings.set("ROA", "X")).contains("letters of rotary axes"));
     }
 
     #[test]
-    fn keys_stand_once() {
+    fn keys_are_unique() {
         for (i, row) in ROWS.iter().enumerate() {
             assert!(ROWS[..i].iter().all(|other| other.key != row.key), "{}", row.key);
         }

@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn letters_and_locals_belong_together() {
+    fn each_letter_has_its_local() {
         assert_eq!(argument_letter(1), Some('A'));
         assert_eq!(argument_letter(18), Some('R'));
         assert_eq!(argument_letter(26), Some('Z'));
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn i_j_k_open_sets() {
+    fn i_j_k_begin_sets() {
         let dealt = |letters: &str| {
             let mut locals = ArgumentLocals::new(false, false);
             letters.bytes().map(|l| locals.next(l).unwrap().unwrap()).collect::<Vec<_>>()

@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_is_itself_whatever_was_asked_for_before() {
+    fn a_block_is_lowered_correctly_in_any_order() {
         const LINES: usize = 3 * KEPT_OPERATIONS + 5;
         let text: Vec<String> = (0..LINES).map(line).collect();
         let mut memory = Memory::default();
@@ -183,8 +183,8 @@ mod tests {
             let op = memory.lower_block(id, place).unwrap();
             let span = op.span;
             if let OpKind::AssignFree(Assign { code, .. }) = op.kind() {
-                let wanted = Operation::Add([OperandSource::Number(place as f64), OperandSource::Free(2)]);
-                assert_eq!(code[0].operation, wanted);
+                let expected = Operation::Add([OperandSource::Number(place as f64), OperandSource::Free(2)]);
+                assert_eq!(code[0].operation, expected);
             } else {
                 assert_eq!(op.number, Some(place as u32));
             }
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_that_another_took_the_place_of_is_not_there() {
+    fn a_replaced_block_is_not_lowered() {
         let mut memory = Memory::default();
         memory.load("O1.nc", format!("O1\n{}", "X1.\n".repeat(KEPT_OPERATIONS + 1)).into_bytes());
         let id = memory.ids().next().unwrap();

@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn a_code_is_what_its_control_makes_of_it() {
+    fn the_meaning_of_a_code_depends_on_the_control() {
         let effect = |code, set| find(code).row_for(set).map(|row| row.effect);
         assert_eq!(effect(1540, Dialect::HaasNgc), Some(Effect::AdditionalWork));
         assert_eq!(effect(1540, Dialect::Fanuc31i), None);

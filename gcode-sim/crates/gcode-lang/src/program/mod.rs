@@ -76,7 +76,7 @@ pub struct Op {
 pub enum OpBody {
     /// Operation without guards, as in most blocks.
     Plain(OpKind),
-    /// Operation behind a block skip or a dialect check.
+    /// Operation after a block skip or a dialect check.
     Guarded(Box<GuardedOp>),
 }
 

@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_stand_once() {
+    fn names_are_unique() {
         for (i, row) in NAMES.iter().enumerate() {
             assert!(NAMES[..i].iter().all(|other| other.name != row.name), "{}", row.name);
         }

@@ -65,16 +65,16 @@ mod tests {
     }
 
     /// Text after the line, as in a long file.
-    const BEHIND: &str = "\nX1.\nG4 (AND SO FORTH) X1.\n";
+    const FOLLOWING: &str = "\nX1.\nG4 (AND SO FORTH) X1.\n";
 
     proptest! {
         #[test]
-        fn a_block_of_numbers_is_what_its_tree_is(
+        fn a_block_of_numbers_lowers_like_its_tree(
             words in vec("[A-Z]|G(1|0?4|54\\.1|65|5\\.55|-1)|M(3|9[7-9]|198)|[XNIFO][-+]?[0-9]{0,10}[.]?[0-9]{0,10}|[XNY][0-9]{1,3}\\.?[0-9]{1,3} ?|[ \t\x1a]|[#%(;/n]", 1..8),
             end in proptest::sample::select(vec!["", "\n", "\r\n", " \nX5", "\t\r"]),
-            behind in proptest::sample::select(vec!["", BEHIND]),
+            after in proptest::sample::select(vec!["", FOLLOWING]),
         ) {
-            let text = format!("{}{end}{behind}", words.concat().trim_start_matches([' ', '\t', '\x1a']));
+            let text = format!("{}{end}{after}", words.concat().trim_start_matches([' ', '\t', '\x1a']));
             let mut op = another();
             if op.refill(SourceId(0), text.as_bytes(), 0) {
                 prop_assume!(op.span.end > 0);
@@ -86,8 +86,8 @@ mod tests {
     }
 
     #[test]
-    fn the_common_line_needs_no_tree() {
-        let text = format!("N10 G1 X1.5 Y-.25 Z+3\r\nG0{BEHIND}");
+    fn a_block_of_numbers_needs_no_tree() {
+        let text = format!("N10 G1 X1.5 Y-.25 Z+3\r\nG0{FOLLOWING}");
         let mut op = another();
         assert!(op.refill(SourceId(0), text.as_bytes(), 0));
         assert_eq!((op.number, op.span.end), (Some(10), 21));
@@ -95,11 +95,11 @@ mod tests {
     }
 
     #[test]
-    fn whatever_else_stands_in_a_block_is_left_to_its_tree() {
+    fn any_other_block_needs_its_tree() {
         for text in
             ["G1 X#1", "G1 (A)", "g1", "G65 P1", "M98 P1", "M99", "X1 O2", "G5.55", "/G1", "X1.2.", "X 1"]
         {
-            let text = format!("{text}{BEHIND}");
+            let text = format!("{text}{FOLLOWING}");
             assert!(!another().refill(SourceId(0), text.as_bytes(), 0), "{text}");
         }
     }

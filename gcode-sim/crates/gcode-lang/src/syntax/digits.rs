@@ -67,30 +67,30 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_number_is_what_its_digits_spell(
-            before in "[XN][-+]?", whole in "[0-9]{0,9}", point in any::<bool>(), fraction in "[0-9]{0,9}", behind in "[ A-Z.:/\r\né]{0,9}",
+        fn the_digits_of_a_word_give_its_number(
+            before in "[XN][-+]?", whole in "[0-9]{0,9}", point in any::<bool>(), fraction in "[0-9]{0,9}", after in "[ A-Z.:/\r\né]{0,9}",
         ) {
             let written = if point { format!("{whole}.{fraction}") } else { whole.clone() };
-            let text = format!("{before}{written}{behind}");
+            let text = format!("{before}{written}{after}");
             let found = number(&window(text.as_bytes()), before.len());
             let fraction = if point { fraction } else { String::new() };
-            prop_assume!(point || !behind.starts_with('.'));
-            let wanted = (1..=8).contains(&whole.len().max(fraction.len())).then(|| {
+            prop_assume!(point || !after.starts_with('.'));
+            let expected = (1..=8).contains(&whole.len().max(fraction.len())).then(|| {
                 let digits = format!("{whole}{fraction}").parse().unwrap();
                 (digits, point.then_some(fraction.len() as u8), before.len() + written.len())
             });
-            prop_assert_eq!(found, wanted, "{:?}", text);
+            prop_assert_eq!(found, expected, "{:?}", text);
         }
     }
 
     #[test]
-    fn digits_end_at_the_first_byte_that_is_none() {
-        for behind in 0..=u8::MAX {
+    fn digits_end_at_the_first_other_byte() {
+        for after in 0..=u8::MAX {
             for length in 1..=8 {
                 let mut text = b"X98765432?1234567890".to_vec();
-                text[1 + length] = behind;
+                text[1 + length] = after;
                 let read = number(&window(&text), 1);
-                match behind {
+                match after {
                     b'0'..=b'9' | b'.' => {}
                     _ => {
                         assert_eq!(read, Some((98_765_432 / 10_u64.pow(8 - length as u32), None, 1 + length)))
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn points_and_what_stands_behind() {
+    fn a_number_ends_after_its_decimals() {
         let read = |text: &str| number(&window(text.as_bytes()), 1);
         assert_eq!(read("X12.345 Y1"), Some((12_345, Some(3), 7)));
         assert_eq!(read("X1234.5678"), Some((12_345_678, Some(4), 10)));

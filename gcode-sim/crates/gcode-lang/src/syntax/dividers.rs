@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_that_divides_a_line_is_passed_over() {
+    fn every_divider_is_found() {
         for byte in *b"(;/%Oo:<DdEe&" {
             for place in 0..80 {
                 let mut text = b"N10 G1 X-1.5 Y+2. Z#3 F[100*2]=,\tgzAKQ@\n\r9".repeat(3);

@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn statements_are_told_from_words() {
+    fn statements_differ_from_words() {
         let found =
             programs(b"N41GOTO#22\nIF[[#1 EQ 1]AND[#2 LT 3]]THEN#3000=1(BAD)\nWH[#1GT0]DO1\nEND 1\nDO4\n");
         let kinds: Vec<_> = found[0]
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_has_the_alarm_of_a_control() {
+    fn unreadable_text_has_the_alarm_of_a_control() {
         for (text, alarm) in [
             ("G0 X1..5", 7),
             ("G0 X Y10.", 5),

@@ -75,11 +75,11 @@ mod tests {
         fn a_number_is_the_double_nearest_to_what_is_written(
             text in "[0-9]{0,11}\\.[0-9]{1,11}|[0-9]{1,12}\\.?|[0-9]{0,3}\\.0{0,6}[0-9]{1,9}",
         ) {
-            let wanted: f64 = text.parse().unwrap();
+            let expected: f64 = text.parse().unwrap();
             match decimal(text.as_bytes(), false, EXPRESSION_LIMIT) {
                 Ok((rest, number)) => {
                     prop_assert!(rest.is_empty());
-                    prop_assert_eq!(number.value().to_bits(), wanted.to_bits());
+                    prop_assert_eq!(number.value().to_bits(), expected.to_bits());
                 }
                 Err(_) => prop_assert!(text.replace('.', "").trim_start_matches('0').len() > 12),
             }
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn points_zeros_and_spaces() {
+    fn numbers_may_contain_points_zeros_and_spaces() {
         assert_eq!(read("12.50"), Some((1250, Some(2), 0)));
         assert_eq!(read(".5"), Some((5, Some(1), 0)));
         assert_eq!(read("5."), Some((5, Some(0), 0)));

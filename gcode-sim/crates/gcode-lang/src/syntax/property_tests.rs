@@ -265,7 +265,7 @@ proptest! {
     }
 
     #[test]
-    fn what_was_read_prints_as_what_reads_the_same(
+    fn any_text_that_is_read_and_printed_reads_as_the_same_tree(
         lines in vec("([A-Zxg#\\[\\]()/;,.=+*<>%:&|O0-9 -]|AND|EQ|GOTO|GO|WH|EN|IF|THEN|DO|SIN|#1|X1\\.|M99|//|\\[#1|é){0,12}", 1..6)
     ) {
         for program in parse(SourceId(0), lines.join("\n").as_bytes()) {

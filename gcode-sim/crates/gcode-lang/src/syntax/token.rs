@@ -142,10 +142,10 @@ pub(super) fn word<'a>(text: &'static str) -> impl Fn(Input<'a>) -> ReadResult<'
 /// Returns the number of leading letters that match `text`, and the input after them.
 pub(super) fn letters<'a>(input: Input<'a>, text: &str) -> (Input<'a>, usize) {
     let mut rest = input;
-    for (count, wanted) in text.bytes().enumerate() {
+    for (count, expected) in text.bytes().enumerate() {
         let gap = rest.iter().take_while(|b| is_space(**b)).count();
         match rest[gap..].split_first() {
-            Some((byte, after)) if byte.to_ascii_uppercase() == wanted => rest = after,
+            Some((byte, after)) if byte.to_ascii_uppercase() == expected => rest = after,
             _ => return (rest, count),
         }
     }

@@ -82,7 +82,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn numbers_that_no_function_takes() {
+    fn arithmetic_that_raises_an_alarm_is_reported() {
         let text = "O1\n#1=SQRT[-4]\n#2=#1/0\n#3=1/[2-2]\n#4=ACOS[1.5]\n#5=LN[0]\nIF[#1 MOD 0 GT 2]GOTO 9\n\
                     X[ASIN[-2]]\n#[5/0]=1\n#6=2+SQRT[0-ABS[-9]]*#1\nN9 M30\n";
         assert_eq!(lines(&RULE, text), [2, 3, 4, 5, 6, 7, 8, 9, 10]);
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_computes_and_what_only_a_run_knows() {
+    fn computable_and_unknown_values_are_accepted() {
         let text = "O1\n#1=SQRT[4]/2\n#2=SQRT[#1-9]\n#3=5/#4\n#5=ACOS[-1]\n#6=0/5\n#7=ATAN[1]/[0]\n#8=7 MOD 3\nM30\n";
         assert_eq!(lines(&RULE, text), NOWHERE);
     }

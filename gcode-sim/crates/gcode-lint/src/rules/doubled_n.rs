@@ -21,8 +21,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             None => {
                 first.insert(number, (op.span, false));
             }
-            Some((_, told @ false)) => {
-                *told = true;
+            Some((_, is_reported @ false)) => {
+                *is_reported = true;
                 let line = context.memory.sources().line_column(first[&number].0).line;
                 let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.is_return);
                 let consequence = if jump {
@@ -45,10 +45,10 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn each_number_is_told_once() {
+    fn each_duplicate_number_is_reported_once() {
         assert_eq!(lines(&RULE, "O1\nN10 G0\nN010 G0\nN10 G0\nN20 M30\n"), [3]);
         let parameters = "O1\nN1241 G10 L52\nN1241 P1 R1.\nN1241 P2 R1.\nG11\nN1241 M30\n";
-        assert_eq!(lines(&RULE, parameters), [6], "behind G10 L52 N is no sequence number");
+        assert_eq!(lines(&RULE, parameters), [6], "after G10 L52 N is no sequence number");
         assert_eq!(lines(&RULE, "O1\nN10 M30\nO2\nN10 M99\n(N10)\n"), NOWHERE, "each program has its own");
     }
 }

@@ -36,19 +36,19 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 }
 
 /// Finds endless cycles closed by a GOTO, each component once.
-fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<Diagnostic> {
+fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, reported: &[bool]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let backward_target = |jump: &Jump| {
         let to = jump.to.filter(|to| *to <= jump.block)?;
-        (unit.is_reached[jump.block] && !jump.is_return && !told[jump.block]).then_some(to)
+        (unit.is_reached[jump.block] && !jump.is_return && !reported[jump.block]).then_some(to)
     };
     if !unit.flow.jumps.iter().any(|jump| backward_target(jump).is_some()) {
         return found;
     }
     let components = strongly_connected_components(&unit.flow);
     let mut members: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
-    for (block, circle) in components[..unit.flow.block_successors.len()].iter().enumerate() {
-        members.entry(*circle).or_default().push(block);
+    for (block, component) in components[..unit.flow.block_successors.len()].iter().enumerate() {
+        members.entry(*component).or_default().push(block);
     }
     for jump in &unit.flow.jumps {
         let Some(to) = backward_target(jump).filter(|to| components[*to] == components[jump.block]) else {
@@ -60,36 +60,30 @@ fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[b
             continue;
         }
         let message = format!("GOTO {} loops forever: no block in the loop exits it", jump.number);
-        let finding =
-            unit.finding(&RULE.kind, jump.block, message).label(unit.op(to).span, "it jumps back to here");
-        found.push(
-            finding.help("change a variable of the exit condition in the loop, or count the iterations"),
-        );
+        let help = "change a variable of the exit condition in the loop, or count the iterations";
+        let finding = unit.finding(&RULE.kind, jump.block, message).help(help);
+        found.push(finding.label(unit.op(to).span, "it jumps back to here"));
     }
     found
 }
 
 fn loop_finding(unit: &ProgramUnit<'_>, block: OpIndex) -> Diagnostic {
-    match condition(unit, block) {
-        Some(condition) => {
-            let uses = VariableUses::of(condition_expressions(condition));
-            let mut names: Vec<String> = uses.reads.iter().map(|read| format!("#{}", read.number)).collect();
-            names.dedup();
-            let message = if names.is_empty() {
-                "this loop never ends: its condition is always true".to_owned()
-            } else {
-                format!("this loop never ends: no block in it changes {}", names.join(" or "))
-            };
-            let help = match names.first() {
-                Some(name) => format!("change {name} in the loop, {name}={name}+1"),
-                None => "exit it by GOTO, or count the iterations".to_owned(),
-            };
-            unit.finding(&RULE.kind, block, message).help(help)
-        }
-        None => unit
-            .finding(&RULE.kind, block, "this loop never ends: no block in it exits it")
-            .help("exit it by GOTO, or count the iterations"),
-    }
+    const EXIT: &str = "exit it by GOTO, or count the iterations";
+    let names = condition(unit, block).map(|condition| {
+        let uses = VariableUses::of(condition_expressions(condition));
+        let mut names: Vec<String> = uses.reads.iter().map(|read| format!("#{}", read.number)).collect();
+        names.dedup();
+        names
+    });
+    let (reason, help) = match names.as_deref() {
+        None => ("no block in it exits it".to_owned(), EXIT.to_owned()),
+        Some([]) => ("its condition is always true".to_owned(), EXIT.to_owned()),
+        Some(all @ [name, ..]) => (
+            format!("no block in it changes {}", all.join(" or ")),
+            format!("change {name} in the loop, {name}={name}+1"),
+        ),
+    };
+    unit.finding(&RULE.kind, block, format!("this loop never ends: {reason}")).help(help)
 }
 
 /// Returns the condition of a WHILE or of an IF … GOTO.
@@ -122,7 +116,7 @@ fn has_exit(
             || ways.jumps_anywhere
             || raises_alarm(op.kind())
             || waits_for_operator(op.kind())
-            || is_alarm(op.kind())
+            || matches!(op.kind(), OpKind::Alarm(_))
         {
             return true;
         }
@@ -141,10 +135,6 @@ fn has_exit(
             None => true,
         }
     })
-}
-
-fn is_alarm(kind: &OpKind) -> bool {
-    matches!(kind, OpKind::Alarm(_))
 }
 
 /// Returns true if the block waits for the operator: M00, M01, `#3006`.
@@ -221,7 +211,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn what_the_condition_asks_must_change() {
+    fn a_loop_must_change_its_condition() {
         assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nG91 X1.\n#2=#1+1\nEND1\nM30\n"), [3]);
         assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nG91 X1.\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
         let found = messages(&RULE, "O1\n#1=0\nWHILE[#1 LT #2]DO1\nG65 P2 X#1\nEND1\nM30\nO2\n#1=5\nM99\n");
@@ -255,24 +245,20 @@ mod tests {
     }
 
     #[test]
-    fn jumps_that_go_round() {
+    fn backward_jumps_form_loops() {
         assert_eq!(lines(&RULE, "O1\nN1 G0 X1.\nX2.\nGOTO 1\nM30\n"), [4]);
         assert_eq!(lines(&RULE, "O1\n#1=0\nN1 G0 X1.\nIF[#1 EQ 5]GOTO 9\nGOTO 1\nN9 M30\n"), [5]);
         assert_eq!(
             lines(&RULE, "O1\n#1=0\nN1 G0 X1.\n#1=#1+1\nIF[#1 EQ 5]GOTO 9\nGOTO 1\nN9 M30\n"),
             NOWHERE
         );
-        assert_eq!(
-            lines(&RULE, "O1\nN1 G0 X1.\nX2.\nM99\n"),
-            NOWHERE,
-            "M99 is how a main program goes round"
-        );
+        assert_eq!(lines(&RULE, "O1\nN1 G0 X1.\nX2.\nM99\n"), NOWHERE, "M99 repeats a main program");
     }
 
     #[test]
-    fn circles_inside_and_beside_one_another() {
+    fn nested_and_adjacent_loops_are_separate() {
         let twice = "O1\n#1=0\nN1 X1.\nIF[#2 EQ 5]GOTO 1\nX2.\nGOTO 1\nM30\n";
-        assert_eq!(lines(&RULE, twice), [4], "one circle, told at its first GOTO");
+        assert_eq!(lines(&RULE, twice), [4], "one loop, reported at its first GOTO");
         let beside = "O1\nN1 IF[#500 EQ 1]GOTO 2\n#500=#500+1\nGOTO 1\nN2 X1.\nGOTO 2\nM30\n";
         assert_eq!(lines(&RULE, beside), [6]);
         let crossed = "O1\n#1=0\nN1 X1.\nN2 #1=#1+1\nIF[#1 LT 5]GOTO 1\nIF[#1 LT 9]GOTO 2\nM30\n";

@@ -41,7 +41,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn loops_are_entered_at_their_beginning() {
+    fn a_jump_into_a_loop_is_reported() {
         let body = "N5 WHILE[#1 LT 3]DO1\nN6 #1=#1+1\nIF[#1 EQ 2]GOTO 6\nIF[#1 EQ 9]GOTO 9\nEND1\nN9 M30\n";
         assert_eq!(lines(&RULE, &format!("O1\n#1=#500\nIF[#1 GT 0]GOTO 6\n{body}")), [3]);
         assert_eq!(lines(&RULE, &format!("O1\n#1=#500\nIF[#1 GT 0]GOTO 5\n{body}")), NOWHERE);

@@ -111,13 +111,13 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn a_move_may_be_under_way() {
+    fn a_position_read_after_a_move_is_reported() {
         assert_eq!(lines(&RULE, "O1\nG0 X10.\n#100=#5041\n#101=#5023*2\nM30\n"), [3, 4]);
         assert_eq!(lines(&RULE, "O1\nG0 X10.\nM8\nIF[#5023 LT 0]GOTO 9\nN9 M30\n"), [4]);
     }
 
     #[test]
-    fn signals_and_clocks_are_of_the_moment_too() {
+    fn signals_and_clocks_are_momentary_values() {
         for read in ["#100=#1005", "#100=#3001", "#100=#4201", "IF[#1032 EQ 0]GOTO 9", "#100=[#_UI[3]]"] {
             assert_eq!(lines(&RULE, &format!("O1\nG0 X10.\n{read}\nN9 M30\n")), [3], "{read}");
             assert_eq!(lines(&RULE, &format!("O1\nG0 X10.\nM00\n{read}\nN9 M30\n")), NOWHERE, "{read}");
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_waits_settles_it() {
+    fn a_block_that_waits_ends_the_move() {
         for stop in ["M00", "G53", "#3006=1(LOOK)", "G31 Z-5. F50.", "M50"] {
             assert_eq!(lines(&RULE, &format!("O1\nG0 X10.\n{stop}\n#100=#5041\nM30\n")), NOWHERE, "{stop}");
         }

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn one_fault_is_told_once() {
+    fn one_fault_is_one_finding() {
         assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE(#1 LT 3)DO1\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\n#1=0\nDO1\nDO1\n#1=#1+1\nEND1\nEND1\nM30\n"), [4]);
     }

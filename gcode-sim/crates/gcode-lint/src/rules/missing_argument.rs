@@ -26,28 +26,17 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         let effects = known.entry((called, entry)).or_insert_with(|| {
             missing_argument_effects(context, &context.units[called], entry, call.is_modal)
         });
-        for lack in effects {
-            let finding = match lack {
-                MissingArgumentEffect::Alarm(message) => {
-                    unit.finding(&RULE.kind, call.block, message.clone())
-                }
-                MissingArgumentEffect::DefaultsToZero(message) => {
-                    unit.finding(&RULE.kind, call.block, message.clone()).with_severity(Severity::Warning)
-                }
-            };
+        for (severity, message) in effects {
+            let finding = unit.finding(&RULE.kind, call.block, message.clone()).with_severity(*severity);
             found.push(finding.help("write the letter with its value"));
         }
     }
     found
 }
 
-/// Effect of a missing argument, as a sentence.
-enum MissingArgumentEffect {
-    /// The macro stops with its alarm.
-    Alarm(String),
-    /// The macro computes with 0, which may be intended.
-    DefaultsToZero(String),
-}
+/// Effect of a missing argument as a sentence: an error if the macro stops with its alarm, a warning if it
+/// computes with 0, which may be intended.
+type MissingArgumentEffect = (Severity, String);
 
 /// Returns the effects of a call's missing arguments.
 fn missing_argument_effects(
@@ -75,7 +64,7 @@ fn missing_argument_effects(
             let message = format!(
                 "{label} needs {letter} (#{local}): if it is omitted, the program stops with {alarm}"
             );
-            effects.push(MissingArgumentEffect::Alarm(message));
+            effects.push((Severity::Error, message));
         }
     }
     // After a refusal no variable is read, and a modal macro may use values of its last call.
@@ -89,7 +78,7 @@ fn missing_argument_effects(
             let line = context.memory.sources().line_column(called.op(block).span).line;
             let message =
                 format!("{label} uses {letter} (#{local}) in line {line}; if it is omitted, it is 0");
-            effects.push(MissingArgumentEffect::DefaultsToZero(message));
+            effects.push((Severity::Warning, message));
         }
     }
     effects
@@ -143,7 +132,7 @@ mod tests {
                          IF[#6 EQ #0]THEN #6=1.\nX#18 Z-#7 Y#25\n#30=#7*#9\nM99\nN90 #3000=1(R MISSING)\n";
 
     #[test]
-    fn the_macro_says_what_it_needs() {
+    fn a_macro_requires_the_arguments_it_tests() {
         let call = |words: &str| messages(&RULE, &format!("O1\nG65 P2 {words}\nM30\n{DRILL}"));
         assert_eq!(call("R5. D2. F3."), [""; 0]);
         assert_eq!(call("R#500 D#501 F#502"), [""; 0], "values that only a run knows");
@@ -157,12 +146,12 @@ mod tests {
             ["O0002 needs D (#7): if it is omitted, the program stops with MC3002 (D MISSING)"]
         );
         assert_eq!(call("R5. D2."), ["O0002 uses F (#9) in line 9; if it is omitted, it is 0"]);
-        assert_eq!(call("").len(), 2, "R and D; F is not looked at before they are there");
+        assert_eq!(call("").len(), 2, "R and D; F is not checked before they are present");
     }
 
     /// A ball requires neither K nor Q, a nose of arcs both.
     #[test]
-    fn letters_that_belong_together_may_both_be_left_out() {
+    fn arguments_that_depend_on_each_other_may_be_omitted_together() {
         let arcs = "O2\nIF[[#6 EQ #0]AND[#17 EQ #0]]GOTO 20\nIF[#6 LE 0]THEN #3000=1(K MISSING)\n\
                     IF[#17 LE 0]THEN #3000=2(Q MISSING)\nN20 X1.\nM99\n";
         let call = |words: &str| messages(&RULE, &format!("O1\nG65 P2 {words}\nM30\n{arcs}"));
@@ -175,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn each_call_is_looked_at() {
+    fn each_call_is_checked() {
         let text = format!("O1\nG65 P2 R1. D2. F3.\nG65 P2 R1. F3.\nM30\n{DRILL}");
         assert_eq!(lines(&RULE, &text), [3]);
     }

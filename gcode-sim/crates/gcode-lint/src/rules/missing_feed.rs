@@ -81,7 +81,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn no_way_has_an_f() {
+    fn a_feed_move_without_f_on_every_path_is_reported() {
         assert_eq!(lines(&RULE, "O1\nG0 X5.\nG1 X10.\nM30\n"), [3]);
         assert_eq!(
             lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 5\nG2 X1. R5.\nN5 G1 X10.\nG1 Y5. F100.\nM30\n"),
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn some_way_has_one() {
+    fn an_f_on_one_path_suffices() {
         for text in [
             "O1\nF100.\nG1 X10.\nM30\n",
             "O1\nG1 X10. F#1\nG3 X5. R3.\nM30\n",

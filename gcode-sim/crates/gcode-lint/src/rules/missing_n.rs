@@ -61,16 +61,16 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn goto_needs_its_block() {
+    fn goto_needs_its_target() {
         assert_eq!(lines(&RULE, "O1\n#1=2\nIF[#1 EQ 1]GOTO 10\nGOTO 0020\nN20 M30\n"), [3]);
         assert_eq!(lines(&RULE, "O1\n#1=20\nGOTO #1\nN20 M30\n"), NOWHERE, "only a run knows #1");
     }
 
     #[test]
-    fn a_return_needs_its_block_in_the_caller() {
+    fn a_return_needs_its_target_in_the_caller() {
         let called = "O2\nN7 M99 P50\n";
         assert_eq!(lines(&RULE, &format!("O1\nM98 P2\nN50 M30\n{called}")), NOWHERE);
         assert_eq!(lines(&RULE, &format!("O1\nM98 P2\nN5 M30\n{called}")), [5]);
-        assert_eq!(lines(&RULE, called), NOWHERE, "nobody knows who calls it");
+        assert_eq!(lines(&RULE, called), NOWHERE, "its callers are unknown");
     }
 }

@@ -31,7 +31,7 @@ mod tests {
 
     /// The default of the setting OFFSETS is 400.
     #[test]
-    fn beyond_the_last_there_is_none() {
+    fn a_number_beyond_the_last_offset_is_reported() {
         assert_eq!(lines(&RULE, "O1\nG43 H999 Z5.\nG41 D401\nM30\n"), [2, 3]);
         assert_eq!(lines(&RULE, "O1\nG43 H1 Z5.\nG41 D400\nG43 H#1\nG65 P2 H999\nM30\nO2\nM99\n"), NOWHERE);
     }

@@ -150,7 +150,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn a_point_is_missing() {
+    fn a_missing_point_is_reported() {
         let found =
             messages(&RULE, "O1\nG0 X10. Y20.\nG1 Z-3 F100\nG4 X2\nG0 B90\nG65 P2 A5\nM30\nO2\nM99\n");
         assert_eq!(
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn offsets_and_angles_of_codes_are_measures_too() {
+    fn offsets_and_angles_of_codes_are_measured() {
         let text =
             "O1\nG0 X1.\nG10 L2 P1 X-100 Y0\nG10 L10 P1 R50\nG68 X0 Y0 R45\nG69\nG51 X10 Y0 P2000\nM30\n";
         let found = messages(&RULE, text);
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_zeros_and_increments_are_no_lengths() {
+    fn counts_zeros_and_increments_are_accepted() {
         for text in [
             "O1\nG0 X0 Y0.5\nG43 H1 Z100.\nM98 P2 L3\nG4 P500\nM30\nO2\nM99\n",
             "O1\nG0 X45000 Y500\nG1 Z-3000 F200\nM30\n",

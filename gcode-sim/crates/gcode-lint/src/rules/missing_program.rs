@@ -46,7 +46,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn called_programs_must_be_there() {
+    fn a_missing_program_is_reported_once() {
         let text =
             "O1\nM98 P30002\nG65 P3 A1.\nM98 P2 L2\n#1=2\nG65 P#1\nG65 A1.\nG65 P3 A2.\nM30\nO2\nM99\n";
         assert_eq!(lines(&RULE, text), [3, 7]);

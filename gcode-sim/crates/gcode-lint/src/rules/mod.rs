@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_small_letters_with_hyphens_and_each_has_its_section() {
+    fn each_code_is_unique_in_lower_case_and_has_its_section() {
         for (place, Rule { kind, .. }) in ALL.iter().enumerate() {
             assert!(kind.code.bytes().all(|b| b.is_ascii_lowercase() || b == b'-'), "{kind}");
             assert!(ALL[..place].iter().all(|other| &other.kind != kind), "{kind}");

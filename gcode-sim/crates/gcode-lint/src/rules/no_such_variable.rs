@@ -45,15 +45,15 @@ mod tests {
 
     /// Locals are #1 to #33; #5021 and up are positions; #3000 is write-only.
     #[test]
-    fn what_is_not_there_or_not_for_that() {
+    fn missing_and_protected_variables_are_reported() {
         let text = "O1\n#34=1\n#5021=5\n#4001=1\n#0=1\n#1=#99\nG0 X#450\n#1=#3000\n#[30+4]=1\nM30\n";
         assert_eq!(lines(&RULE, text), [2, 3, 4, 5, 6, 7, 8, 9]);
-        let told: Vec<_> = messages(&RULE, text).iter().map(|m| m[..6].to_owned()).collect();
-        assert_eq!(told, ["PS0115", "PS0116", "PS0116", "PS0116", "PS0115", "PS0115", "PS1115", "PS0115"]);
+        let codes: Vec<_> = messages(&RULE, text).iter().map(|m| m[..6].to_owned()).collect();
+        assert_eq!(codes, ["PS0115", "PS0116", "PS0116", "PS0116", "PS0115", "PS0115", "PS1115", "PS0115"]);
     }
 
     #[test]
-    fn what_is_there_is_left_alone() {
+    fn existing_variables_are_accepted() {
         let text = "O1\n#33=1\n#100=#0\n#199=#5021\n#500=#999\n#5221=0\n#3006=1(LOOK)\n#1=10\n#[#1]=#[#1+30]\nIF[#3100 EQ #0]GOTO 9\n#3000=1(STOP)\nN9 M30\n";
         assert_eq!(lines(&RULE, text), NOWHERE);
     }

@@ -25,7 +25,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn the_rest_of_the_line_is_comment() {
+    fn an_unclosed_comment_is_reported() {
         assert_eq!(lines(&RULE, "O1\nG0 X1. (OUT G1 Z-5.\nG0 X2. (BACK)\n(END\nM30\n"), [2, 4]);
     }
 }

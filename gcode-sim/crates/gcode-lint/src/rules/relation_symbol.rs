@@ -14,7 +14,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn symbols_compare_nothing() {
+    fn relation_signs_are_reported() {
         let text = "O1\n#1=1\nIF[#1=2]GOTO 5\nIF[#1<=4]GOTO 5\nWHILE[#1>4]DO1\nIF[#1 GT 4]GOTO 5\nN5 M30\n";
         assert_eq!(lines(&RULE, text), [3, 4, 5]);
     }

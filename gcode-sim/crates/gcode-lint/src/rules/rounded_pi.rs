@@ -62,20 +62,20 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn a_factor_near_pi_is_one_if_it_is_exact() {
+    fn a_rounded_factor_near_pi_is_reported() {
         let text = "O1\n#1=500.\n#2=3.14*#1\n#3=#1*3.1416/2.\n#4=FIX[#1/[22/7]]\n#5=3.14159265*#1\nX[3.142*#1]\n\
                     IF[#2*3.14 GT 5.]THEN #2=#1/3.14\n#6=355/113*#1\nM30\n";
         assert_eq!(lines(&RULE, text), [3, 4, 5, 7, 8, 8]);
     }
 
     #[test]
-    fn a_length_near_pi_is_a_length() {
+    fn a_length_near_pi_is_accepted() {
         assert_eq!(lines(&RULE, "O1\n#1=3.14\nX3.14\n#2=#1+3.14\n#3=#1*3.15\nM30\n"), [0u32; 0]);
     }
 
     /// 3.14 is π less 0.00159265: 0.0507 % of it, and 0.796 mm of 500·π.
     #[test]
-    fn what_it_costs_is_told() {
+    fn the_message_states_the_error() {
         assert_eq!(
             messages(&RULE, "O1\n#2=3.14*500.\nM30\n"),
             ["3.14 is used for π: 0.0507 % too small, an error of 0.796 mm round a diameter of 500 mm"]

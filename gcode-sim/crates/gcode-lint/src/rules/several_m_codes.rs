@@ -42,14 +42,14 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn the_first_is_lost_or_would_have_stopped() {
+    fn the_code_that_is_lost_is_reported() {
         let found = messages(&RULE, "O1\nM3 S100 M8\nM30 M5\nM30\n");
         assert_eq!(found[0], "M3 is lost: of several M codes in a block only the last counts");
         assert!(found[1].starts_with("PS0335: ") && found.len() == 2, "{found:?}");
     }
 
     #[test]
-    fn one_and_a_call_are_one() {
+    fn a_call_is_no_m_code() {
         assert_eq!(lines(&RULE, "O1\nM98 P2 M8\nM8\nGOTO 5\nM3 M8\nN5 M30\nO2\nM9 M99\n"), NOWHERE);
     }
 }

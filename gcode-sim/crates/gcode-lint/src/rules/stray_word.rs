@@ -50,7 +50,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn commas_and_exponents_are_no_words() {
+    fn commas_exponents_and_missing_axes_are_reported() {
         let text = "O1\nG0 X10., Y5.\nG1 X1.E3 F100.\nG0 U5.\nM30\n";
         assert_eq!(lines(&RULE, text), [2, 3, 4]);
         let found = messages(&RULE, text);
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_dwells_and_arguments_are_left_alone() {
+    fn corners_dwells_and_arguments_are_accepted() {
         assert_eq!(
             lines(&RULE, "O1\nG1 X10.,R2. F100.\nX20.,C1.\nG4 U1.\nG65 P2 E3. U1.\nM30\nO2\nM99\n"),
             NOWHERE

@@ -26,7 +26,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn names_must_be_those_of_rules() {
+    fn a_name_that_is_no_rule_is_reported() {
         assert_eq!(
             lines(&RULE, "O1(CHECK-OFF DOUBLED-M)\n(CHECK-OFF)\nN1 M8(CHECK-OFF DOUBLED-N)\nM30\n"),
             [1, 2]
@@ -34,7 +34,7 @@ mod tests {
     }
 
     #[test]
-    fn a_silenced_rule_is_silent_on_its_block_or_in_its_program() {
+    fn a_rule_is_suppressed_in_its_block_or_program() {
         assert_eq!(lines(&doubled_n::RULE, "O1\nN1 M8\nN1 M9 (CHECK-OFF DOUBLED-N)\nN2\nN2\nM30\n"), [5]);
         assert_eq!(lines(&doubled_n::RULE, "O1(PART)\n(CHECK-OFF DOUBLED-N)\nN1 M8\nN1 M9\nM30\n"), NOWHERE);
     }

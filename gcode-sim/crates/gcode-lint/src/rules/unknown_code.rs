@@ -66,7 +66,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn every_unknown_g_and_each_machine_m_once() {
+    fn unknown_g_codes_are_reported_always_and_m_codes_once() {
         assert_eq!(lines(&RULE, "O1\nG0 G154 P1\nG12 I5.\nG54.1 P3\nM88\nM88\nM8\nG#1\nM30\n"), [2, 3, 5]);
     }
 }

@@ -53,7 +53,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn what_stands_behind_the_end_needs_a_jump() {
+    fn blocks_after_the_end_need_a_jump() {
         assert_eq!(lines(&RULE, "O1\nG0 X1.\nM30\nG0 X2.\nM30\n"), [4]);
         assert_eq!(lines(&RULE, "O1\n#1=1\nIF[#1 EQ 2]GOTO 9\nM30\n(REMARK)\nN9 G0 X2.\nM30\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\n#1=1\nGOTO#1\nN1 G0\nM30\nN9 G0 X2.\nM30\n"), NOWHERE, "#1 may be 9");
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn an_end_behind_an_alarm_is_no_fault() {
+    fn an_end_after_an_alarm_is_accepted() {
         assert_eq!(lines(&RULE, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\n#3000=1(NO)\nG0 X1.\nM30\n"), [3]);
         let left = "O1\nN3 WHILE[#500 LT 3]DO1\n#500=#500+1\nGOTO 3\nEND1\nM30\n";
@@ -69,13 +69,13 @@ mod tests {
     }
 
     #[test]
-    fn a_called_program_may_return_behind_the_end() {
+    fn a_called_program_may_return_after_the_end() {
         assert_eq!(lines(&RULE, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99 P9\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99\n"), [4]);
     }
 
     #[test]
-    fn a_run_of_blocks_is_one_finding() {
+    fn consecutive_blocks_are_one_finding() {
         let found = messages(&RULE, "O1\nGOTO 5\nG0 X1.\nG0 X2.\nN5 M30\n");
         assert_eq!(found, ["this block and the following ones, up to line 4, are never reached"]);
     }

@@ -43,14 +43,14 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn an_alarm_needs_a_way_to_it() {
+    fn an_alarm_without_a_path_to_it_is_reported() {
         let head = "O2\nIF[#24 EQ #0]GOTO 90\nX#24\nM99\n";
         assert_eq!(lines(&RULE, &format!("{head}N90 #3000=1(NO X)\n")), NOWHERE);
         assert_eq!(lines(&RULE, &format!("{head}N90 M99\nN91 #3000=1(NO X)\n")), [6]);
     }
 
     #[test]
-    fn a_condition_that_is_decided_already_raises_nothing() {
+    fn an_alarm_whose_condition_is_decided_is_reported() {
         assert_eq!(lines(&RULE, "O2\nIF[#24 EQ #0]THEN #24=0\nIF[#24 EQ #0]THEN #3000=1(NO X)\nM99\n"), [3]);
         assert_eq!(lines(&RULE, "O2\n#24=1.\nIF[#24 EQ #0]GOTO 9\nM99\nN9 #3000=1(NO X)\n"), [5]);
         assert_eq!(lines(&RULE, "O2\nIF[#24 EQ #0]THEN #3000=1(NO X)\nX#24\nM99\n"), NOWHERE);

@@ -28,19 +28,19 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn names_the_alarm_a_control_raises() {
+    fn the_finding_names_the_alarm_of_the_control() {
         let found = messages(&RULE, "O1\nG0 X..5\nG0 X1. #1=5\nM30\n");
         assert!(found[0].starts_with("PS0007: ") && found[1].starts_with("PS0127: "), "{found:?}");
     }
 
     #[test]
-    fn an_if_without_then_is_for_other_controls() {
+    fn an_if_without_then_is_refused() {
         let found = messages(&RULE, "O1\nIF[#1 EQ 0]#2=1\nM30\n");
         assert!(found[0].starts_with("PS1137: "), "{found:?}");
     }
 
     #[test]
-    fn what_nothing_reaches_alarms_nobody() {
+    fn unreachable_blocks_are_ignored() {
         assert_eq!(lines(&RULE, "O1\nGOTO 5\nWRITTEN BY HAND\nN5 M30\nNOTES, FREE TEXT\n"), NOWHERE);
     }
 }

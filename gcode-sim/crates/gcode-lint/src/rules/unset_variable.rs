@@ -57,7 +57,7 @@ mod tests {
     use super::RULE;
 
     #[test]
-    fn what_was_never_set_is_told() {
+    fn an_unset_variable_is_reported() {
         assert_eq!(lines(&RULE, "O1\n#1=2.\nG0 X#1 Y#2\n#3=#4*2\n#5=#6\nM30\n"), [3, 4, 5]);
         assert_eq!(lines(&RULE, "O1\nIF[#9 EQ #0]THEN #10=#9*2\nM30\n"), [2]);
         assert_eq!(lines(&RULE, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn idioms_are_left_alone() {
+    fn idioms_are_accepted() {
         for text in [
             "O1\nIF[#24 EQ #0]THEN #24=1.\nX#24\nM30\n",
             "O1\nIF[#24 NE #0]GOTO 5\n#24=1.\nN5 X#24\nM30\n",
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_pass_of_a_loop_counts() {
+    fn the_first_iteration_of_a_loop_counts() {
         assert_eq!(lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nX#2\n#2=5.\n#1=#1+1\nEND1\nM30\n"), [4]);
         assert_eq!(
             lines(&RULE, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#2=5.\nX#2\n#1=#1+1\nEND1\nX#2\nM30\n"),
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn a_macro_knows_what_its_calls_pass() {
+    fn the_arguments_of_the_calls_count() {
         let called = "O2\nX#24\n#30=#24+#31\nM99\n";
         assert_eq!(lines(&RULE, &format!("O1\nG65 P2 X1.\nM30\n{called}")), [6]);
         assert_eq!(lines(&RULE, "O1\nG65 P2 I1. I2.\nM30\nO2\nX#4 Y#7\nM99\n"), NOWHERE);
