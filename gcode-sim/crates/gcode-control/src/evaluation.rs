@@ -188,7 +188,6 @@ impl Registers {
                 self.operand_stack.push(last);
                 last
             }
-            UncommonOp::Plus => last,
             UncommonOp::Read(number) => self.read_variable(number)?,
             UncommonOp::LoadIndirect => self.read_variable(variable_number(last)?)?,
             UncommonOp::Negate => match last {

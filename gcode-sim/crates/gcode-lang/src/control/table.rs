@@ -340,12 +340,7 @@ fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
 
 /// Reads a position, `X10,Z-5`; axes not named are at 0.
 fn point(settings: &Settings, value: &str) -> Option<Position> {
-    let mut point = Position::default();
-    for word in value.split(',').map(str::trim) {
-        let letter = word.bytes().next()?.to_ascii_uppercase();
-        point[settings.axes.find(letter)?] = between(word.get(1..)?, -1e6, 1e6)?;
-    }
-    Some(point)
+    limits(&settings.axes, value).map(|limits| Position(limits.map(Option::unwrap_or_default)))
 }
 
 /// Reads the limits of the named axes, `X400,Z0`.

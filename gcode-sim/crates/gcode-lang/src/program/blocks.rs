@@ -141,24 +141,19 @@ fn link_loop(op: &mut Op, place: OpIndex, loops: &Loops) {
         OpBody::Guarded(asked) => &mut asked.kind,
     };
     let OpKind::Statement(statement) = kind else { return };
-    let alarm = match statement {
-        Statement::While { number, end, .. } | Statement::Do { number, end } => match loops.end_of(place) {
-            Some(found) => {
-                *end = found;
-                return;
-            }
-            None => Alarm::MissingEnd { number: *number },
-        },
-        Statement::End { number, start } => match loops.begin_of(place) {
-            Some(found) => {
-                *start = found;
-                return;
-            }
-            None => Alarm::MissingDo { number: *number },
-        },
+    let (partner, found, alarm) = match statement {
+        Statement::While { number, end, .. } | Statement::Do { number, end } => {
+            (end, loops.end_of(place), Alarm::MissingEnd { number: *number })
+        }
+        Statement::End { number, start } => {
+            (start, loops.begin_of(place), Alarm::MissingDo { number: *number })
+        }
         _ => return,
     };
-    *kind = OpKind::Alarm(alarm.located_at(op.span));
+    match found {
+        Some(found) => *partner = found,
+        None => *kind = OpKind::Alarm(alarm.located_at(op.span)),
+    }
 }
 
 #[cfg(test)]

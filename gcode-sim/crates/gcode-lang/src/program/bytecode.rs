@@ -136,9 +136,7 @@ pub enum UncommonOp {
     /// Changes the sign between an address and its value, `X-#1`; unlike a minus in an expression it keeps
     /// vacancy.
     NegateWord,
-    /// Plus sign.
-    Plus,
-    /// Brackets, which decide whether vacancy is kept.
+    /// Brackets around a value that may be vacant; they decide whether vacancy is kept.
     Bracket,
     /// Operator on whole numbers.
     Whole(BinaryOp, [OperandSource; 2]),

@@ -53,35 +53,30 @@ impl<'a> FileItems<'a> {
     /// Starts at the beginning of a file, after byte order marks and the leader.
     pub fn new(source: SourceId, bytes: &'a [u8]) -> Self {
         let bytes = without_trailer(bytes);
-        Self::starting(source, bytes, byte_order_marks(bytes)).skip_leader()
+        Self::starting_at(source, bytes, byte_order_marks(bytes)).skip_leader()
     }
 
     /// Starts at the line start `place` of a text without its trailer; spaces before the code are skipped.
-    pub(super) fn starting_at(source: SourceId, bytes: &'a [u8], place: u32) -> Self {
-        Self::starting(source, bytes, place as usize)
-    }
-
-    fn starting(source: SourceId, bytes: &'a [u8], next: usize) -> Self {
-        let (code, comments) = (Vec::new(), VecDeque::new());
+    pub(super) fn starting_at(source: SourceId, bytes: &'a [u8], place: usize) -> Self {
         Self {
             source,
             bytes,
-            next_line_start: next,
+            next_line_start: place,
             line_start: 0,
             position: 0,
             line_end: 0,
             code_end: 0,
-            undivided_end: next,
+            undivided_end: place,
             blanked: None,
-            code,
-            comments,
+            code: Vec::new(),
+            comments: VecDeque::new(),
         }
     }
 
     /// Skips the leader: text before the first `%`, ignored by a control if nothing in it is readable.
     fn skip_leader(mut self) -> Self {
         // Nearly every file begins with a readable item.
-        let first = FileItems::starting(self.source, self.bytes, self.next_line_start).next();
+        let first = FileItems::starting_at(self.source, self.bytes, self.next_line_start).next();
         let text = &self.bytes[self.next_line_start..];
         if !first.as_ref().is_some_and(has_nothing_readable) || !text.contains(&b'%') {
             return self;
@@ -89,11 +84,8 @@ impl<'a> FileItems<'a> {
         let begins_line = |at: usize| text[..at].last().is_none_or(|b| matches!(b, b'\n' | b'\r'));
         let mark = text.iter().enumerate().find(|(at, byte)| **byte == b'%' && begins_line(*at));
         let Some((mark, _)) = mark else { return self };
-        let mut leader = FileItems::starting(
-            self.source,
-            &self.bytes[..self.next_line_start + mark],
-            self.next_line_start,
-        );
+        let text = &self.bytes[..self.next_line_start + mark];
+        let mut leader = FileItems::starting_at(self.source, text, self.next_line_start);
         if leader.all(|piece| has_nothing_readable(&piece)) {
             self.next_line_start += mark;
         }

@@ -77,7 +77,7 @@ pub(crate) fn outline<C: Default, B>(
 
 /// Reads the block at the line start `start`, taken from an outline, of a text without its trailer.
 pub(crate) fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
-    FileItems::starting_at(source, bytes, start).find_map(|piece| match piece {
+    FileItems::starting_at(source, bytes, start as usize).find_map(|piece| match piece {
         FileItem::Block(block) => Some(block),
         _ => None,
     })

@@ -1,8 +1,8 @@
 //! Reader of the statements that name variables and print them: SETVN, DPRNT, BPRNT.
 use super::ast::{PrintKind, PrintPart, Statement};
-use super::expr::{close, is_name, single_value};
+use super::expr::{close, is_name, single_value, variable_name};
 use super::number::{EXPRESSION_LIMIT, decimal};
-use super::token::{COMMENT, Input, LineInput, ReadResult, fail, is_space, next, require, sign, spaces};
+use super::token::{COMMENT, Input, LineInput, ReadResult, fail, next, require, sign, spaces};
 use crate::alarm::Alarm;
 use crate::syntax::ast::{Expr, ExprKind};
 
@@ -36,22 +36,11 @@ pub(super) fn set_names(line: LineInput, input: Input<'_>) -> ReadResult<'_, Sta
 
 /// Reads a name of letters, digits and underscores.
 fn name(input: Input<'_>) -> ReadResult<'_, String> {
-    let mut name = String::new();
-    let mut rest = spaces(input);
-    while let Some((byte, after)) = rest.split_first() {
-        match byte {
-            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'_' => {
-                name.push(char::from(byte.to_ascii_uppercase()))
-            }
-            b',' | b']' | &COMMENT => break,
-            byte if is_space(*byte) => {}
-            _ => return fail(rest, Alarm::NameCharacter),
-        }
-        rest = after;
-    }
-    match name.len() {
-        0 => fail(rest, Alarm::SetNamesFormat),
-        1..=MAX_NAME_LENGTH => Ok((rest, name)),
+    let (rest, name) = variable_name(input);
+    match (rest.first(), name.len()) {
+        (Some(byte), _) if !matches!(byte, b',' | b']' | &COMMENT) => fail(rest, Alarm::NameCharacter),
+        (_, 0) => fail(rest, Alarm::SetNamesFormat),
+        (_, 1..=MAX_NAME_LENGTH) => Ok((rest, name)),
         _ => fail(input, Alarm::NameTooLong { name }),
     }
 }

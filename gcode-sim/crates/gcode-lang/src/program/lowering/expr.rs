@@ -134,6 +134,11 @@ impl Lowering {
                 self.emit(UncommonOp::LoadIndirect, expr.span);
                 return Ok((LAST, depth));
             }
+            ExprKind::Plus(inner) => return self.compile_source(inner, context),
+            // Brackets only decide whether a vacant variable stays vacant.
+            ExprKind::Bracket(inner) if is_never_vacant(inner) => {
+                return self.compile_source(inner, context.inside(1));
+            }
             _ => {}
         }
         self.compile_computed(expr, context).map(|depth| (LAST, depth))
@@ -160,14 +165,13 @@ impl Lowering {
     fn compile_computed(&mut self, expr: &Expr, context: ExprContext) -> LoweringResult<usize> {
         let span = expr.span;
         Ok(match &expr.kind {
-            ExprKind::Literal(_) | ExprKind::Variable(_) => self.compile_expr(expr, context)?,
+            ExprKind::Literal(_) | ExprKind::Variable(_) | ExprKind::Plus(_) => self.compile_expr(expr, context)?,
             ExprKind::Named(name) => {
                 let depth = self.compile_named(name, span, context)?;
                 self.emit(UncommonOp::LoadIndirect, span);
                 depth
             }
             ExprKind::Negate(inner) => self.compile_unary(inner, UncommonOp::Negate, span, context)?,
-            ExprKind::Plus(inner) => self.compile_unary(inner, UncommonOp::Plus, span, context)?,
             ExprKind::Bracket(inner) => {
                 self.compile_unary(inner, UncommonOp::Bracket, span, context.inside(1))?
             }
@@ -346,8 +350,46 @@ impl Lowering {
     }
 }
 
+/// Returns true for an expression whose value is a number even if its variables are vacant.
+fn is_never_vacant(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Variable(_) | ExprKind::Named(_) => false,
+        ExprKind::Negate(inner) | ExprKind::Plus(inner) | ExprKind::Bracket(inner) => is_never_vacant(inner),
+        ExprKind::Literal(_)
+        | ExprKind::Binary(..)
+        | ExprKind::Call(..)
+        | ExprKind::Parameter { .. }
+        | ExprKind::AxisNumber(_) => true,
+    }
+}
+
 /// Returns true for a function outside the basic set.
 fn is_extended(function: Function) -> bool {
     use Function::{Adp, Bcd, Bin, Exp, Fup, Ln};
     matches!(function, Fup | Ln | Exp | Bin | Bcd | Adp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::{Memory, OpKind};
+
+    /// Returns the operations of an assignment.
+    fn operations(text: &str) -> Vec<Operation> {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", format!("O1\n{text}\n").into_bytes());
+        let program = memory.ids().next().unwrap();
+        let OpKind::AssignFree(assign) = memory.lower_block(program, 0).unwrap().kind() else { panic!("{text}") };
+        assign.code.iter().map(|instruction| instruction.operation.clone()).collect()
+    }
+
+    #[test]
+    fn brackets_and_signs_without_effect_need_no_instruction() {
+        let sum = Operation::Add([OperandSource::Free(2), OperandSource::Number(1.0)]);
+        let product = Operation::Multiply([LAST, OperandSource::Number(2.0)]);
+        assert_eq!(operations("#1=[#2+1.]*[2.]"), [sum.clone(), product]);
+        assert_eq!(operations("#1=+[+#2+1.]"), [sum]);
+        let load = Operation::from(UncommonOp::Load(OperandSource::Free(2)));
+        assert_eq!(operations("#1=[#2]"), [load, UncommonOp::Bracket.into()]);
+    }
 }

@@ -130,22 +130,28 @@ pub(in crate::syntax) fn is_name(input: Input<'_>) -> bool {
     matches!(next(input), Some((b'[', rest)) if matches!(next(rest), Some((b'#', rest)) if begins(rest)))
 }
 
-/// Reads `[#NAME]` or `[#NAME[n]]`. The input satisfies [`is_name`].
-pub(in crate::syntax) fn named(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
-    let depth = increase_depth(input, depth)?;
-    let (start, ()) = preceded(sign(b'['), sign(b'#')).parse(input)?;
-    let mut text = String::new();
-    let mut rest = spaces(start);
+/// Reads the letters, digits and underscores of a name, which may be spaced, in upper case.
+pub(in crate::syntax) fn variable_name(input: Input<'_>) -> (Input<'_>, String) {
+    let mut name = String::new();
+    let mut rest = spaces(input);
     while let Some((byte, after)) = rest.split_first() {
         match byte {
             b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'_' => {
-                text.push(char::from(byte.to_ascii_uppercase()));
+                name.push(char::from(byte.to_ascii_uppercase()));
             }
             byte if is_space(*byte) => {}
             _ => break,
         }
         rest = after;
     }
+    (rest, name)
+}
+
+/// Reads `[#NAME]` or `[#NAME[n]]`. The input satisfies [`is_name`].
+pub(in crate::syntax) fn named(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
+    let depth = increase_depth(input, depth)?;
+    let (start, ()) = preceded(sign(b'['), sign(b'#')).parse(input)?;
+    let (mut rest, text) = variable_name(start);
     let mut index = None;
     if let Some((b'[', inside)) = next(rest) {
         let depth = increase_depth(rest, depth)?;

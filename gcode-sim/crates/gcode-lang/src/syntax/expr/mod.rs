@@ -11,8 +11,8 @@ use super::token::{
     round_brackets, sign, spaces, word,
 };
 use crate::alarm::Alarm;
-pub(super) use function::is_name;
 use function::{call, named};
+pub(super) use function::{is_name, variable_name};
 
 /// Deepest nesting of brackets, those of functions and of `#[…]` included (manual: at most five).
 const MAX_BRACKET_DEPTH: u8 = 5;
