@@ -1,5 +1,5 @@
 //! Calls of a program: G65, G66, M98 and the codes that call programs, with the locals their arguments set.
-use gcode_lang::control::{CodeCallKind, Settings};
+use gcode_lang::control::{CalledProgram, CodeCallKind, Settings};
 use gcode_lang::program::{
     ArgumentLocals, CallCode, CallTarget, LoweredWord, Memory, OpIndex, OpKind, Program, WordOperand, Words,
 };
@@ -66,21 +66,16 @@ fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallS
     if matches!(call.kind, CallCode::Return | CallCode::Cancel) {
         return None;
     }
+    let has_repeats_in_p =
+        call.kind == CallCode::Subprogram && settings.reads_repeats_in_p && call.repeats.is_none();
     let target = match &call.target {
         CallTarget::None => CalledProgramName::Missing,
         CallTarget::Name(name) => CalledProgramName::Name(name.clone()),
         CallTarget::Number(word) => match literal::word_count(word) {
-            // M98 P with more than four digits: repeats before a four-digit program number.
-            Some(number)
-                if call.kind == CallCode::Subprogram
-                    && settings.reads_repeats_in_p
-                    && call.repeats.is_none()
-                    && number > 9999 =>
-            {
-                CalledProgramName::Number(number % 10_000)
-            }
-            Some(number) => CalledProgramName::Number(number),
             None => CalledProgramName::Computed,
+            // M98 P with more than four digits: repeats before a four-digit program number.
+            Some(number) if has_repeats_in_p && number > 9999 => CalledProgramName::Number(number % 10_000),
+            Some(number) => CalledProgramName::Number(number),
         },
     };
     Some(CallSite {
@@ -102,34 +97,25 @@ fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<
     if settings.code_calls.is_empty() {
         return None;
     }
-    let new_site = |word: &LoweredWord, program, own_locals, modal, arguments| CallSite {
-        block,
-        has_own_locals: own_locals,
-        is_modal: modal,
-        target: CalledProgramName::Number(program),
-        start: None,
-        arguments,
-        span: word.span,
-    };
     words.list.iter().enumerate().find_map(|(place, word)| {
         let called = match (word.letter, word.value) {
             (b'G', WordOperand::G(code, _)) => settings.code_calls.find_call(b'G', code),
             (b'M', _) => settings.code_calls.find_call(b'M', literal::word_count(word)?.checked_mul(10)?),
-            (letter, _) => {
-                let called = settings.code_calls.address_call(letter)?;
-                return Some(new_site(word, called.program, false, false, Vec::new()));
-            }
+            (letter, _) => settings
+                .code_calls
+                .address_call(letter)
+                .map(|call| CalledProgram { program: call.program, kind: CodeCallKind::Subprogram }),
         }?;
-        match called.kind {
-            CodeCallKind::Subprogram => Some(new_site(word, called.program, false, false, Vec::new())),
-            CodeCallKind::Macro | CodeCallKind::Modal if place == 0 => {
-                let is_every_block =
-                    called.kind == CodeCallKind::Modal && settings.code_calls.modal_is_every_block;
-                let arguments = arguments(&words.list[1..], is_every_block, settings);
-                Some(new_site(word, called.program, true, called.kind == CodeCallKind::Modal, arguments))
-            }
-            CodeCallKind::Macro | CodeCallKind::Modal => None,
-        }
+        let has_own_locals = called.kind != CodeCallKind::Subprogram;
+        let is_modal = called.kind == CodeCallKind::Modal;
+        let is_every_block = is_modal && settings.code_calls.modal_is_every_block;
+        let arguments = match has_own_locals {
+            true if place > 0 => return None,
+            true => arguments(&words.list[1..], is_every_block, settings),
+            false => Vec::new(),
+        };
+        let target = CalledProgramName::Number(called.program);
+        Some(CallSite { block, has_own_locals, is_modal, target, start: None, arguments, span: word.span })
     })
 }
 

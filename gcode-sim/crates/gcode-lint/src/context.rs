@@ -96,7 +96,7 @@ impl<'a> CheckContext<'a> {
         }
         for unit in &mut self.units {
             unit.role = unit.determine_role();
-            unit.is_reached = unit.flow.reachable(unit.entry_blocks.iter().copied());
+            unit.is_reached = unit.flow.reachable(&unit.entry_blocks);
         }
     }
 

@@ -171,16 +171,37 @@ impl ControlFlowGraph {
     }
 
     /// Returns, for each block, whether it is reachable from one of `starts`.
-    pub(crate) fn reachable(&self, starts: impl IntoIterator<Item = OpIndex>) -> Vec<bool> {
-        let mut reached = vec![false; self.block_count()];
-        let mut open: Vec<OpIndex> = starts.into_iter().collect();
-        while let Some(place) = open.pop() {
-            if !std::mem::replace(&mut reached[place], true) {
-                open.extend(self.successors(place));
+    pub(crate) fn reachable(&self, starts: &[OpIndex]) -> Vec<bool> {
+        let starts = starts.iter().map(|start| (*start, ()));
+        let next = |place, (): &()| self.successors(place).map(|to| (to, ())).collect();
+        let states = self.propagate(starts, |(), ()| (), next);
+        states[..self.block_successors.len()].iter().map(Option::is_some).collect()
+    }
+
+    /// Returns the state before each node, `None` for an unreachable one.
+    ///
+    /// Starts with the states of some nodes. `next` gives the nodes that follow a node with their states; the
+    /// states that meet at a node are joined until nothing changes.
+    pub(crate) fn propagate<S: Clone + PartialEq>(
+        &self,
+        starts: impl IntoIterator<Item = (OpIndex, S)>,
+        join: impl Fn(&mut S, S),
+        next: impl Fn(OpIndex, &S) -> Vec<(OpIndex, S)>,
+    ) -> Vec<Option<S>> {
+        let mut states: Vec<Option<S>> = vec![None; self.block_count()];
+        let mut open: Vec<_> = starts.into_iter().collect();
+        while let Some((place, state)) = open.pop() {
+            let Some(known) = states.get_mut(place) else { continue };
+            let before = known.clone();
+            match known {
+                Some(known) => join(known, state),
+                None => *known = Some(state),
+            }
+            if *known != before {
+                open.extend(known.iter().flat_map(|state| next(place, state)));
             }
         }
-        reached.truncate(self.block_successors.len());
-        reached
+        states
     }
 }
 

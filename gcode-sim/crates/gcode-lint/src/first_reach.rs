@@ -52,8 +52,7 @@ impl<'a> FirstReach<'a> {
         let mut set = BTreeSet::new();
         for ((component, local), blocks) in readers {
             let known = self.trace(component, local, &blocks);
-            let found =
-                blocks.into_iter().filter(|block| known.get(block).is_some_and(|bits| *bits != UNSET));
+            let found = blocks.into_iter().filter(|block| known[*block].is_some_and(|bits| bits != UNSET));
             set.extend(found.map(|block| (block, local)));
         }
         set
@@ -67,38 +66,26 @@ impl<'a> FirstReach<'a> {
             return bits == UNSET;
         }
         let traced = || self.trace(self.component[block], local, &BTreeSet::from([block]));
-        !self.set_reads.contains(&(block, local)) && traced().get(&block) == Some(&UNSET)
+        !self.set_reads.contains(&(block, local)) && traced()[block] == Some(UNSET)
     }
 
     /// Traces a local once more around a component, with some blocks as ends, and returns its bits at each
     /// node.
-    fn trace(&self, component: usize, local: u32, ends: &BTreeSet<OpIndex>) -> BTreeMap<OpIndex, u8> {
-        let is_inside = |place: OpIndex| self.component.get(place) == Some(&component);
-        let next = |from: OpIndex, state: &Locals| {
+    fn trace(&self, component: usize, local: u32, ends: &BTreeSet<OpIndex>) -> Vec<Option<u8>> {
+        let next_bits = |from: OpIndex, state: &Locals| {
             steps(self.unit, from, state).into_iter().map(|(to, after)| (to, after.bits_of(local)))
         };
-        let mut open: Vec<_> =
-            self.unit.entry_blocks.iter().map(|start| (*start, self.bits(*start, local))).collect();
-        for entry in self.entries.get(&component).into_iter().flatten() {
-            open.extend(self.states[*entry].iter().flat_map(|state| next(*entry, state)));
-        }
-        let mut known: BTreeMap<OpIndex, u8> = BTreeMap::new();
-        while let Some((place, bits)) = open.pop() {
-            if !is_inside(place) {
-                continue;
-            }
-            let known = known.entry(place).or_default();
-            let has_grown = *known | bits != *known;
-            *known |= bits;
-            if has_grown
-                && !ends.contains(&place)
-                && let Some(mut state) = self.states[place]
-            {
-                state.0[local as usize] = *known;
-                open.extend(next(place, &state));
-            }
-        }
-        known
+        let entries = self.entries.get(&component).into_iter().flatten();
+        let entries = entries.filter_map(|entry| Some((*entry, self.states[*entry].as_ref()?)));
+        let starts = self.unit.entry_blocks.iter().map(|start| (*start, self.bits(*start, local)));
+        let starts = starts.chain(entries.flat_map(|(entry, state)| next_bits(entry, state)));
+        let next = |place: OpIndex, bits: &u8| {
+            let is_inside = self.component[place] == component && !ends.contains(&place);
+            let Some(mut state) = self.states[place].filter(|_| is_inside) else { return Vec::new() };
+            state.0[local as usize] = *bits;
+            next_bits(place, &state).collect()
+        };
+        self.unit.flow.propagate(starts, |known, other| *known |= other, next)
     }
 
     fn bits(&self, place: OpIndex, local: u32) -> u8 {

@@ -33,7 +33,7 @@ impl Locals {
         }
     }
 
-    fn join(&mut self, other: &Self) {
+    fn join(&mut self, other: Self) {
         self.0.iter_mut().zip(other.0).for_each(|(mine, others)| *mine |= others);
     }
 
@@ -47,24 +47,10 @@ pub(crate) type States = Vec<Option<Locals>>;
 
 /// Computes the states of a program whose locals are `entry` at its first block.
 pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
-    let mut states: States = vec![None; unit.flow.block_count()];
-    let mut open = unit.entry_blocks.clone();
     // A call that starts at another block brings its own locals.
-    for (place, start) in unit.entry_blocks.iter().enumerate() {
-        states[*start] = Some(if place == 0 { entry } else { Locals::ANYTHING });
-    }
-    while let Some(block) = open.pop() {
-        let Some(Some(state)) = states.get(block).copied() else { continue };
-        for (to, state) in steps(unit, block, &state) {
-            let Some(known) = states.get_mut(to) else { continue };
-            let before = *known;
-            known.get_or_insert(state).join(&state);
-            if *known != before {
-                open.push(to);
-            }
-        }
-    }
-    states
+    let entries = std::iter::once(entry).chain(std::iter::repeat(Locals::ANYTHING));
+    let starts = unit.entry_blocks.iter().copied().zip(entries);
+    unit.flow.propagate(starts, Locals::join, |block, state| steps(unit, block, state))
 }
 
 /// Returns the nodes that follow a node, each with its state.

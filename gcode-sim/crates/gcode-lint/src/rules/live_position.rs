@@ -29,7 +29,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let pending = pending_moves(context.settings, unit);
     let mut found = Vec::new();
     for (block, written) in unit.reached_blocks() {
-        let Some(motion) = pending[block] else { continue };
+        let Some(motion) = pending[block].flatten() else { continue };
         let reads = variables::block_reads(written).into_iter();
         let mut live = reads.filter(|read| LIVE_VARIABLES.iter().any(|range| range.contains(&read.number)));
         // One finding per block: a probe reads several axes at once.
@@ -47,29 +47,20 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 
 const HELP: &str = "insert a block before it that waits for the move: G53, M00 or G31";
 
-/// Returns, for each block, a move that may still be in progress before it.
-fn pending_moves(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {
-    let count = unit.flow.block_count();
-    let mut moving = vec![None; count];
-    let mut seen = vec![false; count];
-    let mut open = vec![(0, None)];
-    while let Some((block, motion)) = open.pop() {
-        if block >= count || seen[block] && (motion.is_none() || moving[block].is_some()) {
-            continue;
-        }
-        seen[block] = true;
-        moving[block] = moving[block].or(motion);
+/// Returns, for each block, a move that may still be in progress before it; the outer `None` is an unreachable
+/// block.
+fn pending_moves(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<Option<OpIndex>>> {
+    let next = |block: OpIndex, before: &Option<OpIndex>| {
         let op = unit.program.ops().get(block);
         let after = match op.and_then(|op| move_effect(settings, op.kind())) {
             Some(true) => Some(block),
             Some(false) => None,
-            None => moving[block],
+            None => *before,
         };
-        let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, moving[block]));
-        open.extend(unit.flow.successors(block).map(|to| (to, after)).chain(skipped));
-    }
-    moving.truncate(unit.flow.block_successors.len());
-    moving
+        let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, *before));
+        unit.flow.successors(block).map(|to| (to, after)).chain(skipped).collect()
+    };
+    unit.flow.propagate([(0, None)], |known, other| *known = known.or(other), next)
 }
 
 /// Returns true if a block starts a move, false if it waits for all preceding moves.

@@ -24,21 +24,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 
 /// Returns, for each block, whether some path to it may have an F; `None` for an unreachable block.
 fn feed_before(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<bool>> {
-    let mut fed: Vec<Option<bool>> = vec![None; unit.flow.block_count()];
     // Any block may precede the start of a call with Q.
-    let mut open: Vec<(OpIndex, bool)> =
-        unit.entry_blocks.iter().enumerate().map(|(nth, start)| (*start, nth > 0)).collect();
-    while let Some((block, before)) = open.pop() {
-        let Some(known) = fed.get_mut(block) else { continue };
-        if known.is_some_and(|known| known || !before) {
-            continue;
-        }
-        *known = Some(before);
-        let after = before || block < unit.flow.block_successors.len() && may_set_feed(context, unit, block);
-        open.extend(unit.flow.successors(block).map(|to| (to, after)));
-    }
-    fed.truncate(unit.flow.block_successors.len());
-    fed
+    let starts = unit.entry_blocks.iter().enumerate().map(|(nth, start)| (*start, nth > 0));
+    let next = |block: OpIndex, before: &bool| {
+        let after = *before || block < unit.program.ops().len() && may_set_feed(context, unit, block);
+        unit.flow.successors(block).map(|to| (to, after)).collect()
+    };
+    unit.flow.propagate(starts, |known, other| *known |= other, next)
 }
 
 /// Returns true if a block has an F or calls a program that may have one.
