@@ -1,6 +1,4 @@
 //! Reads of unset locals: locals that a call leaves vacant and that no block sets.
-use std::rc::Rc;
-
 use gcode_lang::program::OpIndex;
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Expr, Statement};
@@ -22,30 +20,29 @@ pub(super) fn entry_locals(call: &CallSite) -> Locals {
     entry
 }
 
-/// Iterates over the reads of locals that are certainly unset, each local once per block.
-pub(super) fn unset_reads<'a>(
-    unit: &'a ProgramUnit<'a>,
-    states: &'a States,
-) -> impl Iterator<Item = ((OpIndex, u32), (Span, ValueUse))> + 'a {
-    let first = Rc::new(FirstReach::new(unit, states));
-    let reached = unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some());
-    reached.flat_map(move |(block, written)| {
-        let itself = variables::assignment(written)
-            .filter(|(target, value)| target.kind == value.kind || same_variable(target, value));
+/// Read of an unset local: its block and local, the place and the use.
+type UnsetRead = ((OpIndex, u32), (Span, ValueUse));
+
+/// Returns the reads of locals that are certainly unset.
+pub(super) fn unset_reads(unit: &ProgramUnit<'_>, states: &States) -> Vec<UnsetRead> {
+    let first = FirstReach::new(unit, states);
+    let mut found = Vec::new();
+    for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some()) {
+        // `#1=#1` has no effect.
+        if variables::assignment(written).is_some_and(|(target, value)| same_variable(target, value)) {
+            continue;
+        }
         let reads = variables::block_reads(written);
-        let minded = guarded_locals(unit, block, &reads);
-        let plain = reads.into_iter().filter(move |read| {
-            // `#1=#1` has no effect.
+        let guarded = guarded_locals(unit, block, &reads);
+        let unset = reads.iter().filter(|read| {
             (1..=33).contains(&read.number)
                 && read.usage != ValueUse::VacancyTest
-                && itself.is_none()
-                && !minded.contains(&read.number)
+                && !guarded.contains(&read.number)
+                && first.is_unset(block, read.number)
         });
-        let first = Rc::clone(&first);
-        plain
-            .filter(move |read| first.is_unset(block, read.number))
-            .map(move |read| ((block, read.number), (read.span, read.usage)))
-    })
+        found.extend(unset.map(|read| ((block, read.number), (read.span, read.usage))));
+    }
+    found
 }
 
 /// Returns the locals whose vacancy a condition tests: the conditional part reads them only if they are set.

@@ -62,7 +62,7 @@ pub struct Memory {
 impl Memory {
     /// Loads a file and outlines its programs.
     ///
-    /// Of two programs with one number the first stays, as on a control, which refuses the second: see
+    /// The first of two programs with one number stays, as on a control, which refuses the second: see
     /// [`Memory::duplicates`].
     pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Bytes>) -> SourceId {
         let source = self.sources.add(name, bytes);

@@ -56,12 +56,12 @@ fn block_words(kind: &OpKind) -> Option<&Words> {
     }
 }
 
-/// The rows of a block's G codes, whatever the control.
+/// Iterates over the rows of a block's G codes, each on the first control that has it.
 fn g_codes(words: &Words) -> impl Iterator<Item = &'static GCodeRow> + '_ {
     words.g_codes().filter_map(|found| found.row_for_any())
 }
 
-/// What the words of a block measure: of several codes the one that leaves fewest.
+/// Returns which words of a block are measured; the code that leaves fewest takes precedence.
 fn measured(words: &Words) -> Measured {
     g_codes(words).map(|row| row.facts.words.measured).max().unwrap_or(Measured::AsInMove)
 }
@@ -103,7 +103,7 @@ fn is_drilling(words: &Words) -> bool {
 
 /// Returns true for a program that counts in increments on purpose.
 ///
-/// Such a program has no decimal point and at least one number of 1 mm or more.
+/// The program has no decimal point and at least one number of 1 mm or more.
 fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
     let mut large = false;
     for words in unit.program.ops().iter().filter_map(|op| block_words(op.kind())) {

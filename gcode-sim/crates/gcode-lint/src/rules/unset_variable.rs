@@ -29,10 +29,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
                 }
                 let states = states(unit, entry_locals(call));
                 // The rule `missing-argument` reports locals that an argument can set.
-                unset.extend(
-                    unset_reads(unit, &states)
-                        .filter(|((_, local), _)| argument_letter(*local as usize).is_none()),
-                );
+                let reads = unset_reads(unit, &states).into_iter();
+                unset.extend(reads.filter(|((_, local), _)| argument_letter(*local as usize).is_none()));
             }
         }
     }

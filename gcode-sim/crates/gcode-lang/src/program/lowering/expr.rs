@@ -165,7 +165,9 @@ impl Lowering {
     fn compile_computed(&mut self, expr: &Expr, context: ExprContext) -> LoweringResult<usize> {
         let span = expr.span;
         Ok(match &expr.kind {
-            ExprKind::Literal(_) | ExprKind::Variable(_) | ExprKind::Plus(_) => self.compile_expr(expr, context)?,
+            ExprKind::Literal(_) | ExprKind::Variable(_) | ExprKind::Plus(_) => {
+                self.compile_expr(expr, context)?
+            }
             ExprKind::Named(name) => {
                 let depth = self.compile_named(name, span, context)?;
                 self.emit(UncommonOp::LoadIndirect, span);
@@ -379,7 +381,9 @@ mod tests {
         let mut memory = Memory::default();
         memory.load("O1.nc", format!("O1\n{text}\n").into_bytes());
         let program = memory.ids().next().unwrap();
-        let OpKind::AssignFree(assign) = memory.lower_block(program, 0).unwrap().kind() else { panic!("{text}") };
+        let OpKind::AssignFree(assign) = memory.lower_block(program, 0).unwrap().kind() else {
+            panic!("{text}")
+        };
         assign.code.iter().map(|instruction| instruction.operation.clone()).collect()
     }
 

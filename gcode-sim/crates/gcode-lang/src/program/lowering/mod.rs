@@ -26,7 +26,7 @@ pub(super) struct Lowering {
 type LoweringResult<T> = Result<T, LocatedAlarm>;
 
 impl Lowering {
-    /// Records such syntax for the current block.
+    /// Records syntax of the current block that some controls refuse.
     pub(super) fn record_syntax(&mut self, form: DialectSyntax, span: Span) {
         self.dialect_syntax.push(Spanned::new(form, span));
     }
