@@ -71,36 +71,30 @@ const fn row(code: u32, steps: &'static [CycleStep], help: &'static str) -> Cycl
 /// G73.
 pub const PECK_DRILL_SHORT: Cycle =
     Cycle { needs_q: true, ..row(730, &[PeckShort, RapidBack], "drill in pecks, short retract") };
-/// G74.
 #[rustfmt::skip]
-pub const TAP_LEFT_HAND: Cycle = row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitial], "tap, left hand");
-/// G76.
+pub(super) const TAP_LEFT_HAND: Cycle = row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitial], "tap, left hand");
 #[rustfmt::skip]
-pub const BORE_SHIFT: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidBack, ShiftBack, SpindleForward], "bore, shift off the wall at the bottom");
+pub(super) const BORE_SHIFT: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidBack, ShiftBack, SpindleForward], "bore, shift off the wall at the bottom");
 /// G81.
 pub const DRILL: Cycle = row(810, &[FeedToBottom, RapidBack], "drill");
-/// G82.
-pub const DRILL_DWELL: Cycle = row(820, &[FeedToBottom, Dwell, RapidBack], "drill, dwell at the bottom");
+pub(super) const DRILL_DWELL: Cycle =
+    row(820, &[FeedToBottom, Dwell, RapidBack], "drill, dwell at the bottom");
 /// G83.
 pub const PECK_DRILL: Cycle =
     Cycle { needs_q: true, ..row(830, &[PeckFull, RapidBack], "drill in pecks, retract to R") };
 /// G84.
 #[rustfmt::skip]
 pub const TAP: Cycle = row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitial], "tap");
-/// G85.
-pub const BORE_FEED_BACK: Cycle = row(850, &[FeedToBottom, FeedToR, RapidToInitial], "bore, feed back");
-/// G86.
-pub const BORE_SPINDLE_STOP: Cycle =
+pub(super) const BORE_FEED_BACK: Cycle =
+    row(850, &[FeedToBottom, FeedToR, RapidToInitial], "bore, feed back");
+pub(super) const BORE_SPINDLE_STOP: Cycle =
     row(860, &[FeedToBottom, SpindleStop, RapidBack, SpindleForward], "bore, stop the spindle at the bottom");
-/// G87.
 #[rustfmt::skip]
-pub const BACK_BORE: Cycle = Cycle { starts_at_r: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitialAlways, ShiftBack, SpindleForward], "bore from the back") };
-/// G88.
-pub const BORE_BY_HAND: Cycle = row(
+pub(super) const BACK_BORE: Cycle = Cycle { starts_at_r: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitialAlways, ShiftBack, SpindleForward], "bore from the back") };
+pub(super) const BORE_BY_HAND: Cycle = row(
     880,
     &[FeedToBottom, Dwell, SpindleStop, ManualRetract, RapidToInitial, SpindleForward],
     "bore, retract by hand",
 );
-/// G89.
-pub const BORE_DWELL: Cycle =
+pub(super) const BORE_DWELL: Cycle =
     row(890, &[FeedToBottom, Dwell, FeedToR, RapidToInitial], "bore, dwell, feed back");
