@@ -15,9 +15,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     for (block, words) in unit.reached_words() {
         let mut kept = Vec::new();
         for word in words.list.iter().filter(|word| word.letter == b'M') {
-            // A code that calls a macro is not an M code of the control.
-            let code =
-                literal::word_count(word).filter(|code| settings.code_calls.find_call(b'M', *code).is_none());
+            // A code that calls a program is not an M code of the control.
+            let is_call = |code: u32| settings.code_calls.find_call(b'M', code.saturating_mul(10)).is_some();
+            let code = literal::word_count(word).filter(|code| !is_call(*code));
             let Some(code) = code else { continue };
             let lost = if kept.len() == max { kept.pop() } else { None };
             kept.push(code);
@@ -40,12 +40,23 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
     use super::RULE;
+    use crate::check;
+    use gcode_lang::control::Settings;
+    use gcode_lang::program::NoLibrary;
 
     #[test]
     fn the_code_that_is_lost_is_reported() {
         let found = messages(&RULE, "O1\nM3 S100 M8\nM30 M5\nM30\n");
         assert_eq!(found[0], "M3 is lost: of several M codes in a block only the last counts");
         assert!(found[1].starts_with("PS0335: ") && found.len() == 2, "{found:?}");
+    }
+
+    #[test]
+    fn a_code_that_calls_a_program_is_no_m_code() {
+        let mut settings = Settings::default();
+        settings.set("M6", "9001").unwrap();
+        let checked = check("O1.nc", *b"O1\nM8 M6\nM30\nO9001\nM99\n", &settings, &mut NoLibrary);
+        assert!(checked.findings.is_empty(), "{:?}", checked.findings);
     }
 
     #[test]
