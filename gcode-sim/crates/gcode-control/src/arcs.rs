@@ -1,26 +1,18 @@
-//! G02 and G03: centre and sweep from I J K or from R, in all planes, with any other axes along.
+//! Arcs: G02 and G03 with centre or radius, in all planes, with any other axes along; G12 and G13 of a Haas.
 use super::checked::{ExecResult, locate};
 use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{EventKind, PlanarArc};
-use gcode_lang::program::modes::{Motion, Plane};
-use gcode_lang::source::Span;
+use gcode_lang::motion::{EventKind, PlanarArc, Position};
+use gcode_lang::program::modes::{CutterSide, Motion, Plane};
 use gcode_lang::units::Deg;
 
 impl Planner<'_> {
-    /// Tells an arc to `goal`.
-    pub(super) fn plan_arc(
-        &self,
-        plan: &mut BlockPlan,
-        block_words: &BlockWords,
-        endpoint: &Endpoint,
-        span: Span,
-    ) -> ExecResult<()> {
+    /// Plans an arc to an end point.
+    pub(super) fn plan_arc(&self, plan: &mut BlockPlan, endpoint: &Endpoint) -> ExecResult<()> {
         let state = &plan.state;
-        let plane = locate(self.data.plane_axes(state.modal.plane), span)?;
+        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
         let (first, second, stray) = match state.modal.plane {
             Plane::Xy => (b'I', b'J', b'K'),
             Plane::Zx => (b'K', b'I', b'J'),
@@ -29,104 +21,99 @@ impl Planner<'_> {
         let start = (state.programmed[plane.0], state.programmed[plane.1]);
         let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
-        let centre = if let Some(radius) = self.data.dimension(block_words, b'R', state)? {
-            // R goes before I J K.
-            block_words.mark_read(b"IJK");
+        let centre = if let Some(radius) = self.dimension(b'R', state)? {
+            // R overrides I J K.
+            self.words.mark_read(b"IJK");
             if start == end {
-                // The start is the end: with R there is nothing to go round.
+                // An arc by R that ends at its start has no length.
                 if endpoint.programmed != state.programmed {
-                    let what = "an arc by R that ends at its start while another axis moves".into();
-                    return Err(Alarm::NotSimulated { what }.located_at(span));
+                    return Err(
+                        self.not_simulated("an arc by R that ends at its start while another axis moves")
+                    );
                 }
                 return Ok(());
             }
-            locate(self.centre_by_radius(start, end, radius, clockwise), block_words.span(b'R'))?
+            locate(self.centre_by_radius(start, end, radius, clockwise), self.words.span(b'R'))?
         } else {
-            if self.data.dimension(block_words, stray, state)?.unwrap_or(0.0) != 0.0 {
-                return Err(Alarm::PlaneSelect.located_at(block_words.span(stray)));
+            if self.dimension(stray, state)?.unwrap_or(0.0) != 0.0 {
+                return Err(Alarm::PlaneSelect.located_at(self.words.span(stray)));
             }
-            let i = self.data.dimension(block_words, first, state)?;
-            let j = self.data.dimension(block_words, second, state)?;
+            let i = self.dimension(first, state)?;
+            let j = self.dimension(second, state)?;
             if i.is_none() && j.is_none() {
-                return Err(Alarm::NoRadiusOrCentre.located_at(span));
+                return Err(Alarm::NoRadiusOrCentre.located_at(self.block));
             }
             let (i, j) = (i.unwrap_or(0.0), j.unwrap_or(0.0));
             if i == 0.0 && j == 0.0 {
-                return Err(Alarm::NoRadiusOrCentre.located_at(span));
+                return Err(Alarm::NoRadiusOrCentre.located_at(self.block));
             }
             (start.0 + i, start.1 + j)
         };
-        let (radius, sweep) = self.radius_and_sweep(start, end, centre, clockwise, span)?;
-        self.push_programmed_arc(plan, block_words, endpoint, plane, centre, sweep, radius, span)
+        let (radius, sweep) = self.radius_and_sweep(start, end, centre, clockwise)?;
+        self.push_programmed_arc(plan, endpoint, PlanarArc { plane, centre, sweep }, radius)
     }
 
-    /// The mean radius and the sweep of an arc, if its end is near enough to the circle of its start.
+    /// Returns the mean radius and the sweep of an arc; an alarm if its end is too far from the circle of its start.
     fn radius_and_sweep(
         &self,
         start: (f64, f64),
         end: (f64, f64),
         centre: (f64, f64),
         clockwise: bool,
-        span: Span,
-    ) -> ExecResult<(f64, f64)> {
+    ) -> ExecResult<(f64, Deg)> {
         let radius = |p: (f64, f64)| libm::hypot(p.0 - centre.0, p.1 - centre.1);
         let (from, to) = (radius(start), radius(end));
         if (from - to).abs() > self.data.settings.arc_tolerance + 1e-9 {
-            let alarm =
-                Alarm::RadiusTolerance { start: from, end: to, tolerance: self.data.settings.arc_tolerance };
-            return Err(alarm.located_at(span));
+            let tolerance = self.data.settings.arc_tolerance;
+            return Err(Alarm::RadiusTolerance { start: from, end: to, tolerance }.located_at(self.block));
         }
-        Ok(((from + to) / 2.0, sweep(start, end, centre, clockwise)))
+        Ok(((from + to) / 2.0, Deg(sweep(start, end, centre, clockwise))))
     }
 
-    #[expect(clippy::too_many_arguments, reason = "an arc is all of this")]
+    /// Emits an arc of the programmed path on the machine, with its mirror image and scaling.
     fn push_programmed_arc(
         &self,
         plan: &mut BlockPlan,
-        block_words: &BlockWords,
         endpoint: &Endpoint,
-        plane: (usize, usize),
-        centre: (f64, f64),
-        sweep: f64,
+        PlanarArc { plane, centre, sweep }: PlanarArc,
         radius: f64,
-        span: Span,
     ) -> ExecResult<()> {
         let state = &plan.state;
-        let (mirrored, round) = state.transform.arc_effect(plane);
+        let (is_mirrored, is_round) = state.transform.arc_effect(plane);
         if state.transform.tilt.is_some() {
-            return Err(Alarm::NotSimulated { what: "an arc in a tilted plane".into() }.located_at(span));
+            return Err(self.not_simulated("an arc in a tilted plane"));
         }
         let mut centre_point = state.programmed;
         (centre_point[plane.0], centre_point[plane.1]) = centre;
         let middle = self.data.to_machine(state, &centre_point);
         let centre = (middle[plane.0], middle[plane.1]);
-        let (radius, sweep) = if round {
+        let (radius, sweep) = if is_round {
             let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());
-            (radius * factor, if mirrored { -sweep } else { sweep })
+            (radius * factor, if is_mirrored { -sweep } else { sweep })
         } else {
-            if block_words.has(b'R') {
-                return Err(
-                    Alarm::NotSimulated { what: "an arc by R under unequal scaling".into() }.located_at(span)
-                );
+            if self.words.has(b'R') {
+                return Err(self.not_simulated("an arc by R under unequal scaling"));
             }
             let (start, end) = (&state.machine, &endpoint.machine);
             let (start, end) = ((start[plane.0], start[plane.1]), (end[plane.0], end[plane.1]));
-            self.radius_and_sweep(start, end, centre, (sweep < 0.0) != mirrored, span)?
+            self.radius_and_sweep(start, end, centre, (sweep.0 < 0.0) != is_mirrored)?
         };
-        let length = radius * sweep.abs().to_radians();
-        // F is along the arc; all other axes follow (1403#5 HTG = 0).
-        let timed = self.data.path_time(state, length, block_words.has(b'F'));
-        let (rate, seconds) = timed.map_err(|alarm| match alarm {
-            Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero.located_at(span),
-            other => other.located_at(span),
-        })?;
-        let arc = PlanarArc { plane, centre, sweep: Deg(sweep) };
-        plan.events.push((EventKind::Arc { to: endpoint.machine, arc, rate }, seconds));
-        plan.state.machine = endpoint.machine;
+        self.push_arc(plan, endpoint.machine, PlanarArc { plane, centre, sweep }, radius)
+    }
+
+    /// Emits an arc; F is along the arc, and all other axes follow (1403#5 HTG = 0).
+    fn push_arc(&self, plan: &mut BlockPlan, to: Position, arc: PlanarArc, radius: f64) -> ExecResult<()> {
+        let length = radius * arc.sweep.0.abs().to_radians();
+        let timed = self.data.path_time(&plan.state, length, self.words.has(b'F'));
+        let (rate, seconds) = self.locate(timed.map_err(|alarm| match alarm {
+            Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero,
+            other => other,
+        }))?;
+        plan.push_move(EventKind::Arc { to, arc, rate }, seconds);
         Ok(())
     }
 
-    /// R positive: the arc below 180°; negative: the one above.
+    /// Returns the centre of an arc by R: below 180° for a positive R, above for a negative one.
     fn centre_by_radius(
         &self,
         start: (f64, f64),
@@ -144,15 +131,15 @@ impl Planner<'_> {
             return Err(Alarm::RadiusTooSmall { radius: radius.abs(), half_chord: chord / 2.0 });
         }
         let height = (radius * radius - chord * chord / 4.0).max(0.0).sqrt();
-        // The centre of a short counterclockwise arc lies to the left of the way from start to end.
+        // The centre of a short counterclockwise arc lies to the left of the chord.
         let left = if clockwise == (radius < 0.0) { height } else { -height };
         let middle = (start.0 + dx / 2.0, start.1 + dy / 2.0);
         Ok((middle.0 - left * dy / chord, middle.1 + left * dx / chord))
     }
 }
 
-/// Degrees from start to end round the centre, counterclockwise positive; a full turn where they coincide.
-pub(super) fn sweep(start: (f64, f64), end: (f64, f64), centre: (f64, f64), clockwise: bool) -> f64 {
+/// Returns the degrees from start to end round the centre, counterclockwise positive; 360 if they coincide.
+fn sweep(start: (f64, f64), end: (f64, f64), centre: (f64, f64), clockwise: bool) -> f64 {
     if start == end {
         return if clockwise { -360.0 } else { 360.0 };
     }
@@ -161,8 +148,94 @@ pub(super) fn sweep(start: (f64, f64), end: (f64, f64), centre: (f64, f64), cloc
     match (clockwise, rotation) {
         (true, 0.0) => -360.0,
         (false, 0.0) => 360.0,
-        (true, turn) => turn - 360.0,
-        (false, turn) => turn,
+        (true, rotation) => rotation - 360.0,
+        (false, rotation) => rotation,
+    }
+}
+
+/// Largest number of circles in one block; more are a typing error.
+const MAX_CIRCLES: f64 = 10_000.0;
+
+impl Planner<'_> {
+    /// G12 and G13: at the centre the tool feeds to Z, then mills a circle of radius I, and with K and Q larger ones up to
+    /// K; all of it L times, inside by the radius of D. The circles are those of the manual; the half circles out to X+ and
+    /// back are a choice of this simulator.
+    pub(super) fn plan_circle_pocket(&self, motion: Motion, plan: &mut BlockPlan) -> ExecResult<()> {
+        let clockwise = motion == Motion::Clockwise;
+        let code = if clockwise { "G12" } else { "G13" };
+        let modal = &plan.state.modal;
+        let is_allowed = modal.plane == Plane::Xy
+            && modal.cycle.is_none()
+            && modal.cutter == CutterSide::Off
+            && plan.state.transform.is_none();
+        if !is_allowed || self.words.has_any(b"XY") {
+            return Err(self.not_simulated(format!(
+                "{code} with X, Y, another plane, compensation, rotation or a drilling cycle"
+            )));
+        }
+        let radii = self.radii(code, plan)?;
+        let passes = self.words.count(b'L')?.unwrap_or(1);
+        if f64::from(passes) * radii.len() as f64 > MAX_CIRCLES {
+            return Err(self.not_simulated(format!("{code} with this number of circles")));
+        }
+        for _ in 0..passes {
+            let endpoint = self.resolve_endpoint(&mut plan.state)?;
+            self.locate(self.push_feed(plan, &endpoint.machine))?;
+            plan.state.programmed = endpoint.programmed;
+            for radius in &radii {
+                let start = plan.state.machine;
+                let (centre, half) = ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
+                let mut edge = start;
+                edge[0] = self.data.remove_residue(centre.0 + radius);
+                let arcs = [
+                    (edge, half, radius / 2.0, 180.0),
+                    (edge, centre, *radius, 360.0),
+                    (start, half, radius / 2.0, 180.0),
+                ];
+                for (to, centre, radius, degrees) in arcs {
+                    let sweep = Deg(if clockwise { -degrees } else { degrees });
+                    self.push_arc(plan, to, PlanarArc { plane: (0, 1), centre, sweep }, radius)?;
+                }
+            }
+        }
+        plan.commands_axes = true;
+        Ok(())
+    }
+
+    /// Returns the radii of the tool centre's circles, from the inside out.
+    fn radii(&self, code: &'static str, plan: &BlockPlan) -> ExecResult<Vec<f64>> {
+        let missing = |letter| Alarm::MissingWord { code, letter }.located_at(self.block);
+        let state = &plan.state;
+        let first = self.dimension(b'I', state)?.ok_or_else(|| missing('I'))?;
+        let (last, step) = match (self.dimension(b'K', state)?, self.dimension(b'Q', state)?) {
+            (None, None) => (first, 0.0),
+            (Some(last), Some(step)) => (last, step),
+            (Some(_), None) => return Err(missing('Q')),
+            (None, Some(_)) => return Err(missing('K')),
+        };
+        let number = state.codes.d;
+        let unknown = || Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block);
+        let tool = self.data.offset_radius(number).ok_or_else(unknown)?;
+        let out_of_range = |letter: char, value| {
+            Alarm::OutOfRange { function: format!("{letter} of {code}"), value }.located_at(self.block)
+        };
+        if first <= tool {
+            return Err(out_of_range('I', first));
+        }
+        if last < first {
+            return Err(out_of_range('K', last));
+        }
+        if last > first && (step <= 0.0 || (last - first) / step > MAX_CIRCLES) {
+            return Err(out_of_range('Q', step));
+        }
+        let mut radii = Vec::new();
+        let mut count = 0.0;
+        while first + count * step < last - 1e-9 {
+            radii.push(self.data.remove_residue(first + count * step - tool));
+            count += 1.0;
+        }
+        radii.push(self.data.remove_residue(last - tool));
+        Ok(radii)
     }
 }
 

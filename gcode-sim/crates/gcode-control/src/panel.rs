@@ -1,8 +1,10 @@
-//! Signals, switches and counters beside the program: #1100…, #3003, #3004, #3901, #3902 and the output device.
+//! Signals, switches, counters and clocks beside the program: #1100…, #3001 to #3004, #3901, #3902, the output device.
+use std::cell::Cell;
+
 use super::checked::integer;
 use gcode_lang::alarm::Alarm;
 
-/// What a program sets beside variables, modes and tables.
+/// Signals, switches and counters that a program sets.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Panel {
     /// Output signals, #1100 the lowest bit.
@@ -11,11 +13,11 @@ pub(super) struct Panel {
     pub(super) control_switches: [f64; 2],
     /// #3901 and #3902: parts made, parts required.
     pub(super) part_counters: [f64; 2],
-    /// The output device is open: between POPEN and PCLOS.
+    /// Output device open: between POPEN and PCLOS.
     pub(super) is_output_open: bool,
 }
 
-/// A control may have up to 128 signals each way; here are the first 32.
+/// Refuses signals beyond the first 32; a control may have up to 128 each way.
 pub(super) fn check_signal_word(word: u32) -> Result<(), Alarm> {
     if word > 0 {
         return Err(Alarm::NotSimulated { what: "more than 32 interface signals".into() });
@@ -24,10 +26,12 @@ pub(super) fn check_signal_word(word: u32) -> Result<(), Alarm> {
 }
 
 impl Panel {
+    /// Sets one output signal.
     pub(super) fn set_output(&mut self, bit: u32, on: bool) {
         self.outputs = if on { self.outputs | 1 << bit } else { self.outputs & !(1 << bit) };
     }
 
+    /// Sets a word of 32 output signals.
     pub(super) fn set_outputs(&mut self, word: u32, value: f64) -> Result<(), Alarm> {
         let bits = integer(value)?;
         check_signal_word(word)?;
@@ -39,22 +43,70 @@ impl Panel {
         Ok(())
     }
 
-    /// #3003 has two bits, #3004 three.
+    /// Sets #3003, which has two bits, or #3004, which has three.
     pub(super) fn set_switch(&mut self, switch: u32, value: f64) -> Result<(), Alarm> {
-        let most = if switch == 0 { 3.0 } else { 7.0 };
-        if !(0.0..=most).contains(&value.round()) {
+        let max = if switch == 0 { 3.0 } else { 7.0 };
+        if !(0.0..=max).contains(&value.round()) {
             return Err(Alarm::OutOfRange { function: format!("#{}", 3003 + switch), value });
         }
         self.control_switches[switch as usize] = value.round();
         Ok(())
     }
 
+    /// Sets #3901 or #3902.
     pub(super) fn set_parts(&mut self, counter: u32, value: f64) -> Result<(), Alarm> {
         if value < 0.0 {
             return Err(Alarm::OutOfRange { function: format!("#{}", 3901 + counter), value });
         }
         self.part_counters[counter as usize] = value.round();
         Ok(())
+    }
+}
+
+/// Clocks #3001, #3002 and #3012; they start with the run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Clock {
+    /// Duration of the motion, seconds.
+    pub(super) motion_seconds: f64,
+    /// Seconds that have passed while the program only read a clock.
+    pub(super) idle_seconds: f64,
+    /// Offsets from setting #3001, milliseconds, and #3002, hours.
+    pub(super) offsets: (f64, f64),
+    /// The program has read a clock or a skip signal since the last jump back.
+    pub(super) has_been_read: Cell<bool>,
+}
+
+impl Clock {
+    /// Returns true if the clocks differ by the motion alone.
+    pub(super) fn continues_like(&self, other: &Self) -> bool {
+        let Self { motion_seconds: _, idle_seconds, offsets, has_been_read: _ } = self;
+        (*idle_seconds, *offsets) == (other.idle_seconds, other.offsets)
+    }
+
+    /// Returns #3002, hours.
+    pub(super) fn hours(&self) -> f64 {
+        self.offsets.1 + self.seconds() / 3600.0
+    }
+
+    /// Sets #3001.
+    pub(super) fn set_milliseconds(&mut self, value: f64) {
+        self.offsets.0 = value - (self.motion_seconds + self.idle_seconds) * 1000.0;
+    }
+
+    /// Sets #3002.
+    pub(super) fn set_hours(&mut self, value: f64) {
+        self.offsets.1 = value - (self.motion_seconds + self.idle_seconds) / 3600.0;
+    }
+
+    /// Returns the seconds since the start, and records that a clock was read.
+    pub(super) fn seconds(&self) -> f64 {
+        self.has_been_read.set(true);
+        self.motion_seconds + self.idle_seconds
+    }
+
+    /// Returns #3001, milliseconds; it wraps as on a control.
+    pub(super) fn milliseconds(&self) -> f64 {
+        (self.seconds() * 1000.0 + self.offsets.0 + 1e-6).trunc().rem_euclid(2_147_483_648.0)
     }
 }
 
@@ -84,5 +136,26 @@ mod tests {
         assert!(panel.set_switch(0, 4.0).is_err() && panel.set_switch(1, 8.0).is_err());
         assert_eq!(panel.control_switches, [3.0, 7.0]);
         assert!(panel.set_parts(0, -1.0).is_err());
+    }
+
+    #[test]
+    fn a_clock_runs_with_the_motion_and_can_be_set() {
+        let mut clock = Clock { motion_seconds: 1.5, ..Clock::default() };
+        assert_eq!(clock.milliseconds(), 1500.0);
+        assert!(clock.has_been_read.get());
+        clock.set_milliseconds(100.0);
+        clock.motion_seconds += 0.25;
+        assert_eq!(clock.milliseconds(), 350.0);
+        clock.set_hours(2.0);
+        clock.motion_seconds += 1800.0;
+        assert!((clock.hours() - 2.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn clocks_that_differ_by_motion_alone_continue_alike() {
+        let clock = Clock::default();
+        assert!(clock.continues_like(&Clock { motion_seconds: 5.0, ..Clock::default() }));
+        assert!(!clock.continues_like(&Clock { idle_seconds: 5.0, ..Clock::default() }));
+        assert!(!clock.continues_like(&Clock { offsets: (0.0, 1.0), ..Clock::default() }));
     }
 }

@@ -1,30 +1,27 @@
 //! Everything that a program can read: variables, modes, positions, tables, signals and clocks.
-use super::block_effects::BlockEffects;
-use super::clock::Clock;
 use super::data::ControlData;
 use super::linear_motion::CoordinateBasis;
 use super::lookahead::Lookahead;
-use super::operand_stack::OperandStack;
-use super::panel::Panel;
+use super::outcome::BlockEffects;
+use super::panel::{Clock, Panel};
 use super::state::State;
-use super::variables::Vars;
+use super::variables::{OperandStack, Vars};
 use gcode_lang::control::Settings;
 
-/// What expressions, words and system variables are evaluated from, and what a block changes.
+/// Values from which expressions, words and system variables are evaluated, and which blocks change.
 #[derive(Clone, Debug)]
 pub(super) struct Registers {
     pub(super) data: ControlData,
     pub(super) variables: Vars,
-    /// Modes and positions: what one block of words replaces as a whole.
+    /// Modes and positions, which a block of words replaces as a whole.
     pub(super) state: Box<State>,
-    /// What has been read and waits for the next move.
+    /// Blocks that are read and wait for the next move.
     pub(super) lookahead: Lookahead,
     pub(super) panel: Panel,
     pub(super) clock: Clock,
-    /// For values that wait for their operators.
     pub(super) operand_stack: OperandStack,
     pub(super) block_effects: BlockEffects,
-    /// While a block can be a plain move: what its axis words count from.
+    /// Origin and units of axis words while a block can be a plain move.
     pub(super) plain_basis: Option<CoordinateBasis>,
 }
 
@@ -44,7 +41,7 @@ impl Registers {
         }
     }
 
-    /// Whether a program that goes on from here can't tell the two apart, but for a clock that it reads.
+    /// Returns true if a program that continues from here can't distinguish the two, except by a clock that it reads.
     pub(super) fn continues_like(&self, other: &Self) -> bool {
         let Self {
             data,
@@ -56,7 +53,7 @@ impl Registers {
             // Empty between two blocks.
             operand_stack: _,
             block_effects: _,
-            // Follows from the rest.
+            // Derived from the rest.
             plain_basis: _,
         } = self;
         **state == *other.state
@@ -74,7 +71,7 @@ mod tests {
     use crate::variables::Value;
 
     #[test]
-    fn whatever_a_program_can_read_makes_another_program() {
+    fn a_difference_that_a_program_can_read_makes_registers_differ() {
         let registers = Registers::new(Settings::default());
         let differs = |change: fn(&mut Registers)| {
             let mut other = registers.clone();

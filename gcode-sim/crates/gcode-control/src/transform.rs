@@ -1,21 +1,21 @@
-//! From programmed to work coordinates: mirror (G51.1), then scaling (G51), then rotation (G68) or tilt (G68.2).
+//! Transform from programmed to work coordinates: mirror (G51.1), scaling (G51), then rotation (G68) or tilt (G68.2).
 use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
 use gcode_lang::units::Deg;
 
-/// What stands between the programmed point and the work coordinate system.
+/// Transform from programmed to work coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Transform {
-    /// The axes that are mirrored, as bits, and where.
-    pub mirrored_axes: u8,
-    pub mirror_position: Position,
-    pub scaling: Option<Scale>,
-    pub rotation: Option<Rotation>,
-    pub tilt: Option<Tilt>,
+pub(super) struct Transform {
+    /// Mirrored axes, as bits.
+    pub(super) mirrored_axes: u8,
+    pub(super) mirror_position: Position,
+    pub(super) scaling: Option<Scale>,
+    pub(super) rotation: Option<Rotation>,
+    pub(super) tilt: Option<Tilt>,
 }
 
 /// G68.2: p = o + Rz(I)·Rx(J)·Rz(K)·q in the coordinates of X, Y and Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tilt {
+pub(super) struct Tilt {
     axes: [AxisIndex; 3],
     origin: [f64; 3],
     rows: [[f64; 3]; 3],
@@ -35,8 +35,8 @@ impl Tilt {
     fn forward(&self, point: &mut Position) {
         let feature = self.axes.map(|axis| point[axis]);
         for (i, axis) in self.axes.into_iter().enumerate() {
-            let turned: f64 = (0..3).map(|k| self.rows[i][k] * feature[k]).sum();
-            point[axis] = self.origin[i] + turned;
+            let rotated: f64 = (0..3).map(|k| self.rows[i][k] * feature[k]).sum();
+            point[axis] = self.origin[i] + rotated;
         }
     }
 
@@ -48,7 +48,7 @@ impl Tilt {
     }
 }
 
-/// Quarter turns are exact: a control has no residue there.
+/// Returns sine and cosine; exact for multiples of 90°, as on a control.
 fn sine_cosine(angle: f64) -> (f64, f64) {
     match angle.rem_euclid(360.0) {
         0.0 => (0.0, 1.0),
@@ -59,19 +59,19 @@ fn sine_cosine(angle: f64) -> (f64, f64) {
     }
 }
 
-/// G51.
+/// Scaling of G51.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
-    pub centre: Position,
-    pub factor: Position,
+pub(super) struct Scale {
+    pub(super) centre: Position,
+    pub(super) factor: Position,
 }
 
-/// G68: a turn in the plane of two axes.
+/// Rotation of G68 in the plane of two axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rotation {
-    pub plane: (AxisIndex, AxisIndex),
-    pub centre: (f64, f64),
-    pub angle: f64,
+pub(super) struct Rotation {
+    pub(super) plane: (AxisIndex, AxisIndex),
+    pub(super) centre: (f64, f64),
+    pub(super) angle: f64,
     sine: f64,
     cosine: f64,
 }
@@ -91,7 +91,7 @@ impl Rotation {
 
 impl Transform {
     #[inline]
-    pub fn is_none(&self) -> bool {
+    pub(super) fn is_none(&self) -> bool {
         self.mirrored_axes == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
     }
 
@@ -105,8 +105,8 @@ impl Transform {
                 point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) * scale.factor[axis];
             }
         }
-        if let Some(turn) = &self.rotation {
-            turn.apply(&mut point, turn.sine);
+        if let Some(rotation) = &self.rotation {
+            rotation.apply(&mut point, rotation.sine);
         }
         if let Some(tilt) = &self.tilt {
             tilt.forward(&mut point);
@@ -121,8 +121,8 @@ impl Transform {
         if let Some(tilt) = &self.tilt {
             tilt.backward(&mut point);
         }
-        if let Some(turn) = &self.rotation {
-            turn.apply(&mut point, -turn.sine);
+        if let Some(rotation) = &self.rotation {
+            rotation.apply(&mut point, -rotation.sine);
         }
         if let Some(scale) = &self.scaling {
             for axis in 0..MAX_AXES {
@@ -139,7 +139,7 @@ impl Transform {
         }
     }
 
-    /// Whether arcs in this plane change their sense, and whether they stay circles.
+    /// Returns whether arcs in a plane change their direction, and whether they stay circles.
     pub(super) fn arc_effect(&self, plane: (AxisIndex, AxisIndex)) -> (bool, bool) {
         let bit = |axis: AxisIndex| self.mirrored_axes >> axis & 1 == 1;
         let factor = |axis: AxisIndex| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
@@ -154,13 +154,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_quarter_turn_takes_x_to_y() {
-        let turn = Rotation::new((0, 1), (0.0, 0.0), 90.0);
-        let transform = Transform { rotation: Some(turn), ..Transform::default() };
+    fn a_rotation_by_90_degrees_takes_x_to_y() {
+        let rotation = Rotation::new((0, 1), (0.0, 0.0), 90.0);
+        let transform = Transform { rotation: Some(rotation), ..Transform::default() };
         let mut point = Position::default();
         point[0] = 10.0;
-        let turned = transform.forward(point);
-        assert_eq!((turned[0], turned[1]), (0.0, 10.0));
-        assert_eq!(transform.backward(turned), point);
+        let rotated = transform.forward(point);
+        assert_eq!((rotated[0], rotated[1]), (0.0, 10.0));
+        assert_eq!(transform.backward(rotated), point);
     }
 }
