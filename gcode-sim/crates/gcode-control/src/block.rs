@@ -11,10 +11,10 @@
 //!  7. call or return.
 //!
 //! Most blocks of long programs are plain moves, for which only step 4 has an effect: see [`super::plain_move`].
-use super::checked::{ExecResult, locate};
 use super::control::Control;
 use super::executor::Executor;
 use super::flow::FrameKind;
+use super::functions::{ExecResult, locate};
 use super::notes::Note;
 use super::outcome::RunEnd;
 use super::plan::{BlockFlow, BlockPlan};

@@ -1,28 +1,18 @@
 //! Codes of a block: modal G codes, F S T D H, M codes, and the letters that need a code.
-use super::checked::ExecResult;
+use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
-use super::state::{CycleState, PolarPoint};
+use super::state::{AxisWordUse, CycleState, PolarPoint};
 use super::words::letters;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
 use gcode_lang::program::code_facts::{CoordinateUse, LookaheadUse};
-use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
-use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::modes::{CutterSide, Mirror, Polar, Rotation, Scaling, StrokeCheck};
+use gcode_lang::program::g_codes::{Effect, spelled};
+use gcode_lang::program::m_codes;
+use gcode_lang::program::m_codes::MCodeEffect;
+use gcode_lang::program::modes::{CutterSide, Polar, Rotation, Scaling, StrokeCheck};
 use gcode_lang::units::Rpm;
-
-/// Use of the axis words of a block by a code instead of a move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum AxisWordUse {
-    OneShot(OneShot),
-    AdditionalWork,
-    Scale,
-    Mirror { is_on: bool },
-    Rotate,
-    Tilt,
-}
 
 impl Planner<'_> {
     /// 1. Applies the modal G codes in their order; returns the use of the axis words instead of a move.
@@ -50,12 +40,18 @@ impl Planner<'_> {
                 is_cycle_active = false;
                 continue;
             }
-            let new = self.axis_use_of(row, state.modal.cutter)?;
+            if row.facts.lookahead == LookaheadUse::Alarms && state.modal.cutter != CutterSide::Off {
+                return Err(Alarm::ToolOffsetInCompensation.located_at(self.block));
+            }
+            self.words.mark_letters_read(row.facts.words.without_effect);
+            if matches!(row.effect, Effect::NotSimulated | Effect::Call) {
+                return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.help)));
+            }
+            let new = state.modal.apply(row.effect);
             if new.is_some() && axis_use.is_some() && new != axis_use {
                 return Err(self.not_simulated("several one-shot G codes in one block"));
             }
             axis_use = new.or(axis_use);
-            state.modal.apply(row);
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
                 is_cycle_active = false;
@@ -103,45 +99,6 @@ impl Planner<'_> {
             && modal.cycle.is_none()
             && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
         Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
-    }
-
-    /// Returns the use that a code makes of the axis words, if any.
-    fn axis_use_of(&self, row: &GCodeRow, cutter: CutterSide) -> ExecResult<Option<AxisWordUse>> {
-        if row.facts.lookahead == LookaheadUse::Alarms && cutter != CutterSide::Off {
-            return Err(Alarm::ToolOffsetInCompensation.located_at(self.block));
-        }
-        self.words.mark_letters_read(row.facts.words.without_effect);
-        Ok(match row.effect {
-            Effect::NotSimulated | Effect::Call => {
-                return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.help)));
-            }
-            Effect::OneShot(one) => Some(AxisWordUse::OneShot(one)),
-            Effect::AdditionalWork => Some(AxisWordUse::AdditionalWork),
-            Effect::Scaling(Scaling::On) => Some(AxisWordUse::Scale),
-            Effect::Mirror(mirror) => Some(AxisWordUse::Mirror { is_on: mirror == Mirror::On }),
-            Effect::Rotation(Rotation::On) => Some(AxisWordUse::Rotate),
-            Effect::Rotation(Rotation::Tilted) => Some(AxisWordUse::Tilt),
-            Effect::Scaling(Scaling::Off)
-            | Effect::Rotation(Rotation::Off)
-            | Effect::Motion(_)
-            | Effect::Plane(_)
-            | Effect::Distance(_)
-            | Effect::StrokeCheck(_)
-            | Effect::FeedMode(_)
-            | Effect::Unit(_)
-            | Effect::Cutter(_)
-            | Effect::Length(_)
-            | Effect::Cycle(_)
-            | Effect::ReturnTo(_)
-            | Effect::SpindleMode(_)
-            | Effect::Work(_)
-            | Effect::NumberedWork(_)
-            | Effect::Cutting(_)
-            | Effect::Polar(_)
-            | Effect::LookAhead
-            | Effect::NoEffect
-            | Effect::Smoothness => None,
-        })
     }
 
     /// 1. Applies F S T D H, and the radius of D.

@@ -1,8 +1,8 @@
 //! Execution of calls and returns: finds programs, pushes and pops frames, triggers modal calls.
-use super::checked::{ExecResult, locate};
 use super::control::Control;
 use super::executor::Executor;
 use super::flow::{Frame, FrameKind, ModalCall};
+use super::functions::{ExecResult, locate};
 use super::notes::Note;
 use super::outcome::RunEnd;
 use super::plan::{CallKind, CallPlan, ProgramRef};

@@ -1,6 +1,6 @@
 //! Calls and returns that a block commands: by G65, G66 and M98, and by codes and addresses that parameters define.
-use super::checked::{ExecResult, locate};
 use super::flow::CallOrigins;
+use super::functions::{ExecResult, locate};
 use super::plan::{BlockFlow, BlockPlan, CallKind, CallPlan, ProgramRef, TableWrite};
 use super::planner::Planner;
 use super::variables::{VACANT, Value};

@@ -3,9 +3,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use super::checked::ExecResult;
 use super::executor::Executor;
 use super::flow::Frame;
+use super::functions::ExecResult;
 use super::loop_detection::LoopDetector;
 use super::notes::Note;
 use super::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress, RunEnd};

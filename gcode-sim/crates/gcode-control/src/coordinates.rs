@@ -20,7 +20,7 @@ impl ControlData {
         let to_machine = |axis| self.on_machine(work[axis], zero[axis], state.length_offset[axis]);
         let mut machine = Position(std::array::from_fn(to_machine));
         for axis in self.settings.rollover_axes() {
-            // The shorter rotation from the current position: full turns already made stay.
+            // The shorter rotation from the current position; full rotations stay.
             let from = state.machine[axis] - self.zero(state, axis) - state.length_offset[axis];
             machine[axis] = self.remove_residue(state.machine[axis] + shortest_rotation(from, work[axis]));
         }
@@ -198,7 +198,7 @@ fn extremes(arc: &PlanarArc, to: &Position) -> [Option<Position>; 4] {
     )
 }
 
-/// Returns the rotation of an axis that rolls over: the shorter one, half a turn in the plus direction.
+/// Returns the rotation of an axis that rolls over: the shorter one, 180° in the plus direction.
 pub(super) fn shortest_rotation(from: f64, to: f64) -> f64 {
     let rotation = (to - from).rem_euclid(360.0);
     if rotation > 180.0 { rotation - 360.0 } else { rotation }

@@ -1,10 +1,10 @@
 //! Expands a checked drilling block: its holes, and the steps of the cycle at each of them.
 use super::data::ControlData;
-use super::state::{CycleState, PeckSchedule, PolarPoint, State};
+use super::state::{CycleState, PeckSchedule, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::ReturnTo;
-use gcode_lang::units::{Deg, MmPerMin, Rpm, Seconds};
+use gcode_lang::units::{MmPerMin, Rpm, Seconds};
 
 /// Checked drilling block; its expansion can't fail.
 #[derive(Clone, Debug)]
@@ -12,12 +12,8 @@ pub(super) struct CyclePlan {
     pub(super) cycle: &'static Cycle,
     /// State at the start of the block; that of the plan is at its end.
     pub(super) start_state: State,
-    /// First hole, and distance from hole to hole, as programmed.
-    pub(super) first_hole: Position,
-    pub(super) hole_step: Position,
-    pub(super) polar_repeats: Option<PolarRepeats>,
-    pub(super) pattern: Option<BoltHolePattern>,
-    pub(super) repeats: u32,
+    /// Holes as programmed, at the initial level.
+    pub(super) holes: Vec<Position>,
     pub(super) axis: AxisIndex,
     pub(super) shift: (AxisIndex, f64),
     pub(super) rate: MmPerMin,
@@ -25,15 +21,6 @@ pub(super) struct CyclePlan {
     pub(super) dwell: f64,
     /// Scale of G51 along the drilling axis; Q, 5114 and 5115 are not scaled.
     pub(super) stretch: f64,
-}
-
-/// Repetition of holes by K in polar coordinates.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PolarRepeats {
-    pub(super) plane: (AxisIndex, AxisIndex),
-    pub(super) first: PolarPoint,
-    /// Degrees from hole to hole.
-    pub(super) angle_step: f64,
 }
 
 impl CyclePlan {
@@ -49,11 +36,9 @@ impl CyclePlan {
         };
         let cycle = &state.cycle;
         let (r, z) = (cycle.r_level(), cycle.z_level());
-        let mut hole = self.first_hole;
-        for repeat in 0..self.repeats {
-            self.move_to_hole(data, repeat, &mut hole);
+        for hole in &self.holes {
             let level = |value: f64| {
-                let mut point = hole;
+                let mut point = *hole;
                 point[self.axis] = value;
                 data.to_machine(state, &point)
             };
@@ -142,38 +127,6 @@ impl CyclePlan {
             }
         }
     }
-
-    /// Moves a hole to that of a repetition by K; 0 is the hole of the block.
-    fn move_to_hole(&self, data: &ControlData, repeat: u32, hole: &mut Position) {
-        if let Some(BoltHolePattern { radius, start, angle_step, .. }) = self.pattern {
-            let angle = Deg(start + f64::from(repeat) * angle_step);
-            hole[0] = data.remove_residue(self.first_hole[0] + radius * angle.cos());
-            hole[1] = data.remove_residue(self.first_hole[1] + radius * angle.sin());
-            return;
-        }
-        if repeat == 0 {
-            return;
-        }
-        let from = *hole;
-        for (place, _) in data.settings.axes.iter() {
-            hole[place] =
-                data.remove_residue(self.first_hole[place] + f64::from(repeat) * self.hole_step[place]);
-        }
-        if let Some(PolarRepeats { plane, first, angle_step }) = self.polar_repeats {
-            (hole[plane.0], hole[plane.1]) = (from[plane.0], from[plane.1]);
-            let polar = PolarPoint { angle: first.angle + f64::from(repeat) * angle_step, ..first };
-            data.polar_point(&polar, plane, hole);
-        }
-    }
-
-    /// Returns the last hole.
-    pub(super) fn last_hole(&self, data: &ControlData) -> Position {
-        let mut hole = self.first_hole;
-        for repeat in 0..self.repeats {
-            self.move_to_hole(data, repeat, &mut hole);
-        }
-        hole
-    }
 }
 
 /// Motion of the tool through a cycle, in machine coordinates.
@@ -222,17 +175,6 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
             (self.emit)(EventKind::Dwell { time: Seconds(seconds) }, seconds);
         }
     }
-}
-
-/// Holes round the current position.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BoltHolePattern {
-    pub(super) count: u32,
-    /// mm.
-    pub(super) radius: f64,
-    /// Degrees from X+ to the first hole, and from hole to hole.
-    pub(super) start: f64,
-    pub(super) angle_step: f64,
 }
 
 /// Largest number of pecks in one block; a run must end.
@@ -315,11 +257,7 @@ mod tests {
         let plan = CyclePlan {
             cycle,
             start_state: from,
-            first_hole: at(10.0, 50.0),
-            hole_step: Position::default(),
-            polar_repeats: None,
-            pattern: None,
-            repeats: 1,
+            holes: vec![at(10.0, 50.0)],
             axis: 2,
             shift: (0, 0.0),
             rate: MmPerMin(100.0),

@@ -1,6 +1,6 @@
 //! Checks a drilling block: its axis, words, repeats and end; G70 and G71 of a Haas repeat it round a centre.
-use super::checked::ExecResult;
-use super::cycle_expansion::{BoltHolePattern, CyclePlan, PolarRepeats, has_too_many_pecks};
+use super::cycle_expansion::{CyclePlan, has_too_many_pecks};
+use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
@@ -10,6 +10,18 @@ use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::g_codes::HolePattern;
 use gcode_lang::program::modes::{Distance, Plane, Polar, ReturnTo};
+use gcode_lang::units::Deg;
+
+/// Holes round the current position.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BoltHolePattern {
+    count: u32,
+    /// mm.
+    radius: f64,
+    /// Degrees from X+ to the first hole, and from hole to hole.
+    start: f64,
+    angle_step: f64,
+}
 
 impl Planner<'_> {
     /// Returns true if the block drills: it names an axis or R.
@@ -86,31 +98,15 @@ impl Planner<'_> {
             plan.notes.push(Note::CycleRepeatsZero);
             return Ok(());
         }
-        let mut step = Position::default();
-        if incremental {
-            for axis in 0..self.data.settings.axes.len() {
-                step[axis] = endpoint[axis] - from.programmed[axis];
-            }
-        }
         let first = self.data.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
         let other = self.data.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default();
         let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
-        let polar_repeats = self.polar_repeats(plan, incremental, repeats)?;
-        let cycle_plan = CyclePlan {
-            cycle,
-            start_state: State { machine: from.machine, ..*plan.state },
-            first_hole: endpoint,
-            hole_step: step,
-            polar_repeats,
-            pattern,
-            repeats: repeats.max(1),
-            axis,
-            shift: (if first == axis { other } else { first }, shift),
-            rate,
-            dwell: plan.state.cycle.p,
-            stretch,
+        let start_state = State { machine: from.machine, ..*plan.state };
+        let holes = match pattern {
+            Some(pattern) => self.pattern_holes(&endpoint, pattern),
+            None => self.repeated_holes(&mut plan.state, &from.programmed, endpoint, repeats.max(1))?,
         };
-        plan.state.programmed = cycle_plan.last_hole(self.data);
+        plan.state.programmed = holes.last().copied().unwrap_or(endpoint);
         if repeats == 0 {
             // K0 of some controls: a position only.
             let mut to = self.data.to_machine(&plan.state, &plan.state.programmed);
@@ -128,7 +124,16 @@ impl Planner<'_> {
         plan.state.set_work_zero_unknown(axis, is_unknown);
         plan.state.programmed[axis] = level;
         plan.state.machine = self.data.to_machine(&plan.state, &plan.state.programmed);
-        plan.cycle_plan = Some(cycle_plan);
+        plan.cycle_plan = Some(CyclePlan {
+            cycle,
+            start_state,
+            holes,
+            axis,
+            shift: (if first == axis { other } else { first }, shift),
+            rate,
+            dwell: plan.state.cycle.p,
+            stretch,
+        });
         Ok(())
     }
 
@@ -155,22 +160,50 @@ impl Planner<'_> {
         if none { Err(Alarm::NoPeckDepth.located_at(self.block)) } else { Ok(()) }
     }
 
-    /// Returns the repetition of holes by K in polar coordinates; the angle of the next block counts from the last hole.
-    fn polar_repeats(
+    /// Returns the holes of a block that K repeats; the angle of the next block in G16 counts from the last hole.
+    fn repeated_holes(
         &self,
-        plan: &mut BlockPlan,
-        incremental: bool,
+        state: &mut State,
+        start: &Position,
+        first: Position,
         repeats: u32,
-    ) -> ExecResult<Option<PolarRepeats>> {
-        let state = &mut plan.state;
-        let Ok(plane) = self.data.plane_axes(state.modal.plane) else { return Ok(None) };
-        if state.modal.polar == Polar::Off || !incremental {
-            return Ok(None);
+    ) -> ExecResult<Vec<Position>> {
+        let mut holes = vec![first];
+        let is_incremental = state.modal.distance == Distance::Incremental;
+        let plane = self.data.plane_axes(state.modal.plane);
+        let polar_plane = plane.ok().filter(|_| state.modal.polar == Polar::On && is_incremental);
+        let angle_step = match polar_plane {
+            Some(plane) => self.angle(self.data.axis_letter(plane.1))?.unwrap_or(0.0),
+            None => 0.0,
+        };
+        let first_angle = state.polar.angle;
+        for repeat in (1..repeats).map(f64::from) {
+            let mut hole = first;
+            for axis in 0..self.data.settings.axes.len() {
+                let step = if is_incremental { first[axis] - start[axis] } else { 0.0 };
+                hole[axis] = self.data.remove_residue(first[axis] + repeat * step);
+            }
+            if let Some(plane) = polar_plane {
+                let last = holes[holes.len() - 1];
+                (hole[plane.0], hole[plane.1]) = (last[plane.0], last[plane.1]);
+                state.polar.angle = first_angle + repeat * angle_step;
+                self.data.polar_point(&state.polar, plane, &mut hole);
+            }
+            holes.push(hole);
         }
-        let angle_step = self.angle(self.data.axis_letter(plane.1))?.unwrap_or(0.0);
-        let first = state.polar;
-        state.polar.angle += f64::from(repeats.max(1) - 1) * angle_step;
-        Ok(Some(PolarRepeats { plane, first, angle_step }))
+        Ok(holes)
+    }
+
+    /// Returns the holes of a pattern round the current position.
+    fn pattern_holes(&self, centre: &Position, pattern: BoltHolePattern) -> Vec<Position> {
+        let hole = |index: u32| {
+            let angle = Deg(pattern.start + f64::from(index) * pattern.angle_step);
+            let mut hole = *centre;
+            hole[0] = self.data.remove_residue(centre[0] + pattern.radius * angle.cos());
+            hole[1] = self.data.remove_residue(centre[1] + pattern.radius * angle.sin());
+            hole
+        };
+        (0..pattern.count).map(hole).collect()
     }
 
     /// Reads the depth, R, P and Q, which stay in force from hole to hole.

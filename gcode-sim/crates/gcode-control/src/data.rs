@@ -1,7 +1,7 @@
 //! Settings, parameters and offset tables of a control.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::checked::integer;
+use super::functions::integer;
 use super::state::State;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{ParameterError, ParameterId, Settings};

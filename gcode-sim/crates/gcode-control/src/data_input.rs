@@ -1,6 +1,6 @@
 //! G10: offsets, variables and parameters that a program writes.
-use super::checked::ExecResult;
 use super::data::{Register, STANDARD_SYSTEMS, parameter_bit};
+use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::{BlockPlan, TableWrite};
 use super::planner::Planner;
@@ -48,7 +48,7 @@ impl Planner<'_> {
             return Err(Alarm::OffsetNumber { number: p as i64 }.located_at(self.block));
         }
         let system = first + number - 1;
-        for axis in 0..self.data.settings.axes.len() {
+        for (axis, _) in self.data.settings.axes.iter() {
             let Some(value) = self.axis_dimension(axis, &plan.state)? else { continue };
             let value = self.table_value(plan, offsets[system][axis], value)?;
             plan.writes.push(TableWrite::Work { system, axis, value });

@@ -1,7 +1,9 @@
 //! Evaluates expressions and conditions.
-use super::checked::{ExecResult, integer, locate, variable_number};
+use std::hint::cold_path;
+
 use super::functions::{
-    angle, atan2, binary, compare, compare_numbers, function_alarm, function_value, is_finite, power,
+    ExecResult, angle, atan2, binary, compare, compare_numbers, function_alarm, function_value, integer,
+    is_finite, locate, power, variable_number,
 };
 use super::notes::Note;
 use super::quantities::POWERS;
@@ -120,9 +122,12 @@ impl Registers {
                 Operation::Compare(relation, [left, right]) => {
                     truth(self.compare(*relation, [left, right], last))
                 }
-                Operation::Function(name, argument) => {
-                    self.evaluate_function(*name, self.fetch_number(argument, last), span)?
-                }
+                Operation::Function(name, argument) => match (name, self.fetch_number(argument, last)) {
+                    // One instruction, without a call.
+                    (Function::Sqrt, argument) if argument >= 0.0 => argument.sqrt(),
+                    (Function::Tan, argument) => self.tangent(argument, span)?,
+                    (name, argument) => self.evaluate_function(*name, argument, span)?,
+                },
                 Operation::Atan2([y, x]) => {
                     let y = self.fetch_number(y, last);
                     self.atan(y, self.fetch_number(x, last), span)?
@@ -159,29 +164,36 @@ impl Registers {
         Ok(value)
     }
 
+    /// Computes a function, or its alarm.
     #[inline(always)]
     fn evaluate_function(&self, name: Function, argument: f64, span: &Span) -> ExecResult<f64> {
         let value = function_value(name, argument, &self.data.settings);
         if !is_finite(value) {
             return Err(function_alarm(name, argument).located_at(*span));
         }
-        if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
+        Ok(value)
+    }
+
+    /// Computes TAN; that of 90° has a note or an alarm.
+    #[inline(never)]
+    fn tangent(&self, argument: f64, span: &Span) -> ExecResult<f64> {
+        let value = self.evaluate_function(Function::Tan, argument, span)?;
+        if (argument % 180.0).abs() == 90.0 {
             self.block_effects.record_note(Note::TangentOf90);
         }
         Ok(value)
     }
 
-    /// ATAN of two values.
+    /// Computes ATAN of two values; that of two zeros has a note or an alarm.
     #[inline(always)]
     fn atan(&self, y: f64, x: f64, span: &Span) -> ExecResult<f64> {
-        let value = angle(y, x, &self.data.settings);
-        if !is_finite(value) {
-            return locate(atan2(y, x, &self.data.settings), *span);
-        }
         if y == 0.0 && x == 0.0 {
+            cold_path();
+            let angle = locate(atan2(y, x, &self.data.settings), *span)?;
             self.block_effects.record_note(Note::AtanOf0);
+            return Ok(angle);
         }
-        Ok(value)
+        Ok(angle(y, x, &self.data.settings))
     }
 
     /// Evaluates an instruction that few expressions have, out of line so that the others don't save registers for it.

@@ -1,8 +1,8 @@
 //! Everything of a control but its programs; carries out the plan of a block and emits its events.
-use super::checked::ExecResult;
 use super::cycle_expansion::CyclePlan;
 use super::data::{ControlData, system_index};
 use super::flow::ProgramFlow;
+use super::functions::ExecResult;
 use super::lookahead::Lookahead;
 use super::outcome::{RunEnd, RunLog};
 use super::plan::{BlockPlan, TableWrite};

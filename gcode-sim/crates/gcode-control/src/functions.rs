@@ -1,7 +1,8 @@
-//! Operators, comparisons and functions, with their domains and alarms.
+//! Operators, comparisons and functions with their domains and alarms; whole numbers.
 use super::variables::Value;
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::{Settings, UndocumentedChoices};
+use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Function, Relation};
 use gcode_lang::units::{Deg, round};
 
@@ -141,19 +142,21 @@ fn apply_angle_range(degrees: f64, settings: &Settings) -> f64 {
     if degrees < 0.0 && !settings.returns_signed_angles { degrees + 360.0 } else { degrees }
 }
 
-/// Computes ATAN of two values, degrees.
+/// Computes ATAN of two values, degrees; that of two zeros is 0 or an alarm.
 pub fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
-    let angle = angle(y, x, settings);
-    if is_finite(angle) { Ok(angle) } else { Err(Alarm::OutOfRange { function: "ATAN".into(), value: 0.0 }) }
+    if y != 0.0 || x != 0.0 {
+        return Ok(angle(y, x, settings));
+    }
+    match settings.undocumented.atan_of_zeros_alarms {
+        true => Err(Alarm::OutOfRange { function: "ATAN".into(), value: 0.0 }),
+        false => Ok(0.0),
+    }
 }
 
-/// Returns ATAN of two values; NaN where it raises an alarm.
+/// Returns ATAN of two values of which at most one is 0.
 #[inline]
 pub(super) fn angle(y: f64, x: f64, settings: &Settings) -> f64 {
-    if y == 0.0 && x == 0.0 {
-        return if settings.undocumented.atan_of_zeros_alarms { f64::NAN } else { 0.0 };
-    }
-    // A negative zero must not turn 180° into −180°.
+    // A negative zero must not change 180° into −180°.
     apply_angle_range(Deg::atan2(y + 0.0, x).0, settings)
 }
 
@@ -177,6 +180,34 @@ fn from_bcd(code: u32) -> Option<u32> {
         let value = code >> (4 * digit) & 15;
         (value <= 9).then(|| number * 10 + value)
     })
+}
+
+/// Result of a step of execution, its alarm located.
+pub(super) type ExecResult<T> = Result<T, LocatedAlarm>;
+
+/// Returns the variable number of an expression: rounded, not negative; vacant is #0.
+pub(super) fn variable_number(value: Value) -> Result<u32, Alarm> {
+    let number = value.number();
+    let whole = number as u32;
+    if f64::from(whole) == number {
+        return Ok(whole);
+    }
+    let number = round(number);
+    if (0.0..=f64::from(u32::MAX)).contains(&number) {
+        return Ok(number as u32);
+    }
+    Err(Alarm::NoSuchVariable { number: number as i64 })
+}
+
+/// Returns the nearest integer, for an index, a code or a count.
+pub(super) fn integer(value: f64) -> Result<i64, Alarm> {
+    let rounded = round(value);
+    if rounded.abs() <= 999_999_999_999.0 { Ok(rounded as i64) } else { Err(Alarm::IntegerOverflow) }
+}
+
+/// Locates the alarm of a result.
+pub(super) fn locate<T>(result: Result<T, Alarm>, span: Span) -> ExecResult<T> {
+    result.map_err(|alarm| alarm.located_at(span))
 }
 
 #[cfg(test)]

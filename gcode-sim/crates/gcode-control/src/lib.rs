@@ -33,7 +33,7 @@
 //! ```
 //!
 //! The modules stand in the order in which they use one another. At the top are values and the parts that own them:
-//! `data` (settings and tables), `registers` (what a program can read), `flow` (where the program is) and `outcome` (what
+//! `data` (settings and tables), `registers` (what a program can read), `flow` (the position in the programs) and `outcome` (what
 //! is recorded). A `planner` makes the plan of a block of words, an `executor` carries it out, and `control` adds the
 //! programs. One block reads from top to bottom in `block`; a canned cycle goes from there to `block_codes` (the cycle
 //! becomes modal), `cycles` (its words are checked) and `cycle_expansion` (its moves).
@@ -41,12 +41,10 @@
 
 mod contour;
 
-mod checked;
 mod functions;
 pub mod notes;
 mod outcome;
 mod state;
-mod transform;
 mod variables;
 mod words;
 
@@ -55,7 +53,6 @@ mod cycle_expansion;
 mod data;
 mod linear_motion;
 mod lookahead;
-mod panel;
 mod quantities;
 
 mod evaluation;
@@ -66,7 +63,6 @@ pub mod static_eval;
 mod system_variables;
 mod word_values;
 
-mod arcs;
 mod block_codes;
 mod calls;
 mod cycles;

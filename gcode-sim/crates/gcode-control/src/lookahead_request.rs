@@ -1,15 +1,15 @@
 //! Compensation and corner words that a planned block commands, and its way through the lookahead.
-use super::block_codes::AxisWordUse;
-use super::checked::ExecResult;
+use super::functions::ExecResult;
 use super::lookahead::{CornerArc, LookaheadRequest};
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
-use super::state::State;
+use super::state::{AxisWordUse, State};
 use crate::contour::Point;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::code_facts::LookaheadUse;
-use gcode_lang::program::g_codes::{self, Effect};
+use gcode_lang::program::g_codes;
+use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::{CutterSide, Motion, Plane};
 
 impl Planner<'_> {

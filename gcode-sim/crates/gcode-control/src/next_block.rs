@@ -4,10 +4,12 @@ use super::flow::Frame;
 use super::registers::Registers;
 use super::words::{computed_row, count};
 use gcode_lang::program::code_facts::{AxisWords, Letters, Unsimulated};
-use gcode_lang::program::g_codes::{self, Effect};
-use gcode_lang::program::m_codes::{self, MCodeEffect};
+use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::m_codes::MCodeEffect;
 use gcode_lang::program::modes::Distance;
-use gcode_lang::program::{Assign, LoweredWord, Op, OpKind, Slot, Statement, WordOperand, Words};
+use gcode_lang::program::{
+    Assign, LoweredWord, Op, OpKind, Slot, Statement, WordOperand, Words, g_codes, m_codes,
+};
 use gcode_lang::source::Span;
 
 /// Commands of the next block for state that would otherwise stay as it is.
@@ -292,7 +294,7 @@ mod tests {
     use gcode_lang::control::Settings;
     use gcode_lang::program::{Memory, NoLibrary};
 
-    /// What a function returns before each block, and the variables that each block has assigned.
+    /// Results of a function before each block, and the variables that each block has assigned.
     struct Inspection<T> {
         inspect: fn(&Control) -> T,
         before: Vec<T>,

@@ -1,11 +1,10 @@
 //! Codes of group 00: dwell, coordinate systems, G53, G60, and the reference position of G27 to G30.
-use super::block_codes::AxisWordUse;
-use super::checked::ExecResult;
 use super::data::{STANDARD_SYSTEMS, system_index};
+use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::state::State;
+use super::state::{AxisWordUse, State};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, LengthCompensation, Position};
 use gcode_lang::program::code_facts::WithoutAxes;

@@ -1,8 +1,8 @@
-//! What the planning of a block sees: the control, and the values of the block's words. A planner only reads: a block
-//! that alarms has changed nothing.
-use super::checked::{ExecResult, locate};
+//! Planner of a block: reads the control and the values of the block's words. It can't change the control, so a block that
+//! raises an alarm has changed nothing.
 use super::data::ControlData;
 use super::flow::ProgramFlow;
+use super::functions::{ExecResult, locate};
 use super::linear_motion::{CoordinateBasis, Endpoint};
 use super::quantities::POWERS;
 use super::registers::Registers;

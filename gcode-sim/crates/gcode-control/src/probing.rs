@@ -1,5 +1,5 @@
 //! G31: the planned move, the machine's skip signal, and the position of the axes then.
-use super::checked::ExecResult;
+use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::{BlockPlan, SkipPlan};
 use super::planner::Planner;

@@ -26,7 +26,7 @@ const MAX_INCREMENTS: u64 = 999_999_999;
 /// Powers of ten by their exponent.
 pub(super) const POWERS: [f64; 8] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 
-/// The same as integers; the last exceeds the digits of any literal.
+/// Powers of ten as integers; the last exceeds the digits of any literal.
 const INTEGER_POWERS: [u64; 20] = {
     let mut units = [1; 20];
     let mut place = 1;

@@ -1,4 +1,4 @@
-//! What a run leaves for the next program: variables, modes, offsets, parameters, outputs and counters.
+//! State that a run leaves for the next program: variables, modes, offsets, parameters, outputs and counters.
 use super::control::Control;
 use super::data::{STANDARD_SYSTEMS, system_index};
 use gcode_lang::control::ParameterId;

@@ -1,13 +1,13 @@
-//! What one block can change besides variables and offset tables: modes, positions, codes with a number. It is small enough
-//! to copy, so that a block that alarms leaves no trace.
-use super::transform::Transform;
-use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirection};
+//! State that one block can change besides variables and offset tables: modes, positions, codes with a number, the transform
+//! of coordinates. It is small enough to copy, so that a block that raises an alarm leaves no trace.
+use gcode_lang::motion::{AxisIndex, LengthCompensation, MAX_AXES, Position, SpindleDirection};
 use gcode_lang::program::cycles::Cycle;
-use gcode_lang::program::g_codes::{Effect, GCodeRow};
+use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{
     CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, Motion, Plane, Polar, ReturnTo,
     Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
 };
+use gcode_lang::units::Deg;
 
 /// Control between two blocks; lengths in mm even with G20.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -177,6 +177,17 @@ impl CycleState {
     }
 }
 
+/// Use of the axis words of a block by a code instead of a move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum AxisWordUse {
+    OneShot(OneShot),
+    AdditionalWork,
+    Scale,
+    Mirror { is_on: bool },
+    Rotate,
+    Tilt,
+}
+
 /// Modal codes: one typed field per group, so that they can't contradict one another; `Default` is power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Modal {
@@ -203,9 +214,10 @@ pub struct Modal {
 }
 
 impl Modal {
-    /// Applies a modal code. One-shot codes and codes with words of their own act in their block.
-    pub(super) fn apply(&mut self, row: &GCodeRow) {
-        match row.effect {
+    /// Applies a G code and returns the use that it makes of the axis words of its block, if any. Codes of group 01 are
+    /// applied by [`State::set_motion_mode`].
+    pub(super) fn apply(&mut self, effect: Effect) -> Option<AxisWordUse> {
+        match effect {
             Effect::Plane(plane) => self.plane = plane,
             Effect::Distance(distance) => self.distance = distance,
             Effect::StrokeCheck(check) => self.stroke_check = check,
@@ -215,24 +227,37 @@ impl Modal {
             Effect::Length(length) => self.length = length,
             Effect::Cycle(cycle) => self.cycle = cycle,
             Effect::ReturnTo(to) => self.return_to = to,
-            Effect::Scaling(scaling) => self.scaling = scaling,
             Effect::SpindleMode(mode) => self.spindle_mode = mode,
             Effect::Work(number) => self.work = WorkSystem::Standard(number),
-            Effect::Cutting(mode) => self.cutting = mode,
-            Effect::Rotation(rotation) => self.rotation = rotation,
-            Effect::Polar(polar) => self.polar = polar,
-            Effect::Mirror(mirror) => self.mirror = mirror,
             Effect::NumberedWork(number) => self.work = WorkSystem::Additional(number),
-            // See [`State::set_motion_mode`].
+            Effect::Cutting(mode) => self.cutting = mode,
+            Effect::Polar(polar) => self.polar = polar,
+            Effect::Scaling(scaling) => {
+                self.scaling = scaling;
+                return (scaling == Scaling::On).then_some(AxisWordUse::Scale);
+            }
+            Effect::Rotation(rotation) => {
+                self.rotation = rotation;
+                return match rotation {
+                    Rotation::Off => None,
+                    Rotation::On => Some(AxisWordUse::Rotate),
+                    Rotation::Tilted => Some(AxisWordUse::Tilt),
+                };
+            }
+            Effect::Mirror(mirror) => {
+                self.mirror = mirror;
+                return Some(AxisWordUse::Mirror { is_on: mirror == Mirror::On });
+            }
+            Effect::AdditionalWork => return Some(AxisWordUse::AdditionalWork),
+            Effect::OneShot(one) => return Some(AxisWordUse::OneShot(one)),
             Effect::Motion(_)
-            | Effect::AdditionalWork
-            | Effect::OneShot(_)
             | Effect::NoEffect
             | Effect::LookAhead
             | Effect::Smoothness
             | Effect::Call
             | Effect::NotSimulated => {}
         }
+        None
     }
 
     /// Returns the active G code × 10 of a group, as #4001….
@@ -265,6 +290,153 @@ impl Modal {
     }
 }
 
+/// Transform from programmed to work coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Transform {
+    /// Mirrored axes, as bits.
+    pub(super) mirrored_axes: u8,
+    pub(super) mirror_position: Position,
+    pub(super) scaling: Option<Scale>,
+    pub(super) rotation: Option<PlaneRotation>,
+    pub(super) tilt: Option<Tilt>,
+}
+
+/// G68.2: p = o + Rz(I)·Rx(J)·Rz(K)·q in the coordinates of X, Y and Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tilt {
+    axes: [AxisIndex; 3],
+    origin: [f64; 3],
+    rows: [[f64; 3]; 3],
+}
+
+impl Tilt {
+    pub(super) fn new(axes: [AxisIndex; 3], origin: [f64; 3], angles: [f64; 3]) -> Self {
+        let [(si, ci), (sj, cj), (sk, ck)] = angles.map(sine_cosine);
+        let rows = [
+            [ci * ck - si * cj * sk, -ci * sk - si * cj * ck, si * sj],
+            [si * ck + ci * cj * sk, -si * sk + ci * cj * ck, -ci * sj],
+            [sj * sk, sj * ck, cj],
+        ];
+        Self { axes, origin, rows }
+    }
+
+    fn forward(&self, point: &mut Position) {
+        let feature = self.axes.map(|axis| point[axis]);
+        for (i, axis) in self.axes.into_iter().enumerate() {
+            let rotated: f64 = (0..3).map(|k| self.rows[i][k] * feature[k]).sum();
+            point[axis] = self.origin[i] + rotated;
+        }
+    }
+
+    fn backward(&self, point: &mut Position) {
+        let from = [0, 1, 2].map(|i| point[self.axes[i]] - self.origin[i]);
+        for (i, axis) in self.axes.into_iter().enumerate() {
+            point[axis] = (0..3).map(|k| self.rows[k][i] * from[k]).sum();
+        }
+    }
+}
+
+/// Returns sine and cosine; exact for multiples of 90°, as on a control.
+fn sine_cosine(angle: f64) -> (f64, f64) {
+    match angle.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => (Deg(angle).sin(), Deg(angle).cos()),
+    }
+}
+
+/// Scaling of G51.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Scale {
+    pub(super) centre: Position,
+    pub(super) factor: Position,
+}
+
+/// Rotation of G68 in the plane of two axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PlaneRotation {
+    pub(super) plane: (AxisIndex, AxisIndex),
+    pub(super) centre: (f64, f64),
+    pub(super) angle: f64,
+    sine: f64,
+    cosine: f64,
+}
+
+impl PlaneRotation {
+    pub(super) fn new(plane: (AxisIndex, AxisIndex), centre: (f64, f64), angle: f64) -> Self {
+        let (sine, cosine) = sine_cosine(angle);
+        Self { plane, centre, angle, sine, cosine }
+    }
+
+    fn apply(&self, point: &mut Position, sine: f64) {
+        let (a, b) = (point[self.plane.0] - self.centre.0, point[self.plane.1] - self.centre.1);
+        point[self.plane.0] = self.centre.0 + a * self.cosine - b * sine;
+        point[self.plane.1] = self.centre.1 + a * sine + b * self.cosine;
+    }
+}
+
+impl Transform {
+    #[inline]
+    pub(super) fn is_none(&self) -> bool {
+        self.mirrored_axes == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
+    }
+
+    pub(super) fn forward(&self, mut point: Position) -> Position {
+        if self.is_none() {
+            return point;
+        }
+        self.reflect(&mut point);
+        if let Some(scale) = &self.scaling {
+            for axis in 0..MAX_AXES {
+                point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) * scale.factor[axis];
+            }
+        }
+        if let Some(rotation) = &self.rotation {
+            rotation.apply(&mut point, rotation.sine);
+        }
+        if let Some(tilt) = &self.tilt {
+            tilt.forward(&mut point);
+        }
+        point
+    }
+
+    pub(super) fn backward(&self, mut point: Position) -> Position {
+        if self.is_none() {
+            return point;
+        }
+        if let Some(tilt) = &self.tilt {
+            tilt.backward(&mut point);
+        }
+        if let Some(rotation) = &self.rotation {
+            rotation.apply(&mut point, -rotation.sine);
+        }
+        if let Some(scale) = &self.scaling {
+            for axis in 0..MAX_AXES {
+                point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) / scale.factor[axis];
+            }
+        }
+        self.reflect(&mut point);
+        point
+    }
+
+    fn reflect(&self, point: &mut Position) {
+        for axis in (0..MAX_AXES).filter(|axis| self.mirrored_axes >> axis & 1 == 1) {
+            point[axis] = 2.0 * self.mirror_position[axis] - point[axis];
+        }
+    }
+
+    /// Returns whether arcs in a plane change their direction, and whether they stay circles.
+    pub(super) fn arc_effect(&self, plane: (AxisIndex, AxisIndex)) -> (bool, bool) {
+        let bit = |axis: AxisIndex| self.mirrored_axes >> axis & 1 == 1;
+        let factor = |axis: AxisIndex| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
+        let (a, b) = (factor(plane.0), factor(plane.1));
+        let is_reversed = bit(plane.0) ^ bit(plane.1) ^ (a < 0.0) ^ (b < 0.0);
+        (is_reversed, a.abs() == b.abs())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -277,5 +449,16 @@ mod tests {
             codes,
             [0, 170, 900, 220, 940, 210, 400, 490, 800, 980, 500, 670, 970, 540, 640, 690, 150]
         );
+    }
+
+    #[test]
+    fn a_rotation_by_90_degrees_takes_x_to_y() {
+        let rotation = PlaneRotation::new((0, 1), (0.0, 0.0), 90.0);
+        let transform = Transform { rotation: Some(rotation), ..Transform::default() };
+        let mut point = Position::default();
+        point[0] = 10.0;
+        let rotated = transform.forward(point);
+        assert_eq!((rotated[0], rotated[1]), (0.0, 10.0));
+        assert_eq!(transform.backward(rotated), point);
     }
 }

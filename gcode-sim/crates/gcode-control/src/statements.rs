@@ -1,7 +1,7 @@
 //! Macro statements: assignments, branches, loops and prints. Only #3000 and #3006 emit an event.
-use super::checked::{ExecResult, integer, locate, variable_number};
 use super::evaluation::RoundingTarget;
 use super::executor::Executor;
+use super::functions::{ExecResult, integer, locate, variable_number};
 use super::loop_detection::LoopDetector;
 use super::notes::Note;
 use super::variables::{Value, VariableClass};

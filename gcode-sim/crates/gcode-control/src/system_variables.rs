@@ -1,8 +1,7 @@
 //! System variables: one row per range, with its functions to read and write.
 use super::data::Register;
 use super::notes::Note;
-use super::panel::check_signal_word;
-use super::registers::Registers;
+use super::registers::{Registers, check_signal_word};
 use super::variables::Value;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{CodeSet, OffsetVariables};

@@ -1,10 +1,9 @@
 //! G68, G68.2, G51 and G51.1: their words to a [`Transform`], and the codes that manuals rule out beside them.
-use super::checked::ExecResult;
+use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::state::{Modal, State};
-use super::transform::{self, Scale, Tilt, Transform};
+use super::state::{Modal, PlaneRotation, Scale, State, Tilt, Transform};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{MAX_AXES, Position};
 use gcode_lang::program::code_facts::CoordinateUse;
@@ -29,8 +28,7 @@ impl Planner<'_> {
         let centre = Transform { rotation: None, tilt: None, ..state.transform }.forward(centre);
         let (mirrored, _) = state.transform.arc_effect(plane);
         let angle = if mirrored { -angle } else { angle };
-        state.transform.rotation =
-            Some(transform::Rotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
+        state.transform.rotation = Some(PlaneRotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
         self.data.apply_transform_change(state);
         Ok(())
     }

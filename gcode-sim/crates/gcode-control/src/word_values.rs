@@ -1,6 +1,6 @@
 //! Values of the words of a block, and of the words of a macro call as arguments.
-use super::checked::{ExecResult, locate};
 use super::evaluation::RoundingTarget;
+use super::functions::{ExecResult, locate};
 use super::quantities::POWERS;
 use super::registers::Registers;
 use super::variables::{Locals, VACANT, Value};
@@ -28,14 +28,12 @@ impl Registers {
     ) -> ExecResult<()> {
         block_words.clear();
         block_words.punched_value = words.punched_value();
-        match calling {
-            None => words.list.iter().try_for_each(|word| self.evaluate_into(words, word, block_words)),
-            Some(calling) => {
-                let mut others =
-                    words.list.iter().enumerate().filter(|(place, word)| !calling.contains(*place, word));
-                others.try_for_each(|(_, word)| self.evaluate_into(words, word, block_words))
+        for (index, word) in words.list.iter().enumerate() {
+            if !calling.is_some_and(|calling| calling.contains(index, word)) {
+                self.evaluate_into(words, word, block_words)?;
             }
         }
+        Ok(())
     }
 
     /// Evaluates a word and adds it to those of its block.

@@ -2,7 +2,7 @@
 //! is read.
 use std::cell::Cell;
 
-use super::checked::{ExecResult, integer, locate};
+use super::functions::{ExecResult, integer, locate};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{CodeSet, Settings};
 use gcode_lang::program::code_facts::Letters;

@@ -169,8 +169,8 @@ fn point_along(segment: &Segment, end: Point, distance: f64) -> Result<Point, To
             if half.abs() > 1.0 {
                 return Err(TooShort);
             }
-            let turn = Deg::asin(half) * (2.0 * sweep.0.signum());
-            Ok(centre + radius_vector * turn.cos() + left_normal(radius_vector) * turn.sin())
+            let angle = Deg::asin(half) * (2.0 * sweep.0.signum());
+            Ok(centre + radius_vector * angle.cos() + left_normal(radius_vector) * angle.sin())
         }
     }
 }

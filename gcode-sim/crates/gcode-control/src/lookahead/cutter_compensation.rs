@@ -5,9 +5,10 @@
 //! them belong to the latter block.
 use super::path_move::{PathMove, PendingCornerArc, PendingItem, PendingMove};
 use super::{CornerArc, Lookahead, LookaheadRequest};
-use crate::checked::ExecResult;
-use crate::contour::{self, Point, Segment};
+use crate::contour;
+use crate::contour::{Point, Segment};
 use crate::data::ControlData;
+use crate::functions::ExecResult;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, PlanarArc};
 use gcode_lang::units::Deg;

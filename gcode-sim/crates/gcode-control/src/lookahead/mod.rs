@@ -4,13 +4,14 @@
 //! Callers work on the programmed path; here it becomes the path of the tool centre. Moves go through two stages: corner
 //! words shape the path ([`path_move`]), compensation puts the centre beside it ([`cutter_compensation`]). Each stage holds
 //! back one move, and the items after a move that waits wait as well. Every event keeps the place of its own block.
+
 mod cutter_compensation;
 mod path_move;
 
 use self::path_move::{PathMove, PendingCorner, PendingCornerArc, PendingItem, PendingMove};
-use crate::checked::{ExecResult, locate};
 use crate::contour::{Blend, Point};
 use crate::data::ControlData;
+use crate::functions::{ExecResult, locate};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, Backtrace, EventKind, Position};
 use gcode_lang::source::Span;

@@ -1,8 +1,8 @@
 //! Moves that wait for the next one, the corner words between them, and the events of the tool centre.
 use super::{Lookahead, LookaheadRequest};
-use crate::checked::ExecResult;
 use crate::contour::{Blend, Point, Segment};
 use crate::data::ControlData;
+use crate::functions::ExecResult;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{Backtrace, EventKind, MAX_AXES, PlanarArc, Position};
 use gcode_lang::units::MmPerMin;
