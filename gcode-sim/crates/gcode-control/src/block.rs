@@ -21,7 +21,6 @@ use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
 use super::words::{BlockWords, CallingWord};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::StrokeLimits;
 use gcode_lang::motion::EventSink;
 use gcode_lang::program::modes::CutterSide;
 use gcode_lang::program::{CallCode, DialectSyntax, GuardedOp, Library, Memory, OpBody, OpKind, Words};
@@ -155,7 +154,7 @@ impl Planner<'_> {
         let axis_use = self.apply_modal_codes(plan)?;
         // A block with nothing but axis words and codes of group 01 has no other codes.
         if self.words.has_letters(!self.data.settings.axes.letter_bits())
-            || self.words.has_non_motion_words()
+            || self.words.has_other_g_codes
             || !self.words.m_codes.is_empty()
             || plan.state.modal.cutter != CutterSide::Off
         {
@@ -188,10 +187,7 @@ impl Planner<'_> {
         if let Some(unread) = self.words.first_unread() {
             self.pass_to_machine_builder(unread, plan)?;
         }
-        match &self.data.settings.stroke_limits {
-            Some(stroke) => self.check_stroke(stroke, plan),
-            None => Ok(()),
-        }
+        self.check_stroke(plan)
     }
 
     /// Handles a word that nothing has read: with an M code of the machine builder and without axes it goes to that code's
@@ -222,20 +218,20 @@ impl Planner<'_> {
     }
 
     /// Checks the stroke of every move of a block. A real control stops on the way; here nothing has moved.
-    fn check_stroke(&self, stroke: &StrokeLimits, plan: &BlockPlan) -> ExecResult<()> {
-        for (kind, _) in &plan.events {
-            self.locate(self.data.check_event(stroke, kind))?;
+    fn check_stroke(&self, plan: &BlockPlan) -> ExecResult<()> {
+        if self.data.settings.stroke_limits.is_none() {
+            return Ok(());
         }
-        if plan.uses_lookahead {
-            plan.lookahead.check_stroke(self.data)?;
-        }
-        let mut result = Ok(());
+        let mut result = plan.events.iter().try_for_each(|(kind, _)| self.data.check_move(kind));
         if let Some(cycle_plan) = &plan.cycle_plan {
             cycle_plan.expand(self.data, &mut |kind, _| {
                 if result.is_ok() {
-                    result = self.data.check_event(stroke, &kind);
+                    result = self.data.check_move(&kind);
                 }
             });
+        }
+        if plan.uses_lookahead {
+            plan.lookahead.check_stroke(self.data)?;
         }
         self.locate(result)
     }

@@ -4,10 +4,9 @@ use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
 use super::state::{AxisWordUse, CycleState, PolarPoint};
-use super::words::letters;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
-use gcode_lang::program::code_facts::{CoordinateUse, LookaheadUse};
+use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
 use gcode_lang::program::g_codes::{Effect, spelled};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
@@ -18,7 +17,7 @@ impl Planner<'_> {
     /// 1. Applies the modal G codes in their order; returns the use of the axis words instead of a move.
     #[inline]
     pub(super) fn apply_modal_codes(&self, plan: &mut BlockPlan) -> ExecResult<Option<AxisWordUse>> {
-        if self.words.has_non_motion_words() {
+        if self.words.has_other_g_codes {
             return self.apply_all_codes(plan);
         }
         if let Some(motion) = self.words.motion {
@@ -43,7 +42,7 @@ impl Planner<'_> {
             if row.facts.lookahead == LookaheadUse::Alarms && state.modal.cutter != CutterSide::Off {
                 return Err(Alarm::ToolOffsetInCompensation.located_at(self.block));
             }
-            self.words.mark_letters_read(row.facts.words.without_effect);
+            self.words.mark_read(row.facts.words.without_effect);
             if matches!(row.effect, Effect::NotSimulated | Effect::Call) {
                 return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.help)));
             }
@@ -135,7 +134,7 @@ impl Planner<'_> {
     /// Raises the alarm of a word that needs a code which the block lacks, or excludes one that it has.
     fn check_misplaced_words(&self, plan: &BlockPlan) -> ExecResult<()> {
         let owned = self.words.letters_of_codes();
-        if let Some(letter) = self.words.first_letter_of(letters(b"ENO") & !owned) {
+        if let Some(letter) = self.words.first_letter_of(Letters::of(b"ENO").bits() & !owned) {
             return Err(self.improper_address(letter));
         }
         if self.words.has_non_motion_code(|effect| effect == Effect::LookAhead)
@@ -154,10 +153,10 @@ impl Planner<'_> {
         }
         let repeats_cycle =
             self.data.settings.cycle_repeat_letter == b'L' && plan.state.modal.cycle.is_some();
-        if self.words.has_letters(letters(b"L") & !owned) && !repeats_cycle {
+        if self.words.has_letters(Letters::of(b"L").bits() & !owned) && !repeats_cycle {
             return Err(self.improper_address(b'L'));
         }
-        let axes = letters(b"ABCUVWXYZ") & !owned;
+        let axes = Letters::of(b"ABCUVWXYZ").bits() & !owned;
         if let Some(letter) = self.words.first_letter_of(axes & !self.data.settings.axes.letter_bits()) {
             return Err(self.improper_address(letter));
         }
@@ -195,7 +194,7 @@ impl Planner<'_> {
                 }
                 MCodeEffect::SpindleStop | MCodeEffect::Orient => {
                     if effect == MCodeEffect::Orient {
-                        self.words.mark_read(b"PR");
+                        self.words.mark_read(Letters::of(b"PR"));
                     }
                     plan.state.spindle = SpindleDirection::Off;
                     plan.events_after_motion
@@ -218,7 +217,7 @@ impl Planner<'_> {
                     plan.events_after_motion.push((EventKind::Coolant { is_on: false, code }, 0.0));
                 }
                 MCodeEffect::InterruptOn => {
-                    self.words.mark_read(b"P");
+                    self.words.mark_read(Letters::of(b"P"));
                     plan.notes.push(Note::InterruptNotSimulated);
                 }
                 MCodeEffect::InterruptOff => {}

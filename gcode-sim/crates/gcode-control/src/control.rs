@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use super::executor::Executor;
-use super::flow::Frame;
 use super::functions::ExecResult;
 use super::loop_detection::LoopDetector;
 use super::notes::Note;
@@ -17,7 +16,7 @@ use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{AxisIndex, Backtrace, EventSink, Position};
 use gcode_lang::program::modes::WorkSystem;
-use gcode_lang::program::{Library, Memory, ProgramId, Slot};
+use gcode_lang::program::{Library, Memory, Slot};
 use gcode_lang::source::Span;
 use gcode_lang::units::Seconds;
 
@@ -108,19 +107,11 @@ impl Control {
             outcome: None,
             progress: None,
         };
-        control.select(ProgramId::default());
-        control
-    }
-
-    /// Makes another program of the memory the main program.
-    pub fn select(&mut self, program: ProgramId) {
-        self.outcome = None;
-        self.executor.flow.callers.clear();
-        self.executor.flow.frame = Frame::main(program);
-        if let Some(program) = self.memory.programs().get(program.0 as usize) {
-            self.executor.registers.state.codes.o = program.shown_number();
-            self.executor.flow.block = program.span;
+        if let Some(program) = control.memory.programs().first() {
+            control.executor.registers.state.codes.o = program.shown_number();
+            control.executor.flow.block = program.span;
         }
+        control
     }
 
     /// Shares the progress of the run, and lets its holder cancel it.
@@ -150,7 +141,7 @@ impl Control {
         if let Some(outcome) = self.final_outcome() {
             return outcome;
         }
-        self.loop_detector.reset();
+        self.loop_detector.endless_loop = None;
         self.executor.log.max_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MIN_MOVE_LIMIT);
         while self.executor.log.blocks < limits.blocks
             && self.executor.log.moves <= self.executor.log.max_moves
@@ -318,7 +309,7 @@ impl Control {
 
     /// Returns the first and the last block of the endless loop that has ended the run; `None` if there is none.
     pub fn endless_loop(&self) -> Option<(Span, Span)> {
-        let found = self.loop_detector.endless_loop()?;
+        let found = self.loop_detector.endless_loop?;
         Some((self.memory.block_span(found.program, found.to)?, found.from))
     }
 

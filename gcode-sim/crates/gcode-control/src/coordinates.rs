@@ -145,14 +145,9 @@ impl ControlData {
         Ok(())
     }
 
-    /// Raises the alarm of a move beyond the stroke, if the control has limits.
+    /// Stored stroke check 1 (parameters 1320 and 1321): raises the alarm of a move beyond the limits, if there are any.
     pub(super) fn check_move(&self, kind: &EventKind) -> Result<(), Alarm> {
-        self.settings.stroke_limits.as_ref().map_or(Ok(()), |stroke| self.check_event(stroke, kind))
-    }
-
-    /// Stored stroke check 1 (parameters 1320 and 1321).
-    pub(super) fn check_event(&self, stroke: &StrokeLimits, kind: &EventKind) -> Result<(), Alarm> {
-        let Some(to) = kind.end() else { return Ok(()) };
+        let (Some(stroke), Some(to)) = (&self.settings.stroke_limits, kind.end()) else { return Ok(()) };
         self.check_point(stroke, to)?;
         if let EventKind::Arc { arc, .. } = kind {
             extremes(arc, to).iter().flatten().try_for_each(|point| self.check_point(stroke, point))?;

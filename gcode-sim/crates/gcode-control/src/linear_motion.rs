@@ -55,18 +55,6 @@ impl SquaredTravel {
     }
 }
 
-impl Endpoint {
-    /// Returns the current position as an end point.
-    #[inline]
-    pub(super) fn at_current_position(state: &State) -> Self {
-        Self {
-            programmed: state.programmed,
-            machine: state.machine,
-            work_zero_unknown: state.work_zero_unknown,
-        }
-    }
-}
-
 impl ControlData {
     /// Returns the two axes of the plane in right-handed order.
     pub(super) fn plane_axes(&self, plane: Plane) -> Result<(AxisIndex, AxisIndex), Alarm> {

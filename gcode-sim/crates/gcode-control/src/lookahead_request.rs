@@ -16,7 +16,7 @@ impl Planner<'_> {
     /// Returns true if compensation, a corner word or a waiting move could concern the block.
     #[inline(always)]
     pub(super) fn needs_lookahead(&self, state: &State) -> bool {
-        let is_commanded = state.modal.cutter != CutterSide::Off || self.words.has_corner();
+        let is_commanded = state.modal.cutter != CutterSide::Off || self.words.corner.is_some();
         is_commanded || self.words.has_any(b"IJK") || !self.registers.lookahead.is_idle()
     }
 
@@ -26,7 +26,7 @@ impl Planner<'_> {
         axis_use: Option<AxisWordUse>,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
-        if self.words.has_corner() && plan.corner.is_none() {
+        if self.words.corner.is_some() && plan.corner.is_none() {
             plan.notes.push(Note::CornerIgnored);
         }
         let cancels_compensation =

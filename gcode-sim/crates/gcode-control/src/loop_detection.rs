@@ -57,20 +57,11 @@ pub(super) struct LoopDetector {
     seconds: f64,
     /// Number of jumps for which the fingerprint is kept.
     iterations: u64,
-    endless_loop: Option<BackJump>,
+    /// Loop that never ends, if one was found since the run began or continued.
+    pub(super) endless_loop: Option<BackJump>,
 }
 
 impl LoopDetector {
-    /// Returns the loop that never ends, if one was found.
-    pub(super) fn endless_loop(&self) -> Option<BackJump> {
-        self.endless_loop
-    }
-
-    /// Begins or continues a run.
-    pub(super) fn reset(&mut self) {
-        self.endless_loop = None;
-    }
-
     /// Records a jump back; ends the run if the program provably never leaves the loop.
     #[inline(always)]
     pub(super) fn record_jump(&mut self, executor: &mut Executor) {

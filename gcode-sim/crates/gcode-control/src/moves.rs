@@ -5,9 +5,10 @@ use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::State;
-use super::words::{WordNumber, letters};
+use super::words::WordNumber;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, MAX_AXES, PlanarArc, Position, SpindleDirection};
+use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::{CutterSide, Distance, Length, Motion, Plane, Polar, Unit};
 use gcode_lang::units::{Deg, MmPerMin};
@@ -53,7 +54,7 @@ impl Planner<'_> {
             }
             // Only blocks that drill store P and Q.
             if self.words.has_any(b"PQ") {
-                self.words.mark_read(b"PQ");
+                self.words.mark_read(Letters::of(b"PQ"));
                 plan.notes.push(Note::CycleDataLost);
             }
             if has_new_length {
@@ -68,7 +69,7 @@ impl Planner<'_> {
         let overrules_cycle =
             self.words.has_non_motion_code(|effect| matches!(effect, Effect::Cycle(Some(_))));
         if overrules_cycle {
-            self.words.mark_read(b"KPQR");
+            self.words.mark_read(Letters::of(b"KPQR"));
         }
         if !(names_axis || is_arc && self.words.has_any(b"IJKR")) {
             return self.move_by_length_change(plan, has_new_length);
@@ -76,16 +77,16 @@ impl Planner<'_> {
         // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
         let takes_vector = self.words.has_non_motion_code(|effect| effect == Effect::Cutter(CutterSide::Off));
         if !(is_arc || takes_vector || overrules_cycle)
-            && let Some(letter) = self.words.first_letter_of(letters(b"IJKR"))
+            && let Some(letter) = self.words.first_letter_of(Letters::of(b"IJKR").bits())
         {
             let what = format!("{} in a block with a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.located_at(self.words.span(letter)));
         }
         let endpoint = self.resolve_endpoint(&mut plan.state)?;
-        if motion == Motion::Thread && self.words.has_corner() {
+        if motion == Motion::Thread && self.words.corner.is_some() {
             return Err(Alarm::CornerInThread.located_at(self.block));
         }
-        if motion != Motion::Rapid && self.words.has_corner() {
+        if motion != Motion::Rapid && self.words.corner.is_some() {
             plan.corner = self.corner_word(&plan.state)?;
         }
         match motion {
@@ -118,7 +119,8 @@ impl Planner<'_> {
 
     /// Returns the end point of the block's axis words, from the position in `state`.
     pub(super) fn resolve_endpoint(&self, state: &mut State) -> ExecResult<Endpoint> {
-        let mut endpoint = Endpoint::at_current_position(state);
+        let State { programmed, machine, work_zero_unknown, .. } = *state;
+        let mut endpoint = Endpoint { programmed, machine, work_zero_unknown };
         let basis = self.data.coordinate_basis(state);
         self.resolve_axes(state, &basis, &mut endpoint)?;
         state.work_zero_unknown = endpoint.work_zero_unknown;
@@ -184,7 +186,7 @@ impl Planner<'_> {
 
     /// G33: F is the lead along the axis with the longest path, in every feed mode; Q, the start angle, has no effect.
     pub(super) fn plan_thread(&self, plan: &mut BlockPlan, to: Position) -> ExecResult<()> {
-        self.words.mark_read(b"Q");
+        self.words.mark_read(Letters::of(b"Q"));
         if let Some((WordNumber::Literal(lead), _)) = self.words.get(b'F')
             && lead.places.is_none()
         {
@@ -228,7 +230,7 @@ impl Planner<'_> {
         let clockwise = state.modal.motion == Motion::Clockwise;
         let centre = if let Some(radius) = self.dimension(b'R', state)? {
             // R overrides I J K.
-            self.words.mark_read(b"IJK");
+            self.words.mark_read(Letters::of(b"IJK"));
             if start == end {
                 // An arc by R that ends at its start has no length.
                 if endpoint.programmed != state.programmed {

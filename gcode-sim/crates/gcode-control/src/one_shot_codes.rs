@@ -7,7 +7,7 @@ use super::planner::Planner;
 use super::state::{AxisWordUse, State};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, LengthCompensation, Position};
-use gcode_lang::program::code_facts::WithoutAxes;
+use gcode_lang::program::code_facts::{Letters, WithoutAxes};
 use gcode_lang::program::g_codes::{GCodeRow, OneShot};
 use gcode_lang::program::modes::{Distance, Length, WorkSystem};
 use gcode_lang::units::Seconds;
@@ -93,7 +93,7 @@ impl Planner<'_> {
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
             OneShot::MachineSystem => self.plan_machine_move(plan),
-            OneShot::CornerArc if self.registers.lookahead.is_on() => Ok(()),
+            OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),
             OneShot::CornerArc => Err(self.not_simulated("G39 without cutter compensation")),
         }
     }
@@ -148,7 +148,7 @@ impl Planner<'_> {
         let mut to = plan.state.machine;
         let is_incremental = plan.state.modal.distance == Distance::Incremental;
         if is_incremental && !self.data.settings.undocumented.g53_moves_in_g91 {
-            self.words.mark_read(b"ABCUVWXYZ");
+            self.words.mark_read(Letters::of(b"ABCUVWXYZ"));
             plan.notes.push(Note::MachineMoveIgnored);
             return Ok(());
         }

@@ -279,7 +279,7 @@ impl Registers {
     /// Returns the tool centre in machine coordinates; a move that waits for the next one counts as executed, as if nothing
     /// followed.
     pub(super) fn tool_centre(&self, axis: AxisIndex) -> f64 {
-        self.state.machine[axis] + self.lookahead.offset(axis)
+        self.state.machine[axis] + self.lookahead.offset[axis]
     }
 }
 

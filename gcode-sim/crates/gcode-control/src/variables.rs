@@ -301,7 +301,7 @@ impl Vars {
     }
 
     /// Iterates over the variables that aren't vacant, by number: the locals of the main program and the commons.
-    pub fn nonvacant(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+    pub(super) fn nonvacant(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let local =
             |local| self.outer_locals.first().map_or_else(|| self.get(local), |level| level.get(local));
         let locals = (0..LOCALS).map(move |place| (place, local(place)));

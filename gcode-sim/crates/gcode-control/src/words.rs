@@ -36,16 +36,6 @@ impl WordNumber {
     }
 }
 
-/// Returns letters as bits, A the lowest.
-pub(super) const fn letters(some: &[u8]) -> u32 {
-    let (mut bits, mut place) = (0, 0);
-    while place < some.len() {
-        bits |= 1 << (some[place] - b'A');
-        place += 1;
-    }
-    bits
-}
-
 /// Largest number of G codes in a block.
 pub(super) const G_CODES: usize = 12;
 
@@ -60,7 +50,7 @@ pub(super) struct BlockWords {
     /// Last code of group 01.
     pub(super) motion: Option<Motion>,
     /// The block has a G code outside group 01.
-    has_other_g_codes: bool,
+    pub(super) has_other_g_codes: bool,
     pub(super) m_codes: Vec<(u32, Span)>,
     /// `,R` or `,C`.
     pub(super) corner: Option<(u8, WordNumber, Span)>,
@@ -127,25 +117,20 @@ impl BlockWords {
         self.present_letters >> (letter - b'A') & 1 == 1
     }
 
-    /// Returns true if the block has one of some [`letters`].
+    /// Returns true if the block has one of some letters, as bits.
     pub(super) fn has_letters(&self, letters: u32) -> bool {
         self.present_letters & letters != 0
     }
 
     #[inline]
     pub(super) fn has_any(&self, some: &[u8]) -> bool {
-        self.has_letters(letters(some))
+        self.has_letters(Letters::of(some).bits())
     }
 
-    /// Returns the first of some [`letters`], in the order of the alphabet, that the block has.
+    /// Returns the first of some letters, as bits, in the order of the alphabet, that the block has.
     pub(super) fn first_letter_of(&self, letters: u32) -> Option<u8> {
         let some = self.present_letters & letters;
         (some != 0).then(|| b'A' + some.trailing_zeros() as u8)
-    }
-
-    /// Returns true if the block has a G code outside group 01.
-    pub(super) fn has_non_motion_words(&self) -> bool {
-        self.has_other_g_codes
     }
 
     /// Returns the value of a word and marks it as read.
@@ -155,14 +140,7 @@ impl BlockWords {
     }
 
     /// Marks words without effect as read.
-    pub(super) fn mark_read(&self, letters: &[u8]) {
-        for letter in letters {
-            self.get(*letter);
-        }
-    }
-
-    /// Marks words as [`BlockWords::mark_read`].
-    pub(super) fn mark_letters_read(&self, letters: Letters) {
+    pub(super) fn mark_read(&self, letters: Letters) {
         self.read_letters.set(self.read_letters.get() | letters.bits());
     }
 
@@ -178,11 +156,6 @@ impl BlockWords {
     pub(super) fn first_unread(&self) -> Option<(char, Span)> {
         let letter = self.first_letter_of(!self.read_letters.get())?;
         Some((char::from(letter), self.span(letter)))
-    }
-
-    /// Returns true if the block has `,R` or `,C`.
-    pub(super) fn has_corner(&self) -> bool {
-        self.corner.is_some()
     }
 
     pub(super) fn span(&self, letter: u8) -> Span {

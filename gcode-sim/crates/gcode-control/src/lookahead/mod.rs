@@ -25,10 +25,10 @@ pub(super) struct Lookahead {
     /// Tool centre after the emitted events.
     tool_centre: Position,
     /// Offset of the centre from the path after all blocks read, as if nothing followed.
-    offset: Position,
+    pub(super) offset: Position,
     plane: (AxisIndex, AxisIndex),
-    /// Offset mode: a start-up move was read.
-    is_compensating: bool,
+    /// Offset mode, in which corners are computed: a start-up move was read.
+    pub(super) is_compensating: bool,
     /// G41 or G42 was repeated in a block without a move: the centre goes to beside the end of the block before.
     is_restated: bool,
     /// Blocks without a move in the plane since the last one with such a move.
@@ -86,16 +86,6 @@ impl Lookahead {
     /// Returns true in the offset mode, and with a vector that G40 alone has left.
     pub(super) fn is_offset(&self) -> bool {
         self.is_compensating || self.offset != Position::default()
-    }
-
-    /// Returns true in the offset mode, in which corners are computed.
-    pub(super) fn is_on(&self) -> bool {
-        self.is_compensating
-    }
-
-    /// Returns the offset of the centre from the path on an axis.
-    pub(super) fn offset(&self, axis: AxisIndex) -> f64 {
-        self.offset[axis]
     }
 
     /// Returns true if a move waits for the next one.
