@@ -11,9 +11,8 @@ use gcode_inspect::machine::Machine;
 use gcode_part::Hole;
 use gcode_review::RevisionDiff;
 use gcode_sim::report::changed_view;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ImageFormat, RgbImage};
 use serde::Deserialize;
+use tiny_skia::{IntRect, Pixmap};
 
 use crate::changes::revision;
 use crate::{Case, burr_picture, root};
@@ -211,17 +210,10 @@ fn describe(difference: &Difference) -> String {
 }
 
 fn cropped(bytes: &[u8], [left, top, width, height]: [u32; 4]) -> Vec<u8> {
-    let whole = image::load_from_memory_with_format(bytes, ImageFormat::Png).unwrap().to_rgb8();
+    let whole = Pixmap::decode_png(bytes).unwrap();
     assert!(left + width <= whole.width() && top + height <= whole.height(), "the crop leaves the picture");
-    let part: RgbImage = image::imageops::crop_imm(&whole, left, top, width, height).to_image();
-    let mut bytes = Vec::new();
-    part.write_with_encoder(PngEncoder::new_with_quality(
-        &mut bytes,
-        CompressionType::Best,
-        FilterType::NoFilter,
-    ))
-    .unwrap();
-    bytes
+    let part = IntRect::from_xywh(left as i32, top as i32, width, height);
+    png(&part.and_then(|part| whole.clone_rect(part)).unwrap()).unwrap()
 }
 
 /// `INSTA_UPDATE=always` accepts what is new, as for snapshots.

@@ -2,23 +2,23 @@
 use super::PictureError;
 use super::deviation_dials::{Detail, DeviationDials};
 use super::font::Font;
-use super::frame::{Frame, LegendUse};
-use super::ink::{DrawCommand, Rect};
+use super::ink::{DrawCommand, Rect, px};
 use super::label_layout::{LabelLayout, caption_strokes};
 use super::labels::LabelArea;
-use super::lines::{are_arrows_hidden, axes, block_stroke, is_path, scale_bar, stroke_ink};
+use super::lines::{are_arrows_hidden, axes, block_stroke, scale_bar, shape_commands};
 use super::marks::draw_marks;
-use super::measure::Scale;
+use super::measure::{Frame, Scale};
 use super::panel::Panel;
-use super::role::{HoleStatus, Pen, Point};
-use super::scene::{Scene, Shape, Stroke};
+use super::picture::{LegendUse, Picture};
+use super::scene::{HoleStatus, Pen, Point, Scene, Shape, Stroke};
 use super::size::Size;
 use super::words::Words;
 
-/// A laid-out picture: every command has its position in pixels.
+/// A laid-out drawing: every command has its position in pixels or another unit of the paper.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    pub(super) size: Size,
+    /// Width and height.
+    pub(super) size: [f64; 2],
     pub(super) commands: Vec<DrawCommand>,
     /// Labels of holes and lines with their boxes; none overlaps another.
     pub labels: Vec<(Rect, Vec<String>)>,
@@ -28,21 +28,37 @@ pub struct Sheet {
     pub magnification: Option<f64>,
 }
 
+impl Sheet {
+    /// Draws the strokes of a scene alone, to a given scale and without moving a text.
+    ///
+    /// `size` is the paper's width and height, `origin` the position of the scene's zero point from its upper
+    /// left corner, and `text` the height of texts, all in units of the paper; `scale` is the length of 1 mm.
+    pub fn to_scale(scene: &Scene, size: [f64; 2], origin: [f64; 2], scale: f64, text: f64) -> Self {
+        let scale = Scale { factor: scale, origin: px(origin[0], origin[1]) };
+        let commands = scene.strokes.iter().flat_map(|stroke| shape_commands(stroke, &scale, text));
+        Self { commands: commands.collect(), ..Self::empty(size) }
+    }
+
+    pub(super) fn empty(size: [f64; 2]) -> Self {
+        Self { size, commands: Vec::new(), labels: Vec::new(), notes: Vec::new(), magnification: None }
+    }
+}
+
 /// Largest coordinate, mm; larger values are mistakes.
 const MAX_COORDINATE: f64 = 1e6;
 
-/// Places a scene on a sheet with as much detail as leaves every hole its number.
+/// Places a picture on a sheet with as much detail as leaves every hole its number.
 ///
 /// # Errors
 /// [`PictureError::OffTheSheet`] if a coordinate is not a number or lies more than a kilometre from the
 /// origin.
-pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
+pub fn lay_out(picture: &Picture, size: Size) -> Result<Sheet, PictureError> {
+    let scene = &picture.scene;
     check(scene)?;
     let font = Font::embedded();
     let text = size.text();
-    let (width, height) = (f64::from(size.width()), f64::from(size.height()));
-    let page = Rect::new(0.0, 0.0, width, height).grown(-(0.5 * text).round());
-    let panel = Panel::beside(page, scene, &font, text);
+    let page = size.page().grown(-(0.5 * text).round());
+    let panel = Panel::beside(page, picture, &font, text);
     let strip = 2.4 * text;
     let drawing = Rect { bottom: panel.drawing.bottom - strip, ..panel.drawing };
 
@@ -57,12 +73,12 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
         frame = frame_of(2.6 * text + largest_dial);
     }
 
-    if let Some(chart) = &scene.chart {
-        let mut words = Words::new(&frame.font, text);
+    if let Some(chart) = &picture.chart {
+        let mut words = Words::new(&frame.font, text, size);
         chart.draw(panel.drawing.grown(-text), &mut words);
-        let Words { commands: mut inks, labels, .. } = words;
-        inks.extend(panel.inks(scene, &frame, LegendUse::NOTHING, &[]));
-        return Ok(Sheet { size, commands: inks, labels, notes: Vec::new(), magnification: None });
+        let mut sheet = words.sheet;
+        sheet.commands.extend(panel.commands(picture, &frame, LegendUse::default(), &[]));
+        return Ok(sheet);
     }
     let mut plans = Detail::ALL.iter().map(|detail| Plan::new(scene, &frame, drawing, extent, *detail));
     let mut best = plans.next().expect("there is a first detail");
@@ -74,10 +90,11 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
             best = plan;
         }
     }
-    let Plan { commands: mut inks, labels, notes, legend_use: shown, .. } = best;
-    inks.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
-    inks.extend(panel.inks(scene, &frame, shown, &notes));
-    Ok(Sheet { size, commands: inks, labels, notes, magnification: shown.magnification })
+    let Plan { mut commands, labels, notes, legend_use, .. } = best;
+    commands.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
+    commands.extend(panel.commands(picture, &frame, legend_use, &notes));
+    let magnification = legend_use.magnification;
+    Ok(Sheet { commands, labels, notes, magnification, ..Sheet::empty(size.into()) })
 }
 
 /// One attempt at a layout, at a given level of detail.
@@ -95,14 +112,14 @@ impl Plan {
         let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text_size), frame.text_size);
         let mut inks = Vec::new();
         for stroke in &scene.strokes {
-            inks.push(stroke_ink(stroke, frame));
+            inks.extend(shape_commands(stroke, &frame.scale, frame.text_size));
             block_stroke(&mut field, stroke, frame);
         }
         inks.extend(axes(scene, frame, extent, drawing, &mut field));
         // A straight line's caption has one position, a hole's label many, the caption of a circle or path
         // any.
         let mut labels = Vec::new();
-        let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !is_path(stroke.pen);
+        let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !stroke.pen.is_path();
         let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut inks, &mut labels);
         let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
@@ -145,6 +162,8 @@ fn check(scene: &Scene) -> Result<(), PictureError> {
         let fine = match &stroke.shape {
             Shape::Line(points) => points.iter().all(fits),
             Shape::Circle { centre, radius } => fits(centre) && fits(&[*radius, 0.0]) && 0.0 <= *radius,
+            Shape::Arrow(ends) => ends.iter().all(fits),
+            Shape::Zero(at) | Shape::Text { at, .. } => fits(at),
         };
         if !fine {
             return Err(off(format!("a line of the drawing ({:?})", stroke.pen)));
@@ -160,29 +179,24 @@ fn check(scene: &Scene) -> Result<(), PictureError> {
     Ok(())
 }
 
-/// Returns true for pens of changed cuts, which are part of the extent.
-fn is_changed(pen: Pen) -> bool {
-    matches!(pen, Pen::New | Pen::Old)
-}
-
 /// Returns the extent of the drawing, mm: all holes, all lines except unchanged tool paths, and the origin if
 /// axes are drawn.
 fn extent(scene: &Scene) -> (Point, Point) {
     let mut seen: Vec<(Point, f64)> = Vec::new();
-    let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| is_path(s.pen));
+    let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| s.pen.is_path());
     for stroke in &scene.strokes {
+        let counts = path_alone || !stroke.pen.is_path() || matches!(stroke.pen, Pen::New | Pen::Old);
         match &stroke.shape {
-            Shape::Line(points) if path_alone || !is_path(stroke.pen) || is_changed(stroke.pen) => {
-                seen.extend(points.iter().map(|p| (*p, 0.0)))
-            }
+            Shape::Line(points) if counts => seen.extend(points.iter().map(|p| (*p, 0.0))),
             Shape::Line(_) => {}
             Shape::Circle { centre, radius } => seen.push((*centre, *radius)),
+            Shape::Arrow(ends) => seen.extend(ends.map(|p| (p, 0.0))),
+            Shape::Zero(at) | Shape::Text { at, .. } => seen.push((*at, 0.0)),
         }
     }
     for mark in &scene.marks {
-        seen.extend(
-            [Some(mark.position), mark.actual].into_iter().flatten().map(|place| (place, mark.radius)),
-        );
+        let places = [Some(mark.position), mark.actual].into_iter().flatten();
+        seen.extend(places.map(|place| (place, mark.radius)));
     }
     if !scene.axes.is_empty() || seen.is_empty() {
         seen.push(([0.0, 0.0], 0.0));
@@ -194,7 +208,7 @@ fn extent(scene: &Scene) -> (Point, Point) {
     }
     // A single hole without an outline would fill the sheet.
     let widest = (high[0] - low[0]).max(high[1] - low[1]);
-    let alone = scene.strokes.iter().all(|stroke| is_path(stroke.pen));
+    let alone = scene.strokes.iter().all(|stroke| stroke.pen.is_path());
     let least = 20.0 * scene.marks.iter().map(|m| m.radius).fold(0.5, f64::max);
     let grow = if alone { ((least - widest) / 2.0).max(0.0) } else { 0.0 };
     (low.map(|v| v - grow), high.map(|v| v + grow))
@@ -203,19 +217,25 @@ fn extent(scene: &Scene) -> (Point, Point) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ink::Align;
-    use crate::scene::{Axis, LegendItem, Mark, Sample, Title, ZoneDeviation};
+    use crate::picture::{LegendItem, Sample, Title};
+    use crate::scene::{Axis, Mark, ZoneDeviation};
     use proptest::prelude::*;
 
-    fn scene(marks: Vec<Mark>) -> Scene {
+    fn picture(marks: Vec<Mark>) -> Picture {
         let circle = |radius: f64, pen: Pen| Stroke {
-            shape: Shape::Circle { centre: [0.0, 0.0], radius },
-            pen,
             caption: Some(format!("r {radius}")),
+            ..Stroke::new(pen, Shape::Circle { centre: [0.0, 0.0], radius })
         };
         let axis = |name: &str, direction: Point| Axis { name: name.to_owned(), direction };
-        let item = |sample: Sample| LegendItem { sample, text: "what this sign means".to_owned() };
-        Scene {
+        let samples = [
+            Sample::Status(HoleStatus::Good),
+            Sample::Status(HoleStatus::Bad),
+            Sample::Deviation,
+            Sample::Direction,
+            Sample::Pen(Pen::Outline),
+            Sample::Pen(Pen::Construction),
+        ];
+        Picture {
             title: Title {
                 name: "A part with quite a long name indeed, such as drawings have, and a revision"
                     .to_owned(),
@@ -225,18 +245,13 @@ mod tests {
                 lines: (0..6).map(|i| format!("another line about the part, number {i}")).collect(),
                 caution: "Predicted by simulation, not measured".to_owned(),
             },
-            axes: vec![axis("x", [1.0, 0.0]), axis("z", [0.0, -1.0])],
-            strokes: vec![circle(500.0, Pen::Outline), circle(300.0, Pen::Construction)],
-            marks,
-            zone: Some(0.1),
-            legend: vec![
-                item(Sample::Status(HoleStatus::Good)),
-                item(Sample::Status(HoleStatus::Bad)),
-                item(Sample::Deviation),
-                item(Sample::Direction),
-                item(Sample::Pen(Pen::Outline)),
-                item(Sample::Pen(Pen::Construction)),
-            ],
+            scene: Scene {
+                axes: vec![axis("x", [1.0, 0.0]), axis("z", [0.0, -1.0])],
+                strokes: vec![circle(500.0, Pen::Outline), circle(300.0, Pen::Construction)],
+                marks,
+                zone: Some(0.1),
+            },
+            legend: samples.map(|sample| LegendItem::new(sample, "meaning of this symbol")).into(),
             chart: None,
         }
     }
@@ -248,47 +263,35 @@ mod tests {
         let off = 0.01 * index as f64;
         let judged = matches!(standing, HoleStatus::Good | HoleStatus::Bad);
         Mark {
-            position: at,
             radius: 3.0,
-            status: standing,
             label: vec![format!("{}", index + 1), format!("B {index}°"), "Φ0.020".to_owned()],
             direction: Some([at[0] / 800.0, at[1] / 800.0]),
             deviation: judged.then_some(ZoneDeviation { entry: [off, 0.01], bottom: [off, -0.01] }),
             actual: judged.then_some([at[0] + off, at[1]]),
+            ..Mark::new(at, standing)
         }
     }
 
     /// Returns the extent of a command, pixels.
-    fn reach(ink: &DrawCommand, font: &Font) -> Rect {
-        match ink {
+    fn reach(command: &DrawCommand, font: &Font) -> Rect {
+        match command {
             DrawCommand::Line { points, .. } | DrawCommand::Area { points, .. } => {
-                points.iter().fold(Rect::new(points[0].x, points[0].y, 0.0, 0.0), |rect, p| Rect {
-                    left: rect.left.min(p.x),
-                    top: rect.top.min(p.y),
-                    right: rect.right.max(p.x),
-                    bottom: rect.bottom.max(p.y),
-                })
+                Rect::enclosing(points[0], points)
             }
             DrawCommand::Ring { centre, radius, .. } | DrawCommand::Disc { centre, radius, .. } => {
-                Rect::new(centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius)
+                Rect::around(*centre, (2.0 * radius, 2.0 * radius))
             }
             DrawCommand::Text { at, align, size, text, .. } => {
                 let width = font.width(text, *size);
-                let part = match align {
-                    Align::Left => 0.0,
-                    Align::Centre => 0.5,
-                    Align::Right => 1.0,
-                };
-                Rect::new(at.x - part * width, at.y - 0.76 * size, width, 0.98 * size)
+                Rect::new(at.x - align.part() * width, at.y - 0.76 * size, width, 0.98 * size)
             }
         }
     }
 
-    fn holds(scene: &Scene, size: Size) -> Result<(), TestCaseError> {
-        let sheet = lay_out(scene, size).unwrap();
-        let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
-        for ink in &sheet.commands {
-            prop_assert!(page.contains(&reach(ink, &Font::embedded())), "{size:?} {ink:?}");
+    fn holds(picture: &Picture, size: Size) -> Result<(), TestCaseError> {
+        let sheet = lay_out(picture, size).unwrap();
+        for command in &sheet.commands {
+            prop_assert!(size.page().contains(&reach(command, &Font::embedded())), "{size:?} {command:?}");
         }
         for (i, (rect, lines)) in sheet.labels.iter().enumerate() {
             for (other, _) in &sheet.labels[i + 1..] {
@@ -296,6 +299,11 @@ mod tests {
             }
         }
         Ok(())
+    }
+
+    /// Returns the number of labelled holes.
+    fn numbered(sheet: &Sheet) -> usize {
+        sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count()
     }
 
     const SIZES: [(u32, u32); 5] = [(480, 360), (360, 480), (800, 600), (1600, 1200), (900, 500)];
@@ -310,7 +318,7 @@ mod tests {
         ) {
             let marks = places.iter().enumerate().map(|(i, (x, y))| mark(i, [*x, *y])).collect();
             let (width, height) = SIZES[which];
-            holds(&scene(marks), Size::new(width, height).unwrap())?;
+            holds(&picture(marks), Size::new(width, height).unwrap())?;
         }
     }
 
@@ -320,37 +328,33 @@ mod tests {
             let angle = gcode_lang::units::Deg(15.0 * f64::from(i));
             [300.0 * angle.cos(), 300.0 * angle.sin()]
         });
-        let scene = scene(places.enumerate().map(|(i, at)| mark(i, at)).collect());
+        let picture = picture(places.enumerate().map(|(i, at)| mark(i, at)).collect());
         for (width, height) in SIZES {
-            let sheet = lay_out(&scene, Size::new(width, height).unwrap()).unwrap();
-            let numbered = sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count();
-            assert_eq!(numbered, 24, "{width}x{height}: {:?}", sheet.notes);
+            let sheet = lay_out(&picture, Size::new(width, height).unwrap()).unwrap();
+            assert_eq!(numbered(&sheet), 24, "{width}x{height}: {:?}", sheet.notes);
         }
     }
 
     #[test]
     fn too_many_holes_for_their_numbers_are_said_to_be() {
         let places = (0..900).map(|i| [f64::from(i % 30) * 30.0 - 435.0, f64::from(i / 30) * 30.0 - 435.0]);
-        let scene = scene(
-            places.enumerate().map(|(i, at)| Mark { status: HoleStatus::Good, ..mark(i, at) }).collect(),
-        );
-        let sheet = lay_out(&scene, Size::new(480, 360).unwrap()).unwrap();
-        let numbered = sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count();
-        let note = format!("{} of 900 holes without a number: no room.", 900 - numbered);
+        let marks = places.enumerate().map(|(i, at)| Mark { status: HoleStatus::Good, ..mark(i, at) });
+        let sheet = lay_out(&picture(marks.collect()), Size::new(480, 360).unwrap()).unwrap();
+        let note = format!("{} of 900 holes without a number: no room.", 900 - numbered(&sheet));
         assert!(sheet.notes.contains(&note), "{note} {:?}", sheet.notes);
     }
 
     #[test]
     fn a_coordinate_that_is_no_number_is_refused() {
         for at in [[f64::NAN, 0.0], [0.0, f64::INFINITY], [2e6, 0.0]] {
-            let error = lay_out(&scene(vec![mark(6, at)]), Size::default()).unwrap_err().to_string();
+            let error = lay_out(&picture(vec![mark(6, at)]), Size::default()).unwrap_err().to_string();
             assert!(error.starts_with("hole 7 has a coordinate that is not a number"), "{error}");
         }
     }
 
     #[test]
     fn an_empty_scene_is_a_sheet_with_its_title() {
-        let sheet = lay_out(&Scene::default(), Size::default()).unwrap();
+        let sheet = lay_out(&Picture::default(), Size::default()).unwrap();
         assert!(sheet.labels.is_empty() && sheet.notes.is_empty());
     }
 }

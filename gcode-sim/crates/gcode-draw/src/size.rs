@@ -2,6 +2,7 @@
 use std::str::FromStr;
 
 use super::PictureError;
+use super::ink::Rect;
 
 /// Width and height of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,14 +31,9 @@ impl Size {
         Ok(Self { width, height })
     }
 
-    /// Returns the width in pixels.
-    pub(super) fn width(self) -> u32 {
-        self.width
-    }
-
-    /// Returns the height in pixels.
-    pub(super) fn height(self) -> u32 {
-        self.height
+    /// Returns the rectangle of the page, pixels.
+    pub(super) fn page(self) -> Rect {
+        Rect::new(0.0, 0.0, f64::from(self.width), f64::from(self.height))
     }
 
     /// Returns the height of ordinary text in pixels: it grows with the picture and stays legible.
@@ -50,6 +46,12 @@ impl Size {
 impl Default for Size {
     fn default() -> Self {
         Self { width: 1600, height: 1200 }
+    }
+}
+
+impl From<Size> for [f64; 2] {
+    fn from(size: Size) -> Self {
+        [f64::from(size.width), f64::from(size.height)]
     }
 }
 
@@ -70,8 +72,7 @@ mod tests {
 
     #[test]
     fn a_size_is_width_by_height() {
-        let size: Size = "800x600".parse().unwrap();
-        assert_eq!((size.width(), size.height()), (800, 600));
+        assert_eq!("800x600".parse::<Size>().unwrap(), Size { width: 800, height: 600 });
         assert_eq!("1600x1200".parse::<Size>().unwrap(), Size::default());
     }
 

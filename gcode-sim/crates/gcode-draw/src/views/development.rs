@@ -4,33 +4,26 @@
 //! increases downwards. The cut is the seam: its left and right edges are the same line of the part. A
 //! development much longer round than along x is cut into strips, one below the other, so that holes are as
 //! large as the sheet allows.
-use super::super::measure::{bar_length, plain};
-use super::super::role::{Pen, Point};
-use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title, ZoneDeviation};
-use super::side::displacement;
-use super::top::{
-    Cylinder, DrawnHole, MAX_NUMBERED, TopView, headline, number_few, standings, turn_name, worst,
-};
+use super::top::{Cylinder, DrawnHole, MAX_NUMBERED, TopView, number_few};
+use crate::measure::{bar_length, plain};
+use crate::picture::{LegendItem, Picture, Sample};
+use crate::scene::{Axis, Mark, Pen, Point, Scene, Shape, Stroke, ZoneDeviation};
+use crate::side::deviation;
 use gcode_lang::units::Deg;
 use gcode_part::Hole;
 
-/// Builds the scene of a development; `None` if the part is not a cylinder.
-pub fn development(view: &TopView) -> Option<Scene> {
+/// Builds the picture of a development; `None` if the part is not a cylinder.
+pub fn development(view: &TopView) -> Option<Picture> {
     let sheet = UnrolledCylinder::of(view.cylinder?, view);
     let mut marks: Vec<Mark> = view.holes.iter().filter_map(|hole| sheet.mark(hole, view)).collect();
     number_few(&mut marks);
-    let title = Title {
-        name: view.name.clone(),
-        view: format!("Development of diameter {}, seen from outside", plain(2.0 * sheet.cylinder.radius)),
-        position: view.tolerance,
-        verdict: headline(view),
-        lines: worst(view).into_iter().chain(view.lines.iter().cloned()).chain([sheet.range()]).collect(),
-        caution: "Predicted by simulation, not measured".to_owned(),
-    };
-    let axes = vec![Axis { name: turn_name(view), direction: [1.0, 0.0] }];
+    let what = format!("Development of diameter {}, seen from outside", plain(2.0 * sheet.cylinder.radius));
+    let turn = if view.is_rotary_reversed { "−" } else { "" };
+    let axes = vec![Axis { name: format!("{turn}{}", view.rotary), direction: [1.0, 0.0] }];
     let legend = sheet.legend(view, &marks);
-    let strokes = sheet.strokes();
-    Some(Scene { title, axes, strokes, marks, zone: view.tolerance, legend, chart: None })
+    let title = view.title(what, view.tolerance, Some(sheet.range()));
+    let scene = Scene { axes, strokes: sheet.strokes(), marks, zone: view.tolerance };
+    Some(Picture { title, scene, legend, chart: None })
 }
 
 /// Possible numbers of strips: every strip spans a whole number of degrees.
@@ -124,13 +117,10 @@ impl UnrolledCylinder {
         let shown = hole.nominal.as_ref().or(hole.actual.as_ref())?;
         let both = hole.nominal.as_ref().zip(hole.actual.as_ref());
         Some(Mark {
-            position: self.place(shown),
             radius: shown.diameter.map_or(self.usual, |diameter| diameter / 2.0),
-            status: hole.status,
-            label: super::top::label(hole, view),
-            direction: None,
+            label: view.label(hole),
             deviation: both.and_then(|(nominal, found)| zone_deviation(nominal, found)),
-            actual: None,
+            ..Mark::new(self.place(shown), hole.status)
         })
     }
 
@@ -144,7 +134,7 @@ impl UnrolledCylinder {
             let (top, bottom) = (y(self.low) + self.margin(), y(self.high) - self.margin());
             let left = 0.0 - self.margin();
             let mut line = |from: Point, to: Point, pen: Pen, caption: Option<String>| {
-                strokes.push(Stroke { shape: Shape::Line(vec![from, to]), pen, caption });
+                strokes.push(Stroke { caption, ..Stroke::new(pen, Shape::Line(vec![from, to])) });
             };
             for (at, is_seam) in [(0.0, strip == 0), (width, strip + 1 == self.strips)] {
                 let pen = if is_seam { Pen::Outline } else { Pen::Construction };
@@ -189,18 +179,13 @@ impl UnrolledCylinder {
     }
 
     fn legend(&self, view: &TopView, marks: &[Mark]) -> Vec<LegendItem> {
-        let item = |sample: Sample, text: String| LegendItem { sample, text };
-        let mut items = standings(view);
-        if let Some(zone) = view.tolerance.filter(|_| marks.iter().any(|m| m.deviation.is_some())) {
-            let text = format!("{} Φ{}, axial view,", view.purpose.deviation_label(), plain(zone));
-            items.push(item(Sample::Deviation, text));
-        }
-        items.push(item(Sample::Pen(Pen::Outline), "seam: both edges are one line".to_owned()));
+        let mut items = view.status_legend(marks);
         let thin = match self.strips {
             1 => "ends of the pattern",
             _ => "cuts: continued on the next strip; ends of the pattern",
         };
-        items.push(item(Sample::Pen(Pen::Construction), thin.to_owned()));
+        items.push(LegendItem::new(Sample::Pen(Pen::Outline), "seam: both edges are one line"));
+        items.push(LegendItem::new(Sample::Pen(Pen::Construction), thin));
         items
     }
 }
@@ -216,17 +201,14 @@ fn marks_along(end: f64, least: f64) -> Vec<f64> {
 /// Returns actual − nominal along the circumference and along x.
 fn zone_deviation(nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
     let azimuth = Deg::atan2(nominal.axis[1], nominal.axis[2]);
-    let end = |depth: f64| {
-        let off = displacement(nominal, found, depth)?;
-        Some([off.y * azimuth.cos() - off.z * azimuth.sin(), 0.0 - off.x])
-    };
-    Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
+    let seen = |[x, y, z]: [f64; 3]| [y * azimuth.cos() - z * azimuth.sin(), 0.0 - x];
+    deviation(nominal, found).map(|off| ZoneDeviation { entry: seen(off.entry), bottom: seen(off.bottom) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::role::HoleStatus;
+    use crate::scene::HoleStatus;
 
     fn hole(x: f64, azimuth: f64, radius: f64) -> Hole {
         let (s, c) = (Deg(azimuth).sin(), Deg(azimuth).cos());
@@ -252,7 +234,7 @@ mod tests {
 
     fn unrolled(hole: DrawnHole, length: f64) -> Scene {
         let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length, rows: 8 });
-        development(&TopView { cylinder, holes: vec![hole], ..TopView::default() }).unwrap()
+        development(&TopView { cylinder, holes: vec![hole], ..TopView::default() }).unwrap().scene
     }
 
     /// A quarter turn of radius 100 is 157.08 mm, whatever the diameter on which the hole begins.
@@ -318,7 +300,7 @@ mod tests {
                 rotary: "A".to_owned(),
                 ..TopView::default()
             };
-            development(&view).unwrap().axes.remove(0).name
+            development(&view).unwrap().scene.axes.remove(0).name
         };
         assert_eq!((name(false), name(true)), ("A".to_owned(), "−A".to_owned()));
     }
@@ -329,7 +311,7 @@ mod tests {
     fn odd_rows_have_a_tick_too() {
         let of = |rows: u32| {
             let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length: 400.0, rows });
-            let scene = development(&TopView { cylinder, ..TopView::default() }).unwrap();
+            let scene = development(&TopView { cylinder, ..TopView::default() }).unwrap().scene;
             let named = scene.strokes.iter().filter_map(|stroke| stroke.caption.clone());
             let named: Vec<String> = named.filter(|caption| caption.starts_with('r')).collect();
             (named, scene.strokes.len())

@@ -1,5 +1,5 @@
 //! Purpose of a picture of holes, a verdict or a comparison of revisions, and its wording.
-use super::super::role::HoleStatus;
+use crate::scene::HoleStatus;
 
 /// Purpose of a picture, which selects the words of the title block and the legend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

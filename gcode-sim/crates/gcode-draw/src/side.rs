@@ -1,8 +1,7 @@
 //! Viewing direction: the part's directions that point right and up on the sheet.
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::super::role::Point;
-use super::super::scene::{Axis, ZoneDeviation};
+use super::scene::{Point, ZoneDeviation};
 use gcode_part::Hole;
 
 /// The part's direction that points to the reader.
@@ -46,33 +45,28 @@ impl Side {
         }
     }
 
-    /// Returns the two axes of the part that lie in the sheet.
-    pub(super) fn axes(self) -> Vec<Axis> {
-        let (x, y, z) = (("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0]));
-        let shown = match self {
-            Self::Y => [x, z],
-            Self::Z => [x, y],
-            Self::X => [y, z],
-        };
-        shown.map(|(name, axis)| Axis { name: name.to_owned(), direction: self.project(axis) }).into()
-    }
-
-    /// Returns actual − nominal perpendicular to the nominal axis, which is rotated the shortest way into the
-    /// line of sight: a deviation keeps its length, and the zone is a circle for steep holes too.
-    pub(super) fn zone_deviation(self, nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
-        let (axis, towards) = (Vector3::from(nominal.axis), self.towards());
+    /// Projects a deviation from the nominal axis, which is rotated the shortest way into the line of sight: a
+    /// deviation keeps its length, and the zone is a circle for steep holes too.
+    pub(super) fn zone_deviation(self, axis: [f64; 3], off: ZoneDeviation<3>) -> ZoneDeviation {
+        let (axis, towards) = (Vector3::from(axis), self.towards());
         // A hole drilled from behind is seen through the part: reversed, its deviation would point the wrong
         // way.
         let towards = if axis.dot(&towards) < 0.0 { -towards } else { towards };
         let turn = UnitQuaternion::rotation_between(&axis, &towards).unwrap_or_default();
-        let end = |depth: f64| Some(self.project((turn * displacement(nominal, found, depth)?).into()));
-        Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
+        let seen = |off: [f64; 3]| self.project((turn * Vector3::from(off)).into());
+        ZoneDeviation { entry: seen(off.entry), bottom: seen(off.bottom) }
     }
 }
 
-/// Returns actual − nominal where the actual axis crosses the plane `depth` below the nominal entry,
-/// perpendicular to the nominal axis; `None` if the axes are nearly perpendicular.
-pub(super) fn displacement(nominal: &Hole, found: &Hole, depth: f64) -> Option<Vector3<f64>> {
+/// Returns actual − nominal at both ends of a hole, perpendicular to the nominal axis; `None` if the axes are
+/// nearly perpendicular.
+pub(super) fn deviation(nominal: &Hole, found: &Hole) -> Option<ZoneDeviation<3>> {
+    let end = |depth: f64| Some(displacement(nominal, found, depth)?.into());
+    Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
+}
+
+/// Returns actual − nominal where the actual axis crosses the plane `depth` below the nominal entry.
+fn displacement(nominal: &Hole, found: &Hole, depth: f64) -> Option<Vector3<f64>> {
     let (axis, along) = (Vector3::from(nominal.axis), Vector3::from(found.axis));
     let exact = Vector3::from(nominal.entry) - axis * depth;
     let from = Vector3::from(found.entry);
@@ -109,7 +103,7 @@ mod tests {
         let (z, from) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
         for axis in [z, from] {
             let (nominal, found) = (drilled([30.0, 5.0, 0.0], axis), drilled([30.02, 5.01, 0.0], axis));
-            let deviation = Side::Z.zone_deviation(&nominal, &found).unwrap();
+            let deviation = Side::Z.zone_deviation(axis, deviation(&nominal, &found).unwrap());
             for end in [deviation.entry, deviation.bottom] {
                 assert!(
                     (end[0] - 0.02).abs() < 1e-9 && (end[1] - 0.01).abs() < 1e-9,
