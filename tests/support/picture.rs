@@ -4,7 +4,7 @@
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
 use gcode_draw::{
-    Cylinder, Difference, DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, Sheet, Side, Size,
+    Cylinder, Difference, DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Sheet, Side, Size, Stroke,
     TopView, compare, development, lay_out, paint, png, top_view,
 };
 use gcode_inspect::machine::Machine;
@@ -145,19 +145,16 @@ fn draw(text: &str) -> (Picture, Sheet) {
         rotary: "B".to_owned(),
         purpose: PicturePurpose::Verdict,
         holes: picture.hole.iter().map(drawn_hole).collect(),
-        path: picture
-            .path
-            .iter()
-            .map(|p| PathPiece {
-                points: p.points.clone(),
-                kind: if p.rapid { PathKind::Rapid } else { PathKind::Feed },
-            })
-            .collect(),
+        path: picture.path.iter().map(stroke).collect(),
         ..TopView::default()
     };
     let scene = if picture.unrolled { development(&view).unwrap() } else { top_view(&view) };
     let sheet = lay_out(&scene, size).unwrap();
     (picture, sheet)
+}
+
+fn stroke(case: &PathCase) -> Stroke<3> {
+    Stroke::new(if case.rapid { Pen::Rapid } else { Pen::Feed }, Shape::Line(case.points.clone()))
 }
 
 fn drawn_hole(case: &HoleCase) -> DrawnHole {

@@ -94,42 +94,23 @@ pub use views::flute_view::{Fault, FlutePoint, FluteView, HelixCourses, HelixPoi
 pub use views::flutes::{side_view, tip_view};
 pub use views::helix::helix_graph;
 pub use views::purpose::PicturePurpose;
-pub use views::top::{Cylinder, DrawnHole, PathKind, PathPiece, TopView, top_view};
+pub use views::top::{Cylinder, DrawnHole, TopView, top_view};
 
 /// An error in making or comparing pictures.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// The size is below the limit of legibility.
-    #[error("a picture of {width}x{height} pixels is too small to read: the minimum is {least}")]
-    TooSmall {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-        /// The smallest size.
-        least: &'static str,
-    },
-    /// The size is above the limit of memory.
-    #[error("a picture of {width}x{height} pixels is too large: at most {most} pixels a side")]
-    TooLarge {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-        /// The largest number of pixels a side.
-        most: u32,
-    },
+    /// The size is below the limit of legibility; width and height in pixels.
+    #[error("a picture of {0}x{1} pixels is too small to read: the minimum is 480x360")]
+    TooSmall(u32, u32),
+    /// The size is above the limit of memory; width and height in pixels.
+    #[error("a picture of {0}x{1} pixels is too large: at most 8192 pixels a side")]
+    TooLarge(u32, u32),
     /// A text is not a size.
     #[error("`{0}` is not a picture size: write width x height in pixels, such as 1600x1200")]
     NoSize(String),
-    /// A coordinate of the scene cannot be drawn.
-    #[error("{what} has a coordinate that is not a number or lies beyond {limit} mm")]
-    OffTheSheet {
-        /// The hole or line with the coordinate.
-        what: String,
-        /// The largest coordinate, mm.
-        limit: f64,
-    },
+    /// A coordinate of the scene cannot be drawn; the hole or line that has it.
+    #[error("{0} has a coordinate that is not a number or lies beyond 1000000 mm")]
+    OffTheSheet(String),
     /// The PNG encoder fails.
     #[error("the picture cannot be written as PNG: {0}")]
     Encode(String),

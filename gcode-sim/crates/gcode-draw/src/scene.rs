@@ -106,7 +106,7 @@ impl Align {
 }
 
 /// Meaning of a line, from which colour, width and dash pattern follow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Pen {
     /// Outline of the part, the strongest line of a picture.

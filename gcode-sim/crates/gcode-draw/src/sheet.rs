@@ -157,7 +157,6 @@ impl Plan {
 
 fn check(scene: &Scene) -> Result<(), PictureError> {
     let fits = |p: &Point| p.iter().all(|v| v.abs() <= MAX_COORDINATE);
-    let off = |what: String| PictureError::OffTheSheet { what, limit: MAX_COORDINATE };
     for stroke in &scene.strokes {
         let fine = match &stroke.shape {
             Shape::Line(points) => points.iter().all(fits),
@@ -166,14 +165,17 @@ fn check(scene: &Scene) -> Result<(), PictureError> {
             Shape::Zero(at) | Shape::Text { at, .. } => fits(at),
         };
         if !fine {
-            return Err(off(format!("a line of the drawing ({:?})", stroke.pen)));
+            return Err(PictureError::OffTheSheet(format!("a line of the drawing ({:?})", stroke.pen)));
         }
     }
     for mark in &scene.marks {
         let places =
             [mark.actual, mark.direction, mark.deviation.map(|m| m.entry), mark.deviation.map(|m| m.bottom)];
         if !(fits(&mark.position) && fits(&[mark.radius, 0.0]) && places.iter().flatten().all(fits)) {
-            return Err(off(format!("hole {}", mark.label.first().map_or("", String::as_str))));
+            return Err(PictureError::OffTheSheet(format!(
+                "hole {}",
+                mark.label.first().map_or("", String::as_str)
+            )));
         }
     }
     Ok(())

@@ -23,10 +23,10 @@ impl Size {
     /// [`PictureError::TooSmall`] below 480x360 (or 360x480), [`PictureError::TooLarge`] beyond 8192 a side.
     pub fn new(width: u32, height: u32) -> Result<Self, PictureError> {
         if width.max(height) < MIN_SIZE.0 || width.min(height) < MIN_SIZE.1 {
-            return Err(PictureError::TooSmall { width, height, least: "480x360" });
+            return Err(PictureError::TooSmall(width, height));
         }
         if width.max(height) > MAX_SIDE {
-            return Err(PictureError::TooLarge { width, height, most: MAX_SIDE });
+            return Err(PictureError::TooLarge(width, height));
         }
         Ok(Self { width, height })
     }
@@ -81,9 +81,9 @@ mod tests {
         for text in ["800", "800x", "x600", "-1x5", "800x600x3", "8e2x600", ""] {
             assert!(matches!(text.parse::<Size>(), Err(PictureError::NoSize(_))), "{text}");
         }
-        assert!(matches!("479x360".parse::<Size>(), Err(PictureError::TooSmall { .. })));
-        assert!(matches!("480x359".parse::<Size>(), Err(PictureError::TooSmall { .. })));
+        assert!(matches!("479x360".parse::<Size>(), Err(PictureError::TooSmall(..))));
+        assert!(matches!("480x359".parse::<Size>(), Err(PictureError::TooSmall(..))));
         assert!("360x480".parse::<Size>().is_ok());
-        assert!(matches!("9000x600".parse::<Size>(), Err(PictureError::TooLarge { .. })));
+        assert!(matches!("9000x600".parse::<Size>(), Err(PictureError::TooLarge(..))));
     }
 }

@@ -5,6 +5,7 @@ use super::words::shown;
 use super::{ReviewSide, heading};
 use crate::report::figures::{rounded, signed};
 use crate::report::hole_changes::{self, remarks};
+use gcode_draw::HoleStatus;
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::verify::{ExtraHole, HoleVerdict, Verdict};
 use gcode_part::Reference;
@@ -25,7 +26,7 @@ pub(super) enum HoleRowState {
 }
 
 impl HoleRowState {
-    /// Returns the CSS class of the state, also used in the script's data.
+    /// Returns the CSS class of the state.
     pub(super) fn class(self) -> &'static str {
         match self {
             Self::Bad => "bad",
@@ -36,6 +37,17 @@ impl HoleRowState {
             Self::Good => "good",
             Self::Same => "same",
             Self::Unjudged => "unjudged",
+        }
+    }
+
+    /// Returns the status that the drawing shows.
+    pub(super) fn status(self) -> HoleStatus {
+        match self {
+            Self::Bad | Self::Changed | Self::Altered => HoleStatus::Bad,
+            Self::Missing => HoleStatus::Missing,
+            Self::Extra => HoleStatus::Extra,
+            Self::Good | Self::Same => HoleStatus::Good,
+            Self::Unjudged => HoleStatus::Unjudged,
         }
     }
 

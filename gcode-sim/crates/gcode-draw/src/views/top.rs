@@ -33,8 +33,8 @@ pub struct TopView {
     pub other_differences: usize,
     /// Sentence on a different end of the two revisions.
     pub ending: Option<String>,
-    /// Tool path.
-    pub path: Vec<PathPiece>,
+    /// Tool path in the part's frame.
+    pub path: Vec<Stroke<3>>,
     /// Further lines of the title block.
     pub lines: Vec<String>,
 }
@@ -71,44 +71,14 @@ pub struct DrawnHole {
     pub remarks: Vec<String>,
 }
 
-/// A piece of the tool path in the part's frame, mm.
-#[derive(Clone, Debug)]
-pub struct PathPiece {
-    /// Points of the polyline.
-    pub points: Vec<[f64; 3]>,
-    /// Kind of motion.
-    pub kind: PathKind,
-}
-
-/// Kind of a path piece, in drawing order: feed or rapid of one program, or the cuts of two revisions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum PathKind {
-    /// Feed move.
-    Feed,
-    /// Rapid move.
-    Rapid,
-    /// Cut that both programs make.
-    Kept,
-    /// Cut of the new program that differs from the old one or is added.
-    New,
-    /// Cut of the old program that differs from the new one or is removed.
-    Gone,
-}
-
-impl PathKind {
-    const ALL: [Self; 5] = [Self::Feed, Self::Rapid, Self::Kept, Self::New, Self::Gone];
-
-    /// Returns the pen and the legend's words.
-    fn line(self) -> (Pen, &'static str) {
-        match self {
-            Self::Feed => (Pen::Feed, "tool path, feed"),
-            Self::Rapid => (Pen::Rapid, "tool path, rapid"),
-            Self::Kept => (Pen::Unchanged, "unchanged cut"),
-            Self::New => (Pen::New, "changed cut, new"),
-            Self::Gone => (Pen::Old, "changed cut, old"),
-        }
-    }
-}
+/// Legend texts of tool paths.
+const PATHS: [(Pen, &str); 5] = [
+    (Pen::Feed, "tool path, feed"),
+    (Pen::Rapid, "tool path, rapid"),
+    (Pen::Unchanged, "unchanged cut"),
+    (Pen::New, "changed cut, new"),
+    (Pen::Old, "changed cut, old"),
+];
 
 /// Largest number of numbered holes; beyond it good holes have neither number nor dial, which would hide each
 /// other.
@@ -121,12 +91,9 @@ const MAX_CIRCLES: usize = 12;
 pub fn top_view(view: &TopView) -> Picture {
     let (near, far): (Vec<_>, Vec<_>) = view.holes.iter().partition(|hole| faces_reader(hole, view));
     let unit = [("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0])];
-    let path = view.path.iter();
     let part = Scene {
         axes: unit.map(|(name, direction)| Axis { name: name.to_owned(), direction }).into(),
-        strokes: path
-            .map(|piece| Stroke::new(piece.kind.line().0, Shape::Line(piece.points.clone())))
-            .collect(),
+        strokes: view.path.clone(),
         marks: near.into_iter().filter_map(|hole| mark(hole, view)).collect(),
         zone: view.tolerance,
     };
@@ -285,7 +252,7 @@ fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
         (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), "part outline"),
         (has_pen(Pen::Construction), Sample::Pen(Pen::Construction), radius),
     ];
-    let paths = PathKind::ALL.map(PathKind::line).map(|(pen, text)| (has_pen(pen), Sample::Pen(pen), text));
+    let paths = PATHS.map(|(pen, text)| (has_pen(pen), Sample::Pen(pen), text));
     let drawn = others.into_iter().chain(paths).filter(|(is_drawn, ..)| *is_drawn);
     let items = view.status_legend(&scene.marks).into_iter();
     items.chain(drawn.map(|(_, sample, text)| LegendItem::new(sample, text))).collect()
