@@ -3,7 +3,7 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 use super::PictureError;
 use super::ink::Rgb;
-use super::raster;
+use super::{palette, raster};
 
 /// Differences between two pictures.
 #[derive(Clone, Debug)]
@@ -37,9 +37,6 @@ impl Difference {
     }
 }
 
-/// Colours of Okabe and Ito's palette.
-const ONLY_FIRST: Rgb = Rgb(0, 114, 178);
-const ONLY_SECOND: Rgb = Rgb(213, 94, 0);
 const FRAME: Rgb = Rgb(204, 121, 167);
 
 /// Compares two PNG files pixel by pixel; channels that differ by at most `tolerance` are equal.
@@ -68,7 +65,7 @@ pub fn compare(first: &[u8], second: &[u8], tolerance: u8) -> Result<Difference,
                     &mut picture,
                     x,
                     y,
-                    if darkness(in_a) < darkness(in_b) { ONLY_SECOND } else { ONLY_FIRST },
+                    if darkness(in_a) < darkness(in_b) { palette::VERMILION } else { palette::BLUE },
                 );
             } else if let Some([r, g, b]) = in_a.map(|pixel| pixel.map(|v| 170 + v / 3)) {
                 put(&mut picture, x, y, Rgb(r, g, b));
@@ -153,8 +150,8 @@ mod tests {
         assert_eq!(difference.bounds, Some([12, 8, 15, 10]));
         let of =
             |difference: &Difference, x, y| channels(&difference.picture, x, y).map(|[r, g, b]| Rgb(r, g, b));
-        assert_eq!(of(&difference, 12, 10), Some(ONLY_SECOND));
-        assert_eq!(of(&compare(&b, &a, 1).unwrap(), 12, 10), Some(ONLY_FIRST));
+        assert_eq!(of(&difference, 12, 10), Some(palette::VERMILION));
+        assert_eq!(of(&compare(&b, &a, 1).unwrap(), 12, 10), Some(palette::BLUE));
         assert_eq!(of(&difference, 9, 9), Some(FRAME));
         assert_eq!(compare(&a, &b, 0).unwrap().pixels, 3);
     }

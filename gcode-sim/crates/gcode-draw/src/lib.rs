@@ -39,11 +39,10 @@
 //!     actual: Some(actual),
 //!     status: HoleStatus::Good,
 //!     position_deviation: Some(0.0447),
-//!     rotary_angle: None,
-//!     remarks: Vec::new(),
+//!     ..DrawnHole::default()
 //! };
-//! let view =
-//!     TopView { name: "O8100.nc".to_owned(), tolerance: Some(0.1), holes: vec![hole], ..TopView::default() };
+//! let (name, tolerance) = ("O8100.nc".to_owned(), Some(0.1));
+//! let view = TopView { name, tolerance, holes: vec![hole], ..TopView::default() };
 //! let png = draw(&main_view(&view), Size::new(800, 600)?)?;
 //! assert!(png.starts_with(b"\x89PNG"));
 //!

@@ -16,8 +16,8 @@ pub(super) const BAND: Rgb = Rgb(238, 238, 238);
 /// Frames and rules between the parts of a sheet.
 pub(super) const RULE: Ink = Ink::solid(1.0, Rgb(150, 150, 150));
 
-const BLUE: Rgb = Rgb(0, 114, 178);
-const VERMILION: Rgb = Rgb(213, 94, 0);
+pub(super) const BLUE: Rgb = Rgb(0, 114, 178);
+pub(super) const VERMILION: Rgb = Rgb(213, 94, 0);
 
 pub(super) fn status_colour(status: HoleStatus) -> Rgb {
     match status {

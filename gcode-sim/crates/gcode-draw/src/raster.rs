@@ -11,7 +11,7 @@ use super::sheet::Sheet;
 
 /// Paints a sheet: an opaque picture of exactly its size.
 pub fn paint(sheet: &Sheet) -> Pixmap {
-    let (width, height) = (sheet.size[0].ceil() as u32, sheet.size[1].ceil() as u32);
+    let (width, height) = (sheet.page.width().ceil() as u32, sheet.page.height().ceil() as u32);
     let mut pixmap = Pixmap::new(width, height).expect("a sheet is neither empty nor too large");
     let Rgb(r, g, b) = palette::PAPER;
     pixmap.fill(tiny_skia::Color::from_rgba8(r, g, b, 255));

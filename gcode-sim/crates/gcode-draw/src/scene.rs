@@ -266,7 +266,7 @@ impl Scene<3> {
             .iter()
             .map(|axis| Axis { name: axis.name.clone(), direction: side.project(axis.direction) });
         let strokes = self.strokes.iter().map(|stroke| Stroke {
-            shape: stroke.shape.seen_from(side),
+            shape: stroke.shape.map(|point| side.project(point)),
             pen: stroke.pen,
             caption: stroke.caption.clone(),
             note: stroke.note.clone(),
@@ -280,18 +280,15 @@ impl Scene<3> {
     }
 }
 
-impl Shape<3> {
-    fn seen_from(&self, side: Side) -> Shape {
+impl<const D: usize> Shape<D> {
+    /// Maps every point of the shape.
+    fn map<const E: usize>(&self, to: impl Fn([f64; D]) -> [f64; E]) -> Shape<E> {
         match self {
-            Self::Line(points) => Shape::Line(points.iter().map(|p| side.project(*p)).collect()),
-            Self::Circle { centre, radius } => {
-                Shape::Circle { centre: side.project(*centre), radius: *radius }
-            }
-            Self::Arrow(ends) => Shape::Arrow(ends.map(|end| side.project(end))),
-            Self::Zero(at) => Shape::Zero(side.project(*at)),
-            Self::Text { at, align, text } => {
-                Shape::Text { at: side.project(*at), align: *align, text: text.clone() }
-            }
+            Self::Line(points) => Shape::Line(points.iter().map(|point| to(*point)).collect()),
+            Self::Circle { centre, radius } => Shape::Circle { centre: to(*centre), radius: *radius },
+            Self::Arrow(ends) => Shape::Arrow(ends.map(to)),
+            Self::Zero(at) => Shape::Zero(to(*at)),
+            Self::Text { at, align, text } => Shape::Text { at: to(*at), align: *align, text: text.clone() },
         }
     }
 }

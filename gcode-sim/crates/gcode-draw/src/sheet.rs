@@ -17,8 +17,8 @@ use super::words::Words;
 /// A laid-out drawing: every command has its position in pixels or another unit of the paper.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Width and height.
-    pub(super) size: [f64; 2],
+    /// The paper, from 0 on.
+    pub(super) page: Rect,
     pub(super) commands: Vec<DrawCommand>,
     /// Labels of holes and lines with their boxes; none overlaps another.
     pub labels: Vec<(Rect, Vec<String>)>,
@@ -36,11 +36,11 @@ impl Sheet {
     pub fn to_scale(scene: &Scene, size: [f64; 2], origin: [f64; 2], scale: f64, text: f64) -> Self {
         let scale = Scale { factor: scale, origin: px(origin[0], origin[1]) };
         let commands = scene.strokes.iter().flat_map(|stroke| shape_commands(stroke, &scale, text));
-        Self { commands: commands.collect(), ..Self::empty(size) }
+        Self { commands: commands.collect(), ..Self::empty(Rect::new(0.0, 0.0, size[0], size[1])) }
     }
 
-    pub(super) fn empty(size: [f64; 2]) -> Self {
-        Self { size, commands: Vec::new(), labels: Vec::new(), notes: Vec::new(), magnification: None }
+    pub(super) fn empty(page: Rect) -> Self {
+        Self { page, commands: Vec::new(), labels: Vec::new(), notes: Vec::new(), magnification: None }
     }
 }
 
@@ -94,7 +94,7 @@ pub fn lay_out(picture: &Picture, size: Size) -> Result<Sheet, PictureError> {
     commands.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
     commands.extend(panel.commands(picture, &frame, legend_use, &notes));
     let magnification = legend_use.magnification;
-    Ok(Sheet { commands, labels, notes, magnification, ..Sheet::empty(size.into()) })
+    Ok(Sheet { commands, labels, notes, magnification, ..Sheet::empty(size.page()) })
 }
 
 /// One attempt at a layout, at a given level of detail.

@@ -15,6 +15,8 @@ pub enum Side {
     Z,
     /// From +x: y to the right and z up.
     X,
+    /// From −x: z to the right and y up.
+    MinusX,
 }
 
 impl Side {
@@ -23,6 +25,7 @@ impl Side {
             Self::Y => "+y",
             Self::Z => "+z",
             Self::X => "+x",
+            Self::MinusX => "−x",
         }
     }
 
@@ -33,6 +36,7 @@ impl Side {
             Self::Y => [x, 0.0 - z],
             Self::Z => [x, y],
             Self::X => [y, z],
+            Self::MinusX => [z, y],
         }
     }
 
@@ -42,6 +46,7 @@ impl Side {
             Self::Y => Vector3::y(),
             Self::Z => Vector3::z(),
             Self::X => Vector3::x(),
+            Self::MinusX => -Vector3::x(),
         }
     }
 
@@ -85,7 +90,7 @@ mod tests {
     /// Right × up points to the reader: nothing is mirrored.
     #[test]
     fn every_side_is_right_handed() {
-        for side in [Side::X, Side::Y, Side::Z] {
+        for side in [Side::X, Side::MinusX, Side::Y, Side::Z] {
             let part = [Vector3::x(), Vector3::y(), Vector3::z()];
             let lies = |at: Point| {
                 part.into_iter().find_map(|axis| {

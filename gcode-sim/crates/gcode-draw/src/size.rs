@@ -49,12 +49,6 @@ impl Default for Size {
     }
 }
 
-impl From<Size> for [f64; 2] {
-    fn from(size: Size) -> Self {
-        [f64::from(size.width), f64::from(size.height)]
-    }
-}
-
 impl FromStr for Size {
     type Err = PictureError;
 

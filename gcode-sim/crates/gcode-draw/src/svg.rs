@@ -7,7 +7,7 @@ use super::sheet::Sheet;
 ///
 /// Texts name the font that the layout measures, and the usual sans serif where it is not installed.
 pub fn svg(sheet: &Sheet, title: &str) -> String {
-    let [width, height] = sheet.size.map(number);
+    let [width, height] = [sheet.page.width(), sheet.page.height()].map(number);
     let elements: String = sheet.commands.iter().map(element).collect();
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" role=\"img\" \

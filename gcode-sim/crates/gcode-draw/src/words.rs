@@ -15,7 +15,7 @@ pub(super) struct Words<'f> {
 
 impl<'f> Words<'f> {
     pub(super) fn new(font: &'f Font, text_size: f64, size: Size) -> Self {
-        Self { font, text_size, sheet: Sheet::empty(size.into()) }
+        Self { font, text_size, sheet: Sheet::empty(size.page()) }
     }
 
     /// Writes a larger title and a line for each note from the page's top; returns the last base line.

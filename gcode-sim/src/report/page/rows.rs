@@ -26,29 +26,26 @@ pub(super) enum HoleRowState {
 }
 
 impl HoleRowState {
-    /// Returns the CSS class of the state.
-    pub(super) fn class(self) -> &'static str {
+    /// Returns the CSS class of the state, and the status that the drawing shows.
+    fn shown(self) -> (&'static str, HoleStatus) {
         match self {
-            Self::Bad => "bad",
-            Self::Missing => "missing",
-            Self::Extra => "extra",
-            Self::Changed => "changed",
-            Self::Altered => "altered",
-            Self::Good => "good",
-            Self::Same => "same",
-            Self::Unjudged => "unjudged",
+            Self::Bad => ("bad", HoleStatus::Bad),
+            Self::Missing => ("missing", HoleStatus::Missing),
+            Self::Extra => ("extra", HoleStatus::Extra),
+            Self::Changed => ("changed", HoleStatus::Bad),
+            Self::Altered => ("altered", HoleStatus::Bad),
+            Self::Good => ("good", HoleStatus::Good),
+            Self::Same => ("same", HoleStatus::Good),
+            Self::Unjudged => ("unjudged", HoleStatus::Unjudged),
         }
     }
 
-    /// Returns the status that the drawing shows.
+    pub(super) fn class(self) -> &'static str {
+        self.shown().0
+    }
+
     pub(super) fn status(self) -> HoleStatus {
-        match self {
-            Self::Bad | Self::Changed | Self::Altered => HoleStatus::Bad,
-            Self::Missing => HoleStatus::Missing,
-            Self::Extra => HoleStatus::Extra,
-            Self::Good | Self::Same => HoleStatus::Good,
-            Self::Unjudged => HoleStatus::Unjudged,
-        }
+        self.shown().1
     }
 
     pub(super) fn needs_attention(self) -> bool {

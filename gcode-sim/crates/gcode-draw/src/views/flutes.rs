@@ -5,92 +5,88 @@
 use super::flute_view::{Fault, FlutePoint, FluteView};
 use crate::picture::{LegendItem, Picture, Sample, Title};
 use crate::scene::{Axis, HoleStatus, Mark, Pen, Point, Scene, Shape, Stroke};
+use crate::side::Side;
+use nalgebra::Vector3;
 
 /// Least component of a normal towards the reader at which the surface counts as visible.
 const FACING: f64 = 1e-6;
 
 /// Builds the picture of a burr seen from +z, the tip to the left.
 pub fn side_view(view: &FluteView) -> Picture {
-    let seen = Viewpoint { place: |[x, y, _]| [x, y], towards: |[_, _, z]| z };
     let below = view.outline.iter().rev().map(|[x, r]| [*x, -r]);
     let outline = view.outline.iter().copied().chain(below).chain(view.outline.first().copied());
     let outline = Stroke::new(Pen::Outline, Shape::Line(outline.collect()));
     let what = "Side view, seen from +z, the tip to the left; y at the end of the cylinder";
-    picture(view, what, &seen, ["x", "y"], vec![outline])
+    picture(view, what, Side::Z, [("x", [1.0, 0.0]), ("y", [0.0, 1.0])], vec![outline])
 }
 
 /// Builds the picture of a burr seen from −x along its axis.
 pub fn tip_view(view: &FluteView) -> Picture {
-    let seen = Viewpoint { place: |[_, y, z]| [z, y], towards: |[x, _, _]| -x };
     let circle = |radius: f64, pen: Pen| Stroke::new(pen, Shape::Circle { centre: [0.0, 0.0], radius });
     let radius = view.outline.first().map_or(0.0, |[_, r]| *r);
     let circles = vec![circle(radius, Pen::Outline), circle(view.tip_radius, Pen::Construction)];
-    picture(view, "Tip view, seen from −x along the axis", &seen, ["z", "y"], circles)
+    let axes = [("z", [1.0, 0.0]), ("y", [0.0, 1.0])];
+    picture(view, "Tip view, seen from −x along the axis", Side::MinusX, axes, circles)
 }
 
-/// A viewing direction on the burr.
-struct Viewpoint {
-    /// Projects a point of the part to the sheet.
-    place: fn([f64; 3]) -> Point,
-    /// Returns the component of a direction towards the reader.
-    towards: fn([f64; 3]) -> f64,
+fn faces(point: &FlutePoint, side: Side) -> bool {
+    FACING < side.towards().dot(&Vector3::from(point.normal))
 }
 
-impl Viewpoint {
-    /// Returns the sections of the flutes on the near side, and all sections of a faulty pass. The longest visible
-    /// section of each pass has its number.
-    fn flutes(&self, view: &FluteView) -> Vec<Stroke> {
-        let mut strokes = Vec::new();
-        for (pass, flute) in view.flutes.iter().enumerate() {
-            let faces = |spot: &FlutePoint| FACING < (self.towards)(spot.normal);
-            let stretches = || {
-                let all = flute.chunk_by(|one, other| faces(one) == faces(other));
-                all.filter(|stretch| 1 < stretch.len()).map(|stretch| (stretch, faces(&stretch[0])))
-            };
-            let longest = stretches().filter(|(_, near)| *near).map(|(stretch, _)| stretch.len()).max();
-            let is_faulty = view.faults.iter().any(|fault| fault.pass == Some(pass));
-            for (stretch, is_near) in stretches() {
-                let pen = match (is_near, is_faulty) {
-                    (true, false) => Pen::Feed,
-                    (true, true) => Pen::Faulty,
-                    (false, true) => Pen::Hidden,
-                    (false, false) => continue,
-                };
-                let points = stretch.iter().map(|spot| (self.place)(spot.position)).collect();
-                let is_longest = is_near && Some(stretch.len()) == longest;
-                let caption = is_longest.then(|| format!("{}", pass + 1));
-                strokes.push(Stroke { caption, ..Stroke::new(pen, Shape::Line(points)) });
-            }
-        }
-        strokes
-    }
-
-    fn faults(&self, view: &FluteView) -> Vec<Mark> {
-        let mark = |fault: &Fault| {
-            let behind = (self.towards)(fault.point.normal) <= FACING;
-            let side = if behind { " (far side)" } else { "" };
-            let pass = fault.pass.map(|pass| format!("pass {}{side}", pass + 1));
-            let what = fault.labels.iter().enumerate().map(|(index, what)| match (index, fault.pass) {
-                (0, None) => format!("{what}{side}"),
-                _ => (*what).to_owned(),
-            });
-            let label = pass.into_iter().chain(what).collect();
-            Mark { label, ..Mark::new((self.place)(fault.point.position), fault.status) }
+/// Returns the sections of the flutes on the near side, and all sections of a faulty pass. The longest visible
+/// section of each pass has its number.
+fn flutes(view: &FluteView, side: Side) -> Vec<Stroke> {
+    let mut strokes = Vec::new();
+    for (pass, flute) in view.flutes.iter().enumerate() {
+        let sections = || {
+            let all = flute.chunk_by(|one, other| faces(one, side) == faces(other, side));
+            all.filter(|section| 1 < section.len()).map(|section| (section, faces(&section[0], side)))
         };
-        view.faults.iter().map(mark).collect()
+        let longest = sections().filter(|(_, near)| *near).map(|(section, _)| section.len()).max();
+        let is_faulty = view.faults.iter().any(|fault| fault.pass == Some(pass));
+        for (section, is_near) in sections() {
+            let pen = match (is_near, is_faulty) {
+                (true, false) => Pen::Feed,
+                (true, true) => Pen::Faulty,
+                (false, true) => Pen::Hidden,
+                (false, false) => continue,
+            };
+            let points = section.iter().map(|point| side.project(point.position)).collect();
+            let is_longest = is_near && Some(section.len()) == longest;
+            let caption = is_longest.then(|| format!("{}", pass + 1));
+            strokes.push(Stroke { caption, ..Stroke::new(pen, Shape::Line(points)) });
+        }
     }
+    strokes
+}
+
+fn mark(fault: &Fault, side: Side) -> Mark {
+    let far = if faces(&fault.point, side) { "" } else { " (far side)" };
+    let pass = fault.pass.map(|pass| format!("pass {}{far}", pass + 1));
+    let what = fault.labels.iter().enumerate().map(|(index, what)| match (index, fault.pass) {
+        (0, None) => format!("{what}{far}"),
+        _ => (*what).to_owned(),
+    });
+    let label = pass.into_iter().chain(what).collect();
+    Mark { label, ..Mark::new(side.project(fault.point.position), fault.status) }
 }
 
 /// Builds a picture; `edges` are drawn over the flutes.
-fn picture(view: &FluteView, what: &str, seen: &Viewpoint, axes: [&str; 2], edges: Vec<Stroke>) -> Picture {
-    let strokes: Vec<Stroke> = seen.flutes(view).into_iter().chain(edges).collect();
+fn picture(
+    view: &FluteView,
+    what: &str,
+    side: Side,
+    axes: [(&str, Point); 2],
+    edges: Vec<Stroke>,
+) -> Picture {
+    let strokes: Vec<Stroke> = flutes(view, side).into_iter().chain(edges).collect();
+    let has_status = |status: HoleStatus| view.faults.iter().any(|fault| fault.status == status);
+    let has_pen = |pen: Pen| strokes.iter().any(|stroke| stroke.pen == pen);
     let signs = [
         (HoleStatus::Bad, "Fault, at its worst point"),
         (HoleStatus::Missing, "Position of a missing flute"),
         (HoleStatus::Extra, "Extra flute"),
     ];
-    let signs =
-        signs.into_iter().filter(|(status, _)| view.faults.iter().any(|fault| fault.status == *status));
     let lines = [
         (Pen::Feed, "Wheel contact path on the near side, with the number of its pass"),
         (Pen::Faulty, "Pass with a fault"),
@@ -98,11 +94,11 @@ fn picture(view: &FluteView, what: &str, seen: &Viewpoint, axes: [&str; 2], edge
         (Pen::Outline, "Tooth bottom"),
         (Pen::Construction, "Polar angle at which flutes end"),
     ];
-    let lines = lines.into_iter().filter(|(pen, _)| strokes.iter().any(|stroke| stroke.pen == *pen));
-    let legend = signs.map(|(status, words)| LegendItem::new(Sample::Status(status), words));
-    let legend = legend.chain(lines.map(|(pen, words)| LegendItem::new(Sample::Pen(pen), words))).collect();
-    let [right, up] = axes.map(str::to_owned);
-    let axes = vec![Axis { name: right, direction: [1.0, 0.0] }, Axis { name: up, direction: [0.0, 1.0] }];
+    let signs = signs.into_iter().filter(|(status, _)| has_status(*status));
+    let signs = signs.map(|(status, words)| LegendItem::new(Sample::Status(status), words));
+    let lines = lines.into_iter().filter(|(pen, _)| has_pen(*pen));
+    let legend = signs.chain(lines.map(|(pen, words)| LegendItem::new(Sample::Pen(pen), words))).collect();
+    let axes = axes.map(|(name, direction)| Axis { name: name.to_owned(), direction }).into();
     Picture {
         title: Title {
             name: view.name.clone(),
@@ -112,7 +108,12 @@ fn picture(view: &FluteView, what: &str, seen: &Viewpoint, axes: [&str; 2], edge
             lines: view.lines.clone(),
             caution: "Predicted by simulation, not measured; the wheel is one point".to_owned(),
         },
-        scene: Scene { axes, strokes, marks: seen.faults(view), zone: None },
+        scene: Scene {
+            axes,
+            strokes,
+            marks: view.faults.iter().map(|fault| mark(fault, side)).collect(),
+            zone: None,
+        },
         legend,
         chart: None,
     }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use super::purpose::PicturePurpose;
 use crate::measure::plain;
 use crate::picture::{LegendItem, Picture, Sample, Title};
-use crate::scene::{Axis, HoleStatus, Mark, Pen, Scene, Shape, Stroke};
+use crate::scene::{Axis, HoleStatus, Mark, Pen, Scene, Shape, Stroke, ZoneDeviation};
 use crate::side::{Side, deviation};
 use gcode_part::Hole;
 
@@ -53,7 +53,7 @@ pub struct Cylinder {
 }
 
 /// One hole: nominal, actual and verdict.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct DrawnHole {
     /// Number or name in the label.
     pub id: String,
@@ -69,6 +69,18 @@ pub struct DrawnHole {
     pub rotary_angle: Option<f64>,
     /// Faults other than position, a few words each.
     pub remarks: Vec<String>,
+}
+
+impl DrawnHole {
+    /// Returns the nominal hole; the actual one if there is no nominal.
+    pub(super) fn shown(&self) -> Option<&Hole> {
+        self.nominal.as_ref().or(self.actual.as_ref())
+    }
+
+    /// Returns actual − nominal.
+    pub(super) fn deviation(&self) -> Option<ZoneDeviation<3>> {
+        deviation(self.nominal.as_ref()?, self.actual.as_ref()?)
+    }
 }
 
 /// Legend texts of tool paths.
@@ -131,21 +143,20 @@ pub(super) fn number_few(marks: &mut [Mark]) {
 
 /// Returns false for holes on the far side of a cylinder.
 fn faces_reader(hole: &DrawnHole, view: &TopView) -> bool {
-    let shown = hole.nominal.as_ref().or(hole.actual.as_ref());
     let away = |hole: &Hole| Vector3::from(hole.axis).dot(&view.side.towards()) < -1e-6;
-    view.cylinder.is_none() || !shown.is_some_and(away)
+    view.cylinder.is_none() || !hole.shown().is_some_and(away)
 }
 
 fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
-    let shown = hole.nominal.as_ref().or(hole.actual.as_ref())?;
-    let both = hole.nominal.as_ref().zip(hole.actual.as_ref());
+    let shown = hole.shown()?;
+    let actual = hole.actual.as_ref().filter(|_| hole.nominal.is_some());
     Some(Mark {
         radius: shown.diameter.unwrap_or(0.0) / 2.0,
         depth: shown.depth,
         label: view.label(hole),
         direction: Some(shown.axis),
-        deviation: both.and_then(|(nominal, found)| deviation(nominal, found)),
-        actual: both.map(|(_, found)| found.entry),
+        deviation: hole.deviation(),
+        actual: actual.map(|actual| actual.entry),
         ..Mark::new(shown.entry, hole.status)
     })
 }
@@ -213,10 +224,12 @@ impl TopView {
 
 /// Returns the circles on which holes lie, with their radii; radii less than 0.05 mm apart are merged.
 fn circles(holes: &[DrawnHole]) -> Vec<Stroke> {
-    let any_nominal = holes.iter().any(|h| h.nominal.is_some());
-    let of = |h: &DrawnHole| if any_nominal { h.nominal.clone() } else { h.actual.clone() };
-    let mut radii: Vec<f64> =
-        holes.iter().filter_map(of).map(|h| libm::hypot(h.entry[0], h.entry[2])).collect();
+    let any_nominal = holes.iter().any(|hole| hole.nominal.is_some());
+    let of = |hole: &DrawnHole| {
+        let [x, _, z] = if any_nominal { hole.nominal.as_ref() } else { hole.actual.as_ref() }?.entry;
+        Some(libm::hypot(x, z))
+    };
+    let mut radii: Vec<f64> = holes.iter().filter_map(of).collect();
     radii.sort_by(f64::total_cmp);
     radii.dedup_by(|a, b| (*a - *b).abs() < 0.05);
     radii.retain(|r| 1e-3 < *r);
@@ -261,22 +274,9 @@ fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ZoneDeviation;
 
     fn hole(entry: [f64; 3], axis: [f64; 3]) -> Hole {
         Hole { id: None, entry, axis, depth: 15.0, diameter: Some(6.0), from: None }
-    }
-
-    fn drawn(nominal: Hole, found: Hole) -> DrawnHole {
-        DrawnHole {
-            id: "1".to_owned(),
-            nominal: Some(nominal),
-            actual: Some(found),
-            status: HoleStatus::Good,
-            position_deviation: Some(0.02),
-            rotary_angle: Some(-72.0),
-            remarks: Vec::new(),
-        }
     }
 
     fn seen(nominal: &Hole, found: &Hole) -> ZoneDeviation {
@@ -285,8 +285,16 @@ mod tests {
 
     #[test]
     fn z_points_down_so_that_the_view_from_above_is_right_handed() {
-        let holes =
-            vec![drawn(hole([0.0, 9.0, 5.0], [0.0, 1.0, 0.0]), hole([0.0, 9.0, 5.0], [0.0, 1.0, 0.0]))];
+        let hole = Some(hole([0.0, 9.0, 5.0], [0.0, 1.0, 0.0]));
+        let holes = vec![DrawnHole {
+            id: "1".to_owned(),
+            nominal: hole.clone(),
+            actual: hole,
+            status: HoleStatus::Good,
+            position_deviation: Some(0.02),
+            rotary_angle: Some(-72.0),
+            ..DrawnHole::default()
+        }];
         let scene = top_view(&TopView { holes, rotary: "B".to_owned(), ..TopView::default() }).scene;
         assert_eq!(scene.marks[0].position, [0.0, -5.0]);
         assert_eq!(scene.marks[0].label, ["1", "B −72°", "Φ0.020"]);
