@@ -2,8 +2,7 @@
 use nalgebra::Point3;
 
 use super::ink::Px;
-use super::label_layout::LABEL_LIMIT;
-use super::measure::{Frame, magnification};
+use super::measure::{Frame, LABEL_LIMIT, magnification};
 use super::scene::{HoleStatus, Mark, Scene};
 use gcode_part::PointTree;
 

@@ -3,7 +3,7 @@ use super::font::{ASCENT, DESCENT};
 use super::ink::{DrawCommand, Px, Rect, px};
 use super::labels::{LabelArea, LabelPlacement, LeaderRule, Symbol};
 use super::marks::DrawnMark;
-use super::measure::Frame;
+use super::measure::{Frame, LABEL_LIMIT};
 use super::obstacle::Obstacle;
 use super::palette;
 use super::scene::{Align, Mark, Pen, Scene, Shape, Stroke};
@@ -12,10 +12,6 @@ use gcode_lang::units::Deg;
 
 /// Line spacing in parts of the text size.
 const LEADING: f64 = 1.18;
-
-/// Largest number of labelled holes: more labels could not be told apart, and the most important ones are
-/// kept.
-pub(super) const LABEL_LIMIT: usize = 400;
 
 /// The labels of all holes, placed.
 pub(super) struct LabelLayout {
@@ -263,9 +259,10 @@ fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layout::lay_out;
     use crate::picture::Picture;
     use crate::scene::Point;
-    use crate::sheet::{Sheet, lay_out};
+    use crate::sheet::Sheet;
     use crate::size::Size;
 
     fn sheet(lines: Vec<(Vec<Point>, Pen, &str)>) -> Sheet {

@@ -3,6 +3,10 @@ use super::font::Font;
 use super::ink::{Px, Rect, px};
 use super::scene::Point;
 
+/// Largest number of labelled holes: more labels could not be told apart, and the most important ones are
+/// kept.
+pub(super) const LABEL_LIMIT: usize = 400;
+
 /// Values shared by all layout steps.
 pub(super) struct Frame {
     pub(super) font: Font,

@@ -2,16 +2,15 @@
 //!
 //! A scene has 3 dimensions on the part and 2 on a sheet; [`Scene::seen_from`] projects it.
 use gcode_lang::units::Deg;
-use serde::Serialize;
-
-use super::side::Side;
+use serde::{Serialize, Serializer};
 
 /// A point of the drawing plane, mm to the right and up; the view defines the two directions on the part.
 pub type Point = [f64; 2];
 
 /// Contents of a drawing in mm, on the part (3 dimensions) or on a sheet (2).
 ///
-/// As JSON it is what the viewer of a page reads.
+/// As JSON it is what the viewer of a page reads. A polyline there is a list of its coordinates, one after
+/// another, to a thousandth of a millimetre.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(bound = "[f64; D]: Serialize")]
 pub struct Scene<const D: usize = 2> {
@@ -49,9 +48,6 @@ pub struct Stroke<const D: usize = 2> {
     /// Text on the line, if there is room.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub caption: Option<String>,
-    /// Description for a viewer in which the line can be selected.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub note: Option<String>,
 }
 
 /// Geometry of a stroke, mm.
@@ -59,6 +55,7 @@ pub struct Stroke<const D: usize = 2> {
 #[serde(rename_all = "snake_case", bound = "[f64; D]: Serialize")]
 pub enum Shape<const D: usize = 2> {
     /// Polyline; arcs are polylines too, see [`arc`].
+    #[serde(serialize_with = "coordinates")]
     Line(Vec<[f64; D]>),
     /// Circle in the plane of the sheet.
     Circle {
@@ -211,6 +208,23 @@ pub struct Mark<const D: usize = 2> {
     pub actual: Option<[f64; D]>,
 }
 
+fn coordinates<const D: usize, S: Serializer>(points: &[[f64; D]], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(points.iter().flatten().map(|mm| Coordinate(*mm)))
+}
+
+/// A length in mm, as JSON without superfluous digits: a path has hundreds of thousands.
+struct Coordinate(f64);
+
+impl Serialize for Coordinate {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let thousandths = (self.0 * 1000.0).round();
+        match thousandths % 1000.0 == 0.0 {
+            true => to.serialize_i64((thousandths / 1000.0) as i64),
+            false => to.serialize_f64(thousandths / 1000.0),
+        }
+    }
+}
+
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
@@ -229,7 +243,7 @@ pub struct ZoneDeviation<const D: usize = 2> {
 impl<const D: usize> Stroke<D> {
     /// Builds a stroke without texts.
     pub fn new(pen: Pen, shape: Shape<D>) -> Self {
-        Self { shape, pen, caption: None, note: None }
+        Self { shape, pen, caption: None }
     }
 }
 
@@ -255,64 +269,4 @@ impl<const D: usize> Mark<D> {
 pub fn arc([x, y]: Point, [right, up]: [f64; 2], [from, to]: [f64; 2]) -> Vec<Point> {
     let angles = (0..=96).map(|n| Deg(from + (to - from) * f64::from(n) / 96.0));
     angles.map(|angle| [x + right * angle.cos(), y + up * angle.sin()]).collect()
-}
-
-impl Scene<3> {
-    /// Projects a scene of the part to the sheet. Lines and axes that run straight towards the reader are
-    /// omitted.
-    pub fn seen_from(&self, side: Side) -> Scene {
-        let axes = self
-            .axes
-            .iter()
-            .map(|axis| Axis { name: axis.name.clone(), direction: side.project(axis.direction) });
-        let strokes = self.strokes.iter().map(|stroke| Stroke {
-            shape: stroke.shape.map(|point| side.project(point)),
-            pen: stroke.pen,
-            caption: stroke.caption.clone(),
-            note: stroke.note.clone(),
-        });
-        Scene {
-            axes: axes.filter(|axis| axis.direction != [0.0, 0.0]).collect(),
-            strokes: strokes.filter(|stroke| !stroke.shape.is_a_point()).collect(),
-            marks: self.marks.iter().map(|mark| mark.seen_from(side)).collect(),
-            zone: self.zone,
-        }
-    }
-}
-
-impl<const D: usize> Shape<D> {
-    /// Maps every point of the shape.
-    fn map<const E: usize>(&self, to: impl Fn([f64; D]) -> [f64; E]) -> Shape<E> {
-        match self {
-            Self::Line(points) => Shape::Line(points.iter().map(|point| to(*point)).collect()),
-            Self::Circle { centre, radius } => Shape::Circle { centre: to(*centre), radius: *radius },
-            Self::Arrow(ends) => Shape::Arrow(ends.map(to)),
-            Self::Zero(at) => Shape::Zero(to(*at)),
-            Self::Text { at, align, text } => Shape::Text { at: to(*at), align: *align, text: text.clone() },
-        }
-    }
-}
-
-impl Shape {
-    /// Returns true for a polyline without extent.
-    fn is_a_point(&self) -> bool {
-        let Self::Line(points) = self else { return false };
-        points.iter().all(|p| libm::hypot(p[0] - points[0][0], p[1] - points[0][1]) <= 1e-3)
-    }
-}
-
-impl Mark<3> {
-    fn seen_from(&self, side: Side) -> Mark {
-        let axis = self.direction.unwrap_or_default();
-        Mark {
-            position: side.project(self.position),
-            radius: self.radius,
-            depth: self.depth,
-            status: self.status,
-            label: self.label.clone(),
-            direction: self.direction.map(|axis| side.project(axis)),
-            deviation: self.deviation.map(|off| side.zone_deviation(axis, off)),
-            actual: self.actual.map(|at| side.project(at)),
-        }
-    }
 }

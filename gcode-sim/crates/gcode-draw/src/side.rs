@@ -1,7 +1,7 @@
-//! Viewing direction: the part's directions that point right and up on the sheet.
+//! Viewing direction: the part's directions that point right and up on the sheet, and the projection of scenes.
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::scene::{Point, ZoneDeviation};
+use super::scene::{Axis, Mark, Point, Scene, Shape, Stroke, ZoneDeviation};
 use gcode_part::Hole;
 
 /// The part's direction that points to the reader.
@@ -77,6 +77,65 @@ fn displacement(nominal: &Hole, found: &Hole, depth: f64) -> Option<Vector3<f64>
     let from = Vector3::from(found.entry);
     let slope = along.dot(&axis);
     (0.01 < slope.abs()).then(|| from + along * ((exact - from).dot(&axis) / slope) - exact)
+}
+
+impl Scene<3> {
+    /// Projects a scene of the part to the sheet. Lines and axes that run straight towards the reader are
+    /// omitted.
+    pub fn seen_from(&self, side: Side) -> Scene {
+        let axes = self
+            .axes
+            .iter()
+            .map(|axis| Axis { name: axis.name.clone(), direction: side.project(axis.direction) });
+        let strokes = self.strokes.iter().map(|stroke| Stroke {
+            shape: stroke.shape.map(|point| side.project(point)),
+            pen: stroke.pen,
+            caption: stroke.caption.clone(),
+        });
+        Scene {
+            axes: axes.filter(|axis| axis.direction != [0.0, 0.0]).collect(),
+            strokes: strokes.filter(|stroke| !stroke.shape.is_a_point()).collect(),
+            marks: self.marks.iter().map(|mark| mark.seen_from(side)).collect(),
+            zone: self.zone,
+        }
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// Maps every point of the shape.
+    fn map<const E: usize>(&self, to: impl Fn([f64; D]) -> [f64; E]) -> Shape<E> {
+        match self {
+            Self::Line(points) => Shape::Line(points.iter().map(|point| to(*point)).collect()),
+            Self::Circle { centre, radius } => Shape::Circle { centre: to(*centre), radius: *radius },
+            Self::Arrow(ends) => Shape::Arrow(ends.map(to)),
+            Self::Zero(at) => Shape::Zero(to(*at)),
+            Self::Text { at, align, text } => Shape::Text { at: to(*at), align: *align, text: text.clone() },
+        }
+    }
+}
+
+impl Shape {
+    /// Returns true for a polyline without extent.
+    fn is_a_point(&self) -> bool {
+        let Self::Line(points) = self else { return false };
+        points.iter().all(|p| libm::hypot(p[0] - points[0][0], p[1] - points[0][1]) <= 1e-3)
+    }
+}
+
+impl Mark<3> {
+    fn seen_from(&self, side: Side) -> Mark {
+        let axis = self.direction.unwrap_or_default();
+        Mark {
+            position: side.project(self.position),
+            radius: self.radius,
+            depth: self.depth,
+            status: self.status,
+            label: self.label.clone(),
+            direction: self.direction.map(|axis| side.project(axis)),
+            deviation: self.deviation.map(|off| side.zone_deviation(axis, off)),
+            actual: self.actual.map(|at| side.project(at)),
+        }
+    }
 }
 
 #[cfg(test)]

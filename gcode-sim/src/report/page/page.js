@@ -44,8 +44,7 @@
     viewer.pick = { side, move };
     const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${side.xyz[3 * at + axis].toFixed(3)}`).join(" ");
     const [from, to] = [point(side.starts[move]), point(side.starts[move + 1] - 1)];
-    const { note } = side.moves[move];
-    tell(`${name(side)}move ${move + 1} of ${side.all_moves}, ${note} from ${from} to ${to}`, side, linesOf(viewer.pick));
+    tell(`${name(side)}move ${move + 1} of ${side.all_moves}, ${side.kinds[side.kind[move]]} from ${from} to ${to}`, side, linesOf(viewer.pick));
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     viewer.ask();

@@ -1,5 +1,5 @@
 //! The drawing: canvases, their controls, and the data that the page's script draws and links from.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 use serde::Serialize;
@@ -35,6 +35,10 @@ struct SidePath {
     word: &'static str,
     /// A stroke for each move, a mark for each hole.
     scene: Scene<3>,
+    /// Kinds of moves with their feed rates, mm/min: `rapid`, `arc F200`.
+    kinds: Vec<String>,
+    /// Index of each move's kind.
+    kind: Vec<usize>,
     /// Index of each move's place in `places`.
     at: Vec<usize>,
     /// Moves that the other side does not make.
@@ -104,6 +108,7 @@ fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable
             places.len() - 1
         }));
     }
+    let kinds: Vec<String> = legs.iter().map(kind).collect::<BTreeSet<_>>().into_iter().collect();
     let different = match (page.old, sides) {
         (Some((_, difference)), 2) => difference.compared.steps[place].as_slice(),
         _ => &[],
@@ -112,6 +117,8 @@ fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable
     SidePath {
         word: side.word,
         scene: Scene { strokes: legs.iter().map(stroke).collect(), marks, ..Scene::default() },
+        kind: legs.iter().map(|leg| kinds.binary_search(&kind(leg)).unwrap_or_default()).collect(),
+        kinds,
         at,
         changed: (0..legs.len()).filter(|leg| is_different(&legs[*leg].step)).collect(),
         lines: known.lines,
@@ -128,12 +135,14 @@ fn stroke(leg: &Leg) -> Stroke<3> {
         "probing move" => Pen::Probe,
         _ => Pen::Feed,
     };
-    let note = match leg.feed {
+    Stroke::new(pen, Shape::Line(leg.points.iter().map(|point| point.coords.into()).collect()))
+}
+
+fn kind(leg: &Leg) -> String {
+    match leg.feed {
         Some(feed) if feed != 0.0 => format!("{} F{}", leg.kind, short(rounded(feed, 1e3))),
         _ => leg.kind.to_owned(),
-    };
-    let points = leg.points.iter().map(|point| point.coords.into());
-    Stroke { note: Some(note), ..Stroke::new(pen, Shape::Line(points.map(thousandths).collect())) }
+    }
 }
 
 fn holes(
@@ -170,12 +179,8 @@ fn mark(hole: &Hole, id: String, status: HoleStatus) -> Mark<3> {
         depth: rounded(hole.depth, 1e3),
         label: vec![id],
         direction: Some(hole.axis.map(|part| rounded(part, 1e6))),
-        ..Mark::new(thousandths(hole.entry), status)
+        ..Mark::new(hole.entry.map(|mm| rounded(mm, 1e3)), status)
     }
-}
-
-fn thousandths(point: [f64; 3]) -> [f64; 3] {
-    point.map(|mm| rounded(mm, 1e3))
 }
 
 /// Rounds to parts of 1, without a negative zero.

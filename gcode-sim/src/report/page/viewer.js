@@ -37,8 +37,8 @@ class Side {
   constructor({ scene, holes, changed, ...data }, canvas) {
     Object.assign(this, data, { canvas, context: canvas.getContext("2d"), moves: scene.strokes });
     this.starts = new Uint32Array(this.moves.length + 1);
-    this.moves.forEach(({ line }, move) => (this.starts[move + 1] = this.starts[move] + line.length));
-    this.xyz = Float64Array.from(this.moves.flatMap(({ line }) => line.flat()));
+    this.moves.forEach(({ line }, move) => (this.starts[move + 1] = this.starts[move] + line.length / 3));
+    this.xyz = Float64Array.from(this.moves.flatMap(({ line }) => line));
     this.isChanged = new Set(changed);
     this.screen = new Float32Array((2 * this.xyz.length) / 3);
     this.holes = scene.marks.map(({ position, direction, depth = 0, ...mark }, index) => ({
