@@ -2,7 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
-use gcode_draw::{PictureError, Scene, Size};
+use gcode_draw::{Scene, Size};
 use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
@@ -34,8 +34,7 @@ impl EmitFailure {
 
 /// Reads a job, emits its programs and verifies them; the reasons of a failure are printed.
 pub(super) fn emit_verified(path: &Path) -> Result<Result<VerifiedPackage, EmitFailure>, UsageError> {
-    let text = input::text(path)?;
-    let job = Job::parse(&text).map_err(|error| UsageError::new(format!("{}, {error}", path.display())))?;
+    let job = Job::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))?;
     let package = families::emit(&job);
     let refused = |why: String, checked| {
         output::print_message(&why);
@@ -58,7 +57,7 @@ pub(super) fn emit_verified(path: &Path) -> Result<Result<VerifiedPackage, EmitF
 
 pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitStatus, UsageError> {
     let VerifiedPackage { job, package, checked } = match emit_verified(path)? {
-        Ok(held) => held,
+        Ok(verified) => verified,
         Err(refused) => {
             if format == TextFormat::Json {
                 output::json(&EmitReport::refused(refused.checked.as_ref(), refused.plain()))?;
@@ -82,10 +81,7 @@ pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitSta
         files.iter().map(|(path, _)| names(path)).collect(),
         left_over.iter().map(|path| names(path)).collect(),
     );
-    match format {
-        TextFormat::Text => output::print(&report.text())?,
-        TextFormat::Json => output::json(&report)?,
-    }
+    output::report(&report, EmitReport::text, format)?;
     for path in left_over {
         output::print_message(&format!(
             "warning: {} is from an earlier job and is not called by the programs just written: remove it, \
@@ -98,28 +94,22 @@ pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitSta
 
 /// Returns files of the family's resident macros in the folder that are not part of this package.
 fn stale_files(job: &Job, package: &Package, out: &Path) -> Vec<PathBuf> {
-    let resident = (families::of(job).resident)();
-    let others = resident.iter().filter(|(_, macros)| package.program(macros.number).is_none());
-    others.map(|(_, macros)| out.join(file_name(macros.number))).filter(|path| path.exists()).collect()
+    let macros = families::of(job).macros.iter().flat_map(|of_main| *of_main);
+    let others = macros.filter(|one| package.program(one.number).is_none());
+    others.map(|one| out.join(file_name(one.number))).filter(|path| path.exists()).collect()
 }
 
 /// Encodes the pictures as PNG by file name: `O8100.png`, and `O8400-tip.png` for a further view.
 pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)>, UsageError> {
-    let refused = |error: PictureError| UsageError::new(error.to_string());
-    let size = Size::new(1600, 1200).map_err(refused)?;
-    let drawn = |(name, scene): &(String, Scene)| {
-        Ok((format!("{name}.png"), gcode_draw::draw(scene, size).map_err(refused)?))
-    };
+    let size = Size::new(1600, 1200)?;
+    let drawn = |(name, scene): &(String, Scene)| Ok((format!("{name}.png"), gcode_draw::draw(scene, size)?));
     checked.pictures.iter().map(drawn).collect()
 }
 
 /// Creates the folder and its parents.
 fn make_folder(out: &Path) -> Result<(), UsageError> {
-    let told = |error: &dyn std::fmt::Display| {
-        UsageError::new(format!("{} cannot be written: {error}", out.display()))
-    };
     if out.exists() && !out.is_dir() {
-        return Err(told(&"it is a file; the programs need a folder"));
+        return Err(UsageError::unwritable(out, "it is a file; the programs need a folder"));
     }
-    std::fs::create_dir_all(out).map_err(|error| told(&error))
+    std::fs::create_dir_all(out).map_err(|error| UsageError::unwritable(out, error))
 }

@@ -18,7 +18,7 @@ pub(super) fn run(
     overwrite_guard::check_not_input(out, &std::iter::once(path).chain(rates).collect::<Vec<_>>())?;
     let rates = rates.map(read_rates).transpose()?;
     let VerifiedPackage { job, package, checked } = match emit_verified(path)? {
-        Ok(held) => held,
+        Ok(verified) => verified,
         Err(refused) => {
             if format == TextFormat::Json {
                 output::json(&SheetReport::refused(refused.plain()))?;
@@ -32,13 +32,10 @@ pub(super) fn run(
     output::write(out, sheet.html().as_bytes())?;
     let (currency, costs) = sheet.costs();
     let report = SheetReport::new(out.display().to_string(), &sheet.machine_time(), currency, &costs);
-    match format {
-        TextFormat::Text => output::print(&report.text())?,
-        TextFormat::Json => output::json(&report)?,
-    }
+    output::report(&report, SheetReport::text, format)?;
     Ok(ExitStatus::Passed)
 }
 
 fn read_rates(path: &Path) -> Result<Rates, UsageError> {
-    Rates::parse(&input::text(path)?).map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
+    Rates::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))
 }

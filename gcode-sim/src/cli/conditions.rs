@@ -3,7 +3,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{UsageError, overwrite_guard};
+use super::library::Folders;
+use super::{UsageError, options, overwrite_guard, unused_machine};
+use gcode_session::Request;
 
 /// A program and the conditions of its run.
 #[derive(Debug, Default, Args)]
@@ -72,13 +74,22 @@ pub(super) struct RunConditions {
 }
 
 impl ProgramArguments {
-    /// Returns the input files except called programs, including the reference. Refuses a second use of
-    /// standard input.
-    pub(super) fn files<'a>(&'a self, reference: Option<&'a Path>) -> Result<Vec<&'a Path>, UsageError> {
+    /// Reads the program and its conditions. Refuses a second use of standard input and results that would
+    /// overwrite an input, warns of an unused machine file.
+    pub(super) fn request(
+        &self,
+        reference: Option<&Path>,
+        results: &[&Option<PathBuf>],
+    ) -> Result<(Request, Folders), UsageError> {
         let files = std::iter::once(self.program.as_path()).chain(self.conditions.files());
         let files: Vec<&Path> = files.chain(reference).collect();
         overwrite_guard::one_pipe(&files)?;
-        Ok(files)
+        for result in results.iter().filter_map(|result| result.as_deref()) {
+            overwrite_guard::check_not_input(result, &files)?;
+        }
+        let (request, folders) = options::request(self)?;
+        unused_machine::warn_unused_machine(self, &request);
+        Ok((request, folders))
     }
 }
 

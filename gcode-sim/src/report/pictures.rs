@@ -9,7 +9,8 @@ use gcode_draw::Difference;
 pub struct RenderReport {
     /// The picture's file.
     pub picture: String,
-    pub view: &'static str,
+    /// Name of the view.
+    pub view: String,
 }
 
 impl RenderReport {

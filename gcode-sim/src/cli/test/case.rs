@@ -11,7 +11,7 @@ use gcode_inspect::verify::{self, Tolerances};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_part::NominalPart;
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
-use gcode_session::{Run, SessionError};
+use gcode_session::Run;
 
 /// Name of the file with the accepted result.
 pub(super) const ACCEPTED: &str = "accepted.json";
@@ -94,8 +94,7 @@ impl Case {
             }
             Some(NominalPart::Flutes(_)) | None => None,
         };
-        let refused = |error: SessionError| UsageError::new(error.to_string());
-        let revision = Revision::of(&request, &mut folders, surface).map_err(refused)?;
+        let revision = Revision::of(&request, &mut folders, surface)?;
         if revision.is_cut_off() {
             return Err(cut_off(&revision));
         }
@@ -107,8 +106,7 @@ impl Case {
                 fails(verdict.verdict, &verdict.diagnostics, &revision.simulation.run)
             }
             Some(NominalPart::Flutes(flutes)) => {
-                let grinding = gcode_session::grind(&request, &mut folders, flutes);
-                let grinding = grinding.map_err(|error| UsageError::new(error.to_string()))?;
+                let grinding = gcode_session::grind(&request, &mut folders, flutes)?;
                 let verdict = grinding.verify();
                 fails(verdict.verdict, &verdict.diagnostics, &grinding.run)
             }

@@ -13,12 +13,12 @@ use clap::Args;
 use self::case::{ACCEPTED, Case, CaseResult};
 use super::format::TestFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
+use crate::report::junit;
 use crate::report::test_report::{CaseAnswer, Shard, TestReport};
-use crate::report::{junit, sarif};
 use gcode_review::Record;
 
 #[derive(Debug, Args)]
-pub(super) struct TestArguments {
+pub(super) struct Arguments {
     /// Folders with cases, at any depth
     #[arg(value_name = "DIR", required_unless_present = "merge")]
     folders: Vec<PathBuf>,
@@ -56,7 +56,7 @@ pub(super) struct TestArguments {
     format: TestFormat,
 }
 
-pub(super) fn run(arguments: &TestArguments) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     if arguments.watch {
         return watch::run(arguments, tolerance);
@@ -86,11 +86,11 @@ fn print(report: &TestReport, format: TestFormat) -> Result<(), UsageError> {
             let document = junit::document(report);
             output::print(&document.map_err(|why| UsageError::new(format!("no JUnit XML: {why}")))?)
         }
-        TestFormat::Sarif => output::json(&sarif::log(&report.findings(), &options::working_folder())),
+        TestFormat::Sarif => output::sarif(report.findings()),
     }
 }
 
-fn run_cases(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, UsageError> {
+fn run_cases(arguments: &Arguments, tolerance: f64) -> Result<TestReport, UsageError> {
     let (shard, cases) = cases(arguments)?;
     let mut tried = all(&cases, &arguments.libraries, tolerance);
     let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };
@@ -98,7 +98,7 @@ fn run_cases(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Us
 }
 
 /// Returns the selected cases, and the shard that they form.
-fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), UsageError> {
+fn cases(arguments: &Arguments) -> Result<(Option<Shard>, Vec<Case>), UsageError> {
     let mut cases = find::cases(&arguments.folders)?;
     if cases.is_empty() {
         return Err(UsageError::new("no cases: a case is a folder with a program (.nc)"));
