@@ -3,7 +3,7 @@ use clap::Args;
 
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, output};
-use crate::report::explained::ExplainReport;
+use crate::report::explain::ExplainReport;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

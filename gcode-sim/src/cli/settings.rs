@@ -13,7 +13,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let report = SettingsReport::new();
+    let report = SettingsReport::all();
     output::report(&report, SettingsReport::text, arguments.format)?;
     Ok(ExitStatus::Passed)
 }

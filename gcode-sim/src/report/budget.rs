@@ -4,6 +4,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::figures::count;
 use gcode_draw::{Bar, Bars};
 use gcode_inspect::budget::{Budget, BudgetRequest, ErrorShare, Statistics};
 use gcode_inspect::machine::Distribution;
@@ -103,7 +104,7 @@ impl BudgetReport {
     pub fn text(&self) -> String {
         let mut text = format!(
             "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without errors\n\n",
-            if self.holes.len() == 1 { "1 hole".to_owned() } else { format!("{} holes", self.holes.len()) },
+            count(self.holes.len(), "hole"),
             self.samples,
             self.basis,
             self.tolerance

@@ -2,7 +2,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::report::diagnostic;
+use super::diagnostic;
+use super::figures::count;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::source::Span;
 use gcode_lint::CheckResult;
@@ -85,18 +86,12 @@ pub fn text(checked: &CheckResult) -> String {
 
 /// Returns `2 programs checked: 1 error, 2 warnings`.
 fn summary(checked: &CheckResult) -> String {
-    let counted = |count: usize, what: &str| match count {
-        1 => format!("1 {what}"),
-        count => format!("{count} {what}s"),
-    };
-    let kinds = [Severity::Error, Severity::Warning, Severity::Note];
-    let counts: Vec<_> = kinds
-        .iter()
-        .filter_map(|severity| match checked.count(*severity) {
-            0 => None,
-            count => Some(counted(count, severity.name())),
-        })
+    let counts = [Severity::Error, Severity::Warning, Severity::Note].map(|s| (checked.count(s), s.name()));
+    let counts: Vec<_> = counts
+        .into_iter()
+        .filter(|(number, _)| 0 < *number)
+        .map(|(number, name)| count(number, name))
         .collect();
     let found = if counts.is_empty() { "no findings".to_owned() } else { counts.join(", ") };
-    format!("{} checked: {found}", counted(checked.programs, "program"))
+    format!("{} checked: {found}", count(checked.programs, "program"))
 }

@@ -15,11 +15,9 @@ use gcode_session::GrindingRun;
 pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteView {
     let wanted = &grinding.nominal;
     let profile = &wanted.profile;
-    let spot = |at: Point3<f64>| FlutePoint {
-        position: at.coords.into(),
-        normal: profile.normal(&at).into_inner().into(),
+    let points = |pass: &GrindingPass| {
+        pass.trace.samples.iter().map(|sample| flute_point(profile, sample.point)).collect()
     };
-    let spots = |pass: &GrindingPass| pass.trace.samples.iter().map(|sample| spot(sample.point)).collect();
     // Every degree of the nose, from its widest circle to the pole.
     let nose = (0..=90).map(|degree| profile.point_at_polar(Deg(90.0 - f64::from(degree))));
     let nose: Vec<[f64; 2]> = nose.map(|at| [at.x, -at.y]).collect();
@@ -52,7 +50,7 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
         ],
         outline,
         tip_radius: -end.y,
-        flutes: grinding.result.passes.iter().map(spots).collect(),
+        flutes: grinding.result.passes.iter().map(points).collect(),
         faults: faults(profile, verdict),
         helix: helix_courses::of(grinding, verdict),
     }

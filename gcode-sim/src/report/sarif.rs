@@ -174,16 +174,14 @@ pub fn log(findings: &[Finding], root: &str) -> Log {
 
 fn rule(code: &str) -> Rule {
     let pages: Vec<explain::Page> = explain::pages(code).collect();
-    let joined = |text: &dyn Fn(&explain::Page) -> String| {
-        pages.iter().map(text).map(|text| text.trim_end().to_owned()).collect::<Vec<_>>().join("\n\n")
+    let joined = |text: fn(&str) -> String| {
+        pages.iter().map(|page| text(page.text).trim_end().to_owned()).collect::<Vec<_>>().join("\n\n")
     };
     Rule {
         id: code.to_owned(),
         short_description: pages.first().map(|page| Text { text: page.title.to_owned() }),
-        help: (!pages.is_empty()).then(|| Help {
-            text: joined(&explain::Page::plain_text),
-            markdown: joined(&|page| page.text.to_owned()),
-        }),
+        help: (!pages.is_empty())
+            .then(|| Help { text: joined(explain::plain_text), markdown: joined(str::to_owned) }),
     }
 }
 

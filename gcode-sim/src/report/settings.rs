@@ -1,6 +1,4 @@
 //! The control settings for `--control`, as text and as data.
-use std::fmt::Write;
-
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -30,7 +28,7 @@ impl SettingReport {
 
 impl SettingsReport {
     /// Returns all settings.
-    pub fn new() -> Self {
+    pub fn all() -> Self {
         let rows = ROWS.iter().map(|row| SettingReport::new(row.key, row.meaning, row.values.to_string()));
         let mut settings: Vec<_> = rows.collect();
         settings.push(SettingReport::new("#1000 to #1031", "an input signal", "0 or 1"));
@@ -57,16 +55,10 @@ impl SettingsReport {
 
     /// Formats the settings for a terminal.
     pub fn text(&self) -> String {
-        self.settings.iter().fold(String::new(), |mut text, SettingReport { key, meaning, allowed }| {
-            let _ = writeln!(text, "{key:<16} {meaning} [{allowed}]");
-            text
-        })
-    }
-}
-
-impl Default for SettingsReport {
-    fn default() -> Self {
-        Self::new()
+        let line = |SettingReport { key, meaning, allowed }: &SettingReport| {
+            format!("{key:<16} {meaning} [{allowed}]\n")
+        };
+        self.settings.iter().map(line).collect()
     }
 }
 

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::report::budget::BudgetReport;
 use crate::report::changes::ChangesReport;
 use crate::report::check::CheckReport;
-use crate::report::explained::ExplainReport;
+use crate::report::explain::ExplainReport;
 use crate::report::pictures::{CompareReport, RenderReport};
 use crate::report::readings::ReadingsReport;
 use crate::report::run::RunReport;
