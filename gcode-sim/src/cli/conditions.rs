@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::library::Folders;
-use super::{UsageError, options, overwrite_guard, unused_machine};
+use super::{UsageError, options, overwrite_guard, page, unused_machine};
 use gcode_session::Request;
 
 /// A program and the conditions of its run.
@@ -74,19 +74,21 @@ pub(super) struct RunConditions {
 }
 
 impl ProgramArguments {
-    /// Reads the program and its conditions. Refuses a second use of standard input and results that would
-    /// overwrite an input, warns of an unused machine file.
+    /// Reads the program and its conditions, and warns of an unused machine file. Refuses a second use of standard
+    /// input, a result or page that would overwrite an input, and a page that is not an HTML file.
     pub(super) fn request(
         &self,
         reference: Option<&Path>,
-        results: &[&Option<PathBuf>],
+        result: Option<&Path>,
+        page: Option<&Path>,
     ) -> Result<(Request, Folders), UsageError> {
         let files = std::iter::once(self.program.as_path()).chain(self.conditions.files());
         let files: Vec<&Path> = files.chain(reference).collect();
         overwrite_guard::one_pipe(&files)?;
-        for result in results.iter().filter_map(|result| result.as_deref()) {
+        for result in [result, page].into_iter().flatten() {
             overwrite_guard::check_not_input(result, &files)?;
         }
+        page.map(page::check_is_html).transpose()?;
         let (request, folders) = options::request(self)?;
         unused_machine::warn_unused_machine(self, &request);
         Ok((request, folders))

@@ -6,10 +6,10 @@ use clap::Args;
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, render, unused_machine};
+use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
 use crate::report::sarif::{FileLocation, Finding};
-use crate::report::{changed_view, diagnostic};
 use gcode_inspect::verify::Tolerances;
 use gcode_part::NominalPart;
 use gcode_part::Reference;
@@ -137,11 +137,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     }
     let mut status = if compared.changes.is_empty() { ExitStatus::Passed } else { ExitStatus::Failed };
     for revision in [&old, &new] {
-        let sources = revision.simulation.run.control.memory().sources();
-        for finding in revision.stopped() {
-            output::print_message(&diagnostic::render(finding, sources));
-            status = ExitStatus::Stopped;
-        }
+        status = status.max(super::findings(revision.stopped(), &revision.simulation.run));
     }
     Ok(status)
 }

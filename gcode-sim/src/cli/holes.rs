@@ -26,8 +26,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    arguments.page.as_deref().map(page::check_is_html).transpose()?;
-    let (mut request, mut folders) = arguments.program.request(None, &[&arguments.page])?;
+    let (mut request, mut folders) = arguments.program.request(None, None, arguments.page.as_deref())?;
     if let Some(path) = &arguments.page {
         let watched = page::simulate_traced(&request, &mut folders, None)?;
         page::write_alone(&request, &watched, None, &arguments.program.conditions, path)?;

@@ -40,7 +40,7 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_session::{GrindingError, Run, SessionError};
 
 /// Outcome of a request, the same for both programs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ExitStatus {
     /// Done, all checks passed: exit code 0.
     Passed = 0,
@@ -123,24 +123,16 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
     }
 }
 
-/// Prints a run's notes and, if it did not end normally, the finding that stopped it.
-fn stopped(run: &Run) -> Option<ExitStatus> {
-    let sources = run.control.memory().sources();
-    run.note_findings().for_each(|note| output::print_message(&diagnostic::render(&note, sources)));
-    let finding = run.stop_finding()?;
-    output::print_message(&diagnostic::render(&finding, sources));
-    Some(ExitStatus::Stopped)
-}
-
 /// Prints the findings and returns the exit status of the most severe one.
-fn findings(all: &[Diagnostic], run: &Run) -> ExitStatus {
+fn findings<'a>(all: impl IntoIterator<Item = &'a Diagnostic>, run: &Run) -> ExitStatus {
     let sources = run.control.memory().sources();
-    for finding in all {
+    let status = all.into_iter().map(|finding| {
         output::print_message(&diagnostic::render(finding, sources));
-    }
-    match all.iter().map(|finding| finding.severity).max() {
-        Some(Severity::Alarm) => ExitStatus::Stopped,
-        Some(Severity::Error) => ExitStatus::Failed,
-        _ => ExitStatus::Passed,
-    }
+        match finding.severity {
+            Severity::Alarm => ExitStatus::Stopped,
+            Severity::Error => ExitStatus::Failed,
+            Severity::Warning | Severity::Note => ExitStatus::Passed,
+        }
+    });
+    status.max().unwrap_or(ExitStatus::Passed)
 }

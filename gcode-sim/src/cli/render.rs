@@ -58,8 +58,8 @@ enum View {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let results = [&Some(arguments.output.clone())];
-    let (mut request, mut folders) = arguments.program.request(arguments.reference.as_deref(), &results)?;
+    let (mut request, mut folders) =
+        arguments.program.request(arguments.reference.as_deref(), Some(&arguments.output), None)?;
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (scene, view, run) = match nominal {
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let view = view.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
     let report = RenderReport { picture: arguments.output.display().to_string(), view };
     output::report(&report, RenderReport::text, arguments.format)?;
-    Ok(super::stopped(&run).unwrap_or(ExitStatus::Passed))
+    Ok(super::findings(&run.findings().collect::<Vec<_>>(), &run))
 }
 
 fn hole_scene(view: View, drawn: &TopView) -> Result<Scene, UsageError> {

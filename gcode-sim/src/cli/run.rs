@@ -34,7 +34,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (mut request, mut folders) = arguments.program.request(None, &[&arguments.output])?;
+    let (mut request, mut folders) = arguments.program.request(None, arguments.output.as_deref(), None)?;
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(MoveRecorder::default);
     let (run, rapids) = progress::of_run(&mut request, |request| {
@@ -64,12 +64,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let report = RunReport::new(&run, moves.as_ref(), system);
     output::report(&report, RunReport::text, arguments.format)?;
     let in_part = super::findings(&rapids, &run);
-    let stopped = super::stopped(&run);
+    let status = in_part.max(super::findings(&run.findings().collect::<Vec<_>>(), &run));
     if moves.is_some_and(|moves| moves.is_truncated) {
         output::print_message(&format!(
             "error: --moves: more than {MAX_MOVES} moves; later ones are not in the list\n"
         ));
         return Ok(ExitStatus::Stopped);
     }
-    Ok(stopped.unwrap_or(in_part))
+    Ok(status)
 }

@@ -62,9 +62,9 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
-    arguments.page.as_deref().map(page::check_is_html).transpose()?;
-    let results = [&arguments.picture, &arguments.page];
-    let (mut request, folders) = arguments.program.request(Some(&arguments.reference), &results)?;
+    let results = (arguments.picture.as_deref(), arguments.page.as_deref());
+    let (mut request, folders) =
+        arguments.program.request(Some(&arguments.reference), results.0, results.1)?;
     match options::read_nominal(&arguments.reference)? {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, asked);

@@ -9,7 +9,6 @@ pub mod explain;
 pub mod figures;
 pub mod flute_table;
 pub mod flute_view;
-mod helix_courses;
 mod hole_changes;
 pub mod holes;
 pub mod junit;

@@ -127,20 +127,10 @@ fn shard(text: &str) -> Result<(usize, usize), UsageError> {
         .ok_or_else(|| UsageError::new(format!("--shard {text}: write K/N; the second of four parts is 2/4")))
 }
 
-/// Runs the cases on all cores; the results are in the order of the cases.
+/// Runs the cases on all cores, each of which takes the next case until none is left; the results are in the order
+/// of the cases.
 fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<CaseResult> {
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    progress::of_cases(cases.len(), &done, || all_of(cases, libraries, tolerance, &next, &done))
-}
-
-/// Lets every core take the next case until none is left, and counts the finished ones.
-fn all_of(
-    cases: &[Case],
-    libraries: &[PathBuf],
-    tolerance: f64,
-    next: &AtomicUsize,
-    counted: &AtomicUsize,
-) -> Vec<CaseResult> {
+    let (next, counted) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let work = || {
         let mut done = Vec::new();
         loop {
@@ -151,16 +141,16 @@ fn all_of(
         }
     };
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
-    let mut tried: Vec<(usize, CaseResult)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<(usize, CaseResult)>>| match worker.join() {
-            Ok(done) => done,
-            Err(panic) => std::panic::resume_unwind(panic),
-        };
-        workers.into_iter().flat_map(join).collect()
-    });
-    tried.sort_by_key(|(index, _)| *index);
-    tried.into_iter().map(|(_, tried)| tried).collect()
+    let run = || {
+        std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+            let joined = workers.into_iter().map(|worker| worker.join());
+            joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+        })
+    };
+    let mut results: Vec<(usize, CaseResult)> = progress::of_cases(cases.len(), &counted, run);
+    results.sort_by_key(|(index, _)| *index);
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Writes the results as the accepted ones, all files or none.
