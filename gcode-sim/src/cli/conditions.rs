@@ -3,10 +3,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::library::Folders;
-use super::{UsageError, options, overwrite_guard, page, unused_machine};
-use gcode_session::Request;
-
 /// A program and the conditions of its run.
 #[derive(Debug, Default, Args)]
 pub(super) struct ProgramArguments {
@@ -71,28 +67,6 @@ pub(super) struct RunConditions {
     /// End the run at the main program's N-th M99
     #[arg(long, value_name = "N")]
     pub(super) cycles: Option<u32>,
-}
-
-impl ProgramArguments {
-    /// Reads the program and its conditions, and warns of an unused machine file. Refuses a second use of standard
-    /// input, a result or page that would overwrite an input, and a page that is not an HTML file.
-    pub(super) fn request(
-        &self,
-        reference: Option<&Path>,
-        result: Option<&Path>,
-        page: Option<&Path>,
-    ) -> Result<(Request, Folders), UsageError> {
-        let files = std::iter::once(self.program.as_path()).chain(self.conditions.files());
-        let files: Vec<&Path> = files.chain(reference).collect();
-        overwrite_guard::one_pipe(&files)?;
-        for result in [result, page].into_iter().flatten() {
-            overwrite_guard::check_not_input(result, &files)?;
-        }
-        page.map(page::check_is_html).transpose()?;
-        let (request, folders) = options::request(self)?;
-        unused_machine::warn_unused_machine(self, &request);
-        Ok((request, folders))
-    }
 }
 
 impl RunConditions {

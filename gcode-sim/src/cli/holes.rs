@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{ExitStatus, UsageError, output, page, progress};
+use super::{ExitStatus, UsageError, options, output, page, progress};
 use crate::report::holes as report;
 use gcode_part::HoleList;
 use gcode_session::Simulation;
@@ -26,7 +26,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (mut request, mut folders) = arguments.program.request(None, None, arguments.page.as_deref())?;
+    let (mut request, mut folders) =
+        options::checked_request(&arguments.program, None, None, arguments.page.as_deref())?;
     if let Some(path) = &arguments.page {
         let watched = page::simulate_traced(&request, &mut folders, None)?;
         page::write_alone(&request, &watched, None, &arguments.program.conditions, path)?;

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::conditions::ProgramArguments;
 use super::library::Folders;
-use super::{UsageError, input};
+use super::{UsageError, input, overwrite_guard, page, unused_machine};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_part::NominalPart;
@@ -49,6 +49,26 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     if let Some(path) = &arguments.part {
         apply_part(&mut request, path, arguments.machine.as_deref())?;
     }
+    Ok((request, folders))
+}
+
+/// Reads the program of a command with its conditions, and warns of an unused machine file. Refuses a second use of
+/// standard input, a result or page that would overwrite an input, and a page that is not an HTML file.
+pub(super) fn checked_request(
+    program: &ProgramArguments,
+    reference: Option<&Path>,
+    result: Option<&Path>,
+    page: Option<&Path>,
+) -> Result<(Request, Folders), UsageError> {
+    let files = std::iter::once(program.program.as_path()).chain(program.conditions.files());
+    let files: Vec<&Path> = files.chain(reference).collect();
+    overwrite_guard::one_pipe(&files)?;
+    for result in [result, page].into_iter().flatten() {
+        overwrite_guard::check_not_input(result, &files)?;
+    }
+    page.map(page::check_is_html).transpose()?;
+    let (request, folders) = request(program)?;
+    unused_machine::warn_unused_machine(program, &request);
     Ok((request, folders))
 }
 

@@ -59,9 +59,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), UsageError> {
 }
 
 /// Writes several files: all temporary files are complete before the first is renamed.
-pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
+pub fn write_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(), UsageError> {
     let mut waiting = Vec::new();
     for (path, bytes) in files {
+        let (path, bytes) = (path.as_ref(), bytes.as_ref());
         let unwritable = |error: &dyn std::fmt::Display| UsageError::unwritable(path, error);
         if path.is_dir() {
             return Err(unwritable(&"it is a folder"));

@@ -58,8 +58,12 @@ enum View {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (mut request, mut folders) =
-        arguments.program.request(arguments.reference.as_deref(), Some(&arguments.output), None)?;
+    let (mut request, mut folders) = options::checked_request(
+        &arguments.program,
+        arguments.reference.as_deref(),
+        Some(&arguments.output),
+        None,
+    )?;
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (scene, view, run) = match nominal {

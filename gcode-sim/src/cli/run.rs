@@ -34,7 +34,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (mut request, mut folders) = arguments.program.request(None, arguments.output.as_deref(), None)?;
+    let (mut request, mut folders) =
+        options::checked_request(&arguments.program, None, arguments.output.as_deref(), None)?;
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(MoveRecorder::default);
     let (run, rapids) = progress::of_run(&mut request, |request| {

@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let results = (arguments.picture.as_deref(), arguments.page.as_deref());
     let (mut request, folders) =
-        arguments.program.request(Some(&arguments.reference), results.0, results.1)?;
+        options::checked_request(&arguments.program, Some(&arguments.reference), results.0, results.1)?;
     match options::read_nominal(&arguments.reference)? {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, asked);

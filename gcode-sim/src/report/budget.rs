@@ -11,7 +11,7 @@ use gcode_inspect::machine::Distribution;
 
 /// The position deviations of all holes under errors; diameters and lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct BudgetReport {
+pub(crate) struct BudgetReport {
     basis: &'static str,
     samples: usize,
     seed: u64,
@@ -71,7 +71,7 @@ impl From<&ErrorShare> for SourceRow {
 }
 
 impl BudgetReport {
-    pub fn new(question: &BudgetRequest<'_>, found: &Budget) -> Self {
+    pub(crate) fn new(question: &BudgetRequest<'_>, found: &Budget) -> Self {
         let holes = found.holes.iter().map(|hole| HoleRow {
             id: hole.id.clone(),
             row: hole.statistics.into(),
@@ -101,7 +101,7 @@ impl BudgetReport {
     }
 
     /// Formats the budget for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without errors\n\n",
             count(self.holes.len(), "hole"),
@@ -146,7 +146,7 @@ impl BudgetReport {
     }
 
     /// Returns the shares of the sources as bars.
-    pub fn bars(&self) -> Bars {
+    pub(crate) fn bars(&self) -> Bars {
         let bar = |row: &SourceRow| Bar {
             name: row.source.clone(),
             length: row.share,

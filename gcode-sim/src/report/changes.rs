@@ -167,7 +167,7 @@ fn line(place: &BlockLocation) -> String {
 }
 
 /// Returns a change for a code review, at its place in the new revision; `files` are those of the programs by name.
-pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
+pub(crate) fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
     let Change { code, message, old, new, anchor: near, also } = change;
     // A deleted block has no line in the new file: the message gives its old line.
     let was = old.as_ref().filter(|_| new.is_none());

@@ -16,58 +16,61 @@ use gcode_review::{BlockLocation, Change, Totals};
 /// The document of `test --format json`, which `test --merge` reads.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct TestReport {
+pub(crate) struct TestReport {
     /// Basis of the numbers.
-    pub basis: String,
+    pub(crate) basis: String,
     /// The shard of the cases; `None` for all.
-    pub shard: Option<Shard>,
+    pub(crate) shard: Option<Shard>,
     /// Tolerance for equality, mm or degrees.
-    pub tolerance: f64,
+    pub(crate) tolerance: f64,
     /// The cases in the order of their names.
-    pub cases: Vec<CaseReport>,
+    pub(crate) cases: Vec<CaseReport>,
     /// The names of the cases whose results were accepted now.
-    pub accepted: Vec<String>,
+    pub(crate) accepted: Vec<String>,
 }
 
 /// One of several parts of the cases, which run on separate machines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Shard {
+pub(crate) struct Shard {
     /// Counts from 1.
-    pub number: usize,
+    pub(crate) number: usize,
     /// Number of shards.
-    pub of: usize,
+    pub(crate) of: usize,
     /// Number of cases in all shards.
-    pub cases: usize,
+    pub(crate) cases: usize,
 }
 
-#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+/// The result of one case.
+#[derive(Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct CaseReport {
+pub(crate) struct CaseReport {
     /// Path of the case below the given folder.
-    pub name: String,
+    pub(crate) name: String,
     /// The main program's file; without one, a file of the case.
-    pub file: Option<String>,
-    pub answer: CaseAnswer,
-    pub changes: Vec<Change>,
+    pub(crate) file: Option<String>,
+    pub(crate) answer: CaseAnswer,
+    pub(crate) changes: Vec<Change>,
     /// Aspects that an accepted result of an earlier version does not record, so that they are not compared.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub not_compared: Vec<String>,
+    pub(crate) not_compared: Vec<String>,
     /// The first error of the verification against the reference.
-    pub against: Option<FirstFailure>,
+    pub(crate) against: Option<FirstFailure>,
     /// The reason why the case is invalid.
-    pub error: Option<String>,
-    pub totals: Option<Totals>,
+    pub(crate) error: Option<String>,
+    pub(crate) totals: Option<Totals>,
     /// The end of the run, in words.
-    pub ending: Option<String>,
+    pub(crate) ending: Option<String>,
     /// The files of the programs that `changes` and `against` name.
-    pub files: BTreeMap<String, String>,
+    pub(crate) files: BTreeMap<String, String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+/// Result of comparing a case with its accepted result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum CaseAnswer {
+pub(crate) enum CaseAnswer {
     /// As accepted.
+    #[default]
     Same,
     /// Different from the accepted result.
     Changed,
@@ -86,18 +89,18 @@ pub(super) const OLDER_TEXT: &str =
 /// The first error of a failed verdict.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct FirstFailure {
+pub(crate) struct FirstFailure {
     /// The code of the finding.
-    pub code: String,
-    pub message: String,
+    pub(crate) code: String,
+    pub(crate) message: String,
     /// The block that causes it, if any.
-    pub place: Option<BlockLocation>,
+    pub(crate) place: Option<BlockLocation>,
 }
 
 impl TestReport {
     /// Builds the report with the cases in the order of their names, so that a whole run and its merged shards are
     /// the same document.
-    pub fn new(
+    pub(crate) fn new(
         shard: Option<Shard>,
         tolerance: f64,
         mut cases: Vec<CaseReport>,
@@ -110,7 +113,7 @@ impl TestReport {
     }
 
     /// Formats the cases that are not as accepted, and the numbers of all, for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         self.cases.iter().for_each(|case| case.append_text(&mut text));
         for name in &self.accepted {
@@ -155,36 +158,20 @@ impl TestReport {
     }
 
     /// Returns the errors of the invalid cases.
-    pub fn refused(&self) -> impl Iterator<Item = String> + '_ {
+    pub(crate) fn refused(&self) -> impl Iterator<Item = String> + '_ {
         let refused = self.cases.iter().filter(|case| case.answer == CaseAnswer::Refused);
         refused.map(|case| format!("case {}: {}", case.name, case.error.as_deref().unwrap_or_default()))
     }
 
     /// Returns the findings of all cases that are not as accepted or fail verification.
-    pub fn findings(&self) -> Vec<Finding> {
+    pub(crate) fn findings(&self) -> Vec<Finding> {
         self.cases.iter().flat_map(CaseReport::findings).collect()
     }
 }
 
 impl CaseReport {
-    /// Builds the report of a case with nothing but its answer.
-    pub fn new(name: String, file: Option<String>, answer: CaseAnswer) -> Self {
-        Self {
-            name,
-            file,
-            answer,
-            changes: Vec::new(),
-            not_compared: Vec::new(),
-            against: None,
-            error: None,
-            totals: None,
-            ending: None,
-            files: BTreeMap::new(),
-        }
-    }
-
     /// Returns true if the case is as accepted and passes verification.
-    pub fn is_good(&self) -> bool {
+    pub(crate) fn is_good(&self) -> bool {
         self.answer == CaseAnswer::Same && self.against.is_none()
     }
 

@@ -38,12 +38,14 @@ impl Case {
         let main = self.lost().map_or_else(|| main_program::of(&self.folder, &self.programs), Err);
         let unclear = || self.programs.first().cloned().unwrap_or_else(|| self.accepted());
         let file = Some(main.as_ref().map_or_else(|_| unclear(), PathBuf::clone).display().to_string());
-        let empty = |answer| CaseReport::new(self.name.clone(), file.clone(), answer);
-        let tried = main.and_then(|program| self.evaluate(&program, libraries, tolerance, empty));
-        tried.unwrap_or_else(|refusal| {
-            let error = Some(refusal.to_string());
-            CaseResult { report: CaseReport { error, ..empty(CaseAnswer::Refused) }, record: None }
-        })
+        let tried = main.and_then(|program| self.evaluate(&program, libraries, tolerance));
+        let mut result = tried.unwrap_or_else(|refusal| {
+            let (answer, error) = (CaseAnswer::Refused, Some(refusal.to_string()));
+            CaseResult { report: CaseReport { answer, error, ..CaseReport::default() }, record: None }
+        });
+        result.report.name.clone_from(&self.name);
+        result.report.file = file;
+        result
     }
 
     /// Returns the path of the accepted result, or the folder's own path if the folder is gone.
@@ -68,7 +70,6 @@ impl Case {
         program: &Path,
         libraries: &[PathBuf],
         tolerance: f64,
-        empty: impl Fn(CaseAnswer) -> CaseReport,
     ) -> Result<CaseResult, UsageError> {
         // A broken link counts as present, so that reading it reports the error.
         let there =
@@ -131,13 +132,14 @@ impl Case {
         };
         let record = &revision.record;
         let report = CaseReport {
+            answer,
             files: files(&revision, &changes, against.as_ref()),
             changes,
             not_compared,
             against,
             totals: Some(record.totals.clone()),
             ending: Some(record.words().to_owned()),
-            ..empty(answer)
+            ..CaseReport::default()
         };
         Ok(CaseResult { report, record: Some(revision.record) })
     }
@@ -181,8 +183,5 @@ fn files(
         .flat_map(|place| std::iter::once(place).chain(&place.calls))
         .map(|place| place.program.as_str())
         .collect();
-    if named.is_empty() {
-        return BTreeMap::new();
-    }
     revision.files().into_iter().filter(|(program, _)| named.contains(program.as_str())).collect()
 }

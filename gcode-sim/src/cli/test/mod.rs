@@ -162,13 +162,12 @@ fn accept(cases: &[Case], tried: &mut [CaseResult]) -> Result<Vec<String>, Usage
         let is_taken = |record: &&Record| is_other && !record.lacks_program();
         let Some(record) = record.as_ref().filter(is_taken) else { continue };
         let text = record.to_json().map_err(|error| UsageError::new(error.to_string()))?;
-        files.push((case.folder.join(ACCEPTED), text.into_bytes()));
+        files.push((case.folder.join(ACCEPTED), text));
         names.push(report.name.clone());
         report.answer = CaseAnswer::Same;
         report.changes.clear();
         report.not_compared.clear();
     }
-    let files: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), bytes.as_slice())).collect();
     output::write_all(&files)?;
     Ok(names)
 }
