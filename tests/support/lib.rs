@@ -31,6 +31,7 @@ type Run = fn(&Case);
 /// The kinds of cases by their folder under `suite/`.
 pub const KINDS: &[(&str, Run)] = &[
     ("alarm", exec::alarm),
+    ("changes", changes::run),
     ("check", check::run),
     ("cli", cli::run),
     ("control", control::run),
