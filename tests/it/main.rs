@@ -3,11 +3,7 @@
 
 mod accepted;
 mod alignment;
-mod alignment_guards;
-mod alignment_slips;
 mod alignment_state;
-mod alignment_touched;
-mod alignment_zero;
 mod arithmetic;
 mod blocks;
 mod budget;
@@ -45,7 +41,6 @@ mod results;
 mod round_trip;
 mod schemas;
 mod sheet;
-mod sine_table;
 mod start_state;
 mod watch;
 mod words;

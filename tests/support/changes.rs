@@ -30,7 +30,7 @@ use gcode_lang::program::NoLibrary;
 use gcode_review::{BlockLocation, Change, Revision, changes, unexecuted};
 use gcode_session::Request;
 
-use crate::Case;
+use crate::{Case, edited};
 
 /// The difference in mm from which on an entry is made.
 const TOLERANCE: f64 = 0.0001;
@@ -77,13 +77,14 @@ pub(crate) fn run(case: &Case) {
         if !own.is_empty() {
             program = own;
             let file = lines.iter().find_map(|line| line.strip_prefix("machine ")).unwrap_or("machine.toml");
-            machine = case.optional(file).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
+            machine =
+                case.optional(file).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
         }
         let mut texts = [program.clone(), program.clone()];
         for line in lines.iter().filter(|line| line.contains(" =>")) {
             match line.strip_prefix("both: ") {
-                Some(edit) => texts = texts.map(|text| edited(&text, edit, name)),
-                None => texts[1] = edited(&texts[1], line, name),
+                Some(edit) => texts = texts.map(|text| edited(&text, edit)),
+                None => texts[1] = edited(&texts[1], line),
             }
         }
         let [old, new] = texts.map(|text| revision_on(&machine, &text));
@@ -91,28 +92,27 @@ pub(crate) fn run(case: &Case) {
             let expected = expected_lines(&lines, arrow);
             let found = shown(&changes(&from.record, &to.record, TOLERANCE), arrow);
             if !expected.is_empty() && !agree(&expected, &found) {
-                wrong.push_str(&format!("{name}: expected\n{}\nfound\n{}\n", expected.join("\n"), found.join("\n")));
+                wrong.push_str(&format!(
+                    "{name}: expected\n{}\nfound\n{}\n",
+                    expected.join("\n"),
+                    found.join("\n")
+                ));
             }
         }
         let expected: Vec<&str> = lines.iter().filter_map(|line| line.strip_prefix("idle ")).collect();
         let idle = unexecuted(&old, &new).into_iter().map(|block| places(&block.old, &block.new));
-        let idle: Vec<String> = if expected == ["none"] { idle.chain(["none".to_owned()]).collect() } else { idle.collect() };
+        let idle: Vec<String> =
+            if expected == ["none"] { idle.chain(["none".to_owned()]).collect() } else { idle.collect() };
         if !expected.is_empty() && idle != expected {
-            wrong.push_str(&format!("{name}: expected\nidle {}\nfound\nidle {}\n", expected.join("\nidle "), idle.join("\nidle ")));
+            wrong.push_str(&format!(
+                "{name}: expected\nidle {}\nfound\nidle {}\n",
+                expected.join("\nidle "),
+                idle.join("\nidle ")
+            ));
         }
     }
     assert!(!names.is_empty(), "{}: no cases", case.name());
     assert!(wrong.is_empty(), "{}:\n{wrong}", case.name());
-}
-
-/// Applies `A => B` or `A =>> B` to a program.
-fn edited(text: &str, edit: &str, name: &str) -> String {
-    let (from, to) = edit.split_once(" =>").unwrap();
-    let (is_everywhere, to) = to.strip_prefix('>').map_or((false, to), |to| (true, to));
-    let [from, to] = [from, to].map(|part| part.trim().replace(';', "\n"));
-    let count = text.matches(&from).count();
-    assert!(if is_everywhere { count > 1 } else { count == 1 }, "{name}: {from} is there {count} times");
-    text.replace(&from, &to)
 }
 
 /// The lines of a case that one direction of the comparison must have; `-> nothing` stays a line of its own.
