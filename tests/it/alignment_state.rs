@@ -56,7 +56,10 @@ fn every_head_names_the_common_variables_that_are_overwritten() {
         assert_eq!(alarm(&bench.run_observed(main, &good, set, &mut (), &mut all)), None, "O{main}");
     }
     // As many readings as there may be; they are taken before the fit begins.
-    let most = Bench { limits: Limits { blocks: 4_000 }, ..Bench::example("alignment", &["25.0, 11] => 25.0, 100]"]) };
+    let most = Bench {
+        limits: Limits { blocks: 4_000 },
+        ..Bench::example("alignment", &["25.0, 11] => 25.0, 100]"])
+    };
     most.run_observed(8210, &good, &[], &mut (), &mut all);
 
     let readme = std::fs::read_to_string(workspace().join("macros/README.md")).unwrap();

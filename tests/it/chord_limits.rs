@@ -125,7 +125,8 @@ fn the_ellipse_shows_three_of_six_misplacements() {
             request.machine.part.tilt[index - 3] = Deg(0.01);
             "0.01°"
         };
-        let following = read_stylus(&request, &mut Programs(&bench.package), surface, job.probe_radius).unwrap();
+        let following =
+            read_stylus(&request, &mut Programs(&bench.package), surface, job.probe_radius).unwrap();
         let readings = &following.readings.passes[0].readings;
         let ends = [&readings[0], &readings[readings.len() - 1]].map(|reading| {
             let normal = surface.nearest(&reading.ball_centre).normal;

@@ -212,7 +212,8 @@ fn the_rotary_turns_only_while_the_drill_is_clear() {
 /// A control manages about a thousand macro blocks a second.
 #[test]
 fn a_hole_costs_four_blocks_and_a_row_ten() {
-    let blocks = |changes: &[(&str, &str)]| Bench::of(&changed(changes)).run_to(8300, &mut ()).control.blocks();
+    let blocks =
+        |changes: &[(&str, &str)]| Bench::of(&changed(changes)).run_to(8300, &mut ()).control.blocks();
     // Even rows end at 80.6 and 100.8, odd ones at 90.7 either way.
     let holes =
         blocks(&[("length = 90.0", "length = 101.0")]) - blocks(&[("length = 90.0", "length = 91.0")]);

@@ -1,32 +1,12 @@
 //! House rules: the order of modules, opening sentences, no unfinished work.
 use std::path::{Path, PathBuf};
 
-use gcode_tests::workspace;
-
-/// Every file below `dir` whose name ends so.
-pub(crate) fn below(dir: &Path, extension: &str) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(dir).into_iter().flatten() {
-        let path = entry.unwrap().path();
-        if path.is_dir() && path.file_name().is_some_and(|n| n != "target") {
-            found.extend(below(&path, extension));
-        } else if path.extension().is_some_and(|e| e == extension) {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
-}
-
-/// Every Rust file below `dir`.
-fn sources(dir: &Path) -> Vec<PathBuf> {
-    below(dir, "rs")
-}
+use gcode_tests::{files_below, workspace};
 
 fn all_sources() -> Vec<PathBuf> {
     ["gcode-sim", "gcode-gen", "tests", "xtask"]
         .iter()
-        .flat_map(|dir| sources(&workspace().join(dir)))
+        .flat_map(|dir| files_below(&workspace().join(dir), "rs"))
         .collect()
 }
 
@@ -53,7 +33,7 @@ fn named(line: &str, root: &str) -> Vec<String> {
 
 /// Fails where a file below `dir` names another module behind `root` than the ones it may.
 fn uses_only(dir: &str, root: &str, may: &[&str]) {
-    let files = sources(&workspace().join(dir));
+    let files = files_below(&workspace().join(dir), "rs");
     assert!(!files.is_empty(), "{dir} has no sources");
     for path in files {
         let text = std::fs::read_to_string(&path).unwrap();

@@ -2,9 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use gcode_tests::workspace;
-
-use crate::house_rules::below;
+use gcode_tests::{files_below, workspace};
 
 /// A module's path below the crate's root, `["lookahead", "request"]`.
 type Module = Vec<String>;
@@ -71,7 +69,7 @@ fn collect<'t>(text: &'t str, before: &mut Module, found: &mut Vec<Module>) -> &
 
 /// Which sibling modules of a crate use which.
 fn uses(source: &Path) -> Uses {
-    let files = below(source, "rs");
+    let files = files_below(source, "rs");
     let modules: BTreeSet<Module> = files.iter().map(|file| module_of(file, source)).collect();
     let mut uses = Uses::new();
     for file in &files {

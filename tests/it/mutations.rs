@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gcode_review::{Change, Record, Revision, changes};
 use gcode_tests::changes::effect_texts;
-use gcode_tests::workspace;
+use gcode_tests::{files_below, workspace};
 
 use crate::accepted::{folders, mains, request};
 use crate::every_word::effect;
@@ -31,23 +31,10 @@ fn record(main: &Path, text: &str) -> Option<Record> {
     Some(Revision::of(&request, &mut folders(main), None).ok()?.record)
 }
 
-/// The programs below the folders of some kinds of cases.
+/// The programs of some kinds of cases.
 pub(crate) fn cases() -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let mut folders: Vec<PathBuf> =
-        ["verify", "cli", "picture"].map(|kind| workspace().join("tests/suite").join(kind)).to_vec();
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "nc") {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
+    let folders = ["verify", "cli", "picture"].into_iter();
+    folders.flat_map(|kind| files_below(&workspace().join("tests/suite").join(kind), "nc")).collect()
 }
 
 /// Where the numbers of a block's words with a letter stand, written as numbers.

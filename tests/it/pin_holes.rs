@@ -62,7 +62,9 @@ fn r_changed_in_the_holes_calls_alone_sets_the_head_again() {
 fn the_printed_equation_8_fails() {
     let right = "#2*SQRT[[#1-#18]*[#1+#18]]/#1";
     let printed = "SQRT[1-#18*#18/[#1*#1]]/#2";
-    let bench = [8101, 8102].into_iter().fold(Bench::of(&melon()), |bench, number| edited(bench, number, "#24=", right, printed));
+    let bench = [8101, 8102]
+        .into_iter()
+        .fold(Bench::of(&melon()), |bench, number| edited(bench, number, "#24=", right, printed));
     let checked = check(&bench.job, &bench.package).unwrap();
     assert!(checked.refusals.concat().contains("rapid through the part"), "{}", checked.refusals.concat());
     let verdict = checked.verdict.into_holes().unwrap();
@@ -164,8 +166,12 @@ fn no_rapid_can_touch_the_part_on_any_path() {
         let moves: Vec<(char, &Position)> = recorder.moves().collect();
         let rapids: Vec<_> = moves.windows(2).filter(|pair| pair[1].0 == 'R').collect();
         // Beside the part at x < 0 never, above it always.
-        let reached = |at: usize, by: f64, [from, to]: [&Position; 2]| (from[at].min(to[at]).max(0.0) / by).powi(2);
-        let lowest = rapids.iter().map(|pair| [pair[0].1, pair[1].1]).map(|ends| reached(0, a, ends) + reached(1, b, ends));
+        let reached =
+            |at: usize, by: f64, [from, to]: [&Position; 2]| (from[at].min(to[at]).max(0.0) / by).powi(2);
+        let lowest = rapids
+            .iter()
+            .map(|pair| [pair[0].1, pair[1].1])
+            .map(|ends| reached(0, a, ends) + reached(1, b, ends));
         let lowest = lowest.fold(f64::INFINITY, f64::min);
         assert!(rapids.len() > 40, "{} rapids", rapids.len());
         assert!(lowest > 1.0, "a rapid of a = {a}, b = {b} can reach {lowest} of the surface");

@@ -213,7 +213,7 @@ fn without_a_wheel_there_is_no_verdict() {
 
 /// The verdict on a program with more blocks before its end, at C 0 with the wheel clear of the burr.
 fn with(blocks: &str) -> FluteVerdict {
-    grind_flutes(&two_flutes().bench().edited(8400, &format!("G00 C0.; => G00 C0.;{blocks}")))
+    grind_flutes(&two_flutes().bench().edited(8400, &format!("G00 C0. => G00 C0.;{blocks}")))
 }
 
 /// The blank stands `depth` above the tooth bottom at Y 0; the wheel goes along it from X -19 to X 0.
