@@ -9,7 +9,6 @@ use gcode_lang::program::Library;
 use gcode_review::{Change, Record, Revision, changes};
 use gcode_sim::cli::library::Folders;
 use gcode_tests::workspace;
-use serde_json::Value;
 
 use crate::accepted::{folders, mains, request};
 use crate::words::{Slip, slips, with};
@@ -61,23 +60,20 @@ fn run(main: &Path, other: Option<(String, String)>) -> Option<(Record, BTreeMap
     Some((record, texts.read))
 }
 
-/// What a program does, without how its blocks are written and how long it takes.
-pub(crate) fn effect(record: &Record) -> Value {
-    let mut value: Value = serde_json::from_str(&record.to_json().unwrap()).unwrap();
-    value["totals"] = Value::Null;
-    without_blocks(&mut value);
-    value
-}
-
-fn without_blocks(value: &mut Value) {
-    match value {
-        Value::Array(all) => all.iter_mut().for_each(without_blocks),
-        Value::Object(all) => {
-            all.remove("block");
-            all.values_mut().for_each(without_blocks);
+/// The effect of a program as text: its record without the text of the blocks and without the totals.
+pub(crate) fn effect(record: &Record) -> String {
+    let mut effect = String::new();
+    for line in record.to_json().unwrap().lines().filter(|line| !line.starts_with("\"totals\"")) {
+        let mut parts = line.split("\"block\":\"");
+        effect.push_str(parts.next().unwrap());
+        for part in parts {
+            // A quotation mark ends the text of a block unless a backslash stands before it.
+            let end = part.match_indices('"').find(|(at, _)| !part[..*at].ends_with('\\')).unwrap().0;
+            effect.push_str(&part[end..]);
         }
-        _ => {}
+        effect.push('\n');
     }
+    effect
 }
 
 /// How slips of one letter have come out.
