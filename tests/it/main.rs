@@ -32,7 +32,6 @@ mod limits;
 mod misplaced;
 mod module_circles;
 mod mutations;
-mod packaging;
 #[cfg(feature = "browser")]
 mod page;
 mod pin_holes;

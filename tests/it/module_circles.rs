@@ -25,7 +25,7 @@ fn code_of(text: &str) -> String {
 }
 
 /// The paths behind a prefix such as `crate::`, one by one or in braces, each as far as it is made of names.
-fn paths_behind(code: &str, prefix: &str) -> Vec<Module> {
+pub(crate) fn paths_behind(code: &str, prefix: &str) -> Vec<Module> {
     let mut found = Vec::new();
     for (at, _) in code.match_indices(prefix) {
         let is_inside_a_word = code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
@@ -114,7 +114,7 @@ fn in_circles(uses: &Uses) -> BTreeSet<&Module> {
 }
 
 #[test]
-fn paths_are_seen_one_by_one_and_in_braces() {
+fn paths_are_found_one_by_one_and_in_braces() {
     let found =
         paths_behind("use crate::{a::{B, c::D}, e as f}; x(crate::g::H::new()) mycrate::z", "crate::");
     let shown: Vec<_> = found.iter().map(|path| path.join("::")).collect();
