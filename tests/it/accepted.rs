@@ -176,14 +176,12 @@ impl<F: FnMut(&str, String) -> String> Library for EditedLibrary<F> {
 fn a_macro_that_moves_a_hole_differs_by_that_move() {
     let main = workspace().join("examples/melon-mould/O8100.nc");
     let (from, to) = ("#18+[#17", "#18+0.01+[#17");
-    let mut edits = 0;
-    let mut library = EditedLibrary::new(&main, |_, text| {
-        edits += text.matches(from).count();
-        text.replace(from, to)
+    let mut library = EditedLibrary::new(&main, |name, text| {
+        assert!(!name.contains("8101") || text.contains(from), "{from} isn't in O8101");
+        if name.contains("8101") { text.replace(from, to) } else { text }
     });
     let old = Record::from_json(&std::fs::read_to_string(accepted(&main)).unwrap()).unwrap();
     let text = describe_difference("O8100", &old, &revision(&main, &mut library).record).expect("a change");
-    assert_eq!(edits, 1, "{from} in O8101 alone");
     let entry = "hole-moved     holes 1, 2, 3, 4, 5: moved by X +0.0100 of the machine, up to 0.0100 mm (hole 1: \
                  +0.0100 +0.0000 +0.0000 mm)";
     assert!(text.starts_with(entry), "{text}");

@@ -54,7 +54,7 @@ fn is_named(letter: char, found: &[Change]) -> bool {
         'F' => only.code == "feed",
         // A tool of another diameter or length: the entry names both.
         'T' => only.effects().any(|(_, text)| text.contains("made by T") || text.starts_with("tool T")),
-        _ => ["hole-", "move-", "work-offset"].iter().any(|code| only.code.starts_with(code)),
+        _ => ["hole-", "move-", "work-offset", "dwell"].iter().any(|code| only.code.starts_with(code)),
     }
 }
 

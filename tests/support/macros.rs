@@ -65,7 +65,10 @@ pub(crate) fn run(case: &Case) {
                 continue;
             };
             let mut row = setup.clone();
-            words.split(" & ").filter(|word| !word.trim().is_empty()).for_each(|word| row.add(word.trim(), &left));
+            words
+                .split(" & ")
+                .filter(|word| !word.trim().is_empty())
+                .for_each(|word| row.add(word.trim(), &left));
             let ran = row.run();
             count += 1;
             let mut expected = expected.trim().to_owned();
