@@ -7,7 +7,6 @@ use gcode_lang::source::Span;
 
 use super::literal;
 
-/// Block with a call.
 #[derive(Debug)]
 pub(crate) struct CallSite {
     pub block: OpIndex,
@@ -49,7 +48,6 @@ pub fn called_programs(program: &Program, settings: &Settings) -> Vec<CalledProg
     call_sites(program, settings).into_iter().map(|site| site.target).collect()
 }
 
-/// Returns all calls of a program.
 pub(super) fn call_sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
     let mut found = Vec::new();
     for (block, op) in program.ops().iter().enumerate() {

@@ -141,7 +141,6 @@ impl<'a> CheckContext<'a> {
     }
 }
 
-/// Returns the alarm of a block that cannot run.
 fn written_alarm(kind: &OpKind) -> Option<&LocatedAlarm> {
     match kind {
         OpKind::Alarm(alarm) => Some(alarm),
@@ -191,17 +190,14 @@ impl<'a> ProgramUnit<'a> {
         self.calls.get(place)
     }
 
-    /// Iterates over the reachable blocks.
     pub(crate) fn reached_blocks(&self) -> impl Iterator<Item = (OpIndex, &ast::Block)> {
         self.blocks.iter().enumerate().filter(|(block, _)| self.is_reached[*block])
     }
 
-    /// Iterates over the operations of the reachable blocks.
     pub(crate) fn reached_ops(&self) -> impl Iterator<Item = (OpIndex, &'a Op)> {
         self.program.ops().iter().enumerate().filter(|(block, _)| self.is_reached[*block])
     }
 
-    /// Iterates over the reachable blocks of words.
     pub(crate) fn reached_words(&self) -> impl Iterator<Item = (OpIndex, &'a Words)> {
         self.reached_ops().filter_map(|(block, op)| match op.kind() {
             OpKind::Words(words) => Some((block, words)),
@@ -209,7 +205,6 @@ impl<'a> ProgramUnit<'a> {
         })
     }
 
-    /// Creates a finding about a block.
     pub(crate) fn finding(
         &self,
         kind: &'static FindingKind,

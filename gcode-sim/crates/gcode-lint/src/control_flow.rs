@@ -3,7 +3,6 @@ use gcode_lang::program::{CallCode, CallTarget, OpIndex, OpKind, Operand, Progra
 
 use super::literal;
 
-/// Blocks that can follow a block.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Successors {
     /// True if the next block can follow.
@@ -17,7 +16,6 @@ pub(crate) struct Successors {
 }
 
 impl Successors {
-    /// The next block, and these jumps.
     fn next_or(jumps: Vec<OpIndex>) -> Self {
         Self { falls_through: true, jumps, ..Self::default() }
     }
@@ -26,7 +24,6 @@ impl Successors {
         Self { is_exit: true, ..Self::default() }
     }
 
-    /// The same blocks, and the next block.
     fn or_next(self) -> Self {
         Self { falls_through: true, ..self }
     }
@@ -50,7 +47,6 @@ pub(crate) struct Jump {
     pub is_return: bool,
 }
 
-/// Control flow graph of one program.
 #[derive(Debug)]
 pub(crate) struct ControlFlowGraph {
     pub block_successors: Vec<Successors>,
@@ -159,7 +155,6 @@ impl ControlFlowGraph {
         self.block_successors.len() + 2
     }
 
-    /// Iterates over the nodes that can follow a node.
     pub(crate) fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
         let anywhere = self.block_successors.len() + 1;
         let block = self.block_successors.get(place);

@@ -3,7 +3,6 @@ use gcode_lang::syntax::ast::{Block, Condition, Expr, Item, PrintPart, Statement
 
 use super::literal;
 
-/// Use of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ValueUse {
     /// Left side of an assignment: only the number of the variable is read.
@@ -23,7 +22,6 @@ pub(crate) enum ValueUse {
 /// Outermost expressions with their uses, in the order written.
 pub(crate) type UsedExpressions<'a> = Vec<(&'a Expr, ValueUse)>;
 
-/// Returns the outermost expressions of a block.
 pub(super) fn block_expressions(block: &Block) -> UsedExpressions<'_> {
     let mut found = Vec::new();
     let has_call = block.items.iter().any(is_macro_call);
@@ -42,7 +40,6 @@ pub(super) fn block_expressions(block: &Block) -> UsedExpressions<'_> {
     found
 }
 
-/// Returns the outermost expressions of a condition.
 pub(super) fn condition_expressions(condition: &Condition) -> UsedExpressions<'_> {
     let mut found = Vec::new();
     collect_from_condition(condition, &mut found);

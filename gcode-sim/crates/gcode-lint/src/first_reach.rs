@@ -93,7 +93,6 @@ impl<'a> FirstReach<'a> {
     }
 }
 
-/// Returns true if a local may be unset and may be set.
 fn is_unclear(bits: u8) -> bool {
     bits & UNSET != 0 && bits != UNSET
 }

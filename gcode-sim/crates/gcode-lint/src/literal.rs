@@ -12,7 +12,6 @@ pub(super) fn word_number(word: &LoweredWord) -> Option<f64> {
     }
 }
 
-/// Returns the whole number of a word.
 pub(super) fn word_count(word: &LoweredWord) -> Option<u32> {
     word_number(word).and_then(to_whole)
 }

@@ -16,15 +16,12 @@ const KEYWORD: &str = "CHECK-OFF";
 pub(super) struct Suppression {
     /// Name of the rule in upper case; empty if the comment has none.
     pub(super) name: String,
-    /// Block of the comment.
     pub(super) block: OpIndex,
-    /// Place of the comment.
     pub(super) comment: Span,
     /// Place of the block; `None` if the comment is in the head of the program.
     block_span: Option<Span>,
 }
 
-/// Returns the suppressions of a program.
 pub(super) fn suppressions(unit: &ProgramUnit<'_>) -> Vec<Suppression> {
     let mut found = Vec::new();
     let mut is_in_head = true;

@@ -22,7 +22,6 @@ pub(crate) struct VariableUses {
     pub reads_computed: bool,
 }
 
-/// Returns the variables that a block reads.
 pub(super) fn block_reads(block: &Block) -> Vec<VariableRead> {
     VariableUses::of(block_expressions(block)).reads
 }
@@ -39,7 +38,6 @@ pub fn variables_read(block: &Block) -> Vec<u32> {
 }
 
 impl VariableUses {
-    /// Collects the variable reads of some expressions.
     pub(super) fn of(expressions: UsedExpressions<'_>) -> Self {
         let mut uses = Self::default();
         for (expr, usage) in expressions {
@@ -80,7 +78,6 @@ pub(super) fn assignment(block: &Block) -> Option<(&Expr, &Expr)> {
     block.items.iter().find_map(item_assignment)
 }
 
-/// Returns target and value of an item's assignment.
 pub(super) fn item_assignment(item: &Item) -> Option<(&Expr, &Expr)> {
     match item {
         Item::Statement(statement) => statement_assignment(&statement.node),

@@ -32,11 +32,9 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
 /// Line of an alarm, without its comments.
 struct AlarmLine<'a> {
     whole: &'a str,
-    /// Text before the alarm.
     before: &'a str,
     /// Text from the alarm to the end of the line.
     rest: &'a str,
-    /// Text at the place of the alarm.
     text: &'a str,
 }
 

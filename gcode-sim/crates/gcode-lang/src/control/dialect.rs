@@ -4,7 +4,6 @@ use super::{Dialect, Settings};
 /// Settings of a family of controls; a later setting overrides them.
 #[derive(Debug)]
 struct DialectRow {
-    /// Family.
     dialect: Dialect,
     /// Family whose settings apply first.
     base: Option<Dialect>,

@@ -74,11 +74,9 @@ impl Dialect {
 
     /// Families of a code that every control has.
     pub(crate) const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::HaasNgc];
-    /// Fanuc controls.
     pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
     /// Controls with five simultaneous axes.
     pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
-    /// Haas controls.
     pub(crate) const HAAS: &'static [Self] = &[Self::HaasNgc];
 
     /// Returns the name, `fanuc-31i`.

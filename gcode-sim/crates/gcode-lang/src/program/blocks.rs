@@ -32,7 +32,6 @@ impl ProgramText {
 #[derive(Debug)]
 pub(super) struct Blocks {
     text: ProgramText,
-    /// Offsets of the block starts.
     starts: Vec<u32>,
     /// Trees of the blocks that do not begin their line.
     separate_trees: BTreeMap<u32, ast::Block>,
@@ -112,7 +111,6 @@ impl Blocks {
         Some(())
     }
 
-    /// Lowers all blocks in order.
     pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.ops.clear();
         self.index_mask = usize::MAX;

@@ -1,7 +1,6 @@
 //! Pairing of DO and END.
 use super::OpIndex;
 
-/// Role of a block in a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LoopRole {
     /// DO or WHILE.
@@ -9,7 +8,6 @@ pub(super) enum LoopRole {
     End,
 }
 
-/// Loops of a program.
 #[derive(Debug, Default)]
 pub(super) struct Loops {
     /// DO or WHILE and END of each loop with its number, sorted by the DO or WHILE.
@@ -46,13 +44,11 @@ impl Loops {
         Self { pairs, ends }
     }
 
-    /// Returns the END of a DO or WHILE.
     pub(super) fn end_of(&self, begin: OpIndex) -> Option<OpIndex> {
         let place = self.pairs.binary_search_by_key(&begin, |(first, ..)| *first).ok()?;
         self.pairs.get(place).map(|(_, end, _)| *end)
     }
 
-    /// Returns the DO or WHILE of an END.
     pub(super) fn begin_of(&self, end: OpIndex) -> Option<OpIndex> {
         let place = self.ends.binary_search_by_key(&end, |(last, _)| *last).ok()?;
         self.ends.get(place).map(|(_, begin)| *begin)

@@ -12,7 +12,6 @@ use crate::syntax::{
     BlockOutline, ProgramParts, end_without_spaces, outline, sequence_number_at, without_trailer,
 };
 
-/// State while a program is outlined.
 #[derive(Default)]
 struct OutlineBuilder {
     blocks: u32,
@@ -31,7 +30,6 @@ pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
 }
 
 impl OutlineBuilder {
-    /// Records a block and returns its start.
     #[inline(always)]
     fn block(&mut self, block: BlockOutline, text: &ProgramText) -> u32 {
         let span = block.span();
@@ -59,7 +57,6 @@ impl OutlineBuilder {
         }
     }
 
-    /// Records the sequence number of a block.
     fn record_number(&mut self, number: Option<u32>) {
         self.first_number = self.first_number.or(number.filter(|number| *number > 0));
     }

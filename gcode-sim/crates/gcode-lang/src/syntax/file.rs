@@ -51,7 +51,6 @@ impl<C, B> Default for Programs<C, B> {
 }
 
 impl<C: Default, B> Programs<C, B> {
-    /// Begins another program.
     pub(super) fn begin(&mut self, name: ProgramName, span: Span) {
         self.close();
         let silent = name == ProgramName::Unnamed;

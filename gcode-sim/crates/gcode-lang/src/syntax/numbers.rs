@@ -7,7 +7,6 @@ use super::number::WORD_LIMIT;
 use super::token::{Input, is_space, unspaced};
 use crate::source::{SourceId, Span};
 
-/// Largest sequence number.
 pub(super) const MAX_SEQUENCE_NUMBER: u32 = 99_999_999;
 
 /// Address followed immediately by its number.
@@ -57,7 +56,6 @@ impl<'a> NumberWords<'a> {
         Some(numbers)
     }
 
-    /// Returns true at the end of the line.
     pub(crate) fn is_at_end(&self) -> bool {
         matches!(self.behind_spaces(), [] | [b'\n' | b'\r', ..])
     }

@@ -8,7 +8,6 @@ use super::file_items::{FileItem, FileItems, is_unreadable_block};
 use super::numbers::NumberWords;
 use crate::source::{SourceId, Span};
 
-/// Block of an outline.
 #[derive(Debug)]
 pub(crate) enum BlockOutline {
     /// Block that is not read; it is neither DO nor END. The span includes trailing spaces.
@@ -20,7 +19,6 @@ pub(crate) enum BlockOutline {
 }
 
 impl BlockOutline {
-    /// Returns the place of the block.
     pub(crate) fn span(&self) -> Span {
         match self {
             Self::Words(span) => *span,

@@ -22,7 +22,6 @@ pub(super) static RULE: Rule =
 const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
     [1000..=1035, 3001..=3002, 4201..=4330, 5021..=5060, 5101..=5140, 5181..=5200];
 
-/// Output signals.
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {

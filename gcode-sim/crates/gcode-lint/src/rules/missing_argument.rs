@@ -38,7 +38,6 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 /// computes with 0, which may be intended.
 type MissingArgumentEffect = (Severity, String);
 
-/// Returns the effects of a call's missing arguments.
 fn missing_argument_effects(
     context: &CheckContext<'_>,
     called: &ProgramUnit<'_>,

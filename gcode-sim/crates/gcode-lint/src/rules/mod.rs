@@ -65,7 +65,6 @@ pub static ALL: &[&Rule] = &[
 /// Kind of finding about a number without a decimal point.
 pub static MISSING_POINT: &FindingKind = &missing_point::RULE.kind;
 
-/// Returns the codes of all rules.
 pub(super) fn codes() -> Vec<&'static str> {
     ALL.iter().map(|rule| rule.kind.code).collect()
 }
@@ -102,7 +101,6 @@ pub(super) mod testing {
             .collect()
     }
 
-    /// Returns the messages of a rule's findings.
     pub(crate) fn messages(rule: &Rule, text: &str) -> Vec<String> {
         let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
         checked.findings.into_iter().filter(|f| f.kind == &rule.kind).map(|f| f.message).collect()

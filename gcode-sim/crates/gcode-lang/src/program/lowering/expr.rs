@@ -268,7 +268,6 @@ impl Lowering {
         }
     }
 
-    /// Lowers the left side of an assignment.
     pub(in crate::program) fn compile_target(&mut self, target: &Expr) -> LoweringResult<AssignmentTarget> {
         match &target.kind {
             ExprKind::Variable(index) => match self.operand(index, ExprContext::MACRO)? {

@@ -11,7 +11,6 @@ pub(super) use expr::ExprContext;
 /// Most skips inside one block, one per switch.
 const MAX_INNER_SKIPS: usize = 9;
 
-/// State of lowering.
 #[derive(Debug, Default)]
 pub(super) struct Lowering {
     /// Code of the current expression.

@@ -33,7 +33,6 @@ impl Function {
         ("ADP", Self::Adp),
     ];
 
-    /// Returns the full name.
     pub(crate) fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, function)| *function == self).map_or("", |(name, _)| name)
     }

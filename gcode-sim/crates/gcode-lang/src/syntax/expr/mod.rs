@@ -21,7 +21,6 @@ const MAX_BRACKET_DEPTH: u8 = 5;
 /// shallow.
 const MAX_OPERATORS: usize = 100;
 
-/// Content of brackets.
 enum ExprOrCondition {
     Expr(Expr),
     Condition(Condition),
@@ -86,7 +85,6 @@ fn term(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCo
     chain(line, input, depth, BinaryOp::OF_PRODUCT, signed)
 }
 
-/// Reads one of some operators.
 fn operator<'a>(
     input: Input<'a>,
     spellings: [(&'static str, BinaryOp); 5],
@@ -229,7 +227,6 @@ pub(super) fn increase_depth(input: Input<'_>, depth: u8) -> Result<u8, nom::Err
     }
 }
 
-/// Reads `]`.
 pub(super) fn close(input: Input<'_>) -> ReadResult<'_, ()> {
     if spaces(input).is_empty() {
         return fail(spaces(input), Alarm::MissingCloseBracket);
