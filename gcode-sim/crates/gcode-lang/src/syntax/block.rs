@@ -2,9 +2,8 @@
 use nom::Err;
 
 use super::ast::{Address, Block, Item, Unreadable, Word, WordValue};
-use super::digits::window;
 use super::number::integer;
-use super::numbers::{MAX_SEQUENCE_NUMBER, continues_number, number_word};
+use super::numbers::{MAX_SEQUENCE_NUMBER, continues_number, number_word, window};
 use super::statement::{assignment, keyword, statement};
 use super::token::{Input, LineInput, ReadFailure, ReadResult, fail, next, no_match, spaces};
 use super::word::{name_word, word};

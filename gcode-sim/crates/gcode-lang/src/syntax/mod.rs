@@ -7,14 +7,11 @@
 pub mod ast;
 mod block;
 mod comment;
-mod digits;
-mod dividers;
 mod expr;
 mod file;
 mod file_items;
 mod number;
 mod numbers;
-mod outline;
 mod output;
 mod print;
 #[cfg(test)]
@@ -23,10 +20,9 @@ mod statement;
 mod token;
 mod word;
 
-pub(crate) use file::ProgramParts;
 pub use file::parse;
+pub(crate) use file::{BlockOutline, ProgramParts, block_at, outline, sequence_number_at};
 pub use file_items::{FileItem, FileItems};
 pub(crate) use file_items::{end_without_spaces, without_trailer};
 pub(crate) use numbers::{NumberWord, NumberWords};
-pub(crate) use outline::{BlockOutline, block_at, outline, sequence_number_at};
 pub use print::{print, print_decimal};
