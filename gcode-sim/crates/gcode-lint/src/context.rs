@@ -100,10 +100,9 @@ impl<'a> CheckContext<'a> {
         }
     }
 
-    /// Returns the findings for the alarms that a rule selects among those of reading.
+    /// Returns findings for those alarms of reading that `selects` accepts.
     ///
-    /// The reachable blocks raise them as they are read: for unreadable text, and for syntax that this control
-    /// refuses.
+    /// A reachable block raises an alarm of reading if its text is unreadable or this control refuses its syntax.
     pub(crate) fn reading_findings(
         &self,
         unit: &ProgramUnit<'_>,
