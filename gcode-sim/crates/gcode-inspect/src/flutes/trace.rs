@@ -16,7 +16,7 @@ pub struct Sample {
     /// Polar angle of the surface normal, from the tip.
     pub polar: Deg,
     /// Path along the meridian since the start of the pass, towards the tip.
-    pub(crate) along: f64,
+    pub along: f64,
     /// Path around the axis; positive is right-handed with the path along.
     pub(crate) around: f64,
     /// Path around by the nominal law, for the actual path along.
@@ -65,7 +65,7 @@ pub struct Window<'t> {
     /// Helix angle by the nominal law.
     pub nominal_helix: Deg,
     /// Helix angle by the other law.
-    pub(crate) other_law_helix: Deg,
+    pub other_law_helix: Deg,
 }
 
 /// Returns the other of the two laws.

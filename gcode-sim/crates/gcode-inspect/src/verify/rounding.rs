@@ -2,26 +2,11 @@
 //! head set by hand, with the worst signs.
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, HolePair};
+use super::{Comparison, HolePair, bottom};
 use crate::holes::DrilledHole;
-use crate::machine::{Frame, HeadKind, LinkMotion, Machine};
+use crate::machine::{Frame, HeadKind, Machine};
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::units::Deg;
-
-/// Sideways displacement of a hole's axis by half an increment of one axis, at the worse end, mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct AxisRounding {
-    /// `None` for a head set by hand.
-    letter: Option<char>,
-    pub displacement: f64,
-}
-
-impl AxisRounding {
-    /// Returns the letter, or `head`.
-    pub(super) fn name(&self) -> String {
-        self.letter.map_or("head".to_owned(), String::from)
-    }
-}
 
 /// The largest effect of rounding on each pair.
 #[derive(Debug)]
@@ -41,79 +26,40 @@ impl<'a> RoundingDeviation<'a> {
     pub(super) fn of(comparison: &'a Comparison<'a>, machine: &'a Machine) -> Self {
         let axes = rounded_axes(comparison, machine);
         let mut rounding = Self { comparison, machine, axes, position_deviations: Vec::new() };
-        let (mut table, mut moved) = (None, Vec::new());
-        let phi = |pair: &HolePair| {
-            rounding.axis_effects(pair, &mut table, &mut moved);
-            2.0 * max_displacement(&moved)
-        };
-        rounding.position_deviations = comparison.pairs.iter().map(phi).collect();
+        let deviation = |pair: &HolePair| 2.0 * max_displacement(&rounding.axis_effects(pair));
+        rounding.position_deviations = comparison.pairs.iter().map(deviation).collect();
         rounding
     }
 
-    /// Returns the effects on one pair, the largest first.
-    pub(super) fn axis_shares(&self, pair: usize) -> Vec<AxisRounding> {
-        let mut moved = Vec::new();
-        self.axis_effects(&self.comparison.pairs[pair], &mut None, &mut moved);
-        let mut shares: Vec<AxisRounding> = moved
-            .iter()
-            .map(|(letter, [entry, bottom])| AxisRounding {
-                letter: *letter,
-                displacement: entry.norm().max(bottom.norm()),
-            })
-            .collect();
+    /// Returns the name of each axis that displaces a pair, `X` or `head`, with the displacement at the worse end, mm; the
+    /// largest first.
+    pub(super) fn axis_shares(&self, pair: usize) -> Vec<(String, f64)> {
+        let effects = self.axis_effects(&self.comparison.pairs[pair]).into_iter();
+        let share = |(letter, [entry, bottom]): AxisEffect| {
+            (letter.map_or("head".to_owned(), String::from), entry.norm().max(bottom.norm()))
+        };
         // Motion along the hole, or a rotation about its own axis, has no effect.
-        shares.retain(|share| 1e-7 < share.displacement);
-        shares.sort_by(|a, b| b.displacement.total_cmp(&a.displacement));
+        let mut shares: Vec<_> = effects.map(share).filter(|(_, displacement)| 1e-7 < *displacement).collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     }
 
-    /// Computes the effects on a pair. `table` holds the frames of the last pair: all holes of a row share them.
-    fn axis_effects(&self, pair: &HolePair, table: &mut Option<TableFrames>, moved: &mut Vec<AxisEffect>) {
+    fn axis_effects(&self, pair: &HolePair) -> Vec<AxisEffect> {
         let (nominal, drilled) =
             (&self.comparison.nominal[pair.nominal], &self.comparison.actual[pair.actual]);
-        let machine = self.machine;
-        if table.as_ref().is_none_or(|table| machine.table.is_moved(&table.position, &drilled.axis_position))
-        {
-            *table = Some(TableFrames::at(machine, &self.axes, drilled.axis_position));
-        }
-        let Some(table) = table else { return };
+        let frame = self.machine.part_frame(&drilled.axis_position);
         let out = Vector3::from(nominal.axis);
-        let entry = Point3::from(nominal.entry);
-        let aside = |v: Vector3<f64>| v - out * v.dot(&out);
-        moved.clear();
-        moved.extend(self.axes.iter().zip(&table.incremented).map(|(axis, beside)| {
-            let move_of = |(end, above)| {
-                aside(match beside {
-                    Some(beside) => beside.inverse_transform_point(&(table.frame * end)) - end,
-                    None => half_increment_shift(machine, *axis, drilled, &table.frame, above),
-                })
-            };
-            let ends = [(entry, nominal.depth), (entry - out * nominal.depth, 0.0)];
-            (Some(machine.axes.letter(*axis)), ends.map(move_of))
-        }));
-        let by_hand = manual_head_shift(machine, drilled, &table.frame);
-        moved.extend(by_hand.map(|aside| (None, [Vector3::zeros(), aside * nominal.depth])));
-    }
-}
-
-/// Frames of the part at one position of the table.
-struct TableFrames {
-    position: Position,
-    frame: Frame,
-    /// The frame with each axis half an increment further; `None` for axes that do not carry the part.
-    incremented: Vec<Option<Frame>>,
-}
-
-impl TableFrames {
-    fn at(machine: &Machine, axes: &[AxisIndex], at: Position) -> Self {
-        let beside = |axis: &AxisIndex| {
-            machine.table.has_axis(*axis).then(|| {
-                let mut next = at;
-                next[*axis] += machine.increment.size() / 2.0;
-                machine.part_frame(&next)
-            })
+        let ends = [(Point3::from(nominal.entry), nominal.depth), (bottom(nominal), 0.0)];
+        let of_axis = |axis: &AxisIndex| {
+            let effects = ends.map(|end| {
+                let shift = half_increment_shift(self.machine, *axis, drilled, &frame, end);
+                shift - out * shift.dot(&out)
+            });
+            (Some(self.machine.axes.letter(*axis)), effects)
         };
-        Self { position: at, frame: machine.part_frame(&at), incremented: axes.iter().map(beside).collect() }
+        let by_hand = manual_head_shift(self.machine, drilled, &frame);
+        let by_hand = by_hand.map(|shift| (None, [Vector3::zeros(), shift * nominal.depth]));
+        self.axes.iter().map(of_axis).chain(by_hand).collect()
     }
 }
 
@@ -128,30 +74,31 @@ fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<AxisIndex
     machine.axes.iter().map(|(axis, _)| axis).filter(is_rounded).collect()
 }
 
-/// Returns the displacement on the part of the point at `height` above the hole's bottom by half an increment of an axis that
-/// does not carry the part; `frame` is the part's.
+/// Returns the displacement on the part of a point of the hole's axis, at `height` above the bottom, by half an increment of
+/// an axis; `frame` is the part's.
 fn half_increment_shift(
     machine: &Machine,
     axis: AxisIndex,
     drilled: &DrilledHole,
     frame: &Frame,
-    height: f64,
+    (point, height): (Point3<f64>, f64),
 ) -> Vector3<f64> {
-    let half = machine.increment.size() / 2.0;
-    if let HeadKind::Axis { axis: head, .. } = machine.head.kind
-        && head == axis
-    {
-        let length = machine.length_of(drilled.tool).unwrap_or(0.0);
-        let lever = machine.head.pivot + length - height;
-        let across = frame.rotation * drilled.axis.into_inner();
-        let across = Vector3::new(-across.y, across.x, 0.0) * (lever * Deg(half).to_rad());
-        return frame.rotation.inverse_transform_vector(&across);
+    let mut half = Position::default();
+    half[axis] = machine.increment.size() / 2.0;
+    if machine.table.has_axis(axis) {
+        let mut next = drilled.axis_position;
+        next[axis] += half[axis];
+        return machine.part_frame(&next).inverse_transform_point(&(frame * point)) - point;
     }
-    let along = machine.slides.0.iter().find(|link| link.axis == axis).map(|link| match &link.motion {
-        LinkMotion::Linear { along } => along.into_inner(),
-        LinkMotion::Rotary { .. } => Vector3::zeros(),
-    });
-    frame.rotation.inverse_transform_vector(&(along.unwrap_or_default() * half))
+    let shift = match machine.head.kind {
+        HeadKind::Axis { axis: head, .. } if head == axis => {
+            let lever = machine.head.pivot + machine.length_of(drilled.tool).unwrap_or(0.0) - height;
+            let out = frame.rotation * drilled.axis.into_inner();
+            Vector3::new(-out.y, out.x, 0.0) * (lever * Deg(half[axis]).to_rad())
+        }
+        _ => machine.slides.displacement(&half),
+    };
+    frame.rotation.inverse_transform_vector(&shift)
 }
 
 /// Returns the displacement of a hole per mm of depth by half an increment of a head angle set by hand: the feed runs through

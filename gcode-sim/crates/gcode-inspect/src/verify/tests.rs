@@ -39,6 +39,11 @@ impl Section {
         (self.a * c + above * angle.cos(), self.b * s + above * angle.sin(), angle)
     }
 
+    /// Returns the word for a height above the part with any head.
+    fn high(self) -> String {
+        format!("Y{:.3}", 4.0 * self.a.max(self.b) + 700.0)
+    }
+
     fn reference(self, places: &[NominalHole]) -> Reference {
         let mut text = format!(
             "family = \"pin-holes\"\n[control]\ndialect = \"fanuc-31i\"\nincrement = \"IS-B\"\n\
@@ -69,19 +74,23 @@ struct Drilling {
     lean: f64,
     depth: f64,
     set_head: bool,
+    /// Distance of the programmed point from the tip.
+    reach: f64,
 }
 
-const RIGHT: Drilling = Drilling { sign: 1.0, shift: [0.0; 3], lean: 0.0, depth: 15.0, set_head: true };
+const RIGHT: Drilling =
+    Drilling { sign: 1.0, shift: [0.0; 3], lean: 0.0, depth: 15.0, set_head: true, reach: 0.0 };
 
 fn drill(script: EventScript, section: Section, place: NominalHole, drilling: Drilling) -> EventScript {
     let (x, y, angle) = section.above(place, 0.0);
     let angle = angle + Deg(drilling.lean);
-    let at = |along: f64| {
+    let at = |height: f64| {
+        let along = height + drilling.reach;
         let (x, y) =
             (x + along * angle.cos() + drilling.shift[0], y + along * angle.sin() + drilling.shift[1]);
         format!("X{x:.3} Y{y:.3}")
     };
-    let high = format!("Y{:.3}", 2.0 * section.a.max(section.b) + 100.0);
+    let high = section.high();
     let turn = format!("B{:.3} Z{:.3}", drilling.sign * place.azimuth, drilling.shift[2]);
     let over = at(20.0).split_whitespace().next().unwrap().to_owned();
     let script = if drilling.set_head { script.head(angle.0) } else { script };
@@ -89,7 +98,7 @@ fn drill(script: EventScript, section: Section, place: NominalHole, drilling: Dr
 }
 
 fn start(section: Section) -> EventScript {
-    EventScript::new().rapid(&format!("Y{:.3}", 2.0 * section.a.max(section.b) + 100.0))
+    EventScript::new().rapid(&section.high())
 }
 
 fn judge(machine: &Machine, reference: &Reference, script: &EventScript) -> Verdict {
@@ -320,20 +329,9 @@ proptest! {
         // The same holes with a head that has a pivot and a tool of a length: the pivot point is programmed.
         machine.head = Head::new(HeadKind::Manual { start: None }, pivot);
         machine.tools = vec![Tool { number: 7, length: Some(length), diameter: None }];
-        let reach = pivot + length;
-        let mut script = start(section).then("tool 7");
-        for place in &places {
-            let (_, _, angle) = section.above(*place, 0.0);
-            let at = |along: f64| {
-                let (x, y, _) = section.above(*place, along + reach);
-                format!("X{x:.3} Y{y:.3}")
-            };
-            let high = format!("Y{:.3}", 4.0 * a.max(section.b) + 700.0);
-            let turn = format!("B{:.3}", drilling.sign * place.azimuth);
-            let over = at(20.0).split_whitespace().next().unwrap().to_owned();
-            script = script.rapid(&high).head(angle.0).rapid(&turn).rapid(&over);
-            script = script.rapid(&at(20.0)).feed(&at(-15.0)).rapid(&at(20.0));
-        }
+        let drilling = Drilling { reach: pivot + length, set_head: true, ..drilling };
+        let begin = start(section).then("tool 7");
+        let script = places.iter().fold(begin, |script, place| drill(script, section, *place, drilling));
         let verdict = judge(&machine, &reference, &script);
         prop_assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
     }

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::hole_finding::{About, HoleFinding};
-use super::rounding::{AxisRounding, RoundingDeviation};
+use super::rounding::RoundingDeviation;
 use super::{Comparison, HoleNeighbours, Neighbours};
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
 use gcode_lang::motion::CallChain;
@@ -318,12 +318,12 @@ pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<
 }
 
 /// Describes the worst deviation: the end of the hole, the distance, and the share of rounding.
-fn worst_from(hole: &HoleVerdict, shares: &[AxisRounding]) -> String {
+fn worst_from(hole: &HoleVerdict, shares: &[(String, f64)]) -> String {
     let (end, off) = match hole.at_bottom > hole.at_entry {
         true => ("bottom", hole.at_bottom),
         false => ("entry", hole.at_entry),
     };
-    let shares: Vec<_> = shares.iter().map(|s| format!("{} {:.4}", s.name(), s.displacement)).collect();
+    let shares: Vec<_> = shares.iter().map(|(name, displacement)| format!("{name} {displacement:.4}")).collect();
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // The margin is for the arithmetic itself.
     let side = if hole.position_deviation <= hole.rounding + 1e-6 { "within" } else { "beyond" };
