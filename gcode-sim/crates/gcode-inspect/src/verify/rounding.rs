@@ -39,7 +39,8 @@ impl<'a> RoundingDeviation<'a> {
             (letter.map_or("head".to_owned(), String::from), entry.norm().max(bottom.norm()))
         };
         // Motion along the hole, or a rotation about its own axis, has no effect.
-        let mut shares: Vec<_> = effects.map(share).filter(|(_, displacement)| 1e-7 < *displacement).collect();
+        let mut shares: Vec<_> =
+            effects.map(share).filter(|(_, displacement)| 1e-7 < *displacement).collect();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     }

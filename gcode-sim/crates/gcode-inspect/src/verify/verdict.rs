@@ -323,7 +323,8 @@ fn worst_from(hole: &HoleVerdict, shares: &[(String, f64)]) -> String {
         true => ("bottom", hole.at_bottom),
         false => ("entry", hole.at_entry),
     };
-    let shares: Vec<_> = shares.iter().map(|(name, displacement)| format!("{name} {displacement:.4}")).collect();
+    let shares: Vec<_> =
+        shares.iter().map(|(name, displacement)| format!("{name} {displacement:.4}")).collect();
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // The margin is for the arithmetic itself.
     let side = if hole.position_deviation <= hole.rounding + 1e-6 { "within" } else { "beyond" };

@@ -79,12 +79,8 @@ pub(super) const SAME_FLUTE: f64 = 2.0;
 /// Angles that differ by less are equal, degrees.
 const ANGLE_EPSILON: f64 = 1e-6;
 
-/// A flute's angle about the axis by its position along the meridian.
-struct FluteCurve {
-    /// Ascending towards the tip, mm.
-    stations: Vec<f64>,
-    angles: Vec<f64>,
-}
+/// A flute's angle about the axis, degrees, by its position along the meridian, mm, ascending towards the tip.
+struct FluteCurve(Vec<(f64, f64)>);
 
 impl FluteSpacing {
     pub(super) fn of(nominal: &Flutes, passes: &[GrindingPass]) -> Self {
@@ -285,34 +281,27 @@ fn station(nominal: &Flutes, sample: &Sample) -> f64 {
 }
 
 impl FluteCurve {
-    /// Leaves out stretches that go back.
     fn of(nominal: &Flutes, pass: &GrindingPass) -> Self {
-        let mut all: Vec<(f64, f64)> =
-            pass.trace.samples.iter().map(|sample| (station(nominal, sample), sample.angle().0)).collect();
-        if all.first().zip(all.last()).is_some_and(|(first, last)| last.0 < first.0) {
-            all.reverse();
+        let point = |sample: &Sample| (station(nominal, sample), sample.angle().0);
+        let mut points: Vec<(f64, f64)> = pass.trace.samples.iter().map(point).collect();
+        if points.first().zip(points.last()).is_some_and(|(first, last)| last.0 < first.0) {
+            points.reverse();
         }
-        let mut curve = Self { stations: Vec::new(), angles: Vec::new() };
-        for (place, angle) in all {
-            if curve.stations.last().is_none_or(|last| *last < place) {
-                curve.stations.push(place);
-                curve.angles.push(angle);
-            }
-        }
-        curve
+        // Stretches that go back are left out.
+        points.dedup_by(|one, last| one.0 <= last.0);
+        Self(points)
     }
 
     /// Returns the angle at a station; `None` beyond the ends of the flute.
-    fn angle_at(&self, place: f64) -> Option<f64> {
-        let (first, last) = (*self.stations.first()?, *self.stations.last()?);
+    fn angle_at(&self, station: f64) -> Option<f64> {
         let slack = 1e-6;
-        if place < first - slack || last + slack < place {
+        let (first, last) = (self.0.first()?.0, self.0.last()?.0);
+        if station < first - slack || last + slack < station {
             return None;
         }
-        let after = self.stations.partition_point(|one| *one < place).min(self.stations.len() - 1);
-        let before = after.saturating_sub(1);
-        let way = self.stations[after] - self.stations[before];
-        let part = if way == 0.0 { 0.0 } else { ((place - self.stations[before]) / way).clamp(0.0, 1.0) };
-        Some(self.angles[before] + (self.angles[after] - self.angles[before]) * part)
+        let after = self.0.partition_point(|one| one.0 < station).min(self.0.len() - 1);
+        let ((start, angle), (end, next)) = (self.0[after.saturating_sub(1)], self.0[after]);
+        let part = if end == start { 0.0 } else { ((station - start) / (end - start)).clamp(0.0, 1.0) };
+        Some(angle + (next - angle) * part)
     }
 }
