@@ -1,6 +1,6 @@
 //! Motion → readings: an edge finder whose ball is fed along the part's surface.
 //!
-//! Feeds along the surface are passes; approach and retract cross it. A feed farther away than [`MAX_READING_DISTANCE`], or
+//! Feeds along the surface are passes; approach and retract cross it. A feed more than 5 mm away, or
 //! across the surface, has no reading: within the path that is an error.
 mod ball;
 mod rapids;
