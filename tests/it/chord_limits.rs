@@ -140,7 +140,7 @@ fn the_ellipse_sees_three_of_six() {
             "0.01°"
         };
         let request = Request::new("O8220.nc", package.program(8220).unwrap().text.as_bytes(), machine);
-        let following = read_stylus(&request, &mut Programs(&package), surface, job.probe_radius).unwrap();
+        let following = read_stylus(&request, &mut Programs(&package), surface, job.probe.radius).unwrap();
         let readings = &following.readings.passes[0].readings;
         let ends = [&readings[0], &readings[readings.len() - 1]].map(|reading| {
             let normal = surface.nearest(&reading.ball_centre).normal;

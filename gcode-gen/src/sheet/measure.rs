@@ -188,7 +188,7 @@ fn of_alignment(job: &Alignment) -> Vec<Characteristic> {
         let place = format!("y {}", short(y));
         characteristic(&place, "run-out", "see the drawing".to_owned(), "not predicted".to_owned())
     }));
-    let limits = &job.limits;
+    let limits = &job.limits();
     let run_out = format!("#580 #581 ±{} mm, #582 #583 ±{}°", short(limits.shift), short(limits.tilt));
     all.push(characteristic("O8210, last pass", "shift and tilt", run_out, "not predicted".to_owned()));
     let dial = format!("±{} mm", short(limits.dial));

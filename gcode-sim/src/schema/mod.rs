@@ -20,7 +20,7 @@ use gcode_inspect::verify::Verdict;
 use gcode_inspect::verify::flutes::{FluteVerdict, NominalFlutes};
 use gcode_part::HoleList;
 use gcode_part::job::control_file::ControlFile;
-use gcode_part::job::{FileRates, JobFile};
+use gcode_part::job::{JobFile, Rates};
 use gcode_review::AcceptedFile;
 
 /// One kind of document and its schema.
@@ -40,7 +40,7 @@ pub const FORMATS: &[Format] = &[
     file::<MachineFile>("machine", "a machine file: --machine"),
     file::<ControlFile>("control", "settings of the control: --control-file"),
     file::<ErrorFile>("errors", "set-up and machine errors: budget --errors"),
-    file::<FileRates>("rates", "machine-hour rates: gcode-gen sheet --rates"),
+    file::<Rates>("rates", "machine-hour rates: gcode-gen sheet --rates"),
     Format {
         name: "reference",
         about: "a list of holes: --reference",

@@ -17,7 +17,8 @@ pub(super) fn written<T: JsonSchema>() -> Schema {
 /// Returns the schema of a TOML file, without references: editors ignore keywords beside `$ref`.
 pub(super) fn toml<T: JsonSchema>() -> Schema {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
-    of::<T>(settings.with_transform(RecursiveTransform(without_null)))
+    let settings = settings.with_transform(RecursiveTransform(without_null));
+    of::<T>(settings.with_transform(RecursiveTransform(describe_default)))
 }
 
 fn of<T: JsonSchema>(settings: SchemaSettings) -> Schema {
@@ -27,6 +28,18 @@ fn of<T: JsonSchema>(settings: SchemaSettings) -> Schema {
 /// Removes number formats: the width of an integer is an implementation detail.
 fn without_bits(schema: &mut Schema) {
     schema.remove("format");
+}
+
+/// Moves a default to the description, unless that states it already: `Of a touch, mm/min [default: 100].`
+fn describe_default(schema: &mut Schema) {
+    let default = schema.remove("default").and_then(|default| default.as_f64());
+    let Some((default, description)) = default.zip(schema.get("description").and_then(Value::as_str)) else {
+        return;
+    };
+    if !description.contains("[default: ") {
+        let described = format!("{} [default: {default}].", description.trim_end_matches('.'));
+        schema.insert("description".to_owned(), described.into());
+    }
 }
 
 /// Removes null: TOML has none, and an optional key keeps its own type.

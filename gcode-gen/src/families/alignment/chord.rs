@@ -81,9 +81,9 @@ fn write(job: &Alignment, text: &mut Text) {
             .word('D', &e)
             .word('E', &f)
             .word('H', number(f64::from(chord.candidates)))
-            .word('T', number(chord.uneven))
+            .word('T', number(job.unevenness()))
             .word('U', number(f64::from(job.machine.rotary.sign)))
-            .word('V', number(job.probe_search))
+            .word('V', number(job.probe.search))
             .comment("CHORD"),
     );
     text.block(Block::of("M30"));
@@ -95,10 +95,10 @@ fn touch(job: &Alignment, first: f64, turn: f64, x: &str) -> Block {
         .word('B', number(job.surface.b))
         .word('C', number(job.chord.circle))
         .word('D', x)
-        .word('F', number(job.probe_feed))
+        .word('F', number(job.probe.feed))
         .word('H', number(f64::from(job.chord.candidates)))
         .word('I', number(first))
         .word('K', number(turn))
-        .word('R', number(job.probe_radius))
-        .word('V', number(job.probe_search))
+        .word('R', number(job.probe.radius))
+        .word('V', number(job.probe.search))
 }

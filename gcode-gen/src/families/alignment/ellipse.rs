@@ -29,11 +29,11 @@ pub(super) const MEASUREMENT: Measurement = Measurement {
 };
 
 fn write(job: &Alignment, text: &mut Text) {
-    let path = &job.ellipse;
+    let path = &job.ellipse();
     let rotary = job.machine.rotary.letter;
     let k = control::alarm_thousands(job.control.dialect);
     let [from, to] = [path.from, path.to].map(number);
-    text.remark(format!("FROM X {from} TO X {to} OF THE SURFACE, Z 0., BALL R {}", number(job.probe_radius)));
+    text.remark(format!("FROM X {from} TO X {to} OF THE SURFACE, Z 0., BALL R {}", number(job.probe.radius)));
     common_remarks(job, text);
     for line in [
         format!("CALLS O{PATH}, ALARMS {k}101-{k}114"),
@@ -50,13 +50,13 @@ fn write(job: &Alignment, text: &mut Text) {
         Block::call(PATH)
             .word('A', number(job.surface.a))
             .word('B', number(job.surface.b))
-            .word('C', number(job.machine.clearance))
+            .word('C', number(job.machine.clearance()))
             .word('D', from)
             .word('E', to)
             .word('F', number(path.feed))
             .word('Q', number(path.chord_error))
-            .word('R', number(job.probe_radius))
-            .word('V', number(job.machine.retract))
+            .word('R', number(job.probe.radius))
+            .word('V', number(job.machine.retract()))
             .comment("ELLIPSE"),
     );
     text.block(Block::of("M30"));

@@ -15,7 +15,7 @@ pub(super) fn machine_file(job: &Alignment) -> String {
          # The stylus ball; the programs move its centre.\n\
          [probe]\n\
          radius = {:?}\n",
-        job.probe_radius
+        job.probe.radius
     );
     text
 }

@@ -6,7 +6,7 @@ use crate::families::control;
 /// Returns the text of `machine.toml`.
 pub(super) fn machine_file(job: &Burr) -> String {
     let [x, y] = job.grinder.c_offset;
-    let signs = job.grinder.signs;
+    let signs = job.grinder.signs();
     let contact = y - job.shape.radius;
     let link = |letter: char, moves: &str, sign: i8, centre: &str| {
         format!("[[table]]\nletter = \"{letter}\"\n{moves}\nsign = {sign}\n{centre}\n")

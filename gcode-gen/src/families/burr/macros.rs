@@ -21,7 +21,7 @@ pub struct Resident {
 
 impl Resident {
     pub fn of(job: &Burr) -> Self {
-        Self { dialect: job.control.dialect, increment: job.control.increment, signs: job.grinder.signs }
+        Self { dialect: job.control.dialect, increment: job.control.increment, signs: job.grinder.signs() }
     }
 
     pub fn programs(&self) -> Vec<Program> {

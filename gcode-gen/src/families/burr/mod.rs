@@ -30,7 +30,7 @@ pub const FAMILY: Family =
 /// Emits the main program, its resident macro if it calls one, and the machine file of a job.
 pub fn emit(job: &Burr) -> Package {
     let mut programs = vec![Program { number: MAIN, text: Main::new(job).text() }];
-    if job.program.form == ProgramForm::Loop {
+    if job.form() == ProgramForm::Loop {
         programs.extend(Resident::of(job).programs());
     }
     Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
@@ -67,9 +67,9 @@ impl<'j> Main<'j> {
     fn text(mut self) -> String {
         self.header();
         self.start.blocks(&mut self.text);
-        self.block(format!("S{:.0} M03", self.job.program.wheel));
+        self.block(format!("S{:.0} M03", self.job.program.wheel()));
         self.block("M08");
-        match self.job.program.form {
+        match self.job.form() {
             ProgramForm::Loop => self.calls(),
             ProgramForm::Moves => self.moves(),
         }
@@ -141,8 +141,8 @@ impl<'j> Main<'j> {
             .word('B', number(job.helix))
             .word('C', number(90.0 - shape.tip_angle))
             .word('D', number(self.chord_error))
-            .word('E', number(job.program.plunge))
-            .word('F', number(job.program.speed))
+            .word('E', number(job.program.plunge()))
+            .word('F', number(job.program.speed()))
             .word('H', if job.law == FluteLaw::Published { "1." } else { "0." })
             .word('I', number(x))
             .word('J', number(y));
@@ -162,7 +162,7 @@ impl<'j> Main<'j> {
     fn moves(&mut self) {
         let job = self.job;
         let points = points(job, self.chord_error);
-        let (signs, clear, stand_off) = (job.grinder.signs, clearance_y(job), stand_off(job));
+        let (signs, clear, stand_off) = (job.grinder.signs(), clearance_y(job), stand_off(job));
         // Rounded here, because a control truncates digits beyond its increment.
         let increment = job.control.increment;
         let along = |letter: char, sign: i8, value: f64| {
@@ -189,13 +189,13 @@ impl<'j> Main<'j> {
                 along('B', signs.b, job.helix)
             ));
             self.block(along('Y', signs.y, stand_off));
-            self.block(format!("G01 Y0. F{}", number(job.program.plunge)));
+            self.block(format!("G01 Y0. F{}", number(job.program.plunge())));
             self.block("G93");
             for point in rest {
                 self.block(format!(
                     "{} F{}",
                     axes(point),
-                    number(rate(job.program.speed, point.path_length))
+                    number(rate(job.program.speed(), point.path_length))
                 ));
             }
             self.block(format!("G94 G00 {}", along('Y', signs.y, clear)));
@@ -210,7 +210,7 @@ fn rate(speed: f64, way: f64) -> f64 {
 
 /// Returns the remark on axes that run against the formulas.
 fn signs(job: &Burr) -> String {
-    let signs = job.grinder.signs;
+    let signs = job.grinder.signs();
     let all = [('X', signs.x), ('Y', signs.y), ('A', signs.a), ('B', signs.b), ('C', signs.c)];
     let turned: Vec<String> =
         all.iter().filter(|(_, sign)| *sign < 0).map(|(letter, _)| letter.to_string()).collect();

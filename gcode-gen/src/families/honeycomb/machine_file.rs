@@ -24,8 +24,8 @@ pub(super) fn machine_file(job: &Honeycomb) -> String {
          [[tool]]\n\
          number = {}\n\
          diameter = {:?}\n",
-        -job.cylinder.outer / 2.0,
-        job.drill.number,
+        -job.cylinder.outer() / 2.0,
+        job.drill.number(),
         job.drill.diameter
     );
     text

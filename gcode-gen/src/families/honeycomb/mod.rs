@@ -40,11 +40,11 @@ fn main(job: &Honeycomb) -> String {
     };
     header(job).into_iter().chain(start.remarks()).for_each(|line| text.remark(line));
     let drill = &job.drill;
-    let retract = number(job.machine.retract);
+    let retract = number(job.machine.retract());
     start.blocks(&mut text);
-    text.block(Block::of(format!("T{} M06", drill.number)));
-    text.block(Block::of(format!("S{:.0} M03", drill.speed)));
-    text.block(Block::of(format!("G43 H{} Z{retract}", drill.number)));
+    text.block(Block::of(format!("T{} M06", drill.number())));
+    text.block(Block::of(format!("S{:.0} M03", drill.speed())));
+    text.block(Block::of(format!("G43 H{} Z{retract}", drill.number())));
     text.block(Block::of("M08"));
     text.block(call(job));
     text.block(Block::of("M09"));
@@ -56,14 +56,14 @@ fn main(job: &Honeycomb) -> String {
 /// Returns the remarks at the head: conditions for the run.
 fn header(job: &Honeycomb) -> Vec<String> {
     let cylinder = job.cylinder;
-    let [diameter, outer, length] = [cylinder.diameter, cylinder.outer, cylinder.length].map(number);
+    let [diameter, outer, length] = [cylinder.diameter, cylinder.outer(), cylinder.length].map(number);
     let rotary = job.machine.rotary;
     let sign = if rotary.sign < 0 { "-" } else { "" };
-    let (wanted, letter) = match job.spacing {
+    let (wanted, letter) = match job.pattern.spacing() {
         Spacing::Pitch(pitch) => (format!("PITCH {} SPECIFIED", number(pitch)), 'B'),
         Spacing::Divisions(divisions) => (format!("{divisions} ROWS OF EACH OF TWO GROUPS"), 'E'),
     };
-    let measured = match job.metric {
+    let measured = match job.pattern.metric {
         Metric::Arc => "ON THE DEVELOPED SURFACE",
         Metric::Chord => "STRAIGHT",
     };
@@ -94,11 +94,11 @@ fn header(job: &Honeycomb) -> Vec<String> {
 fn call(job: &Honeycomb) -> Block {
     let cylinder = job.cylinder;
     let (drill, machine) = (&job.drill, &job.machine);
-    let (pitch, divisions) = match job.spacing {
+    let (pitch, divisions) = match job.pattern.spacing() {
         Spacing::Pitch(pitch) => (pitch, 0.0),
         Spacing::Divisions(divisions) => (0.0, f64::from(divisions)),
     };
-    let metric = match job.metric {
+    let metric = match job.pattern.metric {
         Metric::Arc => 0.0,
         Metric::Chord => 1.0,
     };
@@ -108,14 +108,14 @@ fn call(job: &Honeycomb) -> Block {
         ('E', divisions),
         ('H', metric),
         ('X', cylinder.length),
-        ('I', cylinder.outer),
+        ('I', cylinder.outer()),
         ('J', cylinder.bore),
         ('A', drill.diameter),
         ('Z', drill.depth),
-        ('C', machine.clearance),
-        ('V', machine.retract),
-        ('F', drill.feed),
-        ('Q', drill.peck),
+        ('C', machine.clearance()),
+        ('V', machine.retract()),
+        ('F', drill.feed()),
+        ('Q', drill.peck()),
         ('U', f64::from(machine.rotary.sign)),
     ];
     arguments.into_iter().fold(Block::call(COMB), |block, (letter, value)| block.word(letter, number(value)))

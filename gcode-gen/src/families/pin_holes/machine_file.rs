@@ -11,7 +11,7 @@ pub(super) fn machine_file(job: &PinHoles) -> String {
     let mut text = control::machine_file(job.control);
     text += &control::rotary_table(job.machine.rotary, 'y', "its axis goes through the part's origin");
     text += "\n# The head tilts the tool in the xy plane; its angle counts from x towards y.\n[head]\n";
-    match head.kind {
+    match head.kind() {
         HeadKind::Manual => text.push_str("kind = \"manual\"\n"),
         HeadKind::Axis(letter) => {
             let _ = write!(text, "kind = \"axis\"\nletter = \"{letter}\"\n");

@@ -30,7 +30,7 @@ impl Resident {
             dialect: job.control.dialect,
             increment: job.control.increment,
             rotary: job.machine.rotary.letter,
-            head: job.machine.head.kind,
+            head: job.machine.head.kind(),
             common: job.macros.common,
         }
     }

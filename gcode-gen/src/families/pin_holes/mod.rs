@@ -71,7 +71,7 @@ impl<'j> Main<'j> {
         let holes = job.holes.len();
         let rotary = job.machine.rotary;
         let sign = if rotary.sign < 0 { "-" } else { "" };
-        let head = match job.machine.head.kind {
+        let head = match job.machine.head.kind() {
             HeadKind::Manual => "SET BY HAND AT A STOP".to_owned(),
             HeadKind::Axis(letter) => format!("MOVED AS AXIS {letter}"),
         };
@@ -103,7 +103,7 @@ impl<'j> Main<'j> {
         }
         for ToolPass { tool, .. } in passes {
             let (diameter, length) = (number(tool.diameter), number(tool.length));
-            self.text.remark(format!("T{} {} DIAMETER {diameter} LENGTH {length}", tool.number, tool.name));
+            self.text.remark(format!("T{} {} DIAMETER {diameter} LENGTH {length}", tool.number, tool.name()));
         }
     }
 
@@ -115,7 +115,7 @@ impl<'j> Main<'j> {
     fn tool(&mut self, pass: &ToolPass<'_>, next: Option<&ToolPass<'_>>) {
         let tool = pass.tool;
         let diameter = number(tool.diameter);
-        self.text.remark(format!("T{} {} DIAMETER {diameter}", tool.number, tool.name));
+        self.text.remark(format!("T{} {} DIAMETER {diameter}", tool.number, tool.name()));
         self.text.block(Block::of(format!("T{} M06", tool.number)));
         self.text.block(Block::of(format!("S{:.0} M03", tool.speed)));
         self.text.block(Block::of("M08"));
@@ -131,7 +131,7 @@ impl<'j> Main<'j> {
         // The tip is then at least V above the pole, whatever the angle of the head: see O8102. This includes
         // the next tool, which may be longer.
         let reach = next.map_or(0.0, |next| self.reach(next)).max(self.reach(pass));
-        let height = [self.job.surface.b, reach, self.job.machine.retract].map(number);
+        let height = [self.job.surface.b, reach, self.job.machine.retract()].map(number);
         self.text
             .block(Block::of(format!("G90 G00 Y[{}]", height.join("+"))).comment("B+Q+V, CLEAR OF THE PART"));
         self.text.block(Block::of("M05"));
@@ -150,7 +150,7 @@ impl<'j> Main<'j> {
             .word('R', number(setting.radius))
             .word('H', flag(setting.axis))
             .word('Q', number(self.reach(pass)))
-            .word('V', number(job.machine.retract))
+            .word('V', number(job.machine.retract()))
             .comment("HEAD")
     }
 
@@ -163,10 +163,10 @@ impl<'j> Main<'j> {
             .word('W', number(hole.azimuth))
             .word('H', flag(hole.axis))
             .word('D', number(hole.depth))
-            .word('C', number(job.machine.clearance))
-            .word('V', number(job.machine.retract))
+            .word('C', number(job.machine.clearance()))
+            .word('V', number(job.machine.retract()))
             .word('F', number(pass.tool.feed))
-            .word('E', number(pass.tool.retract_feed))
+            .word('E', number(pass.tool.retract_feed()))
             .word('U', number(f64::from(job.machine.rotary.sign)))
             .word('Q', number(self.reach(pass)))
             .comment(format!("HOLE {}", hole.id))

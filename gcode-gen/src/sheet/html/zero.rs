@@ -121,7 +121,7 @@ fn alignment(job: &Alignment) -> Vec<String> {
             "Start every program with the ball above the pole of the part or clear of it at X+, and \
              {letter} free to rotate. O8210 moves out to X{} first, O8200 up; O8220 rotates {letter} to 0 \
              at the ball's position.",
-            short(job.surface.a + job.probe_radius + job.probe_search)
+            short(job.surface.a + job.probe.radius + job.probe.search)
         ),
     ]
 }
@@ -184,15 +184,15 @@ fn honeycomb(job: &Honeycomb) -> Vec<String> {
         "G54: X0 at the first hole of the first row, Y0 on the axis of the cylinder, Z0 on its outer surface.".to_owned(),
         format!(
             "Z0 is {} mm from the axis: the radius of the outer diameter {}.",
-            short(job.cylinder.outer / 2.0),
-            short(job.cylinder.outer)
+            short(job.cylinder.outer() / 2.0),
+            short(job.cylinder.outer())
         ),
         format!(
             "{letter} rotates about X; row by row {letter} = {minus}row·180/N (sign {}). {letter}0 is the \
              first row: put a seam or a mark there.",
             if minus.is_empty() { "+1" } else { "−1" }
         ),
-        format!("Tool length: H{0} is that of T{0}, called by G43.", job.drill.number),
+        format!("Tool length: H{0} is that of T{0}, called by G43.", job.drill.number()),
     ];
     all.extend(job.machine.clamp.map(|clamp| {
         format!("M{} releases the rotary before it rotates, M{} clamps it.", clamp.off, clamp.on)
@@ -203,7 +203,7 @@ fn honeycomb(job: &Honeycomb) -> Vec<String> {
 
 /// Draws the cylinder from the side, with the drill above it, and along its axis.
 fn of_honeycomb(job: &Honeycomb) -> Markup {
-    let (length, outer, bore) = (job.cylinder.length, job.cylinder.outer, job.cylinder.bore);
+    let (length, outer, bore) = (job.cylinder.length, job.cylinder.outer(), job.cylinder.bore);
     let scale = (180.0 / length).min(120.0 / outer);
     let radius = outer / 2.0;
     let paper = Paper { origin: [70.0, 60.0], scale };
@@ -216,7 +216,7 @@ fn of_honeycomb(job: &Honeycomb) -> Markup {
         (centre_line([first[0] - 25.0, middle], [last[0] + 30.0, middle]))
         (text([last[0] + 8.0, middle - 5.0], Anchor::Start, &format!("axis of {}, X", job.machine.rotary.letter)))
         (arrow([first[0], 16.0], [first[0], first[1] - 9.0]))
-        (text([first[0] + 8.0, 22.0], Anchor::Start, &format!("T{}, first hole", job.drill.number)))
+        (text([first[0] + 8.0, 22.0], Anchor::Start, &format!("T{}, first hole", job.drill.number())))
         (zero_sign(first))
         (text([first[0] + 12.0, first[1] - 6.0], Anchor::Start, "G54 X0 Z0"))
         (text([(first[0] + last[0]) / 2.0, last[1] + 20.0], Anchor::Middle, &format!("holes from X0 to X{}", short(length))))
@@ -238,7 +238,7 @@ fn of_honeycomb(job: &Honeycomb) -> Markup {
 
 fn burr(job: &Burr) -> Vec<String> {
     let [x, y] = job.grinder.c_offset.map(short);
-    let signs = job.grinder.signs;
+    let signs = job.grinder.signs();
     let turned: Vec<_> = [("X", signs.x), ("Y", signs.y), ("A", signs.a), ("B", signs.b), ("C", signs.c)]
         .into_iter()
         .filter_map(|(letter, sign)| (sign < 0).then_some(letter))

@@ -23,7 +23,7 @@ const MAX_HOLES: f64 = 200_000.0;
 /// A pattern that does not close, or whose holes overlap or exceed the limit.
 pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
     let pattern = pattern(job)?;
-    let (outer, drill) = (job.cylinder.outer / 2.0, job.drill);
+    let (outer, drill) = (job.cylinder.outer() / 2.0, job.drill);
     check_drillable(job, &pattern)?;
     let mut holes = Vec::new();
     for row in 0..pattern.rows {
@@ -45,8 +45,8 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
     }
     Ok(Reference {
         holes,
-        position: Some(job.position_tolerance),
-        depth: Some(job.depth_tolerance),
+        position: Some(job.tolerance.position),
+        depth: Some(job.tolerance.depth),
         surface: Some(Surface::Cylinder { radius: outer }),
         process_limits: process_limits(job),
         pattern: Some(pattern),
@@ -54,29 +54,29 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
 }
 
 fn process_limits(job: &Honeycomb) -> ProcessLimits {
-    let Drill { number, speed, feed, peck, depth, diameter, specified: said } = job.drill;
+    let Drill { speed, feed, depth, diameter, .. } = job.drill;
     ProcessLimits {
-        clearance: Some(job.machine.clearance),
-        approach: job.machine.is_clearance_specified.then_some(job.machine.clearance),
-        retract: job.machine.is_retract_specified.then_some(job.machine.retract),
+        clearance: Some(job.machine.clearance()),
+        approach: job.machine.clearance,
+        retract: job.machine.retract,
         rotary: Some(job.machine.rotary),
         clamp: job.machine.clamp,
         tools: vec![ToolProcess {
-            number,
-            offset: said.has_number.then_some(number),
-            speed: said.has_speed.then_some(speed),
-            feed: said.has_feed.then_some(feed),
+            number: job.drill.number(),
+            offset: job.drill.number,
+            speed,
+            feed,
             // Shallower holes are drilled without pecks.
-            peck: (said.has_peck && 3.0 * diameter < depth).then_some(peck),
+            peck: job.drill.peck.filter(|_| 3.0 * diameter < depth),
         }],
     }
 }
 
 /// Returns the number of rows and the pitch at which all six neighbours are equally far.
 fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
-    let (diameter, metric) = (job.cylinder.diameter, job.metric);
+    let (diameter, metric) = (job.cylinder.diameter, job.pattern.metric);
     let error = |message: String| Err(ReferenceError { line: None, message });
-    let (rows, asked) = match job.spacing {
+    let (rows, asked) = match job.pattern.spacing() {
         Spacing::Divisions(divisions) => (2 * divisions, None),
         Spacing::Pitch(pitch) => match nearest_count(diameter, pitch) {
             Some(count) => (2 * count, Some(pitch)),
@@ -93,7 +93,7 @@ fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
             "key 'pattern.pitch': fewer than two rows of one group fit round diameter {diameter}: use a smaller pitch"
         ));
     }
-    let Cylinder { length, outer, bore, .. } = job.cylinder;
+    let (Cylinder { length, bore, .. }, outer) = (job.cylinder, job.cylinder.outer());
     let pitch = solve_pitch(metric, diameter, rows);
     Ok(Pattern { metric, diameter, rows, pitch, specified_pitch: asked, length, outer, bore })
 }
@@ -129,7 +129,7 @@ fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
 /// Checks that the holes do not overlap, down to their bottoms in the material, and that their number is
 /// within the limit.
 fn check_drillable(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
-    let deepest = (job.cylinder.outer / 2.0 - job.drill.depth).max(job.cylinder.bore / 2.0);
+    let deepest = (job.cylinder.outer() / 2.0 - job.drill.depth).max(job.cylinder.bore / 2.0);
     let p = pattern.pitch;
     let apart = |x: f64, rows: f64, radius: f64| {
         (point(x, pattern.row_angle() * rows, radius) - point(0.0, Deg::ZERO, radius)).norm()

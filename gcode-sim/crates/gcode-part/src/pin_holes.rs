@@ -20,8 +20,8 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
     let holes = job.holes.iter().map(|hole| pin_hole(&surface, hole));
     Ok(Reference {
         holes: holes.collect::<Result<_, _>>()?,
-        position: Some(job.position_tolerance),
-        depth: Some(job.depth_tolerance),
+        position: Some(job.tolerance.position),
+        depth: Some(job.tolerance.depth),
         surface: Some(surface),
         process_limits: process_limits(job),
         pattern: None,
@@ -37,9 +37,9 @@ fn process_limits(job: &PinHoles) -> ProcessLimits {
         peck: None,
     };
     ProcessLimits {
-        clearance: Some(job.machine.clearance),
-        approach: job.machine.is_clearance_specified.then_some(job.machine.clearance),
-        retract: job.machine.is_retract_specified.then_some(job.machine.retract),
+        clearance: Some(job.machine.clearance()),
+        approach: job.machine.clearance,
+        retract: job.machine.retract,
         rotary: Some(job.machine.rotary),
         clamp: None,
         tools: job.tools.iter().filter(|_| job.are_tools_specified).map(duty).collect(),
@@ -74,7 +74,16 @@ mod tests {
     use super::*;
 
     fn wanted(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleSpec {
-        HoleSpec { id: "h".into(), radius, azimuth, axis, diameter: 6.0, depth: 15.0, tools: vec![1] }
+        HoleSpec {
+            id: "h".into(),
+            radius,
+            azimuth,
+            axis,
+            diameter: 6.0,
+            depth: 15.0,
+            named_tools: None,
+            tools: vec![1],
+        }
     }
 
     fn near(found: [f64; 3], expected: [f64; 3]) {

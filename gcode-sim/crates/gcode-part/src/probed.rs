@@ -25,7 +25,7 @@ impl ProbedPart {
         let job = Job::parse(text).map_err(told)?;
         if let Job::Alignment(job) = job {
             let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
-            return Ok(Self { surface, radius: Some(job.probe_radius), rotary: Some(job.machine.rotary) });
+            return Ok(Self { surface, radius: Some(job.probe.radius), rotary: Some(job.machine.rotary) });
         }
         let surface = NominalPart::from_job(&job)?.into_holes().and_then(|reference| reference.surface);
         let message = "this family's part has no surface to probe".to_owned();

@@ -3,7 +3,7 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::bounds::OUT_OF_RANGE;
+use super::keys::OUT_OF_RANGE;
 
 /// Rewords `message` about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
