@@ -8,10 +8,10 @@
 use super::hole::Hole;
 use super::pattern::{Pattern, point, solve_pitch};
 use super::process::{ProcessLimits, ToolProcess};
-use super::read::ReferenceError;
 use super::reference::Reference;
 use super::surface::Surface;
 use crate::job::{Cylinder, Drill, Honeycomb, Metric, Spacing};
+use crate::reader::FileError;
 use gcode_lang::units::Deg;
 
 /// Limit of the number of holes, above that of any cylinder drilled hole by hole.
@@ -21,7 +21,7 @@ const MAX_HOLES: f64 = 200_000.0;
 ///
 /// # Errors
 /// A pattern that does not close, or whose holes overlap or exceed the limit.
-pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
+pub(super) fn reference(job: &Honeycomb) -> Result<Reference, FileError> {
     let pattern = pattern(job)?;
     let (outer, drill) = (job.cylinder.outer() / 2.0, job.drill);
     check_drillable(job, &pattern)?;
@@ -73,9 +73,9 @@ fn process_limits(job: &Honeycomb) -> ProcessLimits {
 }
 
 /// Returns the number of rows and the pitch at which all six neighbours are equally far.
-fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
+fn pattern(job: &Honeycomb) -> Result<Pattern, FileError> {
     let (diameter, metric) = (job.cylinder.diameter, job.pattern.metric);
-    let error = |message: String| Err(ReferenceError { line: None, message });
+    let error = |message: String| Err(FileError { line: None, message });
     let (rows, asked) = match job.pattern.spacing() {
         Spacing::Divisions(divisions) => (2 * divisions, None),
         Spacing::Pitch(pitch) => match nearest_count(diameter, pitch) {
@@ -128,13 +128,13 @@ fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
 
 /// Checks that the holes do not overlap, down to their bottoms in the material, and that their number is
 /// within the limit.
-fn check_drillable(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
+fn check_drillable(job: &Honeycomb, pattern: &Pattern) -> Result<(), FileError> {
     let deepest = (job.cylinder.outer() / 2.0 - job.drill.depth).max(job.cylinder.bore / 2.0);
     let p = pattern.pitch;
     let apart = |x: f64, rows: f64, radius: f64| {
         (point(x, pattern.row_angle() * rows, radius) - point(0.0, Deg::ZERO, radius)).norm()
     };
-    let error = |message: String| Err(ReferenceError { line: None, message });
+    let error = |message: String| Err(FileError { line: None, message });
     for (x, rows, what) in
         [(p, 0.0, "in a row"), (p / 2.0, 1.0, "of neighbouring rows"), (0.0, 2.0, "of one group")]
     {

@@ -1,8 +1,9 @@
 //! Nominal part by kind, read from a hole list or a job file.
 use super::flutes::Flutes;
-use super::read::{self, ReferenceError};
+use super::read;
 use super::reference::Reference;
 use crate::job::Job;
+use crate::reader::FileError;
 
 /// Nominal part, the reference of `verify`.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,11 +20,11 @@ impl NominalPart {
     ///
     /// # Errors
     /// Text that is none of these, an invalid list or job, and a job of the family `alignment`.
-    pub fn parse(text: &str) -> Result<Self, ReferenceError> {
+    pub fn parse(text: &str) -> Result<Self, FileError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.trim().is_empty() {
             let message = "the file is empty: give a hole list (JSON or CSV) or a job file".to_owned();
-            return Err(ReferenceError { line: None, message });
+            return Err(FileError { line: None, message });
         }
         if text.trim_start().starts_with('{') {
             return Reference::of_list(read::json(text)?).map(Self::Holes);
@@ -33,21 +34,20 @@ impl NominalPart {
         }
         if read::has_semicolons(text) {
             let message = "the columns are separated by ';': use ',' between them, and points in the numbers";
-            return Err(ReferenceError { line: Some(1), message: message.to_owned() });
+            return Err(FileError { line: Some(1), message: message.to_owned() });
         }
         if !text.contains("family") {
             let message = "neither a hole list (JSON or CSV) nor a job file with its key 'family'".to_owned();
-            return Err(ReferenceError { line: None, message });
+            return Err(FileError { line: None, message });
         }
-        let job = Job::parse(text).map_err(|e| ReferenceError { line: e.line, message: e.message })?;
-        Self::from_job(&job)
+        Self::from_job(&Job::parse(text)?)
     }
 
     /// Returns the nominal part computed from the geometry of a job.
     ///
     /// # Errors
     /// A job of the family `alignment`, which makes no part, and holes that are impossible on the surface.
-    pub fn from_job(job: &Job) -> Result<Self, ReferenceError> {
+    pub fn from_job(job: &Job) -> Result<Self, FileError> {
         match job {
             Job::PinHoles(job) => super::pin_holes::reference(job).map(Self::Holes),
             Job::Honeycomb(job) => super::honeycomb::reference(job).map(Self::Holes),
@@ -57,7 +57,7 @@ impl NominalPart {
                                so there is no reference to verify against: run its programs with gcode-sim \
                                run --part JOB.toml"
                     .to_owned();
-                Err(ReferenceError { line: None, message })
+                Err(FileError { line: None, message })
             }
         }
     }

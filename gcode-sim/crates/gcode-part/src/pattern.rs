@@ -1,6 +1,7 @@
 //! Pattern of a honeycomb on a cylinder about x: metric, pitch, rows, and distances in that metric.
 use nalgebra::{Point3, Vector3};
 
+use super::surface::bisect;
 use crate::job::Metric;
 use gcode_lang::units::Deg;
 
@@ -114,16 +115,5 @@ pub(super) fn solve_pitch(metric: Metric, diameter: f64, rows: u32) -> f64 {
             (point(0.0, Deg::ZERO, diameter / 2.0), point(pitch / 2.0, guess.row_angle(), diameter / 2.0));
         guess.distance(&here, &there)
     };
-    let (mut low, mut high) = (0.0, 2.0 * next(0.0));
-    loop {
-        let middle = low + (high - low) / 2.0;
-        if middle <= low || high <= middle {
-            return middle;
-        }
-        if next(middle) > middle {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    bisect(0.0, 2.0 * next(0.0), |pitch| next(pitch) <= pitch)
 }

@@ -5,17 +5,17 @@ use nalgebra::{Point3, Vector3};
 
 use super::hole::Hole;
 use super::process::{ProcessLimits, ToolProcess};
-use super::read::ReferenceError;
 use super::reference::Reference;
 use super::surface::Surface;
 use crate::job::{AxisDirection, HoleSpec, PinHoles, Tool};
+use crate::reader::FileError;
 use gcode_lang::units::Deg;
 
 /// Returns the nominal holes of a pin-hole job.
 ///
 /// # Errors
 /// A hole whose line misses the surface.
-pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
+pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
     let holes = job.holes.iter().map(|hole| pin_hole(&surface, hole));
     Ok(Reference {
@@ -47,10 +47,10 @@ fn process_limits(job: &PinHoles) -> ProcessLimits {
 }
 
 /// Returns the hole at the point of the upper half over (r·cos α, r·sin α).
-fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, ReferenceError> {
+fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, FileError> {
     let azimuth = Deg(spec.azimuth);
     let under = Point3::new(spec.radius * azimuth.cos(), 0.0, spec.radius * azimuth.sin());
-    let missed = || ReferenceError {
+    let missed = || FileError {
         line: None,
         message: format!("hole '{}': a line at radius {} misses the surface", spec.id, spec.radius),
     };

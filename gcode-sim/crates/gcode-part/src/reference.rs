@@ -3,8 +3,8 @@ use super::hole::{Hole, HoleList, Unit};
 use super::pattern::Pattern;
 use super::process::ProcessLimits;
 use super::read;
-pub(crate) use super::read::ReferenceError;
 use super::surface::Surface;
+use crate::reader::FileError;
 
 /// Nominal holes with their tolerances.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl Reference {
     ///
     /// # Errors
     /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
-    pub fn of_list(list: HoleList) -> Result<Self, ReferenceError> {
+    pub fn of_list(list: HoleList) -> Result<Self, FileError> {
         Ok(Self {
             holes: read::check_all(list.holes)?,
             position: None,

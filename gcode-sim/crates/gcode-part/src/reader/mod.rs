@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue};
 pub(crate) use keys::OUT_OF_RANGE;
 pub use keys::{AxisSign, Bounded, FileKey, FixedArray, Optional, Word, Words};
 
-/// Reason for which a job or machine file is unusable: one sentence with the key, its line and the allowed
+/// Reason for which a file is unusable: one sentence with the key or the place, its line and the allowed
 /// values.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", match line { Some(n) => format!("line {n}: "), None => String::new() })]
