@@ -8,7 +8,7 @@ use crate::reader::bounds::{
     IndexTolerance, KeyRange, PlungeRate, SideRadius, TableOffset, TipAngle, TipRadius, ToothDepth,
     WheelClearance, WheelSpeed,
 };
-use crate::reader::{AxisSign, FileKey, FixedArray, Optional, Word, Words};
+use crate::reader::{AxisSign, FileKey, FixedArray, Optional, Section, Word, Words};
 use gcode_lang::control::Dialect;
 use gcode_lang::units::Deg;
 
@@ -127,10 +127,10 @@ pub(super) struct File {
     /// The grinder.
     machine: Grinder,
     /// Form and conditions of the program.
-    #[serde(default)]
+    #[serde(default, with = "Section::<BurrProgram>")]
     program: BurrProgram,
     /// Tolerances of the flutes.
-    #[serde(default)]
+    #[serde(default, with = "Section::<BurrTolerance>")]
     tolerance: BurrTolerance,
     /// Additional data for the set-up sheet.
     #[serde(default)]
@@ -189,7 +189,7 @@ pub struct Grinder {
     #[serde(with = "FixedArray::<TableOffset, 2>")]
     pub c_offset: [f64; 2],
     /// Directions of the axes: 1, or -1 if reversed.
-    #[serde(rename = "signs")]
+    #[serde(rename = "signs", default, with = "Optional::<Section<AxisSigns>>")]
     pub(crate) specified_signs: Option<AxisSigns>,
     /// Clearance of the wheel between passes, mm [default: 2].
     #[serde(default, with = "Optional::<WheelClearance>")]

@@ -1,10 +1,12 @@
 //! Kinds of values of keys: a field names one by `#[serde(with = "…")]`, and its check and its schema follow.
 use std::borrow::Cow;
+use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Deref;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::Error;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{DeserializeOwned, Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serializer};
 
 use super::Spanned;
@@ -133,6 +135,31 @@ impl<K: FileKey> FileKey for Optional<K> {
 
     fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<K::Value>, D::Error> {
         K::deserialize(deserializer).map(Some)
+    }
+}
+
+/// A table; serde's own structs take a list of their fields as well.
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[schemars(with = "T", bound = "T: JsonSchema")]
+pub struct Section<T>(PhantomData<T>);
+
+impl<T: DeserializeOwned> FileKey for Section<T> {
+    type Value = T;
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+        deserializer.deserialize_map(Self(PhantomData))
+    }
+}
+
+impl<'de, T: DeserializeOwned> Visitor<'de> for Section<T> {
+    type Value = T;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a table")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<T, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(table))
     }
 }
 

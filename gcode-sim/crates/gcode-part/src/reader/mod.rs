@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 
 pub(crate) use keys::OUT_OF_RANGE;
-pub use keys::{AxisSign, Bounded, FileKey, FixedArray, Optional, Word, Words};
+pub use keys::{AxisSign, Bounded, FileKey, FixedArray, Optional, Section, Word, Words};
 
 /// Reason for which a file is unusable: one sentence with the key or the place, its line and the allowed
 /// values.

@@ -13,7 +13,7 @@ use crate::reader::bounds::{
     ProbeSearch, Radius, ReadingAngle, ReadingCount, ShiftLimit, SineTableAngle, SineTableLength, TiltLimit,
     Uneven,
 };
-use crate::reader::{AxisSign, FileKey, FixedArray, OUT_OF_RANGE, Optional, Word, Words};
+use crate::reader::{AxisSign, FileKey, FixedArray, OUT_OF_RANGE, Optional, Section, Word, Words};
 use gcode_lang::units::{Deg, Mm};
 
 /// Least y component of the surface's normal at a point that O8202 touches along y.
@@ -42,10 +42,10 @@ pub struct Alignment {
     /// An indicator on the part while the table rotates.
     pub runout: Runout,
     /// The outline that an edge finder follows.
-    #[serde(default)]
+    #[serde(default, with = "Section::<FileEllipse>")]
     ellipse: FileEllipse,
     /// Tolerances of the set-up of a part.
-    #[serde(default)]
+    #[serde(default, with = "Section::<FileLimits>")]
     limits: FileLimits,
     /// Additional data for the set-up sheet.
     #[serde(default)]
