@@ -50,33 +50,13 @@ fn every_schema_is_one_of_draft_2020_12() {
 /// Editors know an older draft: the schemas of TOML files keep to what has meant the same since draft 4.
 #[test]
 fn schemas_of_toml_files_keep_to_words_that_editors_know() {
-    const WORDS: [&str; 21] = [
-        "$schema",
-        "additionalProperties",
-        "anyOf",
-        "description",
-        "enum",
-        "items",
-        "maxItems",
-        "maxProperties",
-        "maximum",
-        "minItems",
-        "minProperties",
-        "minimum",
-        "multipleOf",
-        "not",
-        "oneOf",
-        "pattern",
-        "patternProperties",
-        "properties",
-        "required",
-        "title",
-        "type",
-    ];
+    const WORDS: &str = "$schema additionalProperties anyOf description enum items maxItems maxProperties maximum \
+                         minItems minProperties minimum multipleOf not oneOf pattern patternProperties properties \
+                         required title type";
     for format in FORMATS.iter().filter(|format| format.is_toml) {
         walk(&format.schema(), "", &mut |path, schema| {
             for word in schema.as_object().into_iter().flatten().map(|(word, _)| word) {
-                assert!(WORDS.contains(&word.as_str()), "{}{path}: {word}", format.name);
+                assert!(WORDS.split(' ').any(|known| known == word), "{}{path}: {word}", format.name);
             }
         });
     }

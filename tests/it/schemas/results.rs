@@ -35,58 +35,34 @@ fn holds(name: &str, document: &Value, what: &str) {
     assert!(against.is_empty(), "{what} as {name}: {against:#?}");
 }
 
-/// Commands that answer in every shape there is, by the names of the schemas.
-const COMMANDS: &[(&str, &str)] = &[
-    ("run", "gcode-sim run examples/melon-mould/O8100.nc --moves --show '#5041' --show '#1' --format json"),
-    ("run", "gcode-sim run examples/nc-repository/macros/O9001.nc --format json"),
-    ("holes", "gcode-sim holes examples/melon-mould/O8100.nc --format json"),
-    ("holes", "gcode-sim reference examples/melon-mould/job.toml"),
-    ("reference", "gcode-sim reference examples/melon-mould/job.toml"),
-    ("wanted-flutes", "gcode-sim reference examples/burr/job.toml"),
-    (
-        "verify",
-        "gcode-sim verify examples/melon-mould/O8100.nc --reference examples/melon-mould/job.toml --format json",
-    ),
-    (
-        "verify",
-        "gcode-sim verify examples/one-digit-wrong/O8100.nc --lib examples/melon-mould --reference examples/melon-mould/job.toml --format json",
-    ),
-    (
-        "verify",
-        "gcode-sim verify examples/honeycomb/O8300.nc --machine examples/honeycomb/machine.toml --reference examples/honeycomb/job.toml --format json",
-    ),
-    (
-        "verify-flutes",
-        "gcode-sim verify tests/suite/verify/an_uneven_index_is_measured/case.nc --machine tests/suite/verify/grinder.toml --reference tests/suite/verify/burr.toml --format json",
-    ),
-    (
-        "readings",
-        "gcode-sim readings examples/alignment/O8220.nc --machine examples/alignment/machine.toml --part examples/alignment/job.toml --tolerance 0.03 --format json",
-    ),
-    ("check", "gcode-sim check examples/melon-mould/O8101.nc --format json"),
-    (
-        "diff",
-        "gcode-sim diff examples/melon-mould/O8100.nc examples/one-digit-wrong/O8100.nc --lib examples/melon-mould --format json",
-    ),
-    (
-        "test",
-        "gcode-sim test examples/nc-repository/parts --lib examples/nc-repository/macros --shard 1/1 --format json",
-    ),
-    ("test", "gcode-sim test examples/melon-mould --format json"),
-    (
-        "budget",
-        "gcode-sim budget examples/melon-mould/job.toml --errors examples/error-budget/before.toml --samples 50 --format json",
-    ),
-    ("settings", "gcode-sim settings --format json"),
-    ("explain", "gcode-sim explain hole-depth --format json"),
-    ("explain", "gcode-sim explain --list --format json"),
-    ("compare", "gcode-sim compare examples/burr/O8400.png examples/burr/O8400-tip.png --format json"),
-    ("compare", "gcode-sim compare examples/burr/O8400.png examples/burr/O8400.png --format json"),
-];
+/// Commands that answer in every shape there is, behind the names of their schemas.
+const COMMANDS: &str = "\
+run gcode-sim run examples/melon-mould/O8100.nc --moves --show '#5041' --show '#1' --format json
+run gcode-sim run examples/nc-repository/macros/O9001.nc --format json
+holes gcode-sim holes examples/melon-mould/O8100.nc --format json
+holes gcode-sim reference examples/melon-mould/job.toml
+reference gcode-sim reference examples/melon-mould/job.toml
+wanted-flutes gcode-sim reference examples/burr/job.toml
+verify gcode-sim verify examples/melon-mould/O8100.nc --reference examples/melon-mould/job.toml --format json
+verify gcode-sim verify examples/one-digit-wrong/O8100.nc --lib examples/melon-mould --reference examples/melon-mould/job.toml --format json
+verify gcode-sim verify examples/honeycomb/O8300.nc --machine examples/honeycomb/machine.toml --reference examples/honeycomb/job.toml --format json
+verify-flutes gcode-sim verify tests/suite/verify/an_uneven_index_is_measured/case.nc --machine tests/suite/verify/grinder.toml --reference tests/suite/verify/burr.toml --format json
+readings gcode-sim readings examples/alignment/O8220.nc --machine examples/alignment/machine.toml --part examples/alignment/job.toml --tolerance 0.03 --format json
+check gcode-sim check examples/melon-mould/O8101.nc --format json
+diff gcode-sim diff examples/melon-mould/O8100.nc examples/one-digit-wrong/O8100.nc --lib examples/melon-mould --format json
+test gcode-sim test examples/nc-repository/parts --lib examples/nc-repository/macros --shard 1/1 --format json
+test gcode-sim test examples/melon-mould --format json
+budget gcode-sim budget examples/melon-mould/job.toml --errors examples/error-budget/before.toml --samples 50 --format json
+settings gcode-sim settings --format json
+explain gcode-sim explain hole-depth --format json
+explain gcode-sim explain --list --format json
+compare gcode-sim compare examples/burr/O8400.png examples/burr/O8400-tip.png --format json
+compare gcode-sim compare examples/burr/O8400.png examples/burr/O8400.png --format json
+";
 
 #[test]
 fn results_are_as_their_schemas_say() {
-    for (name, line) in COMMANDS {
+    for (name, line) in COMMANDS.lines().filter_map(|row| row.split_once(' ')) {
         let done = run_line(line, &workspace());
         let document = serde_json::from_slice(&done.stdout)
             .unwrap_or_else(|error| panic!("{line}: {error}: {}", String::from_utf8_lossy(&done.stderr)));

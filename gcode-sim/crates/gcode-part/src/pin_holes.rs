@@ -4,8 +4,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::hole::Hole;
-use super::process::{ProcessLimits, ToolProcess};
-use super::reference::Reference;
+use super::nominal::{ProcessLimits, Reference, ToolProcess};
 use super::surface::Surface;
 use crate::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 use crate::reader::FileError;

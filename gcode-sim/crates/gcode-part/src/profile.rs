@@ -1,6 +1,7 @@
 //! Tooth bottom of a burr as a body of revolution: distances, normals and meridians.
 use nalgebra::{Point3, Unit, Vector2, Vector3};
 
+use super::surface::bisect;
 use crate::job::{BurrShape, Nose};
 use gcode_lang::units::Deg;
 
@@ -31,12 +32,8 @@ impl Profile {
                 // A circle centred on the axis touches the large one from inside where the distance of the
                 // centres is the difference of the radii; bisection along the axis.
                 let inside = |x: f64| (Vector2::new(x, 0.0) - first.centre).norm() + small < large;
-                let (mut near, mut far) = (0.0, -large);
-                for _ in 0..200 {
-                    let middle = (near + far) / 2.0;
-                    if inside(middle) { near = middle } else { far = middle }
-                }
-                [first, Circle { centre: Vector2::new(near, 0.0), radius: small }]
+                let aside = bisect(0.0, large, |aside| !inside(-aside));
+                [first, Circle { centre: Vector2::new(-aside, 0.0), radius: small }]
             }
         };
         Self { radius, arcs }

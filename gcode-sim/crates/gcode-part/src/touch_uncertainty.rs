@@ -1,7 +1,7 @@
 //! Uncertainty of a run-out: the covariance of the least squares that determine shift and tilt.
 use nalgebra::{Point3, SMatrix, SVector, Vector3};
 
-use super::surface::Surface;
+use super::surface::{Surface, bisect};
 use gcode_lang::units::Deg;
 
 /// Ratio of a result's deviation to a touch's noise above which the fit counts as degenerate.
@@ -86,17 +86,12 @@ impl TouchPlan {
         while far(outside).distance < self.radius {
             outside *= 2.0;
         }
-        let mut inside = 0.0;
-        if far(inside).distance > self.radius {
+        if far(0.0).distance > self.radius {
             return None;
         }
-        for _ in 0..60 {
-            let middle = (inside + outside) / 2.0;
-            let place = if far(middle).distance < self.radius { &mut inside } else { &mut outside };
-            *place = middle;
-        }
-        let normal = far(outside).normal;
-        Some((outside, normal.x, normal.y))
+        let touching = bisect(0.0, outside, |x| self.radius <= far(x).distance);
+        let normal = far(touching).normal;
+        Some((touching, normal.x, normal.y))
     }
 }
 
