@@ -1,4 +1,4 @@
-//! Schemas of files against their readers: files that are there, and each of them changed in every place.
+//! Schemas of files against their readers: files of the repository, and each of them changed in every place.
 use std::path::{Path, PathBuf};
 
 use gcode_inspect::machine::{Machine, error_file};
@@ -43,7 +43,7 @@ fn json(table: &Table) -> Json {
 }
 
 #[test]
-fn what_a_reader_takes_its_schema_takes() {
+fn every_file_that_a_reader_takes_is_valid() {
     let mut found = Vec::new();
     for dir in ["examples", "tests/suite", "tests/complete", "gcode-gen/src/families"] {
         files(&workspace().join(dir), &mut found);
@@ -62,7 +62,7 @@ fn what_a_reader_takes_its_schema_takes() {
             assert!(against.is_empty(), "{} as {name}: {against:?}", path.display());
         }
         println!("{name}: {count} files");
-        assert!(count > 0, "{name}: no file was looked at");
+        assert!(count > 0, "{name}: no file was read");
     }
 }
 
@@ -129,7 +129,7 @@ fn numbers(name: &str) -> Vec<f64> {
     all
 }
 
-/// What may stand in the place of a value.
+/// Returns other values for the place of a value.
 fn instead(value: &Value, numbers: &[f64]) -> Vec<Value> {
     let mut all = vec![
         Value::Boolean(true),
@@ -193,7 +193,7 @@ fn changed(value: &Value, name: &str, numbers: &[f64]) -> Vec<(String, Value)> {
     all
 }
 
-/// What a schema can't say: the words of the readers that compare one key with another.
+/// Words of messages about keys that contradict each other, which a schema cannot state.
 const ACROSS: [&str; 32] = [
     "which is not in [[tool]]",
     "names tools of [[tool]], but there are none",

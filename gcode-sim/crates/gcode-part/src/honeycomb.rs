@@ -360,14 +360,14 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drilled_is_refused_with_its_numbers() {
+    fn an_impossible_pattern_is_refused_with_its_numbers() {
         let deep = refused(&[("pitch = 10", "pitch = 5.1"), ("depth = 12", "depth = 40")]);
-        let told =
+        let expected =
             "the holes overlap: with 356 rows the pitch is 5.095 mm, and holes of neighbouring rows are 4.";
-        assert!(deep.starts_with(told), "{deep}");
+        assert!(deep.starts_with(expected), "{deep}");
         let close = refused(&[("pitch = 10", "divisions = 200")]);
-        let told = "the holes overlap: with 400 rows the pitch is 4.534 mm, and holes in a row are 4.534 mm";
-        assert!(close.starts_with(told), "{close}");
+        let expected = "the holes overlap: with 400 rows the pitch is 4.534 mm, and holes in a row are 4.534 mm";
+        assert!(close.starts_with(expected), "{close}");
         let many = refused(&[
             ("pitch = 10", "pitch = 1"),
             ("diameter = 5\n", "diameter = 0.5\n"),

@@ -84,7 +84,7 @@ mod tests {
     /// sphere, both radii result; with the proportions of a flatter dome the change is sixteen times as
     /// large.
     #[test]
-    fn figure_5_can_be_had() {
+    fn figure_5_is_a_possible_reading() {
         let tilt = at(1_133.266_655, 1_082.596_426, 200.0, -1.0);
         assert!((tilt.radius.0 - 1113.76).abs() < 1e-3 && (tilt.change.0 + 0.35).abs() < 1e-5, "{tilt:?}");
         let flat = at(1158.8, 724.3, 200.0, -1.0);
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn past_the_pole_it_shows_nothing() {
+    fn past_the_pole_there_is_no_reading() {
         assert_eq!(tilted_ellipsoid(Mm(1000.0), Mm(500.0), Mm(501.0), Deg(0.0)), None);
         assert_eq!(at(1000.0, 1000.0, 200.0, 5.0).first_order, Mm::ZERO);
     }

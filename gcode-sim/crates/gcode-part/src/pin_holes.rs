@@ -72,7 +72,7 @@ fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, FileError> {
 mod tests {
     use super::*;
 
-    fn wanted(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleSpec {
+    fn spec(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleSpec {
         HoleSpec {
             id: "h".into(),
             radius,
@@ -94,7 +94,7 @@ mod tests {
     fn at_the_pole_the_normal_is_the_axis() {
         for b in [50.0, 100.0, 300.0] {
             let surface = Surface::Ellipsoid { a: 100.0, b };
-            let hole = pin_hole(&surface, &wanted(0.0, 77.0, AxisDirection::Normal)).unwrap();
+            let hole = pin_hole(&surface, &spec(0.0, 77.0, AxisDirection::Normal)).unwrap();
             near(hole.entry, [0.0, b, 0.0]);
             near(hole.axis, [0.0, 1.0, 0.0]);
         }
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn at_the_equator_the_normal_is_radial() {
         let surface = Surface::Ellipsoid { a: 100.0, b: 60.0 };
-        let hole = pin_hole(&surface, &wanted(100.0, 450.0, AxisDirection::Normal)).unwrap();
+        let hole = pin_hole(&surface, &spec(100.0, 450.0, AxisDirection::Normal)).unwrap();
         let off = hole.entry[1].abs().max((hole.entry[2] - 100.0).abs()).max(hole.axis[0].abs());
         assert!(off < 1e-5, "{hole:?}");
         assert!((hole.axis[2] - 1.0).abs() < 1e-9);
@@ -114,11 +114,11 @@ mod tests {
     #[test]
     fn an_ellipse_worked_by_hand() {
         let surface = Surface::Ellipsoid { a: 5.0, b: 4.0 };
-        let hole = pin_hole(&surface, &wanted(3.0, -90.0, AxisDirection::Normal)).unwrap();
+        let hole = pin_hole(&surface, &spec(3.0, -90.0, AxisDirection::Normal)).unwrap();
         near(hole.entry, [0.0, 3.2, -3.0]);
         let size = (2.4f64 * 2.4 + 16.0).sqrt();
         near(hole.axis, [0.0, 4.0 / size, -2.4 / size]);
-        let axial = pin_hole(&surface, &wanted(3.0, 270.0, AxisDirection::Axial)).unwrap();
+        let axial = pin_hole(&surface, &spec(3.0, 270.0, AxisDirection::Axial)).unwrap();
         near(axial.entry, [0.0, 3.2, -3.0]);
         near(axial.axis, [0.0, 1.0, 0.0]);
     }
@@ -127,7 +127,7 @@ mod tests {
     fn on_a_sphere_the_normal_points_from_the_centre() {
         let surface = Surface::Ellipsoid { a: 500.0, b: 500.0 };
         for (radius, azimuth) in [(1e-6, 10.0), (300.0, -200.0), (485.0, 359.999)] {
-            let hole = pin_hole(&surface, &wanted(radius, azimuth, AxisDirection::Normal)).unwrap();
+            let hole = pin_hole(&surface, &spec(radius, azimuth, AxisDirection::Normal)).unwrap();
             near(hole.axis, hole.entry.map(|v| v / 500.0));
         }
     }

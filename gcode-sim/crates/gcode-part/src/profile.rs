@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn right_hand_is_the_way_a_screw_goes() {
+    fn right_hand_is_the_direction_of_a_screw() {
         let profile = Profile::new(&shape(Nose::Ball));
         let (tip, around) = profile.directions(&Point3::new(5.0, -6.0, 0.0));
         assert!((tip + Vector3::x()).norm() < 1e-12, "{tip}");

@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn json_and_csv_say_the_same() {
+    fn json_and_csv_give_the_same_holes() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\r\n1, 1, 2, 3, 0, 0.6, 0.8, 5,\r\n";
         assert_eq!(NominalPart::parse(HOLE).unwrap(), NominalPart::parse(csv).unwrap());
     }
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_meant_is_refused_with_its_place() {
+    fn an_implausible_entry_is_refused_with_its_place() {
         let row = |row: &str| format!("id,x,y,z,i,j,k,depth,diameter\n0,0,0,0,0,1,0,5,6\n{row}\n");
         let cases = [
             (row("1,0,0,zero,0,1,0,5,6"), "line 3: column 'z' is 'zero': a number"),

@@ -66,10 +66,10 @@ impl TouchPlan {
         }
         let inverse = normal.try_inverse().ok_or(FitError::Degenerate)?;
         let found = (inverse * spread * inverse).diagonal().map(f64::sqrt);
-        let told = found.iter().all(|deviation| *deviation < MAX_FACTOR);
+        let is_determined = found.iter().all(|deviation| *deviation < MAX_FACTOR);
         let angle = |index: usize| found[index] / lever * 180.0 / std::f64::consts::PI;
-        let passed = FitUncertainty { shift: [found[0], found[1], found[2]], tilt: [angle(3), angle(4)] };
-        told.then_some(passed).ok_or(FitError::Degenerate)
+        let uncertainty = FitUncertainty { shift: [found[0], found[1], found[2]], tilt: [angle(3), angle(4)] };
+        is_determined.then_some(uncertainty).ok_or(FitError::Degenerate)
     }
 
     fn lever(&self) -> f64 {
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_the_same_readings_is_not_told_apart() {
+    fn unknowns_with_the_same_readings_are_degenerate() {
         let alike = Err(FitError::Degenerate);
         let petal = || (0..11).map(|n| -25.0 + 5.0 * f64::from(n));
         assert_eq!(

@@ -168,7 +168,7 @@ mod tests {
 
     /// The number in a set's name is the number of its blocks, all different.
     #[test]
-    fn every_set_has_as_many_blocks_as_its_name_says() {
+    fn the_number_in_a_sets_name_is_that_of_its_blocks() {
         for set in GaugeSet::ALL {
             let mut blocks = set.blocks();
             assert_eq!(format!("metric-{}", blocks.len()), set.name);

@@ -60,7 +60,7 @@ mod tests {
         /// The sine of the angle that is set is the stack over the length; with rollers 200 mm apart half a
         /// micron is at most 0.73 seconds, towards 45°.
         #[test]
-        fn the_angle_made_is_the_wanted_one_and_what_is_left(angle in 1.0..45.0) {
+        fn the_set_angle_is_the_nominal_one_and_the_remainder(angle in 1.0..45.0) {
             let found = sine_setting(Mm(200.0), Deg(angle), &metric_87());
             let made = Deg(angle + found.remainder / 3600.0);
             let stack: f64 = found.stack.blocks.iter().map(|block| block.mm()).sum();

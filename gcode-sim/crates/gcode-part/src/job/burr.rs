@@ -141,16 +141,16 @@ pub(super) struct File {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileBurr {
-    /// Of cylinder and nose, mm.
+    /// Diameter of cylinder and nose, mm.
     #[serde(with = "BurrDiameter")]
     diameter: f64,
-    /// Of the flutes, mm, nose included: no less than the nose.
+    /// Length of the flutes, mm, nose included: no less than the nose.
     #[serde(with = "BurrLength")]
     length: f64,
     /// Their number, limited by the room at the tip.
     #[serde(with = "FluteCount")]
     flutes: i64,
-    /// Degrees, 1 to 60, or -60 to -1 for a left-hand burr.
+    /// Helix angle, degrees, 1 to 60, or -60 to -1 for a left-hand burr.
     #[serde(with = "HelixAngle")]
     helix: f64,
     /// constant-helix: the same angle everywhere; published: as in the paper.
@@ -159,10 +159,10 @@ struct FileBurr {
     /// Polar angle at which a flute ends, before the pole, degrees.
     #[serde(with = "TipAngle")]
     tip_angle: f64,
-    /// Between programmed points, mm: no less than the least increment.
+    /// Chord error between programmed points, mm: no less than the least increment.
     #[serde(with = "ChordError")]
     chord_error: f64,
-    /// mm, no more than the radius.
+    /// Tooth depth, mm, no more than the radius.
     #[serde(default = "ToothDepth::default", with = "ToothDepth")]
     tooth_depth: f64,
     /// Instead of the ball: the tooth-bottom ellipse as two tangent arcs.
@@ -185,7 +185,7 @@ struct FileProfile {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grinder {
-    /// From the C axis to the end of the cylinder at C = 0, X and Y, mm.
+    /// Distance from the C axis to the end of the cylinder at C = 0, X and Y, mm.
     #[serde(with = "FixedArray::<TableOffset, 2>")]
     pub c_offset: [f64; 2],
     /// Directions of the axes: 1, or -1 if reversed.
@@ -194,7 +194,7 @@ pub struct Grinder {
     /// Clearance of the wheel between passes, mm [default: 2].
     #[serde(default, with = "Optional::<WheelClearance>")]
     pub(crate) clearance: Option<f64>,
-    /// As in [burr]; allowed once.
+    /// Profile as in [burr]; allowed once.
     profile: Option<FileProfile>,
 }
 
@@ -202,19 +202,19 @@ pub struct Grinder {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "UPPERCASE")]
 pub struct AxisSigns {
-    /// Of X.
+    /// Sign of X.
     #[serde(default = "AxisSign::default", with = "AxisSign")]
     pub x: i8,
-    /// Of Y.
+    /// Sign of Y.
     #[serde(default = "AxisSign::default", with = "AxisSign")]
     pub y: i8,
-    /// Of A.
+    /// Sign of A.
     #[serde(default = "AxisSign::default", with = "AxisSign")]
     pub a: i8,
-    /// Of B.
+    /// Sign of B.
     #[serde(default = "AxisSign::default", with = "AxisSign")]
     pub b: i8,
-    /// Of C.
+    /// Sign of C.
     #[serde(default = "AxisSign::default", with = "AxisSign")]
     pub c: i8,
 }
@@ -226,13 +226,13 @@ pub struct BurrProgram {
     /// loop: a macro computes the points; moves: every move is written out, for a control without LN [default: loop where it can be].
     #[serde(default, with = "Optional::<Word<ProgramForm>>")]
     form: Option<ProgramForm>,
-    /// Of the contact along the flute, mm/min [default: 200].
+    /// Speed of the contact along the flute, mm/min [default: 200].
     #[serde(default, with = "Optional::<ContactSpeed>")]
     pub(crate) speed: Option<f64>,
-    /// Of the approach, mm/min [default: 30].
+    /// Feed into the blank, mm/min [default: 30].
     #[serde(default, with = "Optional::<PlungeRate>")]
     pub(crate) plunge: Option<f64>,
-    /// r/min [default: 3000].
+    /// Wheel speed, r/min [default: 3000].
     #[serde(default, with = "Optional::<WheelSpeed>")]
     pub(crate) wheel: Option<f64>,
 }
@@ -258,10 +258,10 @@ impl Words for ProgramForm {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BurrTolerance {
-    /// Of the helix angle, degrees.
+    /// Tolerance of the helix angle, degrees.
     #[serde(default = "HelixTolerance::default", with = "HelixTolerance")]
     pub helix: f64,
-    /// Of the gap between neighbours, degrees.
+    /// Tolerance of the gap between neighbours, degrees.
     #[serde(default = "IndexTolerance::default", with = "IndexTolerance")]
     pub index: f64,
 }
@@ -393,7 +393,7 @@ impl FileProfile {
     fn check(self, reader: &Reader<'_>, section: &str, radius: f64) -> Result<Nose, FileError> {
         let Self { large, small } = self;
         let (most, least) = (SideRadius::MAX, TipRadius::MIN);
-        let says = [
+        let bounds = [
             (
                 radius < large && large <= most,
                 "large",
@@ -407,7 +407,7 @@ impl FileProfile {
                 format!("{least} to less than {radius} mm (half the diameter)"),
             ),
         ];
-        for (is_allowed, key, value, allowed) in says {
+        for (is_allowed, key, value, allowed) in bounds {
             if !is_allowed {
                 let message = format!("key 'profile.{key}' is {value}: {allowed}");
                 return Err(reader.error_at(&format!("{section}.{key}"), message));

@@ -57,10 +57,10 @@ pub struct CombMachine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Clamp {
-    /// Clamps the rotary.
+    /// M code that clamps the rotary.
     #[serde(with = "ClampCode")]
     pub on: u32,
-    /// Releases the rotary.
+    /// M code that releases the rotary.
     #[serde(with = "ClampCode")]
     pub off: u32,
 }
@@ -78,7 +78,7 @@ pub struct Cylinder {
     /// Where the holes begin, mm, no less than diameter [default: diameter].
     #[serde(default, with = "Optional::<OuterDiameter>")]
     outer: Option<f64>,
-    /// Of a tube, mm, no more than diameter [default: 0, solid].
+    /// Bore of a tube, mm, no more than diameter [default: 0, solid].
     #[serde(default, with = "Radius")]
     pub bore: f64,
 }
@@ -88,7 +88,7 @@ pub struct Cylinder {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["pitch"] }, { "required": ["divisions"] }]))]
 pub struct HolePattern {
-    /// Between neighbours, mm, above the drill diameter; adjusted so that the pattern closes.
+    /// Distance between neighbours, mm, above the drill diameter; adjusted so that the pattern closes.
     #[serde(default, with = "Optional::<Length>")]
     pitch: Option<f64>,
     /// Rows of one group round the circumference.
@@ -145,16 +145,16 @@ pub struct Drill {
     /// Depth of the holes, mm, below the radius of the part.
     #[serde(with = "Length")]
     pub depth: f64,
-    /// Of the tool and of its length offset [default: 1].
+    /// Number of the tool and of its length offset [default: 1].
     #[serde(default, with = "Optional::<DrillNumber>")]
     pub(crate) number: Option<u32>,
-    /// A whole number of r/min [default: 1000].
+    /// Spindle speed, a whole number of r/min [default: 1000].
     #[serde(default, with = "Optional::<SpindleSpeed>")]
     pub(crate) speed: Option<f64>,
-    /// mm/min [default: 60].
+    /// Feed, mm/min [default: 60].
     #[serde(default, with = "Optional::<FeedRate>")]
     pub(crate) feed: Option<f64>,
-    /// Of G83, mm, which a hole deeper than three diameters gets [default: the diameter].
+    /// Depth of cut of G83, mm, for holes deeper than three diameters [default: the diameter].
     #[serde(default, with = "Optional::<Depth>")]
     pub(crate) peck: Option<f64>,
 }
@@ -306,7 +306,7 @@ depth = 12.0
     }
 
     #[test]
-    fn what_is_left_out_has_its_default() {
+    fn a_key_that_is_left_out_has_its_default() {
         let job = parsed(MINIMAL);
         assert_eq!((job.cylinder.outer(), job.cylinder.bore), (500.0, 0.0));
         assert_eq!((job.machine.clearance(), job.machine.retract(), job.machine.clamp), (2.0, 50.0, None));
@@ -315,7 +315,7 @@ depth = 12.0
     }
 
     #[test]
-    fn everything_a_job_can_say() {
+    fn every_key_of_a_job_is_read() {
         let text = MINIMAL
             .replace("sign = 1 }", "sign = -1 }\nclearance = 1\nretract = 20\nclamp = { on = 10, off = 11 }")
             .replace("length = 300.0", "length = 300.0\nouter = 520\nbore = 480")
@@ -402,8 +402,8 @@ depth = 12.0
         ] {
             let text = MINIMAL.replace(from, to);
             assert_ne!(text, MINIMAL, "'{from}' is not in the job");
-            let told = Job::parse(&text).map_or_else(|error| error.to_string(), |_| "no error".to_owned());
-            assert_eq!(told, message, "{from:?} -> {to:?}");
+            let found = Job::parse(&text).map_or_else(|error| error.to_string(), |_| "no error".to_owned());
+            assert_eq!(found, message, "{from:?} -> {to:?}");
         }
     }
 }

@@ -109,7 +109,7 @@ fn check_retract(reader: &Reader<'_>, retract: f64, clearance: f64) -> Result<()
 
 /// A job as its file has it.
 trait Family: DeserializeOwned {
-    /// Checks what no key says by itself, and completes the job.
+    /// Checks the keys against each other, and completes the job.
     ///
     /// # Errors
     /// Keys that contradict each other, with the line of one of them and the allowed values.

@@ -15,7 +15,7 @@ pub struct SheetInfo {
     pub drawing: Option<String>,
     /// The revision of its drawing.
     pub revision: Option<String>,
-    /// What it is made of.
+    /// Its material.
     pub material: Option<String>,
     /// The machine's name in the shop.
     pub machine: Option<String>,
@@ -110,13 +110,13 @@ mod tests {
     }
 
     #[test]
-    fn a_job_may_say_nothing() {
+    fn a_sheet_may_be_left_out_or_empty() {
         assert_eq!(words("").unwrap(), SheetInfo::default());
         assert_eq!(words("[sheet]\n").unwrap(), SheetInfo::default());
     }
 
     #[test]
-    fn everything_it_says_is_read() {
+    fn every_key_of_the_sheet_is_read() {
         let words = words(
             "[sheet]\npart = \"Burr <12>\"\nsetup_minutes = 20\nstop_minutes = 0\n[sheet.rates]\ncurrency = \"CNY\"\n\
              rate = 250\n[[sheet.rates.beside]]\nmachine = \"other\"\nrate = 1e3\nrun_minutes = 4.5\n",
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_used_is_named_with_its_line() {
+    fn a_refused_key_is_named_with_its_line() {
         for (section, message) in [
             ("[sheet]\nname = \"x\"\n", "line 13: key 'sheet.name' is unknown; allowed: part, drawing"),
             (
@@ -153,16 +153,16 @@ mod tests {
                 "line 15: key 'sheet.rates.beside.rate' is missing",
             ),
         ] {
-            let told = words(section).unwrap_err();
-            assert!(told.starts_with(message), "{told}\n{message}");
+            let found = words(section).unwrap_err();
+            assert!(found.starts_with(message), "{found}\n{message}");
         }
     }
 
     #[test]
     fn a_file_of_rates_has_the_same_keys() {
         let text = "currency = \"EUR\"\nrate = 80\n[[beside]]\nmachine = \"5-axis\"\nrate = inf\n";
-        let told = Rates::parse(text).unwrap_err().to_string();
-        assert_eq!(told, "line 5: key 'beside.rate' is inf: 0.01 to 1000000000");
+        let found = Rates::parse(text).unwrap_err().to_string();
+        assert_eq!(found, "line 5: key 'beside.rate' is inf: 0.01 to 1000000000");
         assert_eq!(Rates::parse(&text.replace("inf", "200")).unwrap().alternatives[0].rate, 200.0);
     }
 }

@@ -219,7 +219,7 @@ ranges! {
     BurrDiameter: Any f64, 0.5, 200.0, "mm";
     /// At least the nose.
     BurrLength: Outer f64, 0.0, 500.0, "mm";
-    /// As many as have room at the tip.
+    /// The room at the tip narrows it.
     FluteCount: Outer i64, 1, 360, "";
     HelixAngle: Any f64, 1.0, 60.0, "degrees" {
         const SECOND: Option<[f64; 2]> = Some([-60.0, -1.0]);
@@ -260,7 +260,7 @@ ranges! {
     Candidates: Any u32, 1, 10, "";
     Uneven: Any f64, 0.001, 100.0, "mm";
     PartHeight: Outer f64, -99_999.0, 99_999.0, "mm";
-    /// Of the angles of a run-out; their last number is a count.
+    /// First two of the angles of a run-out; the third is a count.
     ReadingAngle: Outer f64, -360.0, 360.0, "degrees";
     ReadingCount: Any f64, 3.0, 100.0, "" {
         fn allowed() -> String {

@@ -24,10 +24,10 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
         return format!("key '{name}' is unknown; allowed: {allowed}");
     }
-    if let Some((found, wanted)) =
+    if let Some((found, required)) =
         message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
     {
-        return format!("key '{name}' has {found} values: {wanted} are required");
+        return format!("key '{name}' has {found} values: {required} are required");
     }
     if let Some(wrong) = message.strip_prefix(OUT_OF_RANGE) {
         return format!("key '{name}' is {wrong}");

@@ -56,10 +56,10 @@ pub struct Alignment {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TouchProbe {
-    /// Of the stylus ball, mm.
+    /// Radius of the stylus ball, mm.
     #[serde(with = "ProbeLength")]
     pub radius: f64,
-    /// Of a touch, mm/min.
+    /// Feed of a touch, mm/min.
     #[serde(default = "ProbeFeed::default", with = "ProbeFeed")]
     pub feed: f64,
     /// Distance in front of and behind the nominal surface where a touch begins and ends, mm.
@@ -74,7 +74,7 @@ pub struct TouchProbe {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SineTable {
-    /// Between the rollers, mm.
+    /// Distance between the rollers, mm.
     #[serde(with = "SineTableLength")]
     pub length: f64,
     /// The angle, degrees.
@@ -178,7 +178,7 @@ struct FileEllipse {
     /// increments].
     #[serde(default, with = "Optional::<ChordError>")]
     chord_error: Option<f64>,
-    /// mm/min [default: 200].
+    /// Feed, mm/min [default: 200].
     #[serde(default, with = "Optional::<PathFeed>")]
     feed: Option<f64>,
 }

@@ -34,7 +34,7 @@ fn read(text: &str) -> Alignment {
 }
 
 #[test]
-fn everything_a_job_says_is_read() {
+fn every_key_of_a_job_is_read() {
     let job = read(JOB);
     assert_eq!((job.probe.feed, job.probe.search), (100.0, 10.0));
     assert_eq!((job.probe.radius, job.surface.b, job.sine_table.phi), (3.0, 724.3, 38.5));
@@ -78,7 +78,7 @@ fn limits_that_are_left_out_are_those_of_the_paper() {
 }
 
 #[test]
-fn what_cannot_be_used_is_named_with_its_line() {
+fn a_refused_key_is_named_with_its_line() {
     for (from, to, message) in [
         ("[probe]\nradius = 3.0\n", "", "key 'probe' is missing"),
         ("radius = 3.0", "radius = 0", "line 12: key 'probe.radius' is 0: 0.01 to 1000 mm"),
@@ -235,7 +235,7 @@ fn what_cannot_be_used_is_named_with_its_line() {
     ] {
         let text = JOB.replacen(from, to, 1);
         assert_ne!(text, JOB, "{from}");
-        let told = Job::parse(&text).unwrap_err().to_string();
-        assert!(told.ends_with(message), "{told}\n{message}");
+        let found = Job::parse(&text).unwrap_err().to_string();
+        assert!(found.ends_with(message), "{found}\n{message}");
     }
 }

@@ -57,7 +57,7 @@ pub struct PinHoles {
 pub struct PinMachine {
     /// The axis that rotates the part.
     pub rotary: Rotary,
-    /// How the tool is inclined [default: by hand].
+    /// Head that inclines the tool [default: by hand].
     #[serde(default)]
     pub head: Head,
     /// Distance from the surface where the feed begins, mm [default: 2].
@@ -98,14 +98,19 @@ pub enum HeadKind {
 #[serde(deny_unknown_fields)]
 pub struct Surface {
     /// An ellipsoid of revolution.
-    #[serde(rename = "kind", with = "Word::<Surface>")]
-    _kind: (),
+    #[serde(rename = "kind", with = "Word::<SurfaceKind>")]
+    _kind: SurfaceKind,
     /// Equatorial radius, mm.
     #[serde(with = "Length")]
     pub a: f64,
     /// Polar radius, mm.
     #[serde(with = "Length")]
     pub b: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum SurfaceKind {
+    Ellipsoid,
 }
 
 /// A hole.
@@ -146,7 +151,7 @@ pub enum AxisDirection {
     Normal,
 }
 
-/// What the macros use of the control.
+/// Common variables of the macros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MacroSettings {
@@ -169,11 +174,11 @@ impl Words for HeadKind {
     }
 }
 
-impl Words for Surface {
-    type Value = ();
+impl Words for SurfaceKind {
+    type Value = Self;
 
-    fn all() -> Vec<(&'static str, ())> {
-        vec![("ellipsoid", ())]
+    fn all() -> Vec<(&'static str, Self)> {
+        vec![("ellipsoid", Self::Ellipsoid)]
     }
 }
 
@@ -284,7 +289,7 @@ mod tests {
     use crate::job::Job;
 
     /// Parses the smallest job with one replacement and returns its error message, or "no error".
-    fn told(from: &str, to: &str) -> String {
+    fn message(from: &str, to: &str) -> String {
         let job = MINIMAL.replace(from, to);
         assert_ne!(job, MINIMAL, "'{from}' is not in the job");
         match Job::parse(&job) {
@@ -351,14 +356,14 @@ depth = 15.0
                  hole, tool, macro, sheet",
             ),
         ] {
-            assert_eq!(told(from, to), message, "{from:?} -> {to:?}");
+            assert_eq!(self::message(from, to), message, "{from:?} -> {to:?}");
         }
     }
 
     proptest::proptest! {
         /// A mistyped job is an error with a message, or a job; never a panic.
         #[test]
-        fn a_mistyped_job_is_told_or_read(place in 0usize..270, gone in 0usize..9, typed in "[ -~\n]{0,4}") {
+        fn a_mistyped_job_is_refused_or_read(place in 0usize..270, gone in 0usize..9, typed in "[ -~\n]{0,4}") {
             let start = place.min(MINIMAL.len());
             let end = (start + gone).min(MINIMAL.len());
             let text = format!("{}{typed}{}", &MINIMAL[..start], &MINIMAL[end..]);

@@ -19,16 +19,16 @@ pub struct Tool {
     /// Diameter, mm.
     #[serde(with = "Length")]
     pub diameter: f64,
-    /// From the gauge line to the tip, mm.
+    /// Length from the gauge line to the tip, mm.
     #[serde(default = "ToolLength::default", with = "ToolLength")]
     pub length: f64,
-    /// A whole number of r/min.
+    /// Spindle speed, a whole number of r/min.
     #[serde(with = "SpindleSpeed")]
     pub speed: f64,
-    /// Into the hole, mm/min.
+    /// Feed into the hole, mm/min.
     #[serde(with = "FeedRate")]
     pub feed: f64,
-    /// Out of the hole, mm/min [default: 200, or feed if that is more].
+    /// Feed out of the hole, mm/min [default: 200, or feed if that is more].
     #[serde(default, with = "Optional::<FeedRate>")]
     retract_feed: Option<f64>,
     /// Its name in messages and on the sheet [default: TOOL and its number].
