@@ -366,7 +366,8 @@ mod tests {
             "the holes overlap: with 356 rows the pitch is 5.095 mm, and holes of neighbouring rows are 4.";
         assert!(deep.starts_with(expected), "{deep}");
         let close = refused(&[("pitch = 10", "divisions = 200")]);
-        let expected = "the holes overlap: with 400 rows the pitch is 4.534 mm, and holes in a row are 4.534 mm";
+        let expected =
+            "the holes overlap: with 400 rows the pitch is 4.534 mm, and holes in a row are 4.534 mm";
         assert!(close.starts_with(expected), "{close}");
         let many = refused(&[
             ("pitch = 10", "pitch = 1"),

@@ -68,7 +68,8 @@ impl TouchPlan {
         let found = (inverse * spread * inverse).diagonal().map(f64::sqrt);
         let is_determined = found.iter().all(|deviation| *deviation < MAX_FACTOR);
         let angle = |index: usize| found[index] / lever * 180.0 / std::f64::consts::PI;
-        let uncertainty = FitUncertainty { shift: [found[0], found[1], found[2]], tilt: [angle(3), angle(4)] };
+        let uncertainty =
+            FitUncertainty { shift: [found[0], found[1], found[2]], tilt: [angle(3), angle(4)] };
         is_determined.then_some(uncertainty).ok_or(FitError::Degenerate)
     }
 
