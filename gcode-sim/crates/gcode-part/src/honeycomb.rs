@@ -181,10 +181,7 @@ pub struct Pattern {
 impl Pattern {
     /// Returns the distance of two points of the cylinder in the pattern's metric, mm.
     pub fn distance(&self, a: &Point3<f64>, b: &Point3<f64>) -> f64 {
-        match self.metric {
-            Metric::Chord => (b - a).norm(),
-            Metric::Arc => libm::hypot(b.x - a.x, self.arc_length(angle(a, b))),
-        }
+        distance(self.metric, self.diameter, a, b)
     }
 
     /// Returns the arc length of an angle on the cylinder, mm.
@@ -236,6 +233,14 @@ pub fn azimuth(p: &Point3<f64>) -> Deg {
     Deg::atan2(p.y, p.z)
 }
 
+/// Returns the distance of two points of a cylinder in a metric, mm.
+fn distance(metric: Metric, diameter: f64, a: &Point3<f64>, b: &Point3<f64>) -> f64 {
+    match metric {
+        Metric::Chord => (b - a).norm(),
+        Metric::Arc => libm::hypot(b.x - a.x, diameter / 2.0 * angle(a, b).to_rad()),
+    }
+}
+
 /// Returns the angle between the azimuths of two points, 0 to 180.
 fn angle(a: &Point3<f64>, b: &Point3<f64>) -> Deg {
     let (cross, dot) = (a.y * b.z - a.z * b.y, a.y * b.y + a.z * b.z);
@@ -250,22 +255,11 @@ fn point(x: f64, azimuth: Deg, radius: f64) -> Point3<f64> {
 /// Returns the pitch with which this number of rows closes, mm: neighbours in the next row are as far as
 /// those in the same row.
 fn solve_pitch(metric: Metric, diameter: f64, rows: u32) -> f64 {
-    let guess = Pattern {
-        metric,
-        diameter,
-        rows,
-        pitch: 0.0,
-        specified_pitch: None,
-        length: 0.0,
-        outer: diameter,
-        bore: 0.0,
-    };
     // The neighbour in the next row is half a pitch further along x: for a small pitch it is farther than the
     // pitch.
     let next = |pitch: f64| {
-        let (here, there) =
-            (point(0.0, Deg::ZERO, diameter / 2.0), point(pitch / 2.0, guess.row_angle(), diameter / 2.0));
-        guess.distance(&here, &there)
+        let (radius, row) = (diameter / 2.0, Deg(360.0 / f64::from(rows)));
+        distance(metric, diameter, &point(0.0, Deg::ZERO, radius), &point(pitch / 2.0, row, radius))
     };
     bisect(0.0, 2.0 * next(0.0), |pitch| next(pitch) <= pitch)
 }

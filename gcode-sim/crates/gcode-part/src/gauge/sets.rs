@@ -26,23 +26,23 @@ impl fmt::Display for Thickness {
 
 /// Blocks in equal steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Series {
+pub(crate) struct Series {
     /// Thinnest block.
-    pub first: Thickness,
+    pub(crate) first: Thickness,
     /// Difference between neighbouring blocks.
-    pub step: Thickness,
+    pub(crate) step: Thickness,
     /// Number of blocks, at least 1.
-    pub count: u32,
+    pub(crate) count: u32,
 }
 
 impl Series {
     /// Returns the thickest block.
-    pub fn last(&self) -> Thickness {
+    pub(crate) fn last(&self) -> Thickness {
         Thickness(self.first.0 + self.step.0 * (self.count - 1))
     }
 
     /// Returns the blocks from the thinnest to the thickest.
-    pub fn blocks(self) -> impl Iterator<Item = Thickness> {
+    pub(crate) fn blocks(self) -> impl Iterator<Item = Thickness> {
         (0..self.count).map(move |n| Thickness(self.first.0 + self.step.0 * n))
     }
 }
@@ -53,7 +53,7 @@ pub struct GaugeSet {
     /// Name in job files.
     pub name: &'static str,
     /// Series from the finest blocks to the thickest; no block is in two of them.
-    pub series: &'static [Series],
+    pub(crate) series: &'static [Series],
 }
 
 /// Returns a series of one block, in half micrometres.

@@ -23,7 +23,7 @@ impl GaugeSet {
     /// equally many blocks, the lower; of two equally high ones, the one with the thickest block, then the
     /// thickest second block. The stack is empty for a height below half the thinnest block. A height above
     /// the sum of all blocks gets all of them.
-    pub fn nearest_stack(&self, height: Mm) -> Stack {
+    pub(crate) fn nearest_stack(&self, height: Mm) -> Stack {
         let blocks = self.blocks();
         let grid = self.step().0;
         let steps: Vec<usize> = blocks.iter().map(|block| (block.0 / grid) as usize).collect();
@@ -147,7 +147,7 @@ impl HeightSet {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::Series;
+    use super::super::sets::Series;
     use super::*;
 
     fn set(name: &str) -> GaugeSet {
