@@ -36,11 +36,6 @@ pub(crate) struct Series {
 }
 
 impl Series {
-    /// Returns the thickest block.
-    pub(crate) fn last(&self) -> Thickness {
-        Thickness(self.first.0 + self.step.0 * (self.count - 1))
-    }
-
     /// Returns the blocks from the thinnest to the thickest.
     pub(crate) fn blocks(self) -> impl Iterator<Item = Thickness> {
         (0..self.count).map(move |n| Thickness(self.first.0 + self.step.0 * n))
@@ -201,7 +196,7 @@ mod tests {
             "0.0005",
         ];
         assert_eq!(steps, half);
-        let edges: Vec<_> = set.series.iter().map(|s| format!("{} {}", s.first, s.last())).collect();
+        let edges: Vec<_> = set.series.iter().map(|s| format!("{} {}", s.first, s.blocks().last().unwrap())).collect();
         assert_eq!(edges, ["1.001 1.009", "1.01 1.49", "0.5 9.5", "10 100"]);
     }
 }
