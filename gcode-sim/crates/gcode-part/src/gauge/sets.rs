@@ -196,7 +196,8 @@ mod tests {
             "0.0005",
         ];
         assert_eq!(steps, half);
-        let edges: Vec<_> = set.series.iter().map(|s| format!("{} {}", s.first, s.blocks().last().unwrap())).collect();
+        let edges: Vec<_> =
+            set.series.iter().map(|s| format!("{} {}", s.first, s.blocks().last().unwrap())).collect();
         assert_eq!(edges, ["1.001 1.009", "1.01 1.49", "0.5 9.5", "10 100"]);
     }
 }
