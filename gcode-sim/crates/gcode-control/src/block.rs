@@ -15,6 +15,7 @@ use super::control::Control;
 use super::executor::Executor;
 use super::flow::FrameKind;
 use super::functions::{ExecResult, locate};
+use super::lookahead::Lookahead;
 use super::notes::Note;
 use super::outcome::RunEnd;
 use super::plan::{BlockFlow, BlockPlan};
@@ -85,7 +86,9 @@ impl Control {
                 let alarm = Alarm::ParameterFormat { what: "R is missing".into() };
                 return Err(alarm.located_at(executor.flow.block));
             }
-            OpKind::Empty if op.number.is_some() => executor.process_number_block(sink)?,
+            OpKind::Empty if op.number.is_some() => {
+                executor.advance_lookahead(sink, Lookahead::count_number)?
+            }
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
             OpKind::Words(words) => {
@@ -119,7 +122,12 @@ impl Executor {
         block_words: &mut BlockWords,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
-        let words = self.without_skipped(words);
+        if let Some((switch, _)) = words.skipped_form() {
+            let is_on = self.registers.data.is_skip_on(*switch);
+            let note = Note::BlockSkip { switch: (*switch).max(1), is_on };
+            self.registers.block_effects.record_note(note);
+        }
+        let (words, _) = self.registers.data.unskipped(words);
         let mut calling_word = None;
         if !self.registers.data.settings.code_calls.is_empty() {
             let planner = self.planner(block_words);
@@ -130,15 +138,6 @@ impl Executor {
         }
         self.registers.evaluate_words(words, calling_word.as_ref(), block_words)?;
         self.planner(block_words).plan_block(words, calling_word, plan)
-    }
-
-    /// Returns the words of a block without those that a block skip inside it excludes.
-    #[inline(always)]
-    fn without_skipped<'a>(&self, words: &'a Words) -> &'a Words {
-        let Some((switch, short)) = words.skipped_form() else { return words };
-        let is_on = self.registers.data.is_skip_on(*switch);
-        self.registers.block_effects.record_note(Note::BlockSkip { switch: (*switch).max(1), is_on });
-        if is_on { short } else { words }
     }
 }
 

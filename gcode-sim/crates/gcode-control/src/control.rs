@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use super::executor::Executor;
 use super::functions::ExecResult;
+use super::lookahead::Lookahead;
 use super::loop_detection::LoopDetector;
 use super::notes::Note;
 use super::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress, RunEnd};
@@ -202,7 +203,7 @@ impl Control {
     fn conclude<S: EventSink>(&mut self, mut result: ExecResult<()>, sink: &mut S) -> Option<Box<Outcome>> {
         let (note, run_end) = self.executor.registers.block_effects.take();
         if run_end == Some(RunEnd::ProgramEnd)
-            && let Err(alarm) = self.executor.finish_lookahead(sink)
+            && let Err(alarm) = self.executor.advance_lookahead(sink, Lookahead::finish)
         {
             result = Err(alarm);
         }

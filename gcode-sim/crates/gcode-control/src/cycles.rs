@@ -24,11 +24,6 @@ pub(super) struct BoltHolePattern {
 }
 
 impl Planner<'_> {
-    /// Returns true if the block drills: it names an axis or R.
-    pub(super) fn is_drilling_block(&self) -> bool {
-        self.words.has(b'R') || self.names_axis()
-    }
-
     /// Returns the drilling axis: Z; with FXY 5101#0 the normal of the plane or the axis parallel to it that the block names,
     /// the same until G80.
     pub(super) fn drilling_axis(&self, state: &State) -> Result<AxisIndex, Alarm> {

@@ -155,7 +155,7 @@ impl Executor {
     }
 
     /// Advances the lookahead without a plan, if a move waits; an alarm changes nothing.
-    fn advance_lookahead<S: EventSink>(
+    pub(super) fn advance_lookahead<S: EventSink>(
         &mut self,
         sink: &mut S,
         advance: fn(&mut Lookahead, &ControlData, Span) -> ExecResult<()>,
@@ -168,16 +168,6 @@ impl Executor {
         lookahead.check_stroke(&self.registers.data)?;
         self.take_lookahead(&mut lookahead, sink);
         Ok(())
-    }
-
-    /// Executes a block that has only a sequence number.
-    pub(super) fn process_number_block<S: EventSink>(&mut self, sink: &mut S) -> ExecResult<()> {
-        self.advance_lookahead(sink, Lookahead::count_number)
-    }
-
-    /// Executes what waits at the end of a program without M30.
-    pub(super) fn finish_lookahead<S: EventSink>(&mut self, sink: &mut S) -> ExecResult<()> {
-        self.advance_lookahead(sink, Lookahead::finish)
     }
 
     /// Executes what waits before an alarm ends the run.

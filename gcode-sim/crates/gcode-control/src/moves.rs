@@ -49,7 +49,8 @@ impl Planner<'_> {
     /// 4. Plans a move by the modal codes: a drilling cycle, or group 01.
     pub(super) fn plan_motion(&self, plan: &mut BlockPlan, has_new_length: bool) -> ExecResult<()> {
         if let Some(cycle) = plan.state.modal.cycle {
-            if self.is_drilling_block() {
+            // A block drills if it names an axis or R.
+            if self.words.has(b'R') || self.names_axis() {
                 return self.plan_cycle(plan, cycle, None);
             }
             // Only blocks that drill store P and Q.
