@@ -132,7 +132,6 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the number of holes of the block.
     fn cycle_repeats(&self, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {
         let letter = self.data.settings.cycle_repeat_letter;
         let repeats = match pattern {
@@ -189,7 +188,6 @@ impl Planner<'_> {
         Ok(holes)
     }
 
-    /// Returns the holes of a pattern round the current position.
     fn pattern_holes(&self, centre: &Position, pattern: BoltHolePattern) -> Vec<Position> {
         let hole = |index: u32| {
             let angle = Deg(pattern.start + f64::from(index) * pattern.angle_step);

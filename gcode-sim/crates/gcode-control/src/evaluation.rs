@@ -94,7 +94,6 @@ impl Registers {
         }
     }
 
-    /// Returns the value of a variable of any kind.
     pub(super) fn read_variable(&self, number: u32) -> Result<Value, Alarm> {
         match self.variables.classify(number) {
             VariableClass::Local(place) | VariableClass::Common(place) => Ok(self.variables.get(place)),

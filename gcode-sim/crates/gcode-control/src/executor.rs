@@ -108,7 +108,6 @@ impl Executor {
         self.count_moves(moves);
     }
 
-    /// Emits an event and counts it.
     #[inline(always)]
     pub(super) fn emit<S: EventSink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
         self.count_event(kind, seconds);
@@ -116,7 +115,6 @@ impl Executor {
         sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.flow.frame.calls });
     }
 
-    /// Counts an event.
     #[inline(always)]
     fn count_event(&mut self, kind: &EventKind, seconds: f64) {
         self.registers.clock.motion_seconds += seconds;

@@ -169,7 +169,6 @@ impl ProgramFlow {
         }
     }
 
-    /// Pushes the current frame onto the call stack.
     pub(super) fn push(&mut self, frame: Frame) {
         self.callers.push(std::mem::replace(&mut self.frame, frame));
     }

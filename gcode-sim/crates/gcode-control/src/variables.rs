@@ -166,7 +166,6 @@ impl Vars {
         self.names.get(name).copied().ok_or_else(unknown)
     }
 
-    /// Returns the class of a variable number.
     #[inline]
     pub(super) fn classify(&self, number: u32) -> VariableClass {
         match Slot::of(number) {
@@ -190,7 +189,6 @@ impl Vars {
         }
     }
 
-    /// Returns the value of a variable of [`Slot::Free`].
     #[inline(always)]
     pub(super) fn get_free(&self, number: u16) -> Value {
         self.direct_values[usize::from(number) % PLACES].into()
@@ -202,7 +200,6 @@ impl Vars {
         self.direct_values[usize::from(number) % PLACES].number
     }
 
-    /// Writes a variable of [`Slot::Free`].
     #[inline(always)]
     pub(super) fn set_free(&mut self, number: u16, value: StoredValue) {
         self.direct_values[usize::from(number) % PLACES] = value;
@@ -229,7 +226,6 @@ impl Vars {
         }
     }
 
-    /// Returns the number of places.
     fn places(&self) -> usize {
         DIRECT_COUNT + self.extra_values.len()
     }
@@ -267,7 +263,6 @@ impl Vars {
         }
     }
 
-    /// Returns true if all values are equal.
     pub(super) fn has_same_values(&self, other: &Self) -> bool {
         let Self {
             direct_values,

@@ -120,7 +120,6 @@ impl Registers {
         }
     }
 
-    /// Evaluates the value of a word.
     #[inline(always)]
     pub(super) fn evaluate_operand(&self, words: &Words, value: &WordOperand) -> ExecResult<Value> {
         match value {
