@@ -47,20 +47,23 @@ impl Control {
             let Some((program, op)) = program.lower_block(place) else {
                 return executor.end_of_program(memory);
             };
-            executor.flow.block = op.span;
             executor.log.blocks += 1;
             executor.flow.frame.next = place + 1;
-            match op.body() {
-                OpBody::Plain(OpKind::AssignFree(assign)) => executor.assign(assign)?,
+            let result = match op.body() {
+                OpBody::Plain(OpKind::AssignFree(assign)) => executor.assign(assign),
                 OpBody::Plain(OpKind::Statement(statement)) => {
-                    executor.statement(program, statement, loop_detector, sink)?;
+                    executor.flow.block = op.span;
+                    executor.statement(program, statement, loop_detector, sink)
                 }
                 _ => break (program, op),
-            }
-            if executor.registers.block_effects.is_pause(executor.log.blocks) {
-                return Ok(());
+            };
+            // An assignment whose place nothing reads costs no copy of it.
+            if result.is_err() || executor.registers.block_effects.is_pause(executor.log.blocks) {
+                executor.flow.block = op.span;
+                return result;
             }
         };
+        executor.flow.block = op.span;
         if let OpBody::Plain(OpKind::Words(words)) = op.body()
             && executor.plain_move(op, words, sink).is_some()
         {
@@ -99,7 +102,7 @@ impl Control {
                 plan.reset(&executor.registers.state);
                 if is_parameter {
                     executor.registers.evaluate_words(words, None, block_words)?;
-                    executor.planner(block_words).plan_parameter(words, op.number, plan)?;
+                    executor.planner(words, block_words).plan_parameter(op.number, plan)?;
                 } else {
                     executor.plan_words(words, block_words, plan)?;
                     plan.state.codes.n = op.number.unwrap_or(plan.state.codes.n);
@@ -130,26 +133,21 @@ impl Executor {
         let (words, _) = self.registers.data.unskipped(words);
         let mut calling_word = None;
         if !self.registers.data.settings.code_calls.is_empty() {
-            let planner = self.planner(block_words);
-            if planner.plan_macro_by_code(words, plan)? {
+            let planner = self.planner(words, block_words);
+            if planner.plan_macro_by_code(plan)? {
                 return Ok(());
             }
-            calling_word = planner.subprogram_by_code(words)?;
+            calling_word = planner.subprogram_by_code()?;
         }
         self.registers.evaluate_words(words, calling_word.as_ref(), block_words)?;
-        self.planner(block_words).plan_block(words, calling_word, plan)
+        self.planner(words, block_words).plan_block(calling_word, plan)
     }
 }
 
 impl Planner<'_> {
     /// Makes the plan of a block whose words are evaluated.
-    fn plan_block(
-        &self,
-        words: &Words,
-        calling_word: Option<CallingWord>,
-        plan: &mut BlockPlan,
-    ) -> ExecResult<()> {
-        self.check_words_with_return(words)?;
+    fn plan_block(&self, calling_word: Option<CallingWord>, plan: &mut BlockPlan) -> ExecResult<()> {
+        self.check_words_with_return()?;
         let axis_use = self.apply_modal_codes(plan)?;
         // A block with nothing but axis words and codes of group 01 has no other codes.
         if self.words.has_letters(!self.data.settings.axes.letter_bits())
@@ -170,11 +168,11 @@ impl Planner<'_> {
             }
             None => self.plan_motion(plan, has_new_length)?,
         }
-        if let Some(call) = words.call() {
-            self.plan_call(words, call, plan)?;
+        if let Some(call) = self.lowered.call() {
+            self.plan_call(call, plan)?;
         }
         if let Some(calling) = calling_word {
-            self.plan_calling_word(words, &calling, plan)?;
+            self.plan_calling_word(&calling, plan)?;
         }
         if plan.commands_axes {
             plan.state.last_end_point = None;
@@ -203,12 +201,12 @@ impl Planner<'_> {
     }
 
     /// Raises the alarm of words other than N, P and L beside M99 while G66 is active.
-    fn check_words_with_return(&self, words: &Words) -> ExecResult<()> {
-        let returns = words.call().is_some_and(|call| call.kind == CallCode::Return);
+    fn check_words_with_return(&self) -> ExecResult<()> {
+        let returns = self.lowered.call().is_some_and(|call| call.kind == CallCode::Return);
         if !returns || self.flow.modal_calls.is_empty() {
             return Ok(());
         }
-        match words.list.iter().find(|word| word.letter != b'L') {
+        match self.lowered.list.iter().find(|word| word.letter != b'L') {
             Some(word) => {
                 Err(Alarm::WordsWithReturn { letter: char::from(word.letter) }.located_at(word.span))
             }

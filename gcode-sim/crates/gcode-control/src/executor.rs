@@ -13,8 +13,8 @@ use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{Event, EventKind, EventSink};
-use gcode_lang::program::ProgramId;
 use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::{ProgramId, Words};
 use gcode_lang::source::{Span, Spanned};
 use gcode_lang::units::Seconds;
 
@@ -34,9 +34,9 @@ impl Executor {
 
     /// Returns the planner of a block with these words.
     #[inline(always)]
-    pub(super) fn planner<'a>(&'a self, words: &'a BlockWords) -> Planner<'a> {
+    pub(super) fn planner<'a>(&'a self, lowered: &'a Words, words: &'a BlockWords) -> Planner<'a> {
         let Self { registers, flow, log: _ } = self;
-        Planner { registers, data: &registers.data, flow, words, block: flow.block }
+        Planner { registers, data: &registers.data, flow, lowered, words, block: flow.block }
     }
 
     /// Carries out a plan in the order of its fields.

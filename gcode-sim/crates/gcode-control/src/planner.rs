@@ -11,6 +11,7 @@ use super::words::{BlockWords, WordNumber};
 use crate::contour::Blend;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{AxisIndex, Position};
+use gcode_lang::program::Words;
 use gcode_lang::program::modes::{Distance, Polar, Unit};
 use gcode_lang::source::Span;
 
@@ -21,6 +22,9 @@ pub(super) struct Planner<'a> {
     /// Part of the registers that most of the planning needs.
     pub(super) data: &'a ControlData,
     pub(super) flow: &'a ProgramFlow,
+    /// Words as lowered, with the call of the block.
+    pub(super) lowered: &'a Words,
+    /// Evaluated words.
     pub(super) words: &'a BlockWords,
     /// Place of the block.
     pub(super) block: Span,
