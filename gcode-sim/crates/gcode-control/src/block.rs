@@ -57,7 +57,7 @@ impl Control {
                 }
                 _ => break (program, op),
             };
-            // An assignment whose place nothing reads costs no copy of it.
+            // The place of an assignment is read only after an alarm or an effect.
             if result.is_err() || executor.registers.block_effects.is_pause(executor.log.blocks) {
                 executor.flow.block = op.span;
                 return result;
