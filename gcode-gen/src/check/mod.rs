@@ -4,7 +4,7 @@ mod alignment;
 mod flutes;
 mod holes;
 
-use gcode_draw::Scene;
+use gcode_draw::Picture;
 use gcode_inspect::verify::Verdict;
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -41,7 +41,7 @@ pub struct CheckedPackage {
     /// Report as printed by `verify`.
     pub report: String,
     /// Pictures, each with its file name without `.png`.
-    pub pictures: Vec<(String, Scene)>,
+    pub pictures: Vec<(String, Picture)>,
     pub verdict: PackageVerdict,
 }
 

@@ -2,7 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
-use gcode_draw::{PictureError, Scene, Size};
+use gcode_draw::{Picture, PictureError, Size};
 use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
@@ -107,8 +107,8 @@ fn stale_files(job: &Job, package: &Package, out: &Path) -> Vec<PathBuf> {
 pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)>, UsageError> {
     let refused = |error: PictureError| UsageError::new(error.to_string());
     let size = Size::new(1600, 1200).map_err(refused)?;
-    let drawn = |(name, scene): &(String, Scene)| {
-        Ok((format!("{name}.png"), gcode_draw::draw(scene, size).map_err(refused)?))
+    let drawn = |(name, picture): &(String, Picture)| {
+        Ok((format!("{name}.png"), gcode_draw::draw(picture, size).map_err(refused)?))
     };
     checked.pictures.iter().map(drawn).collect()
 }

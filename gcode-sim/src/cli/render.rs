@@ -8,7 +8,7 @@ use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
-use gcode_draw::{Scene, Size, TopView};
+use gcode_draw::{Picture, Size, TopView};
 use gcode_inspect::verify::{Tolerances, Verdict};
 use gcode_part::Flutes;
 use gcode_part::NominalPart;
@@ -101,7 +101,7 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Ex
         None => top::of_holes(&name(&request), &simulation, &request.machine),
     };
     let asked = arguments.view.unwrap_or(View::Top);
-    let scene = match asked {
+    let picture = match asked {
         View::Top => gcode_draw::top_view(&drawn),
         View::Side | View::Tip | View::Helix => {
             let message =
@@ -113,7 +113,7 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Ex
             UsageError::new(message)
         })?,
     };
-    write(&scene, &arguments.size, &arguments.output)?;
+    write(&picture, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
     Ok(super::stopped(&simulation.run).unwrap_or(ExitStatus::Passed))
 }
@@ -129,7 +129,7 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus,
     let verdict = grinding.verify();
     let view = flute_view::of(&name(&request), &grinding, &verdict);
     let asked = arguments.view.unwrap_or(View::Side);
-    let scene = match asked {
+    let picture = match asked {
         View::Side => gcode_draw::side_view(&view),
         View::Tip => gcode_draw::tip_view(&view),
         View::Helix => gcode_draw::helix_graph(&view),
@@ -137,7 +137,7 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus,
             return Err(UsageError::new("this view shows holes; a burr has the views side, tip and helix"));
         }
     };
-    write(&scene, &arguments.size, &arguments.output)?;
+    write(&picture, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
     Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Passed))
 }
@@ -161,8 +161,8 @@ pub(super) fn view(
     top::of_verdict(&name(request), simulation, reference, verdict, &request.machine)
 }
 
-/// Draws a scene to a PNG file of exactly this size.
-pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageError> {
+/// Draws a picture to a PNG file of exactly this size.
+pub(super) fn write(picture: &Picture, size: &str, path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
     if path.extension().is_some_and(is_other) {
         let png = path.with_extension("png");
@@ -174,7 +174,7 @@ pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageE
     }
     let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
     let size: Size = size.parse().map_err(refused)?;
-    let png = gcode_draw::draw(scene, size).map_err(refused)?;
+    let png = gcode_draw::draw(picture, size).map_err(refused)?;
     output::write(path, &png)
 }
 

@@ -106,8 +106,8 @@ fn flutes(
         FindingFormat::Sarif => sarif(&verdict.diagnostics, &grinding.run)?,
     }
     if let Some(path) = &arguments.picture {
-        let scene = gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
-        render::write(&scene, "1600x1200", path)?;
+        let picture = gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
+        render::write(&picture, "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use gcode_draw::{Bar, Bars};
+use gcode_draw::{Bar, Plot, PlotBody};
 use gcode_inspect::budget::{Budget, BudgetRequest, ErrorShare, Statistics};
 use gcode_inspect::machine::Distribution;
 
@@ -145,13 +145,13 @@ impl BudgetReport {
     }
 
     /// Returns the shares of the sources as bars.
-    pub fn bars(&self) -> Bars {
+    pub fn bars(&self) -> Plot {
         let bar = |row: &SourceRow| Bar {
             name: row.source.clone(),
             length: row.share,
             text: format!("{:.1} %, {:.4} mm", row.share * 100.0, row.moves),
         };
-        Bars {
+        Plot {
             title: "Error sources: share of the mean square".to_owned(),
             notes: vec![
                 format!(
@@ -163,7 +163,7 @@ impl BudgetReport {
                 ),
                 format!("{} samples, seed {}; {}", self.samples, self.seed, self.basis),
             ],
-            bars: self.sources.iter().map(bar).collect(),
+            body: PlotBody::Bars(self.sources.iter().map(bar).collect()),
         }
     }
 }
