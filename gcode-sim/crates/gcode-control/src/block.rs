@@ -28,17 +28,17 @@ use gcode_lang::program::{CallCode, DialectSyntax, GuardedOp, Library, Memory, O
 use gcode_lang::source::Span;
 
 impl Control {
-    /// Executes the next block, and after a statement the blocks that follow it, up to `until` blocks in all: a statement
-    /// never leads into another program.
+    /// Executes the next block, and after a statement the blocks that follow it until the run [pauses]: a statement never
+    /// leads into another program.
+    ///
+    /// [pauses]: super::outcome::BlockEffects::set_pause
     #[inline(always)]
     pub(super) fn execute_block<S: EventSink>(
         &mut self,
-        until: u64,
         library: &mut impl Library,
         sink: &mut S,
     ) -> ExecResult<()> {
         let Self { memory, executor, plan, block_words, loop_detector, .. } = self;
-        executor.registers.block_effects.set_pause(until);
         let Some(program) = memory.get_mut(executor.flow.frame.program) else {
             return executor.end_of_program(memory);
         };
@@ -55,7 +55,17 @@ impl Control {
                     executor.flow.block = op.span;
                     executor.statement(program, statement, loop_detector, sink)
                 }
-                _ => break (program, op),
+                OpBody::Plain(OpKind::Words(words)) => {
+                    executor.flow.block = op.span;
+                    if executor.plain_move(op, words, sink).is_some() {
+                        return Ok(());
+                    }
+                    break (program, op);
+                }
+                _ => {
+                    executor.flow.block = op.span;
+                    break (program, op);
+                }
             };
             // The place of an assignment is read only after an alarm or an effect.
             if result.is_err() || executor.registers.block_effects.is_pause(executor.log.blocks) {
@@ -63,12 +73,6 @@ impl Control {
                 return result;
             }
         };
-        executor.flow.block = op.span;
-        if let OpBody::Plain(OpKind::Words(words)) = op.body()
-            && executor.plain_move(op, words, sink).is_some()
-        {
-            return Ok(());
-        }
         let mut kind = match op.body() {
             OpBody::Plain(kind) => kind,
             OpBody::Guarded(guarded) if executor.check_guards(guarded)? => return Ok(()),

@@ -152,15 +152,19 @@ impl Control {
             }
             let until =
                 limits.blocks.min((self.executor.log.blocks / PROGRESS_INTERVAL + 1) * PROGRESS_INTERVAL);
+            self.executor.registers.block_effects.set_pause(until);
             while self.executor.log.blocks < until {
                 observer.before_block(self);
-                let until = if observer.is_active() { self.executor.log.blocks + 1 } else { until };
-                let result = self.execute_block(until, library, sink);
-                if !self.is_uneventful(&result)
-                    && let Some(outcome) = self.conclude(result, sink)
-                {
-                    observer.after_block(self);
-                    return *outcome;
+                if observer.is_active() {
+                    self.executor.registers.block_effects.set_pause(self.executor.log.blocks + 1);
+                }
+                let result = self.execute_block(library, sink);
+                if !self.is_uneventful(&result) {
+                    if let Some(outcome) = self.conclude(result, sink) {
+                        observer.after_block(self);
+                        return *outcome;
+                    }
+                    self.executor.registers.block_effects.set_pause(until);
                 }
                 observer.after_block(self);
             }
@@ -183,7 +187,8 @@ impl Control {
             return Some(outcome);
         }
         self.executor.log.max_moves = u64::MAX;
-        let result = self.execute_block(self.executor.log.blocks + 1, library, sink);
+        self.executor.registers.block_effects.set_pause(self.executor.log.blocks + 1);
+        let result = self.execute_block(library, sink);
         self.conclude(result, sink).map(|outcome| *outcome)
     }
 

@@ -452,7 +452,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_quarter_counterclockwise_and_three_quarters_clockwise() {
+    fn the_sweep_of_a_quarter_is_90_or_minus_270_degrees() {
         let (start, end, centre) = ((1.0, 0.0), (0.0, 1.0), (0.0, 0.0));
         assert!((sweep(start, end, centre, false) - 90.0).abs() < 1e-12);
         assert!((sweep(start, end, centre, true) + 270.0).abs() < 1e-12);
