@@ -4,7 +4,7 @@ use super::notes::Note;
 use super::registers::{Registers, check_signal_word};
 use super::variables::Value;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::{CodeSet, OffsetVariables};
+use gcode_lang::control::{Dialect, OffsetVariables};
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::modes::{Unit, WorkSystem};
 
@@ -198,7 +198,7 @@ impl Registers {
                 WorkSystem::Additional(p) => f64::from(p),
                 WorkSystem::Standard(_) => 0.0,
             },
-            14 if self.data.settings.codes == CodeSet::Haas
+            14 if self.data.settings.codes == Dialect::HaasNgc
                 && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
             {
                 return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
