@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{count, rounded};
 use super::hole_changes::remarks;
-use super::top::{Rotary, hide_constant_rotary, outline, round_up, side, side_along_holes};
+use super::top::{Rotary, blank_hole, hide_constant_rotary, outline, round_up, side, side_along_holes};
 use gcode_draw::{DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Stroke, TopView};
 use gcode_inspect::machine::Machine;
 use gcode_part::Reference;
@@ -36,7 +36,7 @@ pub fn of_changes(
         let was = pair.old.map(|hole| lists[0][hole].clone());
         let is = pair.new.map(|hole| lists[1][hole].clone());
         let found = pair.new.map(|hole| &new.simulation.extracted.holes[hole]);
-        let (id, standing) = match (pair.old, pair.new) {
+        let (id, status) = match (pair.old, pair.new) {
             (Some(hole), Some(_)) if !pair.changed => ((hole + 1).to_string(), HoleStatus::Good),
             (Some(hole), Some(_)) => ((hole + 1).to_string(), HoleStatus::Bad),
             (Some(hole), None) => ((hole + 1).to_string(), HoleStatus::Missing),
@@ -46,16 +46,8 @@ pub fn of_changes(
             hole.map(|hole| (&sides[side].simulation.extracted.holes[hole], tools[side][hole].as_slice()))
         };
         let remarks = remarks(pair, made(0, pair.old), made(1, pair.new));
-        let turn = found.and_then(|found| rotary.angle(found));
-        DrawnHole {
-            id,
-            nominal: was,
-            actual: is,
-            status: standing,
-            position_deviation: None,
-            rotary_angle: turn,
-            remarks,
-        }
+        let rotary_angle = found.and_then(|found| rotary.angle(found));
+        DrawnHole { nominal: was, actual: is, rotary_angle, remarks, ..blank_hole(id, status) }
     };
     let mut holes: Vec<DrawnHole> = compared.holes.iter().map(drawn).collect();
     hide_constant_rotary(&mut holes);

@@ -1,0 +1,95 @@
+//! Likely causes of a verdict: unset work offsets, and numbers without a decimal point; and of an endless loop: a
+//! counter that its assignment does not change.
+use super::Run;
+use gcode_control::{Control, Value};
+use gcode_inspect::findings::WORK_OFFSET;
+use gcode_inspect::machine::Machine;
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::{Memory, NoLibrary};
+use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind, Item, Statement};
+use gcode_lang::syntax::parse;
+use gcode_lint::{check_loaded, rules};
+
+/// Returns the likely causes; numbers without a decimal point are included only if `explain` is true.
+pub(super) fn likely_causes(run: &Run, machine: &Machine, explain: bool) -> Vec<Diagnostic> {
+    let mut found: Vec<Diagnostic> = unset_work_offsets(run, machine, "holes").collect();
+    if explain {
+        let checked = check_loaded(reload(run), run.control.settings(), &mut NoLibrary);
+        let points = checked.findings.into_iter().filter(|finding| finding.kind == rules::MISSING_POINT);
+        found.extend(points.map(|mut finding| {
+            finding.message = finding.message.replacen(" is ", " without a decimal point is ", 1);
+            finding
+        }));
+    }
+    found
+}
+
+/// Loads the programs of the run in the same order, so that spans remain valid.
+fn reload(run: &Run) -> Memory {
+    let mut memory = Memory::default();
+    for (_, source) in run.control.memory().sources().iter() {
+        memory.load(source.name.clone(), source.bytes.clone());
+    }
+    memory
+}
+
+/// Returns the work offsets used by the run that neither the machine file nor the program sets. Each counts
+/// as 0 like G54, so that `made` (“holes” or “flutes”) does not depend on which one is active.
+pub(super) fn unset_work_offsets<'r>(
+    run: &'r Run,
+    machine: &'r Machine,
+    made: &'r str,
+) -> impl Iterator<Item = Diagnostic> + 'r {
+    let unset = run.control.unset_work_systems().iter();
+    unset.map(move |(system, place)| offset_finding(*system, machine, made).with_backtrace(place.clone()))
+}
+
+fn offset_finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {
+    let name = match system {
+        WorkSystem::Standard(_) => format!("G{}", system.code() / 10),
+        WorkSystem::Additional(number) => format!("G54.1 P{number}"),
+    };
+    let known: Vec<_> = machine.offsets.iter().map(|offset| format!("G{}", offset.code)).collect();
+    let given = match known.as_slice() {
+        [] => format!("no work offset; all count as zero here, and the {made} are computed as with G54"),
+        known => format!("{} only; this one counts as zero here", known.join(", ")),
+    };
+    let message =
+        format!("the program uses work offset {name}, which is unknown: the machine file gives {given}");
+    Diagnostic::new(&WORK_OFFSET, message)
+        .help("check that it is the offset set up on the machine; its values there are not checked")
+}
+
+/// Returns `#8=#8+#7 adds nothing: #7 is 0` for the blocks from `first` to `last` of one file.
+pub(super) fn unchanged_counter(control: &Control, first: Span, last: Span) -> Option<String> {
+    if first.source != last.source {
+        return None;
+    }
+    let sources = control.memory().sources();
+    let programs = parse(first.source, &sources.get(first.source).bytes);
+    let blocks = programs.iter().flat_map(|program| &program.blocks);
+    let looped = blocks.filter(|block| first.start <= block.span.start && block.span.end <= last.end);
+    looped.flat_map(|block| &block.items).find_map(|item| {
+        let Item::Statement(statement) = item else { return None };
+        let Statement::Assign { target, value } = &statement.node else { return None };
+        let ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, counter, step) = &value.kind else { return None };
+        let (target, counter, step) = (number(target)?, number(counter)?, number(step)?);
+        let stands = match control.variable(step).ok()? {
+            Value::Vacant => "vacant",
+            Value::Number(0.0) => "0",
+            Value::Number(_) => return None,
+        };
+        let written = sources.text(statement.span);
+        (target == counter).then(|| format!("{} adds nothing: #{step} is {stands}", written.trim()))
+    })
+}
+
+/// Returns the number of a variable with a literal index.
+fn number(expr: &Expr) -> Option<u32> {
+    let ExprKind::Variable(index) = &expr.kind else { return None };
+    let ExprKind::Literal(literal) = &index.kind else { return None };
+    let number = literal.value();
+    (number.fract() == 0.0 && (0.0..100_000.0).contains(&number)).then_some(number as u32)
+}
