@@ -1,4 +1,4 @@
-//! The sessions shown in README.md and docs/ are run: what stands there is what comes out.
+//! The sessions shown in README.md and docs/ are run and have the output shown.
 use std::path::Path;
 
 use gcode_tests::{copy_folder, files_below, programs, workspace};
@@ -65,15 +65,10 @@ fn check(page: &Path) {
             continue;
         };
         let done = programs::run_line(&line, place.path());
-        let mut said = String::from_utf8_lossy(&done.stderr).into_owned();
-        said.push_str(&String::from_utf8_lossy(&done.stdout));
-        let real: Vec<_> = said.lines().collect();
-        assert!(
-            matches(&shown.output, &real),
-            "{}: '{}' prints something else now:\n{said}",
-            page.display(),
-            shown.command
-        );
+        let mut output = String::from_utf8_lossy(&done.stderr).into_owned();
+        output.push_str(&String::from_utf8_lossy(&done.stdout));
+        let real: Vec<_> = output.lines().collect();
+        assert!(matches(&shown.output, &real), "{}: '{}' prints:\n{output}", page.display(), shown.command);
     }
 }
 

@@ -1,6 +1,6 @@
 //! What `verify` has to find in a program, in the words of a case's `expect.txt`.
 //!
-//! Each line is one thing; a line that begins with `#` says how its numbers were worked out.
+//! Each line is one thing; a line that begins with `#` explains how its numbers were worked out.
 //!
 //! | line | holds when |
 //! |---|---|
@@ -43,7 +43,7 @@ pub(crate) struct FindingLine {
 /// What a case expects.
 pub(crate) struct Expectation<'a> {
     summary: Option<&'a str>,
-    /// Each with the numbers and names that have to be said.
+    /// Each with the numbers and names that its message must have.
     findings: Vec<(&'a str, Vec<&'a str>)>,
     missing: Option<Vec<&'a str>>,
     facts: Vec<(&'a str, Vec<&'a str>)>,
@@ -72,8 +72,8 @@ impl<'a> Expectation<'a> {
                     assert!(expected.summary.replace(line).is_none(), "a second verdict: {line}");
                 }
                 "alarm" | "error" | "warning" | "note" => {
-                    let (head, said) = line.split_once(" with ").unwrap_or((line, ""));
-                    expected.findings.push((head, said.split_whitespace().collect()));
+                    let (head, words) = line.split_once(" with ").unwrap_or((line, ""));
+                    expected.findings.push((head, words.split_whitespace().collect()));
                 }
                 "missing" => expected.missing = Some(rest.split_whitespace().collect()),
                 "hole" | "neighbours" | "burr" => {
@@ -83,8 +83,8 @@ impl<'a> Expectation<'a> {
                 }
                 "made" => expected.made.push(rest),
                 "not-checked" => {
-                    let said = rest.strip_prefix("with ").unwrap();
-                    expected.not_checked.push(said.split_whitespace().collect());
+                    let words = rest.strip_prefix("with ").unwrap();
+                    expected.not_checked.push(words.split_whitespace().collect());
                 }
                 "layout" => expected.layout = true,
                 _ => panic!("no line of expect.txt: {line}"),
@@ -118,10 +118,10 @@ impl<'a> Expectation<'a> {
             }
         }
         self.compare_made(&outcome.made, &mut wrong);
-        for said in &self.not_checked {
-            let holds = |line: &String| said.iter().all(|word| mentions(line, word));
+        for words in &self.not_checked {
+            let holds = |line: &String| words.iter().all(|word| mentions(line, word));
             if !outcome.not_checked.iter().any(holds) {
-                wrong.push(format!("nothing is left open with {}", said.join(" ")));
+                wrong.push(format!("nothing is listed as not checked with {}", words.join(" ")));
             }
         }
         wrong
@@ -138,9 +138,9 @@ impl<'a> Expectation<'a> {
             wrong.push(format!("found is\n  {found}\nexpected is\n  {expected}"));
             return;
         }
-        for ((head, said), finding) in self.findings.iter().zip(found) {
-            for word in said.iter().filter(|word| !mentions(&finding.text, word)) {
-                wrong.push(format!("{head} doesn't say {word}: {}", finding.text.trim()));
+        for ((head, words), finding) in self.findings.iter().zip(found) {
+            for word in words.iter().filter(|word| !mentions(&finding.text, word)) {
+                wrong.push(format!("{head} doesn't have {word}: {}", finding.text.trim()));
             }
         }
     }

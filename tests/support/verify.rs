@@ -1,6 +1,6 @@
 //! Cases of kind `verify`: a program compared with a reference, and what has to be found, as it was worked out by hand.
 //!
-//! `case.nc` is the program (programs it calls stand in the same file). `expect.txt` says in the words of
+//! `case.nc` is the program (programs it calls stand in the same file). `expect.txt` has in the words of
 //! `expected_verdict` which machine and which reference, of those in `suite/verify/`, and what comes out.
 //! A machine or a reference that only one case has stands beside its program: `machine.toml`, `reference.toml` or `.csv`.
 //! Without a reference the holes are listed that the program makes.
@@ -190,7 +190,7 @@ fn known_facts<const N: usize>(facts: [(&'static str, Option<f64>); N]) -> Vec<(
     facts.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
 }
 
-/// `error hole-depth at O6:13 from O5:6 of r1h0`, and what is said of it.
+/// Findings as `error hole-depth at O6:13 from O5:6 of r1h0`, with their messages and notes.
 fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<FindingLine> {
     let one = |finding: &Diagnostic| {
         let mut head = format!("{} {}", finding.severity.name(), finding.code());
