@@ -94,7 +94,7 @@ impl Observer for States {
 
     fn after_block(&mut self, control: &Control) {
         let now: Vec<_> = control.variables().filter(|(number, _)| (500..600).contains(number)).collect();
-        if !self.0.contains(&now) {
+        if self.0.last() != Some(&now) && !self.0.contains(&now) {
             self.0.push(now);
         }
     }
