@@ -41,30 +41,32 @@ fn against_schema(document: &Value) -> Vec<String> {
     schema.iter_errors(document).map(|error| format!("{}: {error}", error.instance_path())).collect()
 }
 
+/// The code, file and line of every result of a SARIF log, which must be valid.
+fn entries(log: &Value) -> Vec<(&str, &str, Option<u64>)> {
+    assert_eq!(against_schema(log), Vec::<String>::new());
+    let results = log["runs"][0]["results"].as_array().unwrap();
+    let entries = results.iter().map(|result| {
+        let at = &result["locations"][0]["physicalLocation"];
+        let uri = at["artifactLocation"]["uri"].as_str().unwrap_or_default();
+        (result["ruleId"].as_str().unwrap(), uri, at["region"]["startLine"].as_u64())
+    });
+    entries.collect()
+}
+
 #[test]
 fn sarif_is_valid_and_has_the_places() {
     let place = tempfile::tempdir().unwrap();
     collection(place.path());
     let log = json("gcode-sim test parts --format sarif", place.path());
-    assert_eq!(against_schema(&log), Vec::<String>::new());
-    let results = log["runs"][0]["results"].as_array().unwrap();
-    let entries: Vec<(&str, &str, &Value)> = results
-        .iter()
-        .map(|result| {
-            let at = &result["locations"][0]["physicalLocation"];
-            let uri = at["artifactLocation"]["uri"].as_str().unwrap_or_default();
-            (result["ruleId"].as_str().unwrap(), uri, &at["region"]["startLine"])
-        })
-        .collect();
-    let first = Value::from(1);
-    let wanted = [
-        ("hole-position", "parts/aside/main.nc", &Value::from(4)),
-        ("stop", "parts/lost/main.nc", &Value::from(2)),
-        ("hole-moved", "parts/moved/main.nc", &Value::from(4)),
-        ("case-new", "parts/new%20%26%20%3Codd%3E/main.nc", &first),
-        ("case-refused", "parts/two/a.nc", &first),
+    let expected = [
+        ("hole-position", "parts/aside/main.nc", Some(4)),
+        ("stop", "parts/lost/main.nc", Some(2)),
+        ("hole-moved", "parts/moved/main.nc", Some(4)),
+        ("case-new", "parts/new%20%26%20%3Codd%3E/main.nc", Some(1)),
+        ("case-refused", "parts/two/a.nc", Some(1)),
     ];
-    assert_eq!(entries, wanted);
+    assert_eq!(entries(&log), expected);
+    let results = log["runs"][0]["results"].as_array().unwrap();
     let moved = results[2]["message"]["text"].as_str().unwrap();
     assert_eq!(
         moved,
@@ -103,27 +105,17 @@ fn findings_of_verify_and_changes_of_diff_are_sarif() {
     std::fs::write(place.path().join("new.nc"), drill("0.").replace("M00\n", "")).unwrap();
     std::fs::write(place.path().join("wanted.csv"), "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n")
         .unwrap();
-    let entries = |line: &str| -> Vec<(String, Value, Value)> {
-        let log = json(line, place.path());
-        assert_eq!(against_schema(&log), Vec::<String>::new(), "{line}");
-        let results = log["runs"][0]["results"].as_array().unwrap();
-        let one = |result: &Value| {
-            let at = &result["locations"][0]["physicalLocation"];
-            let code = result["ruleId"].as_str().unwrap().to_owned();
-            (code, at["artifactLocation"]["uri"].clone(), at["region"]["startLine"].clone())
-        };
-        results.iter().map(one).collect()
-    };
-    let found = entries("gcode-sim verify new.nc --reference wanted.csv --format sarif");
-    assert!(found.contains(&("hole-position".to_owned(), "new.nc".into(), 3.into())), "{found:?}");
-    assert_eq!(entries("gcode-sim verify old.nc --reference wanted.csv --format sarif"), []);
-    let found = entries("gcode-sim diff old.nc new.nc --format sarif");
-    let wanted = [
-        ("hole-moved".to_owned(), "new.nc".into(), 3.into()),
-        ("stop".to_owned(), "new.nc".into(), 3.into()),
+    let expected: [(&str, &[(&str, &str, Option<u64>)]); 3] = [
+        ("verify old.nc --reference wanted.csv", &[]),
+        ("diff old.nc new.nc", &[("hole-moved", "new.nc", Some(3)), ("stop", "new.nc", Some(3))]),
+        ("diff old.nc old.nc", &[]),
     ];
-    assert_eq!(found, wanted);
-    assert_eq!(entries("gcode-sim diff old.nc old.nc --format sarif"), []);
+    for (command, expected) in expected {
+        let log = json(&format!("gcode-sim {command} --format sarif"), place.path());
+        assert_eq!(entries(&log), expected, "{command}");
+    }
+    let log = json("gcode-sim verify new.nc --reference wanted.csv --format sarif", place.path());
+    assert!(entries(&log).contains(&("hole-position", "new.nc", Some(3))), "{log}");
 }
 
 #[test]

@@ -18,11 +18,10 @@ use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
 
 use crate::Case;
-use crate::expected_verdict::{Expectation, FindingLine, Outcome};
+use crate::expected_verdict::{FindingLine, Outcome, has_layout};
 
 pub(crate) fn run(case: &Case) {
     let text = case.text("expect.txt");
-    let expected = Expectation::parse(&text);
     let machine = machine_of(&case.dir).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let wanted = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
@@ -39,10 +38,11 @@ pub(crate) fn run(case: &Case) {
         }
         None => list_holes(&simulate(&request, &mut NoLibrary, None).unwrap()),
     };
-    let differences = expected.differences(&outcome);
+    let differences = outcome.differences(&text);
     assert!(differences.is_empty(), "{}:\n{}\n{layout}", case.name(), differences.join("\n"));
-    assert!(expected.layout || case.optional("verdict.snap").is_none(), "{}: no line 'layout'", case.name());
-    if expected.layout {
+    let has_layout = has_layout(&text);
+    assert!(has_layout || case.optional("verdict.snap").is_none(), "{}: no line 'layout'", case.name());
+    if has_layout {
         case.snapshot("verdict", &layout);
     }
 }
