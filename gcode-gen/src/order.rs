@@ -3,22 +3,22 @@ use gcode_part::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 
 /// One tool and the holes it makes.
 #[derive(Debug)]
-pub struct ToolPass<'j> {
-    pub tool: &'j Tool,
-    pub settings: Vec<HeadSetting<'j>>,
+pub(crate) struct ToolPass<'j> {
+    pub(crate) tool: &'j Tool,
+    pub(crate) settings: Vec<HeadSetting<'j>>,
 }
 
 /// Holes that share a head angle and a height.
 #[derive(Debug)]
-pub struct HeadSetting<'j> {
-    pub radius: f64,
-    pub axis: AxisDirection,
+pub(crate) struct HeadSetting<'j> {
+    pub(crate) radius: f64,
+    pub(crate) axis: AxisDirection,
     /// Holes in the order of their azimuths.
-    pub holes: Vec<&'j HoleSpec>,
+    pub(crate) holes: Vec<&'j HoleSpec>,
 }
 
 /// Returns every tool that makes a hole, in the order of the tool list.
-pub fn passes(job: &PinHoles) -> Vec<ToolPass<'_>> {
+pub(crate) fn passes(job: &PinHoles) -> Vec<ToolPass<'_>> {
     let mut holes: Vec<&HoleSpec> = job.holes.iter().collect();
     holes.sort_by(|one, other| {
         let direction = |hole: &HoleSpec| matches!(hole.axis, AxisDirection::Normal);

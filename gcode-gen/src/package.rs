@@ -5,13 +5,16 @@
 pub struct Package {
     /// The O-numbers of the main programs; most families have one.
     pub mains: Vec<u32>,
+    /// The main programs, then the resident macros that they call.
     pub programs: Vec<Program>,
     /// The machine file's text.
     pub machine: String,
 }
 
+/// One program of a package.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
+    /// Its O-number.
     pub number: u32,
     /// ASCII text, lines ended by LF.
     pub text: String,
@@ -32,16 +35,18 @@ impl Package {
         }
     }
 
+    /// Returns the program with this O-number.
     pub fn program(&self, number: u32) -> Option<&Program> {
         self.programs.iter().find(|program| program.number == number)
     }
 }
 
+/// Returns the name of a program's file: `O8100.nc`.
 pub fn file_name(number: u32) -> String {
     format!("{}.nc", stem(number))
 }
 
 /// Returns the beginning of the names of a program's files.
-pub fn stem(number: u32) -> String {
+pub(crate) fn stem(number: u32) -> String {
     format!("O{number:04}")
 }

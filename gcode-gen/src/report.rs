@@ -20,7 +20,7 @@ pub const FORMATS: &[Format] = &[
 /// The document of `emit --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct EmitReport<'c> {
-    /// The kind of the numbers.
+    /// Basis of the numbers.
     pub basis: &'static str,
     /// Why nothing is written, in words; null if the programs pass verification.
     pub refused: Option<String>,
@@ -37,32 +37,27 @@ pub struct EmitReport<'c> {
 }
 
 impl<'c> EmitReport<'c> {
-    /// Builds the report of programs that pass.
-    pub fn new(checked: &'c CheckedPackage, written: Vec<String>, left_over: Vec<String>) -> Self {
-        Self { written, left_over, ..Self::of(Some(checked), None) }
-    }
-
-    /// Builds the report of programs that are not written; `checked` is given if they could be run.
-    pub fn refused(checked: Option<&'c CheckedPackage>, why: String) -> Self {
-        Self::of(checked, Some(why))
-    }
-
-    fn of(checked: Option<&'c CheckedPackage>, refused: Option<String>) -> Self {
+    /// Builds the report of programs; `checked` is given if they could be run, `refused` if they are not written.
+    pub(crate) fn new(
+        checked: Option<&'c CheckedPackage>,
+        refused: Option<String>,
+        written: Vec<String>,
+        left_over: Vec<String>,
+    ) -> Self {
+        let verdict = checked.map(|checked| &checked.verdict);
         Self {
             basis: BASIS,
             refused,
-            written: Vec::new(),
-            left_over: Vec::new(),
+            written,
+            left_over,
             seconds: checked.map(|checked| checked.seconds),
-            verdict: checked
-                .map(|checked| &checked.verdict)
-                .filter(|of| !matches!(of, PackageVerdict::Measured)),
+            verdict: verdict.filter(|verdict| !matches!(verdict, PackageVerdict::Measured)),
             table: checked.map_or("", |checked| &checked.report),
         }
     }
 
     /// Formats the result for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = self.table.to_owned();
         let minutes = self.seconds.unwrap_or_default() / 60.0;
         let _ = writeln!(text, "running time {minutes:.0} min without the operator's stops\n");
@@ -76,7 +71,7 @@ impl<'c> EmitReport<'c> {
 /// The document of `sheet --format json`. Times in minutes.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct SheetReport {
-    /// The kind of the numbers.
+    /// Basis of the numbers.
     pub basis: &'static str,
     /// Why nothing is written, in words; null if the programs pass verification.
     pub refused: Option<String>,
@@ -114,7 +109,7 @@ pub struct CostReport {
 
 impl SheetReport {
     /// Builds the report of a sheet written to a file; costs in one currency, the job's own machine first.
-    pub fn new(written: String, taken: &MachineTime, currency: &str, costs: &[Cost]) -> Self {
+    pub(crate) fn new(written: String, taken: &MachineTime, currency: &str, costs: &[Cost]) -> Self {
         let cost = |cost: &Cost| CostReport {
             machine: cost.machine.clone(),
             currency: currency.to_owned(),
@@ -133,12 +128,12 @@ impl SheetReport {
     }
 
     /// Builds the report of programs that fail.
-    pub fn refused(why: String) -> Self {
-        Self { basis: BASIS, refused: Some(why), written: None, time: None, costs: Vec::new() }
+    pub(crate) fn refused(refused: Option<String>) -> Self {
+        Self { basis: BASIS, refused, written: None, time: None, costs: Vec::new() }
     }
 
     /// Formats time and money in two or three lines for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         if let Some(TimeReport { run, stops, tool_changes, all, .. }) = &self.time {
             let (stops, changes) = (count(*stops, "operator stop"), count(*tool_changes, "tool change"));

@@ -1,14 +1,13 @@
-//! How long it takes to run a program of many holes, follow its tool, and hold the holes against the reference: ten times
-//! as many holes should take little more than ten times as long.
+//! Time of a run of a program with many holes, and of their verification. Both should grow little more than in
+//! proportion to the number of holes.
 use std::fmt::Write as _;
 
 use divan::counter::ItemsCount;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Tolerances};
 use gcode_lang::program::NoLibrary;
-use gcode_part::NominalPart;
-use gcode_part::Reference;
 use gcode_part::job::Job;
+use gcode_part::{NominalPart, Reference};
 use gcode_session::{Request, Simulation, simulate};
 
 fn main() {
@@ -18,7 +17,7 @@ fn main() {
 /// Rows of both groups, and holes in each.
 const SIZES: [(u32, u32); 3] = [(20, 50), (100, 100), (200, 500)];
 
-/// A honeycomb with so many holes, and a program that drills them one by one with G81.
+/// A honeycomb, and a program that drills its holes one by one with G81.
 struct Case {
     request: Request,
     reference: Reference,
@@ -26,10 +25,10 @@ struct Case {
 
 impl Case {
     fn new((rows, along): (u32, u32)) -> Self {
-        let job = Job::parse(&job(rows, along)).expect("the job is one");
+        let job = Job::parse(&job(rows, along)).expect("the job is valid");
         let machine = Machine::from_job(&job).expect("the job has a machine");
-        let wanted = NominalPart::from_job(&job).expect("the job has a part");
-        let reference = wanted.into_holes().expect("the part has holes");
+        let nominal = NominalPart::from_job(&job).expect("the job has a part");
+        let reference = nominal.into_holes().expect("the part has holes");
         assert_eq!(reference.holes.len() as u32, rows * along);
         let program = program(&reference, along as usize);
         let mut request = Request::new("O1.nc", program.into_bytes(), machine);
@@ -41,14 +40,14 @@ impl Case {
         simulate(&self.request, &mut NoLibrary, self.reference.surface).expect("there is a program")
     }
 
-    fn holds(&self, simulation: &Simulation) -> bool {
+    fn passes(&self, simulation: &Simulation) -> bool {
         let tolerances = Tolerances::of(&self.reference, None);
         let verdict = simulation.verify(&self.reference, tolerances, &self.request.machine);
         verdict.verdict == Answer::Pass && verdict.holes.len() == self.reference.holes.len()
     }
 }
 
-/// Holes about 10 mm apart, rows of all the same number of holes.
+/// Returns a job with holes about 10 mm apart, in rows of `along` holes each.
 fn job(rows: u32, along: u32) -> String {
     let diameter = f64::from(rows) * 10.0 * 0.75f64.sqrt() / std::f64::consts::PI;
     let length = 10.0 * (f64::from(along) - 0.25);
@@ -87,26 +86,26 @@ fn program(reference: &Reference, along: usize) -> String {
     let rows = reference.holes.len() / along;
     for (row, holes) in reference.holes.chunks(along).enumerate() {
         let turn = 360.0 * row as f64 / rows as f64;
-        write!(text, "G80 G0 B{turn:.3}\nG98 G81 Z-3. R2. F60. K0\n").expect("a text takes all");
+        write!(text, "G80 G0 B{turn:.3}\nG98 G81 Z-3. R2. F60. K0\n").expect("a string can be written to");
         for hole in holes {
-            writeln!(text, "X{:.3} Y0.", hole.entry[0]).expect("a text takes all");
+            writeln!(text, "X{:.3} Y0.", hole.entry[0]).expect("a string can be written to");
         }
     }
     text + "G80\nM30\n"
 }
 
-/// The program run and the holes found in its motion.
+/// Runs the program and extracts the holes.
 #[divan::bench(args = SIZES, sample_count = 5, sample_size = 1)]
 fn extract(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
     let case = Case::new(size);
     bencher.counter(ItemsCount::new(case.reference.holes.len())).bench_local(|| case.simulate());
 }
 
-/// The holes found held against those wanted, with their neighbours.
+/// Verifies the holes against the reference, with their neighbours.
 #[divan::bench(args = SIZES, sample_count = 5, sample_size = 1)]
 fn verify(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
     let case = Case::new(size);
     let simulation = case.simulate();
-    assert!(case.holds(&simulation), "the program drills what is wanted");
-    bencher.counter(ItemsCount::new(case.reference.holes.len())).bench_local(|| case.holds(&simulation));
+    assert!(case.passes(&simulation), "the program drills the nominal holes");
+    bencher.counter(ItemsCount::new(case.reference.holes.len())).bench_local(|| case.passes(&simulation));
 }

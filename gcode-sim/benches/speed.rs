@@ -1,7 +1,7 @@
-//! How long whole runs take, as ratios: a long file of single moves and a macro loop, against the same arithmetic in Rust
-//! and, where they are installed, against LinuxCNC's stand-alone interpreter, and in instructions as valgrind counts them.
+//! Times of whole runs, as ratios: a long file of single moves and a macro loop, compared with the same arithmetic in
+//! Rust and, if installed, with LinuxCNC's stand-alone interpreter, and in instructions counted by valgrind.
 //!
-//! `cargo bench -p gcode-sim --bench speed`. The programs are written to a temporary folder and go with it.
+//! `cargo bench -p gcode-sim --bench speed`. The programs are written to a temporary folder.
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 #![allow(clippy::disallowed_methods, reason = "a bench writes the programs that it runs")]
 use std::fmt::Write as _;
@@ -10,13 +10,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Blocks or turns that are timed, and the two sizes whose difference is counted in instructions: beyond the blocks that
-/// a program keeps lowered, whose places in memory are made once.
+/// Number of blocks or iterations that are timed.
 const MANY: u32 = 1_000_000;
+/// The two sizes whose difference is counted in instructions: the memory of the lowered blocks is allocated before.
 const COUNTED: [u32; 2] = [10_000, 30_000];
-/// Sizes of one kind that are timed against the first of them.
+/// Sizes whose times are compared with that of the first.
 const GROWING: [u32; 4] = [100_000, 200_000, 400_000, 800_000];
-/// The least of so many runs counts: what else the machine does only adds to it.
+/// Number of runs, of which the shortest counts: other processes only add to the time.
 const RUNS: usize = 3;
 
 /// One program in two dialects.
@@ -40,7 +40,7 @@ const WORKLOADS: [Workload; 2] = [
 fn main() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     for workload in &WORKLOADS {
-        println!("{}, {MANY} blocks or turns:", workload.name);
+        println!("{}, {MANY} blocks or iterations:", workload.name);
         let ours = write(folder.path(), "ours.nc", &(workload.ours)(MANY));
         let took = time(|| run(&mut ours_on(&ours)));
         println!("  gcode-sim run            {:8.3} s", took.as_secs_f64());
@@ -52,7 +52,7 @@ fn main() {
                 ratio(took, once)
             );
         }
-        if is_there("rs274") {
+        if is_installed("rs274") {
             let theirs = write(folder.path(), "theirs.ngc", &(workload.linuxcnc)(MANY));
             let other = time(|| run(&mut linuxcnc_on(folder.path(), &theirs)));
             println!(
@@ -61,10 +61,10 @@ fn main() {
                 ratio(other, took)
             );
         } else {
-            println!("  LinuxCNC's rs274         isn't installed (Debian's linuxcnc-uspace has it)");
+            println!("  LinuxCNC's rs274         is not installed (Debian's linuxcnc-uspace has it)");
         }
         grow(workload, folder.path());
-        if is_there("valgrind") {
+        if is_installed("valgrind") {
             let [few, more] = COUNTED.map(|size| {
                 let program = write(folder.path(), "counted.nc", &(workload.ours)(size));
                 instructions(&program, folder.path())
@@ -72,12 +72,12 @@ fn main() {
             let each = (more - few) / u64::from(COUNTED[1] - COUNTED[0]);
             println!("  instructions for each    {each:8}");
         } else {
-            println!("  instructions for each    not counted: valgrind isn't installed");
+            println!("  instructions for each    not counted: valgrind is not installed");
         }
     }
 }
 
-/// Twice as many blocks take twice as long: so many times the first size, so many times its time.
+/// Prints the times of growing programs as multiples of the first, which should be the multiples of the sizes.
 fn grow(workload: &Workload, folder: &Path) {
     let took = GROWING.map(|size| {
         let program = write(folder, "growing.nc", &(workload.ours)(size));
@@ -86,54 +86,54 @@ fn grow(workload: &Workload, folder: &Path) {
     for (size, took_here) in GROWING.iter().zip(took).skip(1) {
         let times = f64::from(*size) / f64::from(GROWING[0]);
         println!(
-            "  {size:7} blocks or turns  {:6.2} times {} for {times} times as many",
+            "  {size:7} blocks           {:6.2} times {} for {times} times as many",
             ratio(took_here, took[0]),
             GROWING[0]
         );
     }
 }
 
-/// Moves along a circle, each with its sequence number.
+/// Returns moves along a circle, each with a sequence number.
 fn flat(lines: u32) -> String {
     let mut text = "G21 G17 G40 G49 G80 G90 G94 F500.\n".to_owned();
     for line in 0..lines {
         let (sine, cosine) = (f64::from(line) * 0.01).sin_cos();
         let depth = f64::from(line % 1000) * 0.001;
         writeln!(text, "N10 G1 X{:.3} Y{:.3} Z-{depth:.3}", 100.0 * cosine, 100.0 * sine)
-            .expect("a text takes all");
+            .expect("a string can be written to");
     }
     text + "M30\n"
 }
 
-fn macro_loop(turns: u32) -> String {
+fn macro_loop(iterations: u32) -> String {
     format!(
-        "O1\nG21 G17 G40 G49 G80 G90 G94 F500.\n#1=0\nWHILE[#1LT{turns}]DO1\n#2=#1*0.001\n#3=SQRT[#2*#2+1.]\n\
+        "O1\nG21 G17 G40 G49 G80 G90 G94 F500.\n#1=0\nWHILE[#1LT{iterations}]DO1\n#2=#1*0.001\n#3=SQRT[#2*#2+1.]\n\
          #4=ATAN[#2]/[#3]\n#5=#3*COS[#4]\n#6=#5+#2\n#1=#1+1\nG1 X#5 Y#6 Z#4\nEND1\nM30\n"
     )
 }
 
-fn o_word_loop(turns: u32) -> String {
+fn o_word_loop(iterations: u32) -> String {
     format!(
-        "%\nG21 G17 G40 G49 G80 G90 G94 F500.\n#1=0\no1 while [#1 LT {turns}]\n#2=[#1*0.001]\n#3=SQRT[#2*#2+1.]\n\
+        "%\nG21 G17 G40 G49 G80 G90 G94 F500.\n#1=0\no1 while [#1 LT {iterations}]\n#2=[#1*0.001]\n#3=SQRT[#2*#2+1.]\n\
          #4=ATAN[#2]/[#3]\n#5=[#3*COS[#4]]\n#6=[#5+#2]\n#1=[#1+1]\nG1 X#5 Y#6 Z#4\no1 endwhile\nM30\n%\n"
     )
 }
 
-/// What the loop computes, with the same functions and to the same grid.
-fn native_loop(turns: u32) -> f64 {
-    let mut way = 0.0;
+/// Computes the loop with the same functions, rounded to the same grid.
+fn native_loop(iterations: u32) -> f64 {
+    let mut length = 0.0;
     let mut from = [0.0_f64; 3];
-    for turn in 0..turns {
-        let x = f64::from(turn) * 0.001;
+    for iteration in 0..iterations {
+        let x = f64::from(iteration) * 0.001;
         let root = (x * x + 1.0).sqrt();
         let angle = libm::atan2(x, root).to_degrees();
         let first = root * libm::cos(angle.to_radians());
         let to = [first, first + x, angle].map(|value| (value * 1000.0).round() / 1000.0);
         let square: f64 = (0..3).map(|axis| (to[axis] - from[axis]) * (to[axis] - from[axis])).sum();
-        way += square.sqrt();
+        length += square.sqrt();
         from = to;
     }
-    way
+    length
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
@@ -148,7 +148,7 @@ fn ours_on(program: &Path) -> Command {
     command
 }
 
-/// It keeps its variables in a file of the folder it runs in.
+/// Returns the command; LinuxCNC keeps its variables in a file of its working folder.
 fn linuxcnc_on(folder: &Path, program: &Path) -> Command {
     let mut command = Command::new("rs274");
     command.current_dir(folder).arg("-g").arg(program).arg("/dev/null");
@@ -174,11 +174,11 @@ fn ratio(a: Duration, b: Duration) -> f64 {
     a.as_secs_f64() / b.as_secs_f64()
 }
 
-fn is_there(program: &str) -> bool {
+fn is_installed(program: &str) -> bool {
     Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
-/// Instructions of a whole run of ours.
+/// Returns the number of instructions of a whole run of gcode-sim.
 fn instructions(program: &Path, folder: &Path) -> u64 {
     let mut command = Command::new("valgrind");
     let file = folder.join("callgrind.out");

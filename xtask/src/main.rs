@@ -1,7 +1,7 @@
-//! The project's own commands: `cargo xtask check` tells whether all is well, `cargo xtask bless` accepts new results.
+//! The project's own commands: `cargo xtask check` checks the workspace, `cargo xtask bless` accepts new results.
 use std::process::{Command, ExitCode};
 
-/// What `check` runs, in this order; the first that fails ends it.
+/// Commands of `check` in their order; the first failure ends it.
 const CHECK: &[&[&str]] = &[
     &["fmt", "--all", "--check"],
     &["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"],
@@ -17,20 +17,20 @@ fn main() -> ExitCode {
             cargo(&["test", "--workspace", "--quiet"], &[("INSTA_UPDATE", "always"), ("BLESS", "1")])
         }
         _ => {
-            tell("usage: cargo xtask check | bless");
+            print("usage: cargo xtask check | bless");
             return ExitCode::from(2);
         }
     };
     if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn cargo(arguments: &[&str], surroundings: &[(&str, &str)]) -> bool {
-    tell(&format!("cargo {}", arguments.join(" ")));
-    let run = Command::new("cargo").args(arguments).envs(surroundings.iter().copied()).status();
+fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> bool {
+    print(&format!("cargo {}", arguments.join(" ")));
+    let run = Command::new("cargo").args(arguments).envs(variables.iter().copied()).status();
     run.is_ok_and(|status| status.success())
 }
 
 #[expect(clippy::print_stderr, reason = "a tool for the people who build the project")]
-fn tell(text: &str) {
+fn print(text: &str) {
     eprintln!("{text}");
 }

@@ -1,22 +1,22 @@
 //! Runs an emitted package as the control would and verifies its effect against the job's geometry. Only a
 //! package that passes is written.
 mod alignment;
-mod flutes;
-mod holes;
 
-use gcode_draw::Scene;
-use gcode_inspect::verify::Verdict;
+use gcode_draw::Picture;
+use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::flutes::FluteVerdict;
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::Library;
-use gcode_lang::source::Sources;
-use gcode_part::NominalPart;
 use gcode_part::job::Job;
-use gcode_sim::report::diagnostic;
+use gcode_part::{Flutes, NominalPart, Reference, overlaps};
+use gcode_session::{Request, Run, grind, simulate};
+use gcode_sim::report::verdict_table::{Layout, table};
+use gcode_sim::report::{diagnostic, flute_table, flute_view, top};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::package::{Package, Program, file_name};
+use crate::package::{Package, file_name, stem};
 
 /// Reasons why a package cannot be verified.
 #[derive(Debug, thiserror::Error)]
@@ -41,7 +41,8 @@ pub struct CheckedPackage {
     /// Report as printed by `verify`.
     pub report: String,
     /// Pictures, each with its file name without `.png`.
-    pub pictures: Vec<(String, Scene)>,
+    pub pictures: Vec<(String, Picture)>,
+    /// The verdict.
     pub verdict: PackageVerdict,
 }
 
@@ -49,7 +50,9 @@ pub struct CheckedPackage {
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PackageVerdict {
+    /// The part has holes.
     Holes(Verdict),
+    /// The part has flutes.
     Flutes(FluteVerdict),
     /// The part is only measured, so that nothing is verified.
     Measured,
@@ -74,6 +77,9 @@ impl PackageVerdict {
 }
 
 /// Simulates the main programs on the machine of the package's own machine file.
+///
+/// # Errors
+/// [`CheckError`] if no part can have the job's geometry, or the package contradicts itself.
 pub fn check(job: &Job, package: &Package) -> Result<CheckedPackage, CheckError> {
     if let Job::Alignment(job) = job {
         return alignment::check(job, package);
@@ -83,23 +89,108 @@ pub fn check(job: &Job, package: &Package) -> Result<CheckedPackage, CheckError>
     {
         return Err(CheckError::Impossible(why));
     }
-    match NominalPart::from_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
-        NominalPart::Holes(reference) => holes::check(job, package, &reference),
-        NominalPart::Flutes(wanted) => flutes::check(package, &wanted),
+    let nominal = NominalPart::from_job(job).map_err(|e| CheckError::Impossible(e.to_string()))?;
+    let machine = Machine::parse(&package.machine).map_err(|e| broken_package("machine.toml", &e))?;
+    let main = package.main();
+    let main = main.ok_or_else(|| CheckError::Broken("the main program was not emitted".to_owned()))?;
+    let request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
+    match nominal {
+        NominalPart::Holes(reference) => check_holes(job, package, request, &stem(main.number), &reference),
+        NominalPart::Flutes(flutes) => check_flutes(package, &request, &stem(main.number), &flutes),
     }
+}
+
+fn check_holes(
+    job: &Job,
+    package: &Package,
+    mut request: Request,
+    stem: &str,
+    reference: &Reference,
+) -> Result<CheckedPackage, CheckError> {
+    request.conduct = reference.process_limits.clone();
+    let simulation = simulate(&request, &mut Programs(package), reference.surface)
+        .map_err(|e| broken_package("the main program", &e))?;
+    let verdict = simulation.verify(reference, Tolerances::of(reference, None), &request.machine);
+    let top = top::of_verdict(&request.name, &simulation, reference, &verdict, &request.machine);
+    let mut also = Vec::new();
+    // A pattern checks for overlaps before it computes any holes.
+    if reference.pattern.is_none() {
+        let cut = overlaps(&reference.holes);
+        also.extend(cut.iter().map(|overlap| format!("error: {}\n", overlap.sentence(&reference.holes))));
+    }
+    also.extend(rounding_messages(&verdict, job.control().increment.size()));
+    let (refusals, warnings) = messages(&verdict.diagnostics, &simulation.run, also, verdict.verdict);
+    Ok(CheckedPackage {
+        refusals,
+        warnings,
+        seconds: simulation.run.control.seconds().0,
+        report: table(&verdict, Layout::default()),
+        pictures: vec![(stem.to_owned(), gcode_draw::main_view(&top))],
+        verdict: PackageVerdict::Holes(verdict),
+    })
+}
+
+fn check_flutes(
+    package: &Package,
+    request: &Request,
+    stem: &str,
+    nominal: &Flutes,
+) -> Result<CheckedPackage, CheckError> {
+    let grinding = grind(request, &mut Programs(package), nominal)
+        .map_err(|e| broken_package("the main program", &e))?;
+    let verdict = grinding.verify();
+    let view = flute_view::of(&request.name, &grinding, &verdict);
+    let (refusals, warnings) = messages(&verdict.diagnostics, &grinding.run, Vec::new(), verdict.verdict);
+    Ok(CheckedPackage {
+        refusals,
+        warnings,
+        seconds: grinding.run.control.seconds().0,
+        report: flute_table::table(&verdict),
+        pictures: vec![
+            (stem.to_owned(), gcode_draw::side_view(&view)),
+            (format!("{stem}-tip"), gcode_draw::tip_view(&view)),
+            (format!("{stem}-helix"), gcode_draw::helix_graph(&view)),
+        ],
+        verdict: PackageVerdict::Flutes(verdict),
+    })
+}
+
+/// Returns the refusals, every error with its block and then `also`, and the warnings.
+fn messages(
+    findings: &[Diagnostic],
+    run: &Run,
+    also: Vec<String>,
+    answer: Answer,
+) -> (Vec<String>, Vec<String>) {
+    let rendered = |wanted: &dyn Fn(Severity) -> bool| {
+        let chosen = findings.iter().filter(|finding| wanted(finding.severity));
+        chosen.map(|finding| diagnostic::render(finding, run.control.memory().sources())).collect::<Vec<_>>()
+    };
+    let mut refusals = rendered(&|severity| Severity::Error <= severity);
+    refusals.extend(also);
+    if refusals.is_empty() && answer == Answer::Fail {
+        refusals.push("the programs fail the job's reference\n".to_owned());
+    }
+    (refusals, rendered(&|severity| severity == Severity::Warning))
+}
+
+/// Returns the share of rounding in position errors that are too large because of it.
+fn rounding_messages(verdict: &Verdict, increment: f64) -> impl Iterator<Item = String> {
+    let tolerance = verdict.tolerance;
+    let failed = verdict.holes.iter().filter(move |hole| hole.position_deviation > tolerance);
+    let by_rounding = failed
+        .filter(move |hole| hole.rounding > tolerance - (hole.position_deviation - hole.rounding).max(0.0));
+    by_rounding.map(move |hole| {
+        format!(
+            "hole {}: rounding to the least increment of {increment} mm and degrees alone can cause Φ{:.4} \
+             here, tolerance Φ{tolerance}; use a finer increment or a wider tolerance\n",
+            hole.id, hole.rounding
+        )
+    })
 }
 
 pub(crate) fn broken_package(what: &str, error: &dyn std::fmt::Display) -> CheckError {
     CheckError::Broken(format!("{what}: {error}"))
-}
-
-fn warnings(found: &[Diagnostic], sources: &Sources) -> Vec<String> {
-    let told = found.iter().filter(|finding| finding.severity == Severity::Warning);
-    told.map(|finding| diagnostic::render(finding, sources)).collect()
-}
-
-fn main_program(package: &Package) -> Result<&Program, CheckError> {
-    package.main().ok_or_else(|| CheckError::Broken("the main program was not emitted".to_owned()))
 }
 
 /// The package's programs as the control's program memory.

@@ -2,7 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
-use gcode_draw::{PictureError, Scene, Size};
+use gcode_draw::{Picture, Size};
 use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
@@ -12,80 +12,59 @@ use crate::families;
 use crate::package::{Package, file_name};
 use crate::report::EmitReport;
 
-/// A job with its programs and the run in which they pass.
-pub(super) struct VerifiedPackage {
-    pub job: Job,
-    pub package: Package,
-    pub checked: CheckedPackage,
-}
-
-/// Reasons why programs are not written, as terminal text, and the run in which they fail.
-pub(super) struct EmitFailure {
-    pub reason: String,
-    pub checked: Option<CheckedPackage>,
-}
-
-impl EmitFailure {
-    /// Returns the reasons without colours.
-    pub(super) fn plain(&self) -> String {
-        strip_str(self.reason.trim_end()).to_string()
-    }
+/// The programs of a job and their run.
+pub(super) struct Emitted {
+    pub(super) job: Job,
+    pub(super) package: Package,
+    /// The run and its verdict; `None` if nothing could be run.
+    pub(super) checked: Option<CheckedPackage>,
+    /// The reasons why nothing is written, without colours; `None` if the programs pass.
+    pub(super) refused: Option<String>,
 }
 
 /// Reads a job, emits its programs and verifies them; the reasons of a failure are printed.
-pub(super) fn emit_verified(path: &Path) -> Result<Result<VerifiedPackage, EmitFailure>, UsageError> {
-    let text = input::text(path)?;
-    let job = Job::parse(&text).map_err(|error| UsageError::new(format!("{}, {error}", path.display())))?;
+pub(super) fn emit_verified(path: &Path) -> Result<Emitted, UsageError> {
+    let job = Job::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))?;
     let package = families::emit(&job);
-    let refused = |why: String, checked| {
-        output::print_message(&why);
-        Ok(Err(EmitFailure { reason: why, checked }))
-    };
-    match check(&job, &package) {
-        Ok(checked) if checked.refusals.is_empty() => Ok(Ok(VerifiedPackage { job, package, checked })),
+    let name = path.display();
+    let (checked, reasons) = match check(&job, &package) {
+        Ok(checked) if checked.refusals.is_empty() => (Some(checked), None),
         Ok(checked) => {
-            let (reasons, job) = (checked.refusals.concat(), path.display());
-            let why =
-                format!("{reasons}error: nothing is written: the programs of {job} fail verification\n");
-            refused(why, Some(checked))
+            let reasons = checked.refusals.concat();
+            let last = format!("error: nothing is written: the programs of {name} fail verification\n");
+            (Some(checked), Some(reasons + &last))
         }
         Err(CheckError::Impossible(why)) => {
-            refused(format!("error: {why}\nerror: nothing is written for {}\n", path.display()), None)
+            (None, Some(format!("error: {why}\nerror: nothing is written for {name}\n")))
         }
-        Err(error) => Err(UsageError::new(error.to_string())),
-    }
+        Err(error) => return Err(UsageError::new(error.to_string())),
+    };
+    reasons.iter().for_each(|reasons| output::print_message(reasons));
+    let refused = reasons.map(|reasons| strip_str(reasons.trim_end()).to_string());
+    Ok(Emitted { job, package, checked, refused })
 }
 
 pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitStatus, UsageError> {
-    let VerifiedPackage { job, package, checked } = match emit_verified(path)? {
-        Ok(held) => held,
-        Err(refused) => {
-            if format == TextFormat::Json {
-                output::json(&EmitReport::refused(refused.checked.as_ref(), refused.plain()))?;
-            }
-            return Ok(ExitStatus::Failed);
+    let Emitted { job, package, checked, refused } = emit_verified(path)?;
+    let (Some(checked), None) = (&checked, &refused) else {
+        if format == TextFormat::Json {
+            output::json(&EmitReport::new(checked.as_ref(), refused, Vec::new(), Vec::new()))?;
         }
+        return Ok(ExitStatus::Failed);
     };
     checked.warnings.iter().for_each(|warning| output::print_message(warning));
-    let pictures = pictures(&checked)?;
+    let pictures = pictures(checked)?;
     make_folder(out)?;
     let mut files: Vec<(PathBuf, &[u8])> =
         package.files().into_iter().map(|(name, text)| (out.join(name), text.as_bytes())).collect();
     files.extend(pictures.iter().map(|(name, png)| (out.join(name), png.as_slice())));
     files.iter().try_for_each(|(file, _)| overwrite_guard::check_not_input(file, &[path]))?;
-    let written: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
-    output::write_all(&written)?;
+    output::write_all(&files)?;
     let left_over = stale_files(&job, &package, out);
-    let names = |path: &Path| path.display().to_string();
-    let report = EmitReport::new(
-        &checked,
-        files.iter().map(|(path, _)| names(path)).collect(),
-        left_over.iter().map(|path| names(path)).collect(),
-    );
-    match format {
-        TextFormat::Text => output::print(&report.text())?,
-        TextFormat::Json => output::json(&report)?,
-    }
+    let name = |path: &PathBuf| path.display().to_string();
+    let written = files.iter().map(|(path, _)| name(path)).collect();
+    let report = EmitReport::new(Some(checked), None, written, left_over.iter().map(name).collect());
+    output::report(&report, EmitReport::text, format)?;
     for path in left_over {
         output::print_message(&format!(
             "warning: {} is from an earlier job and is not called by the programs just written: remove it, \
@@ -98,28 +77,23 @@ pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitSta
 
 /// Returns files of the family's resident macros in the folder that are not part of this package.
 fn stale_files(job: &Job, package: &Package, out: &Path) -> Vec<PathBuf> {
-    let resident = (families::of(job).resident)();
-    let others = resident.iter().filter(|(_, macros)| package.program(macros.number).is_none());
-    others.map(|(_, macros)| out.join(file_name(macros.number))).filter(|path| path.exists()).collect()
+    let macros = families::of(job).macros.iter().flat_map(|of_main| *of_main);
+    let others = macros.filter(|one| package.program(one.number).is_none());
+    others.map(|one| out.join(file_name(one.number))).filter(|path| path.exists()).collect()
 }
 
 /// Encodes the pictures as PNG by file name: `O8100.png`, and `O8400-tip.png` for a further view.
 pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)>, UsageError> {
-    let refused = |error: PictureError| UsageError::new(error.to_string());
-    let size = Size::new(1600, 1200).map_err(refused)?;
-    let drawn = |(name, scene): &(String, Scene)| {
-        Ok((format!("{name}.png"), gcode_draw::draw(scene, size).map_err(refused)?))
-    };
+    let size = Size::new(1600, 1200)?;
+    let drawn =
+        |(name, picture): &(String, Picture)| Ok((format!("{name}.png"), gcode_draw::draw(picture, size)?));
     checked.pictures.iter().map(drawn).collect()
 }
 
 /// Creates the folder and its parents.
 fn make_folder(out: &Path) -> Result<(), UsageError> {
-    let told = |error: &dyn std::fmt::Display| {
-        UsageError::new(format!("{} cannot be written: {error}", out.display()))
-    };
     if out.exists() && !out.is_dir() {
-        return Err(told(&"it is a file; the programs need a folder"));
+        return Err(UsageError::unwritable(out, "it is a file; the programs need a folder"));
     }
-    std::fs::create_dir_all(out).map_err(|error| told(&error))
+    std::fs::create_dir_all(out).map_err(|error| UsageError::unwritable(out, error))
 }

@@ -11,7 +11,7 @@ use clap::{Args, Parser, Subcommand};
 use gcode_sim::cli::common::{self, Colours};
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::packaging::{self, ManArguments, ShellArguments};
-use gcode_sim::cli::{ExitStatus, UsageError, output, schema};
+use gcode_sim::cli::{ExitStatus, UsageError, schema};
 
 use crate::report::FORMATS;
 
@@ -127,21 +127,16 @@ fn families() -> clap::builder::PossibleValuesParser {
 
 /// Parses the arguments and executes the command; messages go to standard error.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
-    let arguments: Arguments = match common::parse(arguments) {
-        Ok(arguments) => arguments,
-        Err(status) => return status,
-    };
-    arguments.colours.apply();
-    let done = match &arguments.command {
+    common::main(arguments, |arguments: &Arguments| arguments.colours, execute)
+}
+
+fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
+    match &arguments.command {
         Command::New { family, output } => new::run(family, output.as_deref()),
         Command::Emit { job, out, format } => emit::run(job, out, *format),
         Command::Sheet { job, output, rates, format } => sheet::run(job, output, rates.as_deref(), *format),
         Command::Schema(name) => schema::print(&name.name, FORMATS),
         Command::Completions(shell) => packaging::completions::<Arguments>(shell),
         Command::Man(folder) => packaging::man::<Arguments>(folder),
-    };
-    done.unwrap_or_else(|refusal: UsageError| {
-        output::print_message(&format!("error: {refusal}\n"));
-        ExitStatus::Invalid
-    })
+    }
 }

@@ -1,10 +1,25 @@
-//! Texts about the control in the programs and machine files of all families.
+//! Texts about the control and the rotary in the programs and machine files of all families.
 use gcode_lang::control::Dialect;
 use gcode_part::job::{JobControl, Rotary};
 
-/// Returns `FANUC-31I, INCREMENT IS-B`, for a comment.
+/// Returns `CONTROL FANUC-31I, INCREMENT IS-B`, for a comment.
 pub(super) fn remark(control: JobControl) -> String {
-    format!("{}, INCREMENT {}", control.dialect.name(), control.increment.name())
+    format!("CONTROL {}, INCREMENT {}", control.dialect.name(), control.increment.name())
+}
+
+/// Returns the remark on the control that names the machine file, too.
+pub(super) fn machine_remark(control: JobControl) -> String {
+    remark(control) + ", MACHINE FILE MACHINE.TOML"
+}
+
+/// Returns `B = -AZIMUTH`: the command of the rotary for an angle.
+pub(super) fn rotary_command(rotary: Rotary, angle: &str) -> String {
+    format!("{} = {}{angle}", rotary.letter, minus(rotary.sign))
+}
+
+/// Returns the minus of a negative sign.
+pub(super) fn minus(sign: i8) -> &'static str {
+    if sign < 0 { "-" } else { "" }
 }
 
 /// Returns the thousands that the control adds to n of `#3000=n`: a Fanuc shows 3000 + n, a Haas 1000 + n.

@@ -1,30 +1,32 @@
 //! The part families: each turns its job into programs.
-pub mod alignment;
-pub mod burr;
+pub(crate) mod alignment;
+pub(crate) mod burr;
 pub(crate) mod control;
-pub mod honeycomb;
-pub mod pin_holes;
+mod honeycomb;
+mod pin_holes;
 mod resident;
 mod start;
 
-use gcode_part::job::Job;
+use gcode_part::job::{Job, JobControl};
 
+pub use self::resident::Macro;
 use crate::package::{Package, Program};
 
 /// One part family, by its name in job files and on the command line.
 pub struct Family {
+    /// Name in job files.
     pub name: &'static str,
     /// A commented job file that works unchanged.
     pub new_job: &'static str,
-    /// Resident macros with default settings, each with its file name in `macros/`.
-    pub resident: fn() -> Vec<(&'static str, Program)>,
+    /// Resident macros, by the main programs that call them.
+    pub macros: &'static [&'static [Macro]],
 }
 
 /// All families.
 pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY, alignment::FAMILY];
 
 /// Returns the family of a job.
-pub fn of(job: &Job) -> &'static Family {
+pub(crate) fn of(job: &Job) -> &'static Family {
     match job {
         Job::PinHoles(_) => &pin_holes::FAMILY,
         Job::Honeycomb(_) => &honeycomb::FAMILY,
@@ -41,4 +43,17 @@ pub fn emit(job: &Job) -> Package {
         Job::Burr(job) => burr::emit(job),
         Job::Alignment(job) => alignment::emit(job),
     }
+}
+
+/// Builds the package of main programs, resident macros with their marks filled in, and a machine file.
+fn package(
+    control: JobControl,
+    mut programs: Vec<Program>,
+    macros: &[&[Macro]],
+    marks: &[(&str, String)],
+    machine: String,
+) -> Package {
+    let mains = programs.iter().map(|main| main.number).collect();
+    programs.extend(macros.iter().flat_map(|of_main| *of_main).map(|one| one.program(control, marks)));
+    Package { mains, programs, machine }
 }

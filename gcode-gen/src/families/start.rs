@@ -11,9 +11,7 @@ use gcode_lang::control::{Dialect, Increment};
 use gcode_part::job::JobControl;
 
 use super::control::alarm_thousands;
-use crate::nc::block::Block;
-use crate::nc::number::number;
-use crate::nc::program::Program as Text;
+use crate::nc::{Block, ProgramText, number};
 
 /// Checks of a main program on the modes and shifts in force at its start.
 pub(super) struct Start {
@@ -40,31 +38,29 @@ impl Start {
         lines
     }
 
-    pub(super) fn blocks(&self, text: &mut Text) {
+    /// Writes the blocks: refusals, initial modes, cancelled shifts.
+    pub(super) fn blocks(&self, text: &mut ProgramText) {
         let dialect = self.control.dialect;
-        text.block(Block::of(format!(
-            "IF[{}]THEN #3000={}({CHANGED_TEXT})",
+        text.block(format!(
+            "IF[{}]THEN #3000={}(G16 G51 G51.1 G68 IN FORCE)",
             changed_condition(dialect),
             self.changed_alarm
-        )));
+        ));
         emit_modes(text);
         for (axis, letter) in (1..).zip(self.axes.chars()) {
-            let external = external_offset_term(dialect, &format!("{}", 5200 + axis));
-            text.block(Block::of(format!(
+            let external = external_offset_term(dialect, &(5200 + axis).to_string());
+            text.block(format!(
                 "IF[ABS[#{}-#{}{external}-#{}]GT {}]THEN #3000={}(G52 OR G92 SHIFT IN {letter})",
                 5020 + axis,
                 5040 + axis,
                 5220 + axis,
                 number(shift_threshold(self.control.increment)),
                 self.shifted_alarm
-            )));
+            ));
         }
         emit_cancel(&self.cancelled_rotaries, text);
     }
 }
-
-/// Message of the alarm, as the control shows it.
-const CHANGED_TEXT: &str = "G16 G51 G51.1 G68 IN FORCE";
 
 /// Returns the condition for scaled, mirrored, rotated or polar coordinates, terms joined by OR. A Haas has
 /// neither G16 nor #4022.
@@ -93,15 +89,14 @@ pub(super) fn shift_threshold(increment: Increment) -> f64 {
 }
 
 /// Writes the initial modes of all main programs.
-pub(super) fn emit_modes(text: &mut Text) {
-    text.block(Block::of("G21"));
-    text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+pub(super) fn emit_modes(text: &mut ProgramText) {
+    text.blocks(["G21", "G00 G17 G40 G49 G54 G80 G90 G94"]);
 }
 
 /// Cancels a local shift of rotary axes, if there are any.
-pub(super) fn emit_cancel(rotaries: &str, text: &mut Text) {
+pub(super) fn emit_cancel(rotaries: &str, text: &mut ProgramText) {
     if !rotaries.is_empty() {
-        text.block(rotaries.chars().fold(Block::of("G52"), |block, letter| block.word(letter, "0.")));
+        text.block(Block::of("G52").numbers(rotaries.chars().map(|letter| (letter, 0.0))));
     }
 }
 

@@ -2,22 +2,11 @@
 //! in its own file, shared ones in `conditions`.
 use clap::{Parser, Subcommand};
 
-use super::budget::BudgetArguments;
-use super::check::CheckArguments;
 use super::common::Colours;
-use super::compare::CompareArguments;
-use super::diff::DiffArguments;
-use super::explain::ExplainArguments;
-use super::holes::HolesArguments;
-use super::packaging::{ManArguments, ShellArguments};
-use super::readings::ReadingsArguments;
-use super::reference::ReferenceArguments;
-use super::render::RenderArguments;
-use super::run::RunArguments;
-use super::schema::SchemaArguments;
-use super::settings::SettingsArguments;
-use super::test::TestArguments;
-use super::verify::VerifyArguments;
+use super::{
+    budget, check, compare, diff, explain, holes, packaging, readings, reference, render, run, schema,
+    settings, test, verify,
+};
 
 /// Executes Fanuc Custom Macro B programs as the control does, follows the tool on the part, and compares the holes
 /// with a reference.
@@ -52,21 +41,21 @@ Examples:
   gcode-sim run O1234.nc --lib macros --set '#500=12.5' --format json
   gcode-sim run O1234.nc --control NAT=1 --control DPI=1 --show '#5041'
   gcode-sim run O1234.nc --machine machine.toml --part job.toml --show '#5061'")]
-    Run(RunArguments),
+    Run(run::Arguments),
 
     /// List the holes a program makes, in the part's frame
     #[command(after_help = "\
 Examples:
   gcode-sim holes O8100.nc
   gcode-sim holes O8100.nc --machine machine.toml --format json > holes.json")]
-    Holes(HolesArguments),
+    Holes(holes::Arguments),
 
     /// Compute the nominal holes of a part from a job file's geometry alone
     #[command(after_help = "\
 Examples:
   gcode-sim reference job.toml > reference.json
   gcode-sim reference job.toml --format csv")]
-    Reference(ReferenceArguments),
+    Reference(reference::Arguments),
 
     /// Verify a program's holes against a reference: position (ISO 1101), depth, missing and extra holes
     #[command(after_help = "\
@@ -77,14 +66,14 @@ Examples:
   gcode-sim verify O8100.nc --reference job.toml --picture top.png
   gcode-sim verify O8100.nc --reference job.toml --format sarif > findings.sarif
   gcode-sim verify O8100.nc --reference job.toml --page review.html")]
-    Verify(VerifyArguments),
+    Verify(verify::Arguments),
 
     /// Draw a program's holes on the part as a PNG
     #[command(after_help = "\
 Examples:
   gcode-sim render O8100.nc -o top.png
   gcode-sim render O8100.nc --reference job.toml -o top.png --size 1600x1200")]
-    Render(RenderArguments),
+    Render(render::Arguments),
 
     /// Show edge-finder readings along the part surface
     #[command(after_help = "\
@@ -95,7 +84,7 @@ Examples:
 
 Above 0: gap between ball and surface; below 0: stylus deflected. [part] in the machine file gives the actual
 position of the part.")]
-    Readings(ReadingsArguments),
+    Readings(readings::Arguments),
 
     /// Find faults without a run: missing sequence numbers, missing decimal points, unset variables, and more
     #[command(after_help = "\
@@ -105,7 +94,7 @@ Examples:
   gcode-sim check O1234.nc --format sarif > findings.sarif
 
 A comment (CHECK-OFF DOUBLED-N) on a block suppresses that rule for the block, at the head of a program for all of it.")]
-    Check(CheckArguments),
+    Check(check::Arguments),
 
     /// Compare two revisions of a program by their effect: holes, motion, stops, final state
     #[command(after_help = "\
@@ -119,7 +108,7 @@ Sequence numbers, spaces, comments, names of locals and the way numbers are writ
 Called programs come from each revision's own folder first, then from --lib, those of the old one from
 --old-lib if given.
 Exit code 0: no difference; 1: a difference; 3: a revision stops with an alarm or a limit.")]
-    Diff(DiffArguments),
+    Diff(diff::Arguments),
 
     /// Run a folder of programs and compare each with its accepted result
     #[command(after_help = "\
@@ -132,7 +121,7 @@ Examples:
 
 A case is a folder with a program (main.nc, or the only .nc in it that no other calls) and, optionally, lib/, machine.toml,
 control.toml, a reference (reference.json, reference.csv or job.toml), and accepted.json, which --accept writes.")]
-    Test(TestArguments),
+    Test(test::Arguments),
 
     /// Estimate the position error of each hole over many parts, on machines and set-ups with errors
     #[command(after_help = "\
@@ -140,14 +129,14 @@ Examples:
   gcode-sim budget job.toml --errors errors.toml --samples 200000 --seed 1
   gcode-sim budget job.toml --errors errors.toml --format json
   gcode-sim budget job.toml --errors errors.toml --picture shares.png")]
-    Budget(BudgetArguments),
+    Budget(budget::Arguments),
 
     /// List the control settings for --control
     #[command(after_help = "\
 Examples:
   gcode-sim settings
   gcode-sim settings --format json")]
-    Settings(SettingsArguments),
+    Settings(settings::Arguments),
 
     /// Explain an alarm or finding, with an example and a fix
     #[command(after_help = "\
@@ -156,7 +145,7 @@ Examples:
   gcode-sim explain 112
   gcode-sim explain hole-position
   gcode-sim explain --list")]
-    Explain(ExplainArguments),
+    Explain(explain::Arguments),
 
     /// Write the JSON Schema (draft 2020-12) of a file or of a result to standard output
     #[command(after_help = "\
@@ -165,23 +154,23 @@ Examples:
   gcode-sim schema verify
 
 First line of a job file for editors that check it: #:schema ./job.schema.json (see docs/schemas.md)")]
-    Schema(SchemaArguments),
+    Schema(schema::Arguments),
 
     /// Write shell completions to standard output
     #[command(after_help = "\
 Example:
   gcode-sim completions bash > ~/.local/share/bash-completion/completions/gcode-sim")]
-    Completions(ShellArguments),
+    Completions(packaging::ShellArguments),
 
     /// Write the manual pages into a folder, one for each command
     #[command(after_help = "\
 Example:
   gcode-sim man ~/.local/share/man/man1")]
-    Man(ManArguments),
+    Man(packaging::ManArguments),
 
     /// Compare two pictures and mark the differences
     #[command(after_help = "\
 Example:
   gcode-sim compare before.png after.png -o differences.png")]
-    Compare(CompareArguments),
+    Compare(compare::Arguments),
 }

@@ -1,4 +1,5 @@
 //! `gcode-sim budget`: the spread of every hole's position under errors of set-up and machine.
+use std::fmt::Display;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicUsize;
@@ -16,7 +17,7 @@ use gcode_part::NominalPart;
 use gcode_part::job::Job;
 
 #[derive(Debug, Args)]
-pub(super) struct BudgetArguments {
+pub(super) struct Arguments {
     /// The job file: the holes, and the machine they are drilled on
     #[arg(value_name = "JOB.toml")]
     job: PathBuf,
@@ -54,10 +55,8 @@ pub(super) struct BudgetArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError> {
-    let named = |path: &std::path::Path, error: &dyn std::fmt::Display| {
-        UsageError::new(format!("{}, {error}", path.display()))
-    };
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let in_job = |error: &dyn Display| UsageError::in_file(&arguments.job, error);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     if !(1..=MAX_SAMPLES).contains(&arguments.samples) {
         return Err(UsageError::new(format!("--samples {}: 1 to {MAX_SAMPLES}", arguments.samples)));
@@ -67,15 +66,14 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
         let files = [arguments.job.as_path(), arguments.errors.as_path()].into_iter().chain(machine);
         overwrite_guard::check_not_input(path, &files.collect::<Vec<_>>())?;
     }
-    let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&arguments.job, &e))?;
-    let reference = NominalPart::from_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
-    let Some(reference) = reference else {
-        return Err(named(&arguments.job, &"a budget needs holes, and this family's part has none"));
-    };
+    let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| in_job(&e))?;
+    let reference = NominalPart::from_job(&job).map_err(|e| in_job(&e))?.into_holes();
+    let reference =
+        reference.ok_or_else(|| in_job(&"a budget needs holes, and this family's part has none"))?;
     let machine = match &arguments.machine {
         Some(path) => options::read_machine(path)?,
         None => Machine::from_job(&job)
-            .ok_or_else(|| named(&arguments.job, &"this job has no machine: give one with --machine"))?,
+            .ok_or_else(|| in_job(&"this job has no machine: give one with --machine"))?,
     };
     if !machine.is_exact() {
         let message =
@@ -83,7 +81,7 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
         return Err(UsageError::new(message));
     }
     let sources = error_file(&input::text(&arguments.errors)?, &machine)
-        .map_err(|error| named(&arguments.errors, &error))?;
+        .map_err(|error| UsageError::in_file(&arguments.errors, error))?;
     let one = NonZeroUsize::MIN;
     let question = BudgetRequest {
         machine: &machine,
@@ -98,21 +96,14 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
     let counted = AtomicUsize::new(0);
     let all = arguments.samples.saturating_mul(reference.holes.len());
     let found = progress::with_progress(all, &counted, || budget(&question, &counted))
-        .map_err(|error| named(&arguments.job, &error))?;
+        .map_err(|error| in_job(&error))?;
     let report = BudgetReport::new(&question, &found);
-    match arguments.format {
-        TextFormat::Json => output::json(&report)?,
-        TextFormat::Text => output::print(&report.text())?,
-    }
+    output::report(&report, BudgetReport::text, arguments.format)?;
     if let Some(path) = &arguments.picture {
         // The height grows with the number of bars.
         let height = 120 + 25 * sources.len() as u32;
-        let size = Size::new(1200, height.max(360)).map_err(|error| UsageError::new(error.to_string()))?;
-        let png = report.bars().draw(size).map_err(|error| UsageError::new(error.to_string()))?;
-        output::write(path, &png)?;
-        if arguments.format == TextFormat::Text {
-            output::print(&format!("picture: {}\n", path.display()))?;
-        }
+        output::write(path, &report.bars().draw(Size::new(1200, height.max(360))?)?)?;
+        output::written("picture", path, arguments.format == TextFormat::Text)?;
     }
     Ok(ExitStatus::Passed)
 }

@@ -7,10 +7,10 @@ use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::{ExitStatus, UsageError, options, output, unused_machine};
 use crate::report::check::{CheckReport, text};
-use crate::report::sarif::{self, Finding};
+use crate::report::sarif::Finding;
 
 #[derive(Debug, Args)]
-pub(super) struct CheckArguments {
+pub(super) struct Arguments {
     /// The program; '-' reads standard input
     #[arg(value_name = "PROGRAM.nc")]
     program: PathBuf,
@@ -44,7 +44,7 @@ pub(super) struct CheckArguments {
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &CheckArguments) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let conditions = RunConditions {
         libraries: arguments.libraries.clone(),
         dialect: arguments.dialect.clone(),
@@ -66,8 +66,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitStatus, UsageError> 
         FindingFormat::Json => output::json(&CheckReport::new(&checked))?,
         FindingFormat::Sarif => {
             let sources = checked.memory.sources();
-            let findings: Vec<_> = checked.findings.iter().map(|found| Finding::of(found, sources)).collect();
-            output::json(&sarif::log(&findings, &options::working_folder()))?;
+            output::sarif(checked.findings.iter().map(|finding| Finding::of(finding, sources)))?;
         }
     }
     Ok(if checked.has_findings() { ExitStatus::Failed } else { ExitStatus::Passed })

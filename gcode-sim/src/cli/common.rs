@@ -3,7 +3,7 @@ use std::ffi::OsString;
 
 use clap::{Args, Parser, ValueEnum};
 
-use super::{ExitStatus, output};
+use super::{ExitStatus, UsageError, output};
 
 /// The colour flag, which every command takes.
 #[derive(Clone, Copy, Debug, Args)]
@@ -22,7 +22,7 @@ enum Colour {
 
 impl Colours {
     /// Applies the flag to everything printed from here on.
-    pub fn apply(self) {
+    fn apply(self) {
         match self.colour {
             Colour::Auto => {}
             Colour::Always => anstream::ColorChoice::Always.write_global(),
@@ -31,15 +31,27 @@ impl Colours {
     }
 }
 
-/// Parses the arguments with clap. Help and version count as results; anything else that clap rejects is an
-/// invalid request.
-pub fn parse<A: Parser>(arguments: impl IntoIterator<Item = OsString>) -> Result<A, ExitStatus> {
-    A::try_parse_from(arguments).map_err(|error| {
-        let text = error.render().ansi().to_string();
-        if !error.use_stderr() && output::print(&text).is_ok() {
-            return ExitStatus::Passed;
+/// Parses the arguments with clap and executes the command. Help and version count as results; anything else that
+/// clap rejects is an invalid request.
+pub fn main<A: Parser>(
+    arguments: impl IntoIterator<Item = OsString>,
+    colours: impl Fn(&A) -> Colours,
+    execute: impl FnOnce(A) -> Result<ExitStatus, UsageError>,
+) -> ExitStatus {
+    let arguments = match A::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let text = error.render().ansi().to_string();
+            if !error.use_stderr() && output::print(&text).is_ok() {
+                return ExitStatus::Passed;
+            }
+            output::print_message(&text);
+            return ExitStatus::Invalid;
         }
-        output::print_message(&text);
+    };
+    colours(&arguments).apply();
+    execute(arguments).unwrap_or_else(|refusal| {
+        output::print_message(&format!("error: {refusal}\n"));
         ExitStatus::Invalid
     })
 }

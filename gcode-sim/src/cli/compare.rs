@@ -8,7 +8,7 @@ use super::{ExitStatus, UsageError, input, output, overwrite_guard};
 use crate::report::pictures::CompareReport;
 
 #[derive(Debug, Args)]
-pub(super) struct CompareArguments {
+pub(super) struct Arguments {
     /// One picture
     #[arg(value_name = "A.png")]
     left: PathBuf,
@@ -30,21 +30,17 @@ pub(super) struct CompareArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &CompareArguments) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if let Some(path) = &arguments.output {
         overwrite_guard::check_not_input(path, &[&arguments.left, &arguments.right])?;
     }
     let (left, right) = (input::bytes(&arguments.left)?, input::bytes(&arguments.right)?);
-    let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
-    let difference = gcode_draw::compare(&left, &right, arguments.tolerance).map_err(refused)?;
+    let difference = gcode_draw::compare(&left, &right, arguments.tolerance)?;
     let picture = arguments.output.as_ref().filter(|_| !difference.is_none());
     if let Some(path) = picture {
-        output::write(path, &difference.png().map_err(refused)?)?;
+        output::write(path, &difference.png()?)?;
     }
     let report = CompareReport::new(&difference, picture.map(|path| path.display().to_string()));
-    match arguments.format {
-        TextFormat::Text => output::print(&report.text())?,
-        TextFormat::Json => output::json(&report)?,
-    }
+    output::report(&report, CompareReport::text, arguments.format)?;
     Ok(if report.same { ExitStatus::Passed } else { ExitStatus::Failed })
 }

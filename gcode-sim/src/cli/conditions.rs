@@ -3,8 +3,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{UsageError, overwrite_guard};
-
 /// A program and the conditions of its run.
 #[derive(Debug, Default, Args)]
 pub(super) struct ProgramArguments {
@@ -69,17 +67,6 @@ pub(super) struct RunConditions {
     /// End the run at the main program's N-th M99
     #[arg(long, value_name = "N")]
     pub(super) cycles: Option<u32>,
-}
-
-impl ProgramArguments {
-    /// Returns the input files except called programs, including the reference. Refuses a second use of
-    /// standard input.
-    pub(super) fn files<'a>(&'a self, reference: Option<&'a Path>) -> Result<Vec<&'a Path>, UsageError> {
-        let files = std::iter::once(self.program.as_path()).chain(self.conditions.files());
-        let files: Vec<&Path> = files.chain(reference).collect();
-        overwrite_guard::one_pipe(&files)?;
-        Ok(files)
-    }
 }
 
 impl RunConditions {

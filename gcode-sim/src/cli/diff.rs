@@ -6,10 +6,10 @@ use clap::Args;
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, render, unused_machine};
+use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
-use crate::report::sarif::{self, FileLocation, Finding};
-use crate::report::{changed_view, diagnostic};
+use crate::report::sarif::{FileLocation, Finding};
 use gcode_inspect::verify::Tolerances;
 use gcode_part::NominalPart;
 use gcode_part::Reference;
@@ -17,7 +17,7 @@ use gcode_review::{Revision, RevisionDiff, unexecuted};
 use gcode_session::Trace;
 
 #[derive(Debug, Args)]
-pub(super) struct DiffArguments {
+pub(super) struct Arguments {
     /// The revision on the machine
     #[arg(value_name = "OLD.nc")]
     old: PathBuf,
@@ -55,7 +55,7 @@ pub(super) struct DiffArguments {
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     let programs = [arguments.old.as_path(), arguments.new.as_path()];
     let files: Vec<&Path> =
@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
         overwrite_guard::check_not_input(result, &files)?;
     }
-    arguments.page.as_deref().map(page::is_html).transpose()?;
+    arguments.page.as_deref().map(page::check_is_html).transpose()?;
     let mut before = arguments.run.clone();
     if !arguments.old_libraries.is_empty() {
         before.libraries.clone_from(&arguments.old_libraries);
@@ -78,11 +78,10 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
         request.conduct =
             reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     }
-    let refused = |error: gcode_session::SessionError| UsageError::new(error.to_string());
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
-    let old = Revision::observed(&old_request, &mut old_folders, surface, &mut old_trace).map_err(refused)?;
-    let new = Revision::observed(&new_request, &mut new_folders, surface, &mut new_trace).map_err(refused)?;
+    let old = Revision::observed(&old_request, &mut old_folders, surface, &mut old_trace)?;
+    let new = Revision::observed(&new_request, &mut new_folders, surface, &mut new_trace)?;
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let unexecuted = unexecuted(&old, &new);
     let report = ChangesReport::new(
@@ -95,10 +94,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     match arguments.format {
         FindingFormat::Json => output::json(&report)?,
         FindingFormat::Text => output::print(&report.text())?,
-        FindingFormat::Sarif => {
-            let findings = findings(&compared, &new, &new_request.name);
-            output::json(&sarif::log(&findings, &options::working_folder()))?
-        }
+        FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name))?,
     }
     if let Some(path) = &arguments.picture {
         let names = [&new_request, &old_request].map(render::name);
@@ -111,11 +107,9 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
         let name = format!("{is} against {was}");
         let (machine, reference) = (&new_request.machine, reference.as_ref());
         let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), reference);
-        let scene = gcode_draw::top_view(&view);
-        render::write(&scene, "1600x1200", path)?;
-        if arguments.format == FindingFormat::Text {
-            output::print(&format!("picture: {}\n", path.display()))?;
-        }
+        let picture = gcode_draw::top_view(&view);
+        render::write(&picture, "1600x1200", path)?;
+        output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
     if let (Some(path), Some(old_trace), Some(new_trace)) = (&arguments.page, &old_trace, &new_trace) {
         let judged = |revision: &Revision| {
@@ -139,15 +133,11 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
             documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
         };
         page::write(&review, path)?;
-        page::report_written(path, arguments.format == FindingFormat::Text)?;
+        output::written("page", path, arguments.format == FindingFormat::Text)?;
     }
     let mut status = if compared.changes.is_empty() { ExitStatus::Passed } else { ExitStatus::Failed };
     for revision in [&old, &new] {
-        let sources = revision.simulation.run.control.memory().sources();
-        for finding in revision.stopped() {
-            output::print_message(&diagnostic::render(finding, sources));
-            status = ExitStatus::Stopped;
-        }
+        status = status.max(super::findings(revision.stopped(), &revision.simulation.run));
     }
     Ok(status)
 }

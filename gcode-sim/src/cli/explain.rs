@@ -3,10 +3,10 @@ use clap::Args;
 
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, output};
-use crate::report::explained::ExplainReport;
+use crate::report::explain::ExplainReport;
 
 #[derive(Debug, Args)]
-pub(super) struct ExplainArguments {
+pub(super) struct Arguments {
     /// An alarm as the control shows it (PS0112, ps112, 112, MC3021) or a finding (hole-position)
     #[arg(value_name = "CODE", required_unless_present = "list")]
     code: Option<String>,
@@ -20,7 +20,7 @@ pub(super) struct ExplainArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let report = match &arguments.code {
         None => ExplainReport::list(),
         Some(code) => ExplainReport::of(code).ok_or_else(|| {
@@ -29,9 +29,6 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitStatus, UsageError
             ))
         })?,
     };
-    match arguments.format {
-        TextFormat::Text => output::print(&report.text())?,
-        TextFormat::Json => output::json(&report)?,
-    }
+    output::report(&report, ExplainReport::text, arguments.format)?;
     Ok(ExitStatus::Passed)
 }

@@ -5,13 +5,13 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, progress, unused_machine};
+use super::{ExitStatus, UsageError, options, output, page, progress};
 use crate::report::holes as report;
 use gcode_part::HoleList;
 use gcode_session::Simulation;
 
 #[derive(Debug, Args)]
-pub(super) struct HolesArguments {
+pub(super) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
 
@@ -25,28 +25,22 @@ pub(super) struct HolesArguments {
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &HolesArguments) -> Result<ExitStatus, UsageError> {
-    let files = arguments.program.files(None)?;
-    if let Some(page) = &arguments.page {
-        overwrite_guard::check_not_input(page, &files)?;
-        page::is_html(page)?;
-    }
-    let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::warn_unused_machine(&arguments.program, &request);
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (mut request, mut folders) =
+        options::checked_request(&arguments.program, None, None, arguments.page.as_deref())?;
     if let Some(path) = &arguments.page {
         let watched = page::simulate_traced(&request, &mut folders, None)?;
         page::write_alone(&request, &watched, None, &arguments.program.conditions, path)?;
         let status = print_result(arguments, &watched.0.simulation)?;
-        page::report_written(path, arguments.format == ListFormat::Text)?;
+        output::written("page", path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }
     let simulation =
-        progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))
-            .map_err(|e| UsageError::new(e.to_string()))?;
+        progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))?;
     print_result(arguments, &simulation)
 }
 
-fn print_result(arguments: &HolesArguments, simulation: &Simulation) -> Result<ExitStatus, UsageError> {
+fn print_result(arguments: &Arguments, simulation: &Simulation) -> Result<ExitStatus, UsageError> {
     print(&simulation.hole_list(), arguments.format)?;
     Ok(super::findings(&simulation.extracted.findings, &simulation.run))
 }

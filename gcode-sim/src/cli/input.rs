@@ -17,8 +17,7 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, UsageError> {
             Err(error) => Err(UsageError::new(format!("standard input cannot be read: {error}"))),
         };
     }
-    let unreadable =
-        |error: std::io::Error| UsageError::new(format!("{} cannot be read: {error}", path.display()));
+    let unreadable = |error: std::io::Error| UsageError::unreadable(path, error);
     let about = std::fs::metadata(path).map_err(unreadable)?;
     if about.is_dir() {
         return Err(UsageError::new(format!("{} is a folder; name a file in it", path.display())));
@@ -55,8 +54,7 @@ pub fn program(path: &Path) -> Result<Vec<u8>, UsageError> {
 
 /// Returns the entries of a folder, sorted by name.
 pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
-    let unreadable =
-        |error: std::io::Error| UsageError::new(format!("{} cannot be read: {error}", path.display()));
+    let unreadable = |error: std::io::Error| UsageError::unreadable(path, error);
     let entries = std::fs::read_dir(path).map_err(unreadable)?;
     let mut paths =
         entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
@@ -66,20 +64,15 @@ pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
 
 /// Returns the canonical path of a folder, with links resolved.
 pub fn canonical(path: &Path) -> Result<PathBuf, UsageError> {
-    path.canonicalize()
-        .map_err(|error| UsageError::new(format!("{} cannot be read: {error}", path.display())))
+    path.canonicalize().map_err(|error| UsageError::unreadable(path, error))
 }
 
 /// Reads a file's text, which must be UTF-8 (jobs, machine files, references; programs are bytes).
 pub fn text(path: &Path) -> Result<String, UsageError> {
-    let bytes = bytes(path)?;
-    match String::from_utf8(bytes) {
-        Ok(text) => Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned)),
-        Err(error) => {
-            let line =
-                error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count()
-                    + 1;
-            Err(UsageError::new(format!("{}, line {line}: not UTF-8 text", path.display())))
-        }
-    }
+    let text = String::from_utf8(bytes(path)?).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = valid.iter().filter(|byte| **byte == b'\n').count() + 1;
+        UsageError::in_file(path, format!("line {line}: not UTF-8 text"))
+    })?;
+    Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned))
 }

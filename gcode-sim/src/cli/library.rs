@@ -1,5 +1,5 @@
 //! Finds called programs in folders: `O8101.nc` and `PROBE.nc` by file name, all others by contents.
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::{UsageError, input};
@@ -10,17 +10,10 @@ use gcode_lang::syntax::{self, FileItem, ast::ProgramName};
 /// Folders of called programs; the first folder that has a program wins.
 pub struct Folders {
     folders: Vec<PathBuf>,
-    /// Index of the programs in all files; built at the first call that no file name answers.
-    contents: Option<Contents>,
+    /// The programs in all files; read at the first call that no file name answers.
+    programs: Option<Vec<(ProgramName, PathBuf)>>,
     /// Folders and files that could not be read, with the reasons.
     unread: BTreeSet<String>,
-}
-
-/// Index of files by the programs they contain.
-#[derive(Default)]
-struct Contents {
-    numbers: BTreeMap<u32, PathBuf>,
-    names: BTreeMap<String, PathBuf>,
 }
 
 impl Folders {
@@ -30,13 +23,10 @@ impl Folders {
         if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
             return Err(UsageError::new(format!("--lib {}: no such folder", missing.display())));
         }
-        let own = match program.parent() {
-            Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
-            Some(parent) => parent.to_owned(),
-            None => PathBuf::from("."),
-        };
+        let own = program.parent().filter(|parent| !parent.as_os_str().is_empty());
+        let own = own.unwrap_or(Path::new(".")).to_owned();
         let folders = std::iter::once(own).chain(folders.iter().cloned()).collect();
-        Ok(Self { folders, contents: None, unread: BTreeSet::new() })
+        Ok(Self { folders, programs: None, unread: BTreeSet::new() })
     }
 
     /// Returns the first file, in the order of folders and names, that satisfies `wanted`.
@@ -73,43 +63,32 @@ impl Folders {
         }
     }
 
-    fn read_contents(&mut self) -> Contents {
-        let mut found = Contents::default();
-        for path in self.files() {
-            let Some(bytes) = self.bytes(&path) else { continue };
-            for program in programs_in(&bytes) {
-                match program {
-                    ProgramName::Number(number) => {
-                        found.numbers.entry(number).or_insert_with(|| path.clone());
-                    }
-                    ProgramName::Name(name) => {
-                        found.names.entry(name).or_insert_with(|| path.clone());
-                    }
-                    ProgramName::Unnamed => {}
-                }
+    /// Returns the first file that contains a program.
+    fn find_holder(&mut self, program: &ProgramName) -> Option<PathBuf> {
+        if self.programs.is_none() {
+            let mut found = Vec::new();
+            for path in self.files() {
+                let Some(bytes) = self.bytes(&path) else { continue };
+                found.extend(programs_in(&bytes).map(|name| (name, path.clone())));
             }
+            self.programs = Some(found);
         }
-        found
-    }
-
-    fn find_holder(&mut self, of: impl Fn(&Contents) -> Option<&PathBuf>) -> Option<PathBuf> {
-        if self.contents.is_none() {
-            self.contents = Some(self.read_contents());
-        }
-        self.contents.as_ref().and_then(of).cloned()
+        let mut programs = self.programs.iter().flatten();
+        programs.find(|(name, _)| name == program).map(|(_, path)| path.clone())
     }
 }
 
 impl Library for Folders {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
         // A file name may announce a number that the file does not contain; the contents decide.
-        let holds = |bytes: &[u8]| programs_in(bytes).any(|name| name == ProgramName::Number(number));
+        let program = ProgramName::Number(number);
+        let holds = |bytes: &[u8]| programs_in(bytes).any(|name| name == program);
         let named = self.find(|path| numbered(path) == Some(number));
         let named = named.and_then(|path| Some((self.bytes(&path)?, path)));
         let (bytes, path) = match named.filter(|(bytes, _)| holds(bytes)) {
             Some(found) => found,
             None => {
-                let path = self.find_holder(|contents| contents.numbers.get(&number))?;
+                let path = self.find_holder(&program)?;
                 (self.bytes(&path)?, path)
             }
         };
@@ -117,7 +96,7 @@ impl Library for Folders {
     }
 
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
-        let path = match self.find_holder(|contents| contents.names.get(name)) {
+        let path = match self.find_holder(&ProgramName::Name(name.to_owned())) {
             Some(path) => path,
             // The file's name counts if the program in it has neither name nor number.
             None => self.find(|path| path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case(name)))?,
@@ -152,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_tell_numbers() {
+    fn file_names_give_program_numbers() {
         for (name, number) in
             [("O8101.nc", Some(8101)), ("o0012", Some(12)), ("8101.TAP", Some(8101)), ("part.nc", None)]
         {
@@ -161,14 +140,14 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_can_not_be_read_is_told() {
+    fn an_unreadable_folder_is_reported() {
         let place = tempfile::tempdir().unwrap();
         let mut folders = Folders::new(&place.path().join("main.nc"), &[]).unwrap();
         assert!(folders.program(1).is_none());
         assert_eq!(folders.read_error(), None, "an empty folder has been read");
         place.close().unwrap();
         assert!(folders.program(1).is_none());
-        let told = folders.read_error().unwrap();
-        assert!(told.contains("cannot be read"), "{told}");
+        let error = folders.read_error().unwrap();
+        assert!(error.contains("cannot be read"), "{error}");
     }
 }

@@ -28,58 +28,82 @@ mod unused_machine;
 mod verify;
 
 use std::ffi::OsString;
+use std::fmt::Display;
+use std::path::Path;
 use std::process::ExitCode;
 
 use args::{Arguments, Command};
 
 use crate::report::diagnostic;
+use gcode_draw::PictureError;
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_session::Run;
+use gcode_session::{GrindingError, Run, SessionError};
 
 /// Outcome of a request, the same for both programs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ExitStatus {
     /// Done, all checks passed: exit code 0.
-    Passed,
+    Passed = 0,
     /// Done, a check failed: exit code 1.
-    Failed,
+    Failed = 1,
     /// The request is invalid: exit code 2.
-    Invalid,
+    Invalid = 2,
     /// The control stopped with an alarm, or a limit ended the run: exit code 3.
-    Stopped,
+    Stopped = 3,
 }
 
 impl From<ExitStatus> for ExitCode {
     fn from(status: ExitStatus) -> Self {
-        Self::from(match status {
-            ExitStatus::Passed => 0,
-            ExitStatus::Failed => 1,
-            ExitStatus::Invalid => 2,
-            ExitStatus::Stopped => 3,
-        })
+        Self::from(status as u8)
     }
 }
 
 /// An invalid request: one sentence with its remedy.
 #[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct UsageError(String);
+pub enum UsageError {
+    /// Arguments or files are unusable.
+    #[error("{0}")]
+    Request(String),
+    /// The run cannot begin.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// The wheel cannot be followed.
+    #[error(transparent)]
+    Grinding(#[from] GrindingError),
+    /// The picture cannot be drawn.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
 
 impl UsageError {
     /// Builds the error from its sentence.
     pub fn new(message: impl Into<String>) -> Self {
-        Self(message.into())
+        Self::Request(message.into())
+    }
+
+    /// Builds the error of a file's contents.
+    pub fn in_file(path: &Path, error: impl Display) -> Self {
+        Self::new(format!("{}, {error}", path.display()))
+    }
+
+    /// Builds the error of a file or folder that cannot be read.
+    pub(crate) fn unreadable(path: &Path, error: impl Display) -> Self {
+        Self::new(format!("{} cannot be read: {error}", path.display()))
+    }
+
+    /// Builds the error of a file or folder that cannot be written.
+    pub fn unwritable(path: &Path, error: impl Display) -> Self {
+        Self::new(format!("{} cannot be written: {error}", path.display()))
     }
 }
 
 /// Parses the arguments and executes the command; messages go to standard error.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
-    let arguments: Arguments = match common::parse(arguments) {
-        Ok(arguments) => arguments,
-        Err(status) => return status,
-    };
-    arguments.colours.apply();
-    let done = match arguments.command {
+    common::main(arguments, |arguments: &Arguments| arguments.colours, execute)
+}
+
+fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
+    match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Holes(arguments) => holes::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments),
@@ -96,31 +120,19 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Completions(shell) => packaging::completions::<Arguments>(&shell),
         Command::Man(folder) => packaging::man::<Arguments>(&folder),
         Command::Compare(arguments) => compare::run(&arguments),
-    };
-    done.unwrap_or_else(|refusal| {
-        output::print_message(&format!("error: {refusal}\n"));
-        ExitStatus::Invalid
-    })
-}
-
-/// Prints a run's notes and, if it did not end normally, the finding that stopped it.
-fn stopped(run: &Run) -> Option<ExitStatus> {
-    let sources = run.control.memory().sources();
-    run.note_findings().for_each(|note| output::print_message(&diagnostic::render(&note, sources)));
-    let finding = run.stop_finding()?;
-    output::print_message(&diagnostic::render(&finding, sources));
-    Some(ExitStatus::Stopped)
+    }
 }
 
 /// Prints the findings and returns the exit status of the most severe one.
-fn findings(all: &[Diagnostic], run: &Run) -> ExitStatus {
+fn findings<'a>(all: impl IntoIterator<Item = &'a Diagnostic>, run: &Run) -> ExitStatus {
     let sources = run.control.memory().sources();
-    for finding in all {
+    let status = all.into_iter().map(|finding| {
         output::print_message(&diagnostic::render(finding, sources));
-    }
-    match all.iter().map(|finding| finding.severity).max() {
-        Some(Severity::Alarm) => ExitStatus::Stopped,
-        Some(Severity::Error) => ExitStatus::Failed,
-        _ => ExitStatus::Passed,
-    }
+        match finding.severity {
+            Severity::Alarm => ExitStatus::Stopped,
+            Severity::Error => ExitStatus::Failed,
+            Severity::Warning | Severity::Note => ExitStatus::Passed,
+        }
+    });
+    status.max().unwrap_or(ExitStatus::Passed)
 }

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::conditions::ProgramArguments;
 use super::library::Folders;
-use super::{UsageError, input};
+use super::{UsageError, input, overwrite_guard, page, unused_machine};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_part::NominalPart;
@@ -23,18 +23,19 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     let name = if piped { "standard input".to_owned() } else { program.display().to_string() };
     let mut request = Request::new(name, input::program(program)?, machine);
     if let Some(path) = &arguments.control_file {
-        let refused = |error| UsageError::new(format!("{}, {error}", path.display()));
-        control_file::apply(&input::text(path)?, &mut request.settings).map_err(refused)?;
+        control_file::apply(&input::text(path)?, &mut request.settings)
+            .map_err(|error| UsageError::in_file(path, error))?;
     }
-    let mut settings: Vec<(&str, String)> = Vec::new();
     // The dialect comes first: `--control` changes its defaults.
-    settings.extend(arguments.dialect.iter().map(|name| ("--dialect", format!("DIALECT={name}"))));
-    settings.extend(arguments.control.iter().map(|text| ("--control", text.clone())));
-    settings.extend(arguments.input.iter().map(|text| ("--input", text.clone())));
-    settings.extend(arguments.code.iter().map(|text| ("--code", text.clone())));
-    settings.extend(arguments.cycles.iter().map(|count| ("--cycles", format!("CYCLES={count}"))));
-    settings.extend(arguments.skip.iter().map(|part| ("--skip", format!("SKIP={part}"))));
-    for (flag, text) in settings {
+    let settings = [
+        ("--dialect", arguments.dialect.iter().map(|name| format!("DIALECT={name}")).collect()),
+        ("--control", arguments.control.clone()),
+        ("--input", arguments.input.clone()),
+        ("--code", arguments.code.clone()),
+        ("--cycles", arguments.cycles.iter().map(|count| format!("CYCLES={count}")).collect()),
+        ("--skip", arguments.skip.iter().map(|part| format!("SKIP={part}")).collect::<Vec<_>>()),
+    ];
+    for (flag, text) in settings.iter().flat_map(|(flag, texts)| texts.iter().map(move |text| (flag, text))) {
         let Some((key, value)) = text.split_once('=') else {
             return Err(UsageError::new(format!("{flag} {text}: write KEY=VALUE, for example NAT=1")));
         };
@@ -51,9 +52,29 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     Ok((request, folders))
 }
 
+/// Reads the program of a command with its conditions, and warns of an unused machine file. Refuses a second use of
+/// standard input, a result or page that would overwrite an input, and a page that is not an HTML file.
+pub(super) fn checked_request(
+    program: &ProgramArguments,
+    reference: Option<&Path>,
+    result: Option<&Path>,
+    page: Option<&Path>,
+) -> Result<(Request, Folders), UsageError> {
+    let files = std::iter::once(program.program.as_path()).chain(program.conditions.files());
+    let files: Vec<&Path> = files.chain(reference).collect();
+    overwrite_guard::one_pipe(&files)?;
+    for result in [result, page].into_iter().flatten() {
+        overwrite_guard::check_not_input(result, &files)?;
+    }
+    page.map(page::check_is_html).transpose()?;
+    let (request, folders) = request(program)?;
+    unused_machine::warn_unused_machine(program, &request);
+    Ok((request, folders))
+}
+
 /// Adds a part for probing to the request; `file` is the machine file, for messages.
 fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), UsageError> {
-    let refused = |why: &dyn std::fmt::Display| UsageError::new(format!("{}, {why}", path.display()));
+    let refused = |why: &dyn std::fmt::Display| UsageError::in_file(path, why);
     if request.settings.skip_signal.is_some() {
         return Err(UsageError::new("--part: SKIP already sets the skip signal: omit one of them"));
     }
@@ -104,19 +125,12 @@ fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), Stri
 
 /// Reads a machine file.
 pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
-    Machine::parse(&input::text(path)?)
-        .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
+    Machine::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))
 }
 
 /// Reads a hole list or a job file.
 pub(super) fn read_nominal(path: &Path) -> Result<NominalPart, UsageError> {
-    NominalPart::parse(&input::text(path)?)
-        .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
-}
-
-/// Returns the working directory, to which file names in results are relative.
-pub(super) fn working_folder() -> String {
-    std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default()
+    NominalPart::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))
 }
 
 /// Checks the value of a tolerance flag.

@@ -3,6 +3,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::UsageError;
+use super::format::TextFormat;
+use crate::report::sarif::{self, Finding};
 
 /// Prints a result. A reader that closes the pipe early (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), UsageError> {
@@ -17,11 +19,32 @@ pub fn print(text: &str) -> Result<(), UsageError> {
 
 /// Prints one JSON document.
 pub fn json(document: &impl serde::Serialize) -> Result<(), UsageError> {
-    let text = serde_json::to_string_pretty(document);
-    print(
-        &(text.map_err(|error| UsageError::new(format!("the result cannot be written as JSON: {error}")))?
-            + "\n"),
-    )
+    let text = serde_json::to_string_pretty(document)
+        .map_err(|error| UsageError::new(format!("the result cannot be written as JSON: {error}")))?;
+    print(&(text + "\n"))
+}
+
+/// Prints a report as text or as JSON.
+pub fn report<R: serde::Serialize>(
+    report: &R,
+    text: impl Fn(&R) -> String,
+    format: TextFormat,
+) -> Result<(), UsageError> {
+    match format {
+        TextFormat::Text => print(&text(report)),
+        TextFormat::Json => json(report),
+    }
+}
+
+/// Prints findings as SARIF for a code review.
+pub(super) fn sarif(findings: impl IntoIterator<Item = Finding>) -> Result<(), UsageError> {
+    let folder = std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default();
+    json(&sarif::log(&findings.into_iter().collect::<Vec<_>>(), &folder))
+}
+
+/// Prints `picture: top.png` for a further file that is written, if the results are text.
+pub(super) fn written(what: &str, path: &Path, is_text: bool) -> Result<(), UsageError> {
+    if is_text { print(&format!("{what}: {}\n", path.display())) } else { Ok(()) }
 }
 
 /// Prints a message to standard error.
@@ -36,12 +59,11 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), UsageError> {
 }
 
 /// Writes several files: all temporary files are complete before the first is renamed.
-pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
+pub fn write_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(), UsageError> {
     let mut waiting = Vec::new();
     for (path, bytes) in files {
-        let unwritable = |error: &dyn std::fmt::Display| {
-            UsageError::new(format!("{} cannot be written: {error}", path.display()))
-        };
+        let (path, bytes) = (path.as_ref(), bytes.as_ref());
+        let unwritable = |error: &dyn std::fmt::Display| UsageError::unwritable(path, error);
         if path.is_dir() {
             return Err(unwritable(&"it is a folder"));
         }
@@ -66,8 +88,7 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
         waiting.push((place, file));
     }
     for (place, file) in waiting {
-        file.persist(&place)
-            .map_err(|e| UsageError::new(format!("{} cannot be written: {}", place.display(), e.error)))?;
+        file.persist(&place).map_err(|e| UsageError::unwritable(&place, e.error))?;
     }
     Ok(())
 }

@@ -33,13 +33,13 @@ mod tests {
     use crate::cli::output;
 
     #[test]
-    fn what_is_read_is_not_written_over() {
+    fn an_input_is_not_overwritten() {
         let folder = tempfile::tempdir().unwrap();
         let (program, other) = (folder.path().join("O1.nc"), folder.path().join("page.html"));
         output::write(&program, b"O1\nM30\n").unwrap();
         let round_about = folder.path().join(".").join("O1.nc");
         assert!(check_not_input(&round_about, &[&other, &program]).is_err());
-        assert!(check_not_input(&other, &[&program]).is_ok(), "nothing is there yet");
+        assert!(check_not_input(&other, &[&program]).is_ok(), "no file yet");
         output::write(&other, b"").unwrap();
         assert!(check_not_input(&other, &[&program, Path::new("-")]).is_ok());
     }

@@ -1,5 +1,5 @@
 //! Shell completions and manual pages of either program.
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
@@ -7,6 +7,7 @@ use clap_mangen::Man;
 
 use super::{ExitStatus, UsageError, output};
 
+/// The shell of a completion script.
 #[derive(Debug, Args)]
 pub struct ShellArguments {
     /// The shell
@@ -14,6 +15,7 @@ pub struct ShellArguments {
     shell: Shell,
 }
 
+/// The folder of the manual pages.
 #[derive(Debug, Args)]
 pub struct ManArguments {
     /// The folder for the pages
@@ -36,7 +38,6 @@ pub fn man<A: CommandFactory>(arguments: &ManArguments) -> Result<ExitStatus, Us
     let pages = pages(A::command()).map_err(|error| UsageError::new(format!("no manual page: {error}")))?;
     let files: Vec<(PathBuf, Vec<u8>)> =
         pages.into_iter().map(|(name, text)| (arguments.folder.join(name), text)).collect();
-    let files: Vec<(&Path, &[u8])> = files.iter().map(|(path, text)| (path.as_path(), &text[..])).collect();
     output::write_all(&files)?;
     Ok(ExitStatus::Passed)
 }

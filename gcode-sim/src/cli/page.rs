@@ -18,8 +18,8 @@ pub(super) fn simulate_traced(
     surface: Option<Surface>,
 ) -> Result<(Revision, Trace), UsageError> {
     let mut trace = Trace::default();
-    let revision = Revision::observed(request, folders, surface, &mut trace);
-    Ok((revision.map_err(|error| UsageError::new(error.to_string()))?, trace))
+    let revision = Revision::observed(request, folders, surface, &mut trace)?;
+    Ok((revision, trace))
 }
 
 /// Writes the page of one program, with its verdict if there is a reference.
@@ -42,7 +42,7 @@ pub(super) fn write_alone(
 }
 
 /// Refuses a file name with another extension than .html or .htm: it could be that of a program.
-pub(super) fn is_html(path: &Path) -> Result<(), UsageError> {
+pub(super) fn check_is_html(path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| {
         !["html", "htm"].iter().any(|known| extension.eq_ignore_ascii_case(known))
     };
@@ -60,11 +60,6 @@ pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), UsageError> {
     output::write(path, html.as_bytes())
 }
 
-/// Prints the page's path if the results are text.
-pub(super) fn report_written(path: &Path, is_text: bool) -> Result<(), UsageError> {
-    if is_text { output::print(&format!("page: {}\n", path.display())) } else { Ok(()) }
-}
-
 /// Reads the input files besides the programs.
 pub(super) fn documents(
     conditions: &RunConditions,
@@ -77,12 +72,11 @@ pub(super) fn documents(
         ("part for probing", part.as_deref()),
         ("reference", reference),
     ];
-    let named = files.into_iter().filter_map(|(role, path)| Some((role, path?)));
-    named
-        .map(|(role, path)| {
-            Ok(Document { role, name: path.display().to_string(), bytes: input::bytes(path)? })
-        })
-        .collect()
+    let given = files.into_iter().filter_map(|(role, path)| Some((role, path?)));
+    let document = |(role, path): (_, &Path)| {
+        Ok(Document { role, name: path.display().to_string(), bytes: input::bytes(path)? })
+    };
+    given.map(document).collect()
 }
 
 /// Returns the flags that the run depends on.

@@ -5,13 +5,13 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{ExitStatus, UsageError, options, output, overwrite_guard, render, unused_machine};
+use super::{ExitStatus, UsageError, options, output, render};
 use crate::report::readings::ReadingsReport;
 use gcode_draw::Size;
 use gcode_inspect::verify::Answer;
 
 #[derive(Debug, Args)]
-pub(super) struct ReadingsArguments {
+pub(super) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
 
@@ -32,19 +32,14 @@ pub(super) struct ReadingsArguments {
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageError> {
-    let files = arguments.program.files(None)?;
-    if let Some(picture) = &arguments.picture {
-        overwrite_guard::check_not_input(picture, &files)?;
-    }
-    let (request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::warn_unused_machine(&arguments.program, &request);
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (request, mut folders) =
+        options::checked_request(&arguments.program, None, arguments.picture.as_deref(), None)?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
         return Err(UsageError::new("readings need a part: give it with --part JOB.toml"));
     };
-    let following = gcode_session::read_stylus(&request, &mut folders, surface, probe.radius)
-        .map_err(|e| UsageError::new(e.to_string()))?;
+    let following = gcode_session::read_stylus(&request, &mut folders, surface, probe.radius)?;
     let report = ReadingsReport::new(&render::name(&request), &following, probe.radius, tolerance);
     match arguments.format {
         ListFormat::Text => output::print(&report.text())?,
@@ -52,12 +47,9 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageErro
         ListFormat::Csv => output::print(&report.csv())?,
     }
     if let Some(path) = &arguments.picture {
-        let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
-        let size: Size = arguments.size.parse().map_err(refused)?;
-        output::write(path, &report.plot().draw(size).map_err(refused)?)?;
-        if arguments.format == ListFormat::Text {
-            output::print(&format!("picture: {}\n", path.display()))?;
-        }
+        let size: Size = arguments.size.parse()?;
+        output::write(path, &report.plot().draw(size)?)?;
+        output::written("picture", path, arguments.format == ListFormat::Text)?;
     }
     let found = super::findings(&following.readings.findings, &following.run);
     if found != ExitStatus::Passed {

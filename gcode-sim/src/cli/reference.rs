@@ -11,7 +11,7 @@ use gcode_part::NominalPart;
 use gcode_part::job::Job;
 
 #[derive(Debug, Args)]
-pub(super) struct ReferenceArguments {
+pub(super) struct Arguments {
     /// The job file
     #[arg(value_name = "JOB.toml")]
     job: PathBuf,
@@ -21,21 +21,19 @@ pub(super) struct ReferenceArguments {
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &ReferenceArguments) -> Result<ExitStatus, UsageError> {
-    let named =
-        |error: &dyn std::fmt::Display| UsageError::new(format!("{}, {error}", arguments.job.display()));
-    let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&e))?;
-    match NominalPart::from_job(&job).map_err(|e| named(&e))? {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let path = &arguments.job;
+    let job = Job::parse(&input::text(path)?).map_err(|e| UsageError::in_file(path, e))?;
+    match NominalPart::from_job(&job).map_err(|e| UsageError::in_file(path, e))? {
         NominalPart::Holes(reference) => holes::print(&reference.list(), arguments.format)?,
-        NominalPart::Flutes(wanted) => {
-            let burr = NominalFlutes::of(&wanted);
+        NominalPart::Flutes(flutes) => {
+            let burr = NominalFlutes::of(&flutes);
             match arguments.format {
                 ListFormat::Json => output::json(&burr)?,
                 ListFormat::Text => output::print(&flute_table::nominal_table(&burr))?,
                 ListFormat::Csv => {
-                    return Err(UsageError::new(
-                        "--format csv lists holes, and a burr has none: use text or json",
-                    ));
+                    let message = "--format csv lists holes, and a burr has none: use text or json";
+                    return Err(UsageError::new(message));
                 }
             }
         }

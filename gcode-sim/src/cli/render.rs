@@ -5,18 +5,16 @@ use clap::{Args, ValueEnum};
 
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
-use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
+use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
-use gcode_draw::{Scene, Size, TopView};
-use gcode_inspect::verify::{Tolerances, Verdict};
-use gcode_part::Flutes;
+use gcode_draw::{FluteView, Picture, Size, TopView};
+use gcode_inspect::verify::Tolerances;
 use gcode_part::NominalPart;
-use gcode_part::Reference;
-use gcode_session::{Request, Simulation};
+use gcode_session::Request;
 
 #[derive(Debug, Args)]
-pub(super) struct RenderArguments {
+pub(super) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
 
@@ -59,123 +57,83 @@ enum View {
     Helix,
 }
 
-impl View {
-    /// Returns the value of `--view`.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Top => "top",
-            Self::Development => "development",
-            Self::Side => "side",
-            Self::Tip => "tip",
-            Self::Helix => "helix",
-        }
-    }
-}
-
-pub(super) fn run(arguments: &RenderArguments) -> Result<ExitStatus, UsageError> {
-    overwrite_guard::check_not_input(
-        &arguments.output,
-        &arguments.program.files(arguments.reference.as_deref())?,
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (mut request, mut folders) = options::checked_request(
+        &arguments.program,
+        arguments.reference.as_deref(),
+        Some(&arguments.output),
+        None,
     )?;
-    match arguments.reference.as_deref().map(options::read_nominal).transpose()? {
-        Some(NominalPart::Holes(reference)) => holes(arguments, Some(reference)),
-        Some(NominalPart::Flutes(wanted)) => flutes(arguments, wanted),
-        None => holes(arguments, None),
-    }
+    let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
+    let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
+    let (picture, view, run) = match nominal {
+        Some(NominalPart::Flutes(mut flutes)) => {
+            flutes.surface_tolerance = tolerance.unwrap_or(flutes.surface_tolerance);
+            let grind = |request: &Request| gcode_session::grind(request, &mut folders, &flutes);
+            let grinding = progress::of_run(&mut request, grind)?;
+            let drawn = flute_view::of(&name(&request), &grinding, &grinding.verify());
+            let view = arguments.view.unwrap_or(View::Side);
+            (flute_picture(view, &drawn)?, view, grinding.run)
+        }
+        None | Some(NominalPart::Holes(_)) => {
+            let reference = nominal.and_then(NominalPart::into_holes);
+            let surface = reference.as_ref().and_then(|r| r.surface);
+            request.conduct = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
+            let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, surface);
+            let simulation = progress::of_run(&mut request, simulate)?;
+            let drawn = match &reference {
+                Some(reference) => {
+                    let tolerances = Tolerances::of(reference, tolerance);
+                    let verdict = simulation.verify(reference, tolerances, &request.machine);
+                    top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine)
+                }
+                None => top::of_holes(&name(&request), &simulation, &request.machine),
+            };
+            let view = arguments.view.unwrap_or(View::Top);
+            (hole_picture(view, &drawn)?, view, simulation.run)
+        }
+    };
+    write(&picture, &arguments.size, &arguments.output)?;
+    let view = view.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+    let report = RenderReport { picture: arguments.output.display().to_string(), view };
+    output::report(&report, RenderReport::text, arguments.format)?;
+    Ok(super::findings(&run.findings().collect::<Vec<_>>(), &run))
 }
 
-fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<ExitStatus, UsageError> {
-    let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::warn_unused_machine(&arguments.program, &request);
-    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
-    let surface = reference.as_ref().and_then(|r| r.surface);
-    request.conduct = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
-    let simulation =
-        progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, surface))
-            .map_err(|e| UsageError::new(e.to_string()))?;
-    let drawn = match &reference {
-        Some(reference) => {
-            let verdict = simulation.verify(reference, Tolerances::of(reference, asked), &request.machine);
-            view(&request, &simulation, reference, &verdict)
-        }
-        None => top::of_holes(&name(&request), &simulation, &request.machine),
-    };
-    let asked = arguments.view.unwrap_or(View::Top);
-    let scene = match asked {
-        View::Top => gcode_draw::top_view(&drawn),
+fn hole_picture(view: View, drawn: &TopView) -> Result<Picture, UsageError> {
+    let message = match view {
+        View::Top => return Ok(gcode_draw::top_view(drawn)),
+        View::Development => match gcode_draw::development(drawn) {
+            Some(picture) => return Ok(picture),
+            None => "--view development unrolls a cylinder: give its job with --reference",
+        },
         View::Side | View::Tip | View::Helix => {
-            let message =
-                "the views side, tip and helix show a burr: give a burr job with --reference JOB.toml";
-            return Err(UsageError::new(message));
+            "the views side, tip and helix show a burr: give a burr job with --reference JOB.toml"
         }
-        View::Development => gcode_draw::development(&drawn).ok_or_else(|| {
-            let message = "--view development unrolls a cylinder: give its job with --reference";
-            UsageError::new(message)
-        })?,
     };
-    write(&scene, &arguments.size, &arguments.output)?;
-    tell(arguments, asked)?;
-    Ok(super::stopped(&simulation.run).unwrap_or(ExitStatus::Passed))
+    Err(UsageError::new(message))
 }
 
-fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus, UsageError> {
-    let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::warn_unused_machine(&arguments.program, &request);
-    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
-    wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
-    let grinding =
-        progress::of_run(&mut request, |request| gcode_session::grind(request, &mut folders, &wanted))
-            .map_err(|e| UsageError::new(e.to_string()))?;
-    let verdict = grinding.verify();
-    let view = flute_view::of(&name(&request), &grinding, &verdict);
-    let asked = arguments.view.unwrap_or(View::Side);
-    let scene = match asked {
-        View::Side => gcode_draw::side_view(&view),
-        View::Tip => gcode_draw::tip_view(&view),
-        View::Helix => gcode_draw::helix_graph(&view),
+fn flute_picture(view: View, drawn: &FluteView) -> Result<Picture, UsageError> {
+    match view {
+        View::Side => Ok(gcode_draw::side_view(drawn)),
+        View::Tip => Ok(gcode_draw::tip_view(drawn)),
+        View::Helix => Ok(gcode_draw::helix_graph(drawn)),
         View::Top | View::Development => {
-            return Err(UsageError::new("this view shows holes; a burr has the views side, tip and helix"));
+            Err(UsageError::new("this view shows holes; a burr has the views side, tip and helix"))
         }
-    };
-    write(&scene, &arguments.size, &arguments.output)?;
-    tell(arguments, asked)?;
-    Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Passed))
-}
-
-/// Prints the view and the path of the picture.
-fn tell(arguments: &RenderArguments, view: View) -> Result<(), UsageError> {
-    let report = RenderReport { picture: arguments.output.display().to_string(), view: view.name() };
-    match arguments.format {
-        TextFormat::Text => output::print(&report.text()),
-        TextFormat::Json => output::json(&report),
     }
 }
 
-/// Builds the contents of the views from a verdict.
-pub(super) fn view(
-    request: &Request,
-    simulation: &Simulation,
-    reference: &Reference,
-    verdict: &Verdict,
-) -> TopView {
-    top::of_verdict(&name(request), simulation, reference, verdict, &request.machine)
-}
-
-/// Draws a scene to a PNG file of exactly this size.
-pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageError> {
+/// Draws a picture to a PNG file of exactly this size.
+pub(super) fn write(picture: &Picture, size: &str, path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
     if path.extension().is_some_and(is_other) {
-        let png = path.with_extension("png");
-        return Err(UsageError::new(format!(
-            "{}: a picture is a PNG file: name it {}",
-            path.display(),
-            png.display()
-        )));
+        let (path, png) = (path.display(), path.with_extension("png"));
+        return Err(UsageError::new(format!("{path}: a picture is a PNG file: name it {}", png.display())));
     }
-    let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
-    let size: Size = size.parse().map_err(refused)?;
-    let png = gcode_draw::draw(scene, size).map_err(refused)?;
-    output::write(path, &png)
+    let size: Size = size.parse()?;
+    output::write(path, &gcode_draw::draw(picture, size)?)
 }
 
 /// Returns the file name of the program without its folder.

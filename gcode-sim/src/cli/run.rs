@@ -5,14 +5,14 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
-use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress};
 use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport};
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::stylus::RapidChecker;
 use gcode_session::SessionError;
 
 #[derive(Debug, Args)]
-pub(super) struct RunArguments {
+pub(super) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
 
@@ -33,16 +33,12 @@ pub(super) struct RunArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
-    let files = arguments.program.files(None)?;
-    if let Some(path) = &arguments.output {
-        overwrite_guard::check_not_input(path, &files)?;
-    }
-    let (mut request, mut folders) = options::request(&arguments.program)?;
-    unused_machine::warn_unused_machine(&arguments.program, &request);
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (mut request, mut folders) =
+        options::checked_request(&arguments.program, None, arguments.output.as_deref(), None)?;
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(MoveRecorder::default);
-    let done = progress::of_run(&mut request, |request| {
+    let (run, rapids) = progress::of_run(&mut request, |request| {
         // The tool is followed only if a part for probing is given.
         let follow = |part| HoleExtractor::new(&request.machine).with_surface(Some(part));
         let mut probe = request.part.map(follow);
@@ -51,8 +47,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
         let run =
             gcode_session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
         Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, RapidChecker::finish)))
-    });
-    let (run, rapids) = done.map_err(|error| UsageError::new(error.to_string()))?;
+    })?;
     let mut system = Vec::new();
     for number in wanted {
         let value = run.control.variable(number);
@@ -68,17 +63,14 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
         output::write(path, &bytes)?;
     }
     let report = RunReport::new(&run, moves.as_ref(), system);
-    match arguments.format {
-        TextFormat::Text => output::print(&report.text())?,
-        TextFormat::Json => output::json(&report)?,
-    }
+    output::report(&report, RunReport::text, arguments.format)?;
     let in_part = super::findings(&rapids, &run);
-    let stopped = super::stopped(&run);
+    let status = in_part.max(super::findings(&run.findings().collect::<Vec<_>>(), &run));
     if moves.is_some_and(|moves| moves.is_truncated) {
         output::print_message(&format!(
             "error: --moves: more than {MAX_MOVES} moves; later ones are not in the list\n"
         ));
         return Ok(ExitStatus::Stopped);
     }
-    Ok(stopped.unwrap_or(in_part))
+    Ok(status)
 }

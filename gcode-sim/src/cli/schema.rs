@@ -6,7 +6,7 @@ use super::{ExitStatus, UsageError, output};
 use crate::schema::{FORMATS, Format};
 
 #[derive(Debug, Args)]
-pub(super) struct SchemaArguments {
+pub(super) struct Arguments {
     /// The document
     #[arg(value_name = "NAME", value_parser = names(FORMATS))]
     name: String,
@@ -18,7 +18,7 @@ pub fn names(formats: &[Format]) -> PossibleValuesParser {
     formats.iter().map(value).collect::<Vec<_>>().into()
 }
 
-pub(super) fn run(arguments: &SchemaArguments) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     print(&arguments.name, FORMATS)
 }
 

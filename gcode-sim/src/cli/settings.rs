@@ -6,17 +6,14 @@ use super::{ExitStatus, UsageError, output};
 use crate::report::settings::SettingsReport;
 
 #[derive(Debug, Args)]
-pub(super) struct SettingsArguments {
+pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &SettingsArguments) -> Result<ExitStatus, UsageError> {
-    let report = SettingsReport::new();
-    match arguments.format {
-        TextFormat::Text => output::print(&report.text())?,
-        TextFormat::Json => output::json(&report)?,
-    }
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let report = SettingsReport::all();
+    output::report(&report, SettingsReport::text, arguments.format)?;
     Ok(ExitStatus::Passed)
 }

@@ -2,16 +2,16 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde::Serialize;
 
 use super::conditions::ProgramArguments;
 use super::format::FindingFormat;
 use super::library::Folders;
-use super::{
-    ExitStatus, UsageError, options, output, overwrite_guard, page, progress, render, unused_machine,
-};
-use crate::report::sarif::{self, Finding};
+use super::{ExitStatus, UsageError, options, output, page, progress, render};
+use crate::report::sarif::Finding;
 use crate::report::verdict_table::{Layout, table};
-use crate::report::{flute_table, flute_view};
+use crate::report::{flute_table, flute_view, top};
+use gcode_draw::Picture;
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Flutes;
@@ -20,7 +20,7 @@ use gcode_part::Reference;
 use gcode_session::{Request, Run, Simulation};
 
 #[derive(Debug, Args)]
-pub(super) struct VerifyArguments {
+pub(super) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
 
@@ -59,16 +59,12 @@ pub(super) struct VerifyArguments {
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
-    let files = arguments.program.files(Some(&arguments.reference))?;
-    for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        overwrite_guard::check_not_input(result, &files)?;
-    }
-    arguments.page.as_deref().map(page::is_html).transpose()?;
-    let (mut request, folders) = options::request(&arguments.program)?;
-    unused_machine::warn_unused_machine(&arguments.program, &request);
+    let results = (arguments.picture.as_deref(), arguments.page.as_deref());
+    let (mut request, folders) =
+        options::checked_request(&arguments.program, Some(&arguments.reference), results.0, results.1)?;
     match options::read_nominal(&arguments.reference)? {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, asked);
@@ -92,90 +88,70 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitStatus, UsageError>
 }
 
 fn flutes(
-    arguments: &VerifyArguments,
+    arguments: &Arguments,
     request: &mut Request,
     mut folders: Folders,
     wanted: &Flutes,
 ) -> Result<ExitStatus, UsageError> {
-    let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, wanted))
-        .map_err(|error| UsageError::new(error.to_string()))?;
+    let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, wanted))?;
     let verdict = grinding.verify();
+    let table = || flute_table::table(&verdict);
+    let picture = || gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
+    let result = (&verdict, verdict.verdict, verdict.diagnostics.as_slice());
+    print_verdict(arguments, result, &grinding.run, table, picture)
+}
+
+/// Prints a verdict with its findings and draws its picture.
+fn print_verdict(
+    arguments: &Arguments,
+    (verdict, answer, findings): (&impl Serialize, Answer, &[Diagnostic]),
+    run: &Run,
+    table: impl Fn() -> String,
+    picture: impl Fn() -> Picture,
+) -> Result<ExitStatus, UsageError> {
+    let sources = run.control.memory().sources();
     match arguments.format {
-        FindingFormat::Json => output::json(&verdict)?,
-        FindingFormat::Text => output::print(&flute_table::table(&verdict))?,
-        FindingFormat::Sarif => sarif(&verdict.diagnostics, &grinding.run)?,
+        FindingFormat::Json => output::json(verdict)?,
+        FindingFormat::Text => output::print(&table())?,
+        FindingFormat::Sarif => output::sarif(findings.iter().map(|finding| Finding::of(finding, sources)))?,
     }
     if let Some(path) = &arguments.picture {
-        let scene = gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
-        render::write(&scene, "1600x1200", path)?;
-        if arguments.format == FindingFormat::Text {
-            output::print(&format!("picture: {}\n", path.display()))?;
-        }
+        render::write(&picture(), "1600x1200", path)?;
+        output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
-    Ok(combine_status(super::findings(&verdict.diagnostics, &grinding.run), verdict.verdict))
-}
-
-/// Prints the findings as SARIF for a code review.
-fn sarif(findings: &[Diagnostic], run: &Run) -> Result<(), UsageError> {
-    let sources = run.control.memory().sources();
-    let findings: Vec<_> = findings.iter().map(|finding| Finding::of(finding, sources)).collect();
-    output::json(&sarif::log(&findings, &options::working_folder()))
-}
-
-fn combine_status(status: ExitStatus, answer: Answer) -> ExitStatus {
-    match answer {
-        Answer::Fail if status == ExitStatus::Passed => ExitStatus::Failed,
-        _ => status,
-    }
+    Ok(match (super::findings(findings, run), answer) {
+        (ExitStatus::Passed, Answer::Fail) => ExitStatus::Failed,
+        (status, _) => status,
+    })
 }
 
 fn holes(
-    arguments: &VerifyArguments,
+    arguments: &Arguments,
     request: &mut Request,
     mut folders: Folders,
     reference: &Reference,
     tolerances: Tolerances,
 ) -> Result<ExitStatus, UsageError> {
     request.conduct = reference.process_limits.clone();
+    let machine = request.machine.clone();
+    let name = render::name(request);
+    let print = |simulation: &Simulation, verdict: &Verdict| {
+        let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
+        let view = || top::of_verdict(&name, simulation, reference, verdict, &machine);
+        let result = (verdict, verdict.verdict, verdict.diagnostics.as_slice());
+        let picture = || gcode_draw::main_view(&view());
+        print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
+    };
     if let Some(path) = &arguments.page {
         let watched = page::simulate_traced(request, &mut folders, reference.surface)?;
-        let simulation = &watched.0.simulation;
-        let verdict = simulation.verify(reference, tolerances, &request.machine);
+        let verdict = watched.0.simulation.verify(reference, tolerances, &machine);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
         page::write_alone(request, &watched, judged, &arguments.program.conditions, path)?;
-        let status = print_verdict(arguments, request, reference, simulation, &verdict)?;
-        page::report_written(path, arguments.format == FindingFormat::Text)?;
+        let status = print(&watched.0.simulation, &verdict)?;
+        output::written("page", path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let simulation = progress::of_run(request, |request| {
-        gcode_session::simulate(request, &mut folders, reference.surface)
-    })
-    .map_err(|error| UsageError::new(error.to_string()))?;
-    let verdict = simulation.verify(reference, tolerances, &request.machine);
-    print_verdict(arguments, request, reference, &simulation, &verdict)
-}
-
-fn print_verdict(
-    arguments: &VerifyArguments,
-    request: &Request,
-    reference: &Reference,
-    simulation: &Simulation,
-    verdict: &Verdict,
-) -> Result<ExitStatus, UsageError> {
-    match arguments.format {
-        FindingFormat::Json => output::json(verdict)?,
-        FindingFormat::Text => {
-            let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
-            output::print(&table(verdict, layout))?;
-        }
-        FindingFormat::Sarif => sarif(&verdict.diagnostics, &simulation.run)?,
-    }
-    if let Some(path) = &arguments.picture {
-        let view = render::view(request, simulation, reference, verdict);
-        render::write(&gcode_draw::main_view(&view), "1600x1200", path)?;
-        if arguments.format == FindingFormat::Text {
-            output::print(&format!("picture: {}\n", path.display()))?;
-        }
-    }
-    Ok(combine_status(super::findings(&verdict.diagnostics, &simulation.run), verdict.verdict))
+    let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, reference.surface);
+    let simulation = progress::of_run(request, simulate)?;
+    print(&simulation, &simulation.verify(reference, tolerances, &machine))
 }

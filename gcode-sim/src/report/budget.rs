@@ -4,13 +4,14 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use gcode_draw::{Bar, Bars};
+use super::figures::count;
+use gcode_draw::{Bar, Plot, PlotBody};
 use gcode_inspect::budget::{Budget, BudgetRequest, ErrorShare, Statistics};
 use gcode_inspect::machine::Distribution;
 
 /// The position deviations of all holes under errors; diameters and lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct BudgetReport {
+pub(crate) struct BudgetReport {
     basis: &'static str,
     samples: usize,
     seed: u64,
@@ -70,7 +71,7 @@ impl From<&ErrorShare> for SourceRow {
 }
 
 impl BudgetReport {
-    pub fn new(question: &BudgetRequest<'_>, found: &Budget) -> Self {
+    pub(crate) fn new(question: &BudgetRequest<'_>, found: &Budget) -> Self {
         let holes = found.holes.iter().map(|hole| HoleRow {
             id: hole.id.clone(),
             row: hole.statistics.into(),
@@ -100,10 +101,10 @@ impl BudgetReport {
     }
 
     /// Formats the budget for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without errors\n\n",
-            if self.holes.len() == 1 { "1 hole".to_owned() } else { format!("{} holes", self.holes.len()) },
+            count(self.holes.len(), "hole"),
             self.samples,
             self.basis,
             self.tolerance
@@ -145,13 +146,13 @@ impl BudgetReport {
     }
 
     /// Returns the shares of the sources as bars.
-    pub fn bars(&self) -> Bars {
+    pub(crate) fn bars(&self) -> Plot {
         let bar = |row: &SourceRow| Bar {
             name: row.source.clone(),
             length: row.share,
             text: format!("{:.1} %, {:.4} mm", row.share * 100.0, row.moves),
         };
-        Bars {
+        Plot {
             title: "Error sources: share of the mean square".to_owned(),
             notes: vec![
                 format!(
@@ -163,7 +164,7 @@ impl BudgetReport {
                 ),
                 format!("{} samples, seed {}; {}", self.samples, self.seed, self.basis),
             ],
-            bars: self.sources.iter().map(bar).collect(),
+            body: PlotBody::Bars(self.sources.iter().map(bar).collect()),
         }
     }
 }

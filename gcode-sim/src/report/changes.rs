@@ -1,10 +1,11 @@
-//! What two revisions do differently, as text and as data.
+//! Differences of two revisions, as text and as data.
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::figures::count;
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::diag::Severity;
 use gcode_review::{BlockLocation, Change, Effect, Record, Totals, UnexecutedChange};
@@ -12,18 +13,21 @@ use gcode_review::{BlockLocation, Change, Effect, Record, Totals, UnexecutedChan
 /// The document of `diff --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ChangesReport {
-    /// The kind of the numbers.
+    /// Basis of the numbers.
     pub basis: &'static str,
-    /// No difference on the part or in the control's final state, and both ran to their ends.
+    /// Whether the part and the control's final state are the same, and both programs ran to their ends.
     pub same: bool,
-    /// mm, and degrees for axes that turn.
+    /// Tolerance for equality, mm or degrees.
     pub tolerance: f64,
+    /// The differences, each with its effects.
     pub changes: Vec<Change>,
     /// Changed blocks that neither run executed: their effect is not compared.
     pub unexecuted: Vec<UnexecutedChange>,
+    /// The old revision.
     pub old: Side,
+    /// The new revision.
     pub new: Side,
-    /// How a run ended that stopped before its end: behind that nothing could be compared.
+    /// The end of a run that stopped before its program's end: the rest could not be compared.
     #[serde(skip)]
     stopped: Option<String>,
 }
@@ -31,13 +35,17 @@ pub struct ChangesReport {
 /// Totals of one revision.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Side {
+    /// File name as the user gave it.
     pub name: String,
+    /// End of the run: end, alarm or limit.
     pub outcome: String,
+    /// Numbers of holes, moves and blocks, and the time.
     #[serde(flatten)]
     pub totals: Totals,
 }
 
 impl ChangesReport {
+    /// Builds the report from the names and records of the revisions, and their differences.
     pub fn new(
         old: (&str, &Record),
         new: (&str, &Record),
@@ -63,39 +71,34 @@ impl ChangesReport {
         }
     }
 
-    /// The same for people.
+    /// Formats the differences for a terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
         append_entries(&mut text, &self.changes, "");
-        let _ = match self.changes.len() {
-            0 => match &self.stopped {
-                None => writeln!(text, "no difference on the part or in the control's final state"),
-                Some(words) if self.old.totals.moves == 0 => {
-                    writeln!(text, "nothing could be compared: both stop before the first move, {words}")
-                }
-                Some(words) => {
-                    writeln!(text, "no difference before the stop; the rest could not be compared: {words}")
-                }
-            },
-            1 => writeln!(text, "1 change"),
-            n => writeln!(text, "{n} changes"),
+        let _ = match (self.changes.len(), &self.stopped) {
+            (0, None) => writeln!(text, "no difference on the part or in the control's final state"),
+            (0, Some(words)) if self.old.totals.moves == 0 => {
+                writeln!(text, "nothing could be compared: both stop before the first move, {words}")
+            }
+            (0, Some(words)) => {
+                writeln!(text, "no difference before the stop; the rest could not be compared: {words}")
+            }
+            (number, _) => writeln!(text, "{}", count(number, "change")),
         };
         self.append_unexecuted(&mut text);
         for (word, Side { name, totals, .. }) in [("old", &self.old), ("new", &self.new)] {
             let _ = writeln!(
                 text,
                 "{word}  {name}: {}, {}, {}, {:.1} s",
-                counted(totals.holes as u64, "hole"),
-                counted(totals.moves, "move"),
-                counted(totals.blocks, "block"),
+                count(totals.holes, "hole"),
+                count(totals.moves, "move"),
+                count(totals.blocks, "block"),
                 totals.seconds
             );
         }
         text
     }
-}
 
-impl ChangesReport {
     fn append_unexecuted(&self, text: &mut String) {
         const SHOWN: usize = 6;
         let all = &self.unexecuted;
@@ -115,12 +118,7 @@ impl ChangesReport {
     }
 }
 
-/// `1 hole`, `5 holes`.
-pub(super) fn counted(count: u64, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
-}
-
-/// The changes with their blocks: of each kind as many as people read, and how many more there are.
+/// Writes the changes with their blocks; of each kind a few, and the number of the others.
 pub(super) fn append_entries(text: &mut String, changes: &[Change], indent: &str) {
     const SHOWN: usize = 6;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
@@ -143,7 +141,7 @@ pub(super) fn append_entries(text: &mut String, changes: &[Change], indent: &str
     }
 }
 
-/// One change with its blocks and the calls that led to them.
+/// Writes one change with its blocks and the calls that led to them.
 fn append_entry(text: &mut String, change: &Change, indent: &str) {
     const SHOWN: usize = 6;
     let _ = writeln!(text, "{indent}{:<14} {}", change.code, change.message);
@@ -163,15 +161,15 @@ fn append_entry(text: &mut String, change: &Change, indent: &str) {
     }
 }
 
-/// `O8101:12  G1 X#11`.
+/// Returns `O8101:12  G1 X#11`.
 fn line(place: &BlockLocation) -> String {
     format!("{}:{}  {}", place.program, place.line, place.block)
 }
 
-/// A change for a code review, at its place in the new revision; `files` are those of the programs by their names.
-pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
+/// Returns a change for a code review, at its place in the new revision; `files` are those of the programs by name.
+pub(crate) fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
     let Change { code, message, old, new, anchor: near, also } = change;
-    // What is gone has no line in the file as it is now: its old one is told in words.
+    // A deleted block has no line in the new file: the message gives its old line.
     let was = old.as_ref().filter(|_| new.is_none());
     let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
     let also: String =
@@ -182,14 +180,20 @@ pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, Stri
         severity: Severity::Error,
         message: format!("{before}{message}{}{also}", was.unwrap_or_default()),
         at: new.as_ref().or(near.as_ref()).and_then(|place| place_in(place, files)),
-        related: calls
-            .iter()
-            .filter_map(|call| Some((place_in(call, files)?, "called from here".to_owned())))
-            .collect(),
+        related: calls_in(calls, files),
     }
 }
 
-/// The line of a block in its file.
+/// Returns the calls that led to a block, for a code review.
+pub(super) fn calls_in(
+    calls: &[BlockLocation],
+    files: &BTreeMap<String, String>,
+) -> Vec<(FileLocation, String)> {
+    let called = |call| Some((place_in(call, files)?, "called from here".to_owned()));
+    calls.iter().filter_map(called).collect()
+}
+
+/// Returns the line of a block in its file; `None` if the file is unknown.
 pub(super) fn place_in(place: &BlockLocation, files: &BTreeMap<String, String>) -> Option<FileLocation> {
     let file = files.get(&place.program)?.clone();
     Some(FileLocation { file, line: Some(place.line), column: None })

@@ -2,45 +2,46 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::report::diagnostic;
+use super::diagnostic;
+use super::figures::count;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::source::Span;
 use gcode_lint::CheckResult;
 
 /// The document of `check --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct CheckReport {
+pub(crate) struct CheckReport {
     /// Number of programs checked, called ones included.
-    pub programs: usize,
-    pub findings: Vec<FindingReport>,
+    pub(crate) programs: usize,
+    pub(crate) findings: Vec<FindingReport>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct FindingReport {
+pub(crate) struct FindingReport {
     /// The rule's name.
-    pub code: String,
-    pub severity: &'static str,
-    pub message: String,
-    pub program: Option<String>,
-    pub file: Option<String>,
-    pub line: Option<u32>,
-    pub column: Option<u32>,
+    pub(crate) code: String,
+    pub(crate) severity: &'static str,
+    pub(crate) message: String,
+    pub(crate) program: Option<String>,
+    pub(crate) file: Option<String>,
+    pub(crate) line: Option<u32>,
+    pub(crate) column: Option<u32>,
     /// The block's text.
-    pub block: Option<String>,
-    pub help: Option<String>,
+    pub(crate) block: Option<String>,
+    pub(crate) help: Option<String>,
     /// Secondary locations: the start of a loop, a call.
-    pub labels: Vec<LabelReport>,
+    pub(crate) labels: Vec<LabelReport>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct LabelReport {
-    pub file: String,
-    pub line: u32,
-    pub text: String,
+pub(crate) struct LabelReport {
+    pub(crate) file: String,
+    pub(crate) line: u32,
+    pub(crate) text: String,
 }
 
 impl CheckReport {
-    pub fn new(checked: &CheckResult) -> Self {
+    pub(crate) fn new(checked: &CheckResult) -> Self {
         let findings = checked.findings.iter().map(|finding| report(checked, finding)).collect();
         Self { programs: checked.programs, findings }
     }
@@ -74,7 +75,7 @@ fn report(checked: &CheckResult, finding: &Diagnostic) -> FindingReport {
 }
 
 /// Formats the findings and their count for a terminal.
-pub fn text(checked: &CheckResult) -> String {
+pub(crate) fn text(checked: &CheckResult) -> String {
     let sources = checked.memory.sources();
     let mut text: String =
         checked.findings.iter().map(|finding| diagnostic::render(finding, sources) + "\n").collect();
@@ -85,18 +86,12 @@ pub fn text(checked: &CheckResult) -> String {
 
 /// Returns `2 programs checked: 1 error, 2 warnings`.
 fn summary(checked: &CheckResult) -> String {
-    let counted = |count: usize, what: &str| match count {
-        1 => format!("1 {what}"),
-        count => format!("{count} {what}s"),
-    };
-    let kinds = [Severity::Error, Severity::Warning, Severity::Note];
-    let counts: Vec<_> = kinds
-        .iter()
-        .filter_map(|severity| match checked.count(*severity) {
-            0 => None,
-            count => Some(counted(count, severity.name())),
-        })
+    let counts = [Severity::Error, Severity::Warning, Severity::Note].map(|s| (checked.count(s), s.name()));
+    let counts: Vec<_> = counts
+        .into_iter()
+        .filter(|(number, _)| 0 < *number)
+        .map(|(number, name)| count(number, name))
         .collect();
     let found = if counts.is_empty() { "no findings".to_owned() } else { counts.join(", ") };
-    format!("{} checked: {found}", counted(checked.programs, "program"))
+    format!("{} checked: {found}", count(checked.programs, "program"))
 }

@@ -1,6 +1,9 @@
-//! What `explain` shows: one page for each code. Alarms and findings have theirs in `docs/explain/`; rules of `check` and
-//! entries of `diff` are sections of `docs/checks.md` and `docs/changes.md`.
+//! The result of `explain`: one page for each code. Alarms and findings have theirs in `docs/explain/`; rules of `check`
+//! and entries of `diff` are sections of `docs/checks.md` and `docs/changes.md`.
 use std::fmt::Write;
+
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use gcode_control::notes;
 use gcode_inspect::findings;
@@ -8,12 +11,54 @@ use gcode_lang::alarm::kinds;
 use gcode_lang::diag::FindingKind;
 use gcode_lint::rules;
 
-/// One page: what a code means, what causes it, a program that raises it and what to write instead.
+/// The document of `explain --format json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ExplainReport {
+    pages: Vec<PageReport>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct PageReport {
+    code: &'static str,
+    /// The meaning of the code in a few words.
+    title: &'static str,
+    /// The whole page in Markdown; absent in the list of all codes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    text: Option<&'static str>,
+}
+
+impl ExplainReport {
+    /// Returns the pages of a code in any of its spellings; `hole-depth`, a code of `verify` and of `diff`,
+    /// has two.
+    pub fn of(code: &str) -> Option<Self> {
+        let page = |Page { code, title, text }| PageReport { code, title, text: Some(text) };
+        let pages: Vec<_> = pages(code).map(page).collect();
+        (!pages.is_empty()).then_some(Self { pages })
+    }
+
+    /// Returns the list of all codes.
+    pub fn list() -> Self {
+        let page = |Page { code, title, .. }| PageReport { code, title, text: None };
+        Self { pages: all().map(page).collect() }
+    }
+
+    /// Formats the pages for a terminal, or one line per code.
+    pub fn text(&self) -> String {
+        let page = |PageReport { code, title, text }: &PageReport| match text {
+            None => format!("{code:<20} {title}\n"),
+            Some(text) => plain_text(text),
+        };
+        let between = if self.pages.iter().any(|page| page.text.is_some()) { "\n" } else { "" };
+        self.pages.iter().map(page).collect::<Vec<_>>().join(between)
+    }
+}
+
+/// One page: meaning of a code, causes, a program that raises it, and a correct program.
 #[derive(Clone, Copy, Debug)]
 pub struct Page {
-    /// `PS0112`, or a finding's `hole-position`; `MC3000` stands for all alarms that programs raise.
+    /// `PS0112`, or a finding's `hole-position`; `MC3000` is the page of all alarms that programs raise.
     pub code: &'static str,
-    /// What the code means in a few words.
+    /// Meaning of the code in a few words.
     pub title: &'static str,
     /// Markdown: a heading `# PS0112: division by zero`, and programs fenced as `nc`.
     pub text: &'static str,
@@ -52,13 +97,13 @@ pub fn all() -> impl Iterator<Item = Page> {
     findings().into_iter().chain(rules()).chain(changes())
 }
 
-/// All pages of a code: of `hole-depth`, which `verify` tells and `diff` too, there are two.
+/// Returns all pages of a code: two for `hole-depth`, a code of `verify` and of `diff`.
 pub fn pages(code: &str) -> impl Iterator<Item = Page> {
     let own = find(code).map(|page| page.code);
     all().filter(move |page| Some(page.code) == own)
 }
 
-/// The page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`, `hole-position`, `doubled-n`.
+/// Returns the page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`, `hole-position`, `doubled-n`.
 pub fn find(code: &str) -> Option<Page> {
     let code = code.trim();
     if let Some(page) = all().find(|page| page.code.eq_ignore_ascii_case(code)) {
@@ -82,30 +127,30 @@ pub fn find(code: &str) -> Option<Page> {
 }
 
 impl Page {
-    /// What is fenced as `nc` (the program that raises the alarm, then the one that doesn't), `csv` or `toml`.
+    /// Returns the fenced texts in a language: `nc` (a program that raises the alarm, then a correct one), `csv` or `toml`.
     pub fn fenced(&self, language: &str) -> Vec<&'static str> {
         let parts = self.text.split("```").skip(1).step_by(2);
         parts.filter_map(|part| part.strip_prefix(language)?.strip_prefix('\n')).collect()
     }
+}
 
-    /// The page as a terminal shows it: programs indented, no fences.
-    pub fn plain_text(&self) -> String {
-        let mut text = String::new();
-        let mut program = false;
-        for line in self.text.lines() {
-            if line.starts_with("```") {
-                program = !program;
-                continue;
-            }
-            let _ = if program {
-                writeln!(text, "    {line}")
-            } else {
-                let line = line.strip_prefix("## ").or(line.strip_prefix("# ")).unwrap_or(line);
-                writeln!(text, "{}", line.replace('`', "").replace("**", ""))
-            };
+/// Formats Markdown for a terminal: programs indented, no fences.
+pub(super) fn plain_text(markdown: &str) -> String {
+    let mut text = String::new();
+    let mut is_program = false;
+    for line in markdown.lines() {
+        if line.starts_with("```") {
+            is_program = !is_program;
+            continue;
         }
-        text
+        let _ = if is_program {
+            writeln!(text, "    {line}")
+        } else {
+            let line = line.strip_prefix("## ").or(line.strip_prefix("# ")).unwrap_or(line);
+            writeln!(text, "{}", line.replace('`', "").replace("**", ""))
+        };
     }
+    text
 }
 
 #[cfg(test)]
@@ -127,8 +172,8 @@ mod tests {
     }
 
     #[test]
-    fn a_terminal_sees_no_marks_of_a_page() {
-        let text = find("PS0112").unwrap().plain_text();
+    fn the_text_of_a_page_has_no_markdown() {
+        let text = plain_text(find("PS0112").unwrap().text);
         assert!(text.starts_with("PS0112: division by zero\n\nThe divisor is 0"));
         assert!(text.contains("\nRaises it\n\n    #1=360.\n    #2=#1/#3\n"));
         assert!(!text.contains('`'));

@@ -9,10 +9,12 @@ pub fn rounded(value: f64, places: usize) -> String {
     }
 }
 
+/// Formats with a sign and four decimals: `+0.1200`.
 pub fn signed(value: f64) -> String {
     signed_to(value, 4)
 }
 
+/// Formats with a sign, which 0 has not, and `places` decimals.
 pub fn signed_to(value: f64, places: usize) -> String {
     let text = rounded(value, places);
     match value > 0.0 && text.bytes().any(|b| b.is_ascii_digit() && b != b'0') {
@@ -26,8 +28,9 @@ pub fn with_sign(value: f64) -> String {
     signed_to(value, 3).replace('-', "−")
 }
 
-pub fn count(number: usize, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+/// Formats `1 hole`, `5 holes`.
+pub fn count<N: std::fmt::Display + PartialEq + From<u8>>(number: N, what: &str) -> String {
+    format!("{number} {what}{}", if number == N::from(1) { "" } else { "s" })
 }
 
 /// Formats with up to six decimals: `6`, `5.9`, `66.132`.

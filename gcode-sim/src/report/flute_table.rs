@@ -1,7 +1,7 @@
 //! The verdict on flutes as text, with the helix angles of both laws side by side.
 use std::fmt::Write;
 
-use gcode_inspect::verify::Answer;
+use super::verdict_table::answer_word;
 use gcode_inspect::verify::flutes::{FluteVerdict, LawAngles, NominalFlutes};
 
 /// Formats the verdict; lengths in mm, angles in degrees. Values are judged unrounded and shown rounded.
@@ -10,59 +10,56 @@ pub fn table(verdict: &FluteVerdict) -> String {
         "Flutes of a burr, law {}: {}\na helix angle is measured over {} mm of the flute; tolerances are ±\n\n",
         verdict.law, verdict.basis, verdict.gauge
     );
-    let number = |value: Option<f64>, places: usize| match value {
-        Some(value) => format!("{value:.places$}"),
-        None => "-".to_owned(),
-    };
-    let mut row = |what: &str, found: String, wanted: String, tolerance: String| {
-        let line = format!("{what:<46} {found:>14} {wanted:>16} {tolerance:>10}");
+    let number =
+        |value: Option<f64>, places: usize| value.map_or("-".to_owned(), |value| format!("{value:.places$}"));
+    let deviation =
+        |value, places, tolerance: f64| [number(value, places), "0".to_owned(), tolerance.to_string()];
+    let range = |min, max, places| format!("{} {}", number(min, places), number(max, places));
+    let none = String::new;
+    let rows = [
+        ("", ["actual", "nominal", "tolerance"].map(str::to_owned)),
+        ("flutes", [verdict.flutes.to_string(), verdict.nominal_flutes.to_string(), none()]),
+        (
+            "contact deviation from the tooth bottom, mm",
+            deviation(verdict.surface_deviation, 4, verdict.tolerance),
+        ),
+        (
+            "helix angle, minimum and maximum, degrees",
+            [
+                range(verdict.helix_min, verdict.helix_max, 2),
+                format!("{} on cylinder", verdict.helix),
+                none(),
+            ],
+        ),
+        (
+            "helix angle deviation from the law, degrees",
+            deviation(verdict.helix_error, 3, verdict.helix_tolerance),
+        ),
+        (
+            "index deviation between neighbours, degrees",
+            deviation(verdict.index_error, 4, verdict.index_tolerance),
+        ),
+        (
+            "speed along the flutes, minimum and maximum",
+            [
+                range(verdict.speed_min, verdict.speed_max, 1),
+                verdict.speed.map_or("-".to_owned(), |speed| format!("{speed} mm/min")),
+                verdict.speed.map_or(none(), |_| format!("{:.0} %", 100.0 * verdict.speed_tolerance)),
+            ],
+        ),
+        (
+            "minimum distance of neighbours, mm",
+            [number(verdict.nearest, 3), format!("at least {}", verdict.min_nearest), none()],
+        ),
+        (
+            "passes, and grinding moves in them",
+            [format!("{} {}", verdict.passes, verdict.moves), none(), none()],
+        ),
+    ];
+    for (what, [actual, nominal, tolerance]) in rows {
+        let line = format!("{what:<46} {actual:>14} {nominal:>16} {tolerance:>10}");
         let _ = writeln!(text, "{}", line.trim_end());
-    };
-    let [found, wanted, tolerance] = ["actual", "nominal", "tolerance"].map(str::to_owned);
-    row("", found, wanted, tolerance);
-    row("flutes", verdict.flutes.to_string(), verdict.nominal_flutes.to_string(), String::new());
-    row(
-        "contact deviation from the tooth bottom, mm",
-        number(verdict.surface_deviation, 4),
-        "0".to_owned(),
-        verdict.tolerance.to_string(),
-    );
-    row(
-        "helix angle, minimum and maximum, degrees",
-        format!("{} {}", number(verdict.helix_min, 2), number(verdict.helix_max, 2)),
-        format!("{} on cylinder", verdict.helix),
-        String::new(),
-    );
-    row(
-        "helix angle deviation from the law, degrees",
-        number(verdict.helix_error, 3),
-        "0".to_owned(),
-        verdict.helix_tolerance.to_string(),
-    );
-    row(
-        "index deviation between neighbours, degrees",
-        number(verdict.index_error, 4),
-        "0".to_owned(),
-        verdict.index_tolerance.to_string(),
-    );
-    row(
-        "speed along the flutes, minimum and maximum",
-        format!("{} {}", number(verdict.speed_min, 1), number(verdict.speed_max, 1)),
-        verdict.speed.map_or("-".to_owned(), |speed| format!("{speed} mm/min")),
-        verdict.speed.map_or(String::new(), |_| format!("{:.0} %", 100.0 * verdict.speed_tolerance)),
-    );
-    row(
-        "minimum distance of neighbours, mm",
-        number(verdict.nearest, 3),
-        format!("at least {}", verdict.min_nearest),
-        String::new(),
-    );
-    row(
-        "passes, and grinding moves in them",
-        format!("{} {}", verdict.passes, verdict.moves),
-        String::new(),
-        String::new(),
-    );
+    }
     laws(&mut text, &verdict.laws);
     if !verdict.helix_course.is_empty() {
         let _ =
@@ -78,11 +75,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
         }
         text.push('\n');
     }
-    let said = match verdict.verdict {
-        Answer::Pass => "PASS",
-        Answer::Fail => "FAIL",
-    };
-    let _ = writeln!(text, "{said}     {}", verdict.sentence());
+    let _ = writeln!(text, "{}     {}", answer_word(verdict.verdict), verdict.sentence());
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }

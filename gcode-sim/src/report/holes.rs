@@ -4,7 +4,7 @@ use std::fmt::Write;
 use gcode_part::HoleList;
 
 /// Formats one line per hole, lengths in mm.
-pub fn text(list: &HoleList) -> String {
+pub(crate) fn text(list: &HoleList) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,
@@ -31,7 +31,7 @@ pub fn text(list: &HoleList) -> String {
 }
 
 /// Formats the columns of a reference in CSV.
-pub fn csv(list: &HoleList) -> String {
+pub(crate) fn csv(list: &HoleList) -> String {
     let mut text = String::from("id,x,y,z,i,j,k,depth,diameter\n");
     for (index, hole) in list.holes.iter().enumerate() {
         let id = hole.id.clone().unwrap_or_else(|| (index + 1).to_string());

@@ -7,7 +7,7 @@ use super::test_report::{CaseAnswer, CaseReport, OLDER_TEXT, TestReport};
 ///
 /// # Errors
 /// The message of the XML writer.
-pub fn document(report: &TestReport) -> Result<String, String> {
+pub(crate) fn document(report: &TestReport) -> Result<String, String> {
     let mut suite = TestSuite::new("programs");
     suite.add_test_cases(report.cases.iter().map(case));
     let mut all = Report::new("gcode-sim test");

@@ -6,38 +6,39 @@ use gcode_draw::Difference;
 
 /// The document of `render --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct RenderReport {
+pub(crate) struct RenderReport {
     /// The picture's file.
-    pub picture: String,
-    pub view: &'static str,
+    pub(crate) picture: String,
+    /// Name of the view.
+    pub(crate) view: String,
 }
 
 impl RenderReport {
     /// Formats the result for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         format!("picture: {}\n", self.picture)
     }
 }
 
 /// The document of `compare --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct CompareReport {
+pub(crate) struct CompareReport {
     /// The pictures have equal sizes and no difference beyond the tolerance.
-    pub same: bool,
+    pub(crate) same: bool,
     /// Width and height of both pictures, pixels.
-    pub sizes: [[u32; 2]; 2],
+    pub(crate) sizes: [[u32; 2]; 2],
     /// Number of different pixels.
-    pub pixels: u64,
+    pub(crate) pixels: u64,
     /// Largest difference of a colour value, 0 to 255.
-    pub largest: u8,
+    pub(crate) largest: u8,
     /// Left, top, right and bottom of the differences, both ends included.
-    pub bounds: Option<[u32; 4]>,
+    pub(crate) bounds: Option<[u32; 4]>,
     /// The file with the differences marked, if one was written.
-    pub picture: Option<String>,
+    pub(crate) picture: Option<String>,
 }
 
 impl CompareReport {
-    pub fn new(difference: &Difference, picture: Option<String>) -> Self {
+    pub(crate) fn new(difference: &Difference, picture: Option<String>) -> Self {
         Self {
             same: difference.is_none(),
             sizes: difference.sizes.map(|(width, height)| [width, height]),
@@ -49,7 +50,7 @@ impl CompareReport {
     }
 
     /// Formats the result for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         if self.same {
             return "no difference between the pictures\n".to_owned();
         }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::report::figures::count;
 use gcode_control::Outcome;
-use gcode_draw::{Chart, Curve, Graph, Pen, Plot};
+use gcode_draw::{Chart, Curve, Graph, Pen, Plot, PlotBody};
 use gcode_inspect::stylus::{Gap, Reading, ReadingPass};
 use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Severity;
@@ -14,7 +14,7 @@ use gcode_session::StylusRun;
 
 /// The readings of an edge finder; lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct ReadingsReport {
+pub(crate) struct ReadingsReport {
     basis: &'static str,
     /// Radius of the ball.
     radius: f64,
@@ -68,7 +68,7 @@ struct ReadingRow {
 
 impl ReadingsReport {
     /// Builds the report of the program `name`, for a ball of this radius.
-    pub fn new(name: &str, following: &StylusRun, radius: f64, tolerance: Option<f64>) -> Self {
+    pub(crate) fn new(name: &str, following: &StylusRun, radius: f64, tolerance: Option<f64>) -> Self {
         let row = |pass: &ReadingPass, reading: &Reading| {
             let (program, line) = following.run.locate(pass.backtraces[reading.move_index].block);
             let [x, y, z] = reading.ball_centre.coords.into();
@@ -124,17 +124,17 @@ impl ReadingsReport {
     }
 
     /// Returns the verdict; `None` without a tolerance.
-    pub fn verdict(&self) -> Option<Answer> {
+    pub(crate) fn verdict(&self) -> Option<Answer> {
         self.verdict
     }
 
     /// Returns true if no feed of the program follows the surface.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.passes.is_empty()
     }
 
     /// Formats every tenth of each pass for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "Readings of an edge finder, ball of radius {}: {}\nmm; above 0: gap between ball and surface; \
              below 0: stylus deflected; x y z: ball centre\n",
@@ -197,7 +197,7 @@ impl ReadingsReport {
     }
 
     /// Formats one line per reading.
-    pub fn csv(&self) -> String {
+    pub(crate) fn csv(&self) -> String {
         let mut text = String::from("pass,along,x,y,z,reading,program,line\n");
         for (index, pass) in self.passes.iter().enumerate() {
             for row in &pass.readings {
@@ -210,7 +210,7 @@ impl ReadingsReport {
     }
 
     /// Returns the readings over the path, pass after pass, with the gaps between them.
-    pub fn plot(&self) -> Plot {
+    pub(crate) fn plot(&self) -> Plot {
         let mut begun = 0.0;
         let (mut curves, mut gaps) = (Vec::new(), Vec::new());
         for behind in 0..=self.passes.len() {
@@ -246,7 +246,7 @@ impl ReadingsReport {
             .into_iter()
             .flatten()
             .collect(),
-            chart: Chart {
+            body: PlotBody::Chart(Chart {
                 x_label: "Path of the ball centre, mm".to_owned(),
                 guides: Vec::new(),
                 gaps,
@@ -257,7 +257,7 @@ impl ReadingsReport {
                     has_zero_line: true,
                     markers: Vec::new(),
                 }],
-            },
+            }),
         }
     }
 }

@@ -10,28 +10,28 @@ use gcode_lang::source::{Sources, Span};
 
 /// One finding of any command, with its place in a file.
 #[derive(Clone, Debug)]
-pub struct Finding {
+pub(crate) struct Finding {
     /// Name of its rule: a code that `explain` knows.
-    pub code: Cow<'static, str>,
-    pub severity: Severity,
-    pub message: String,
-    pub at: Option<FileLocation>,
+    pub(crate) code: Cow<'static, str>,
+    pub(crate) severity: Severity,
+    pub(crate) message: String,
+    pub(crate) at: Option<FileLocation>,
     /// Further places, each with its text.
-    pub related: Vec<(FileLocation, String)>,
+    pub(crate) related: Vec<(FileLocation, String)>,
 }
 
 /// A place in a file; lines and columns count from 1.
 #[derive(Clone, Debug)]
-pub struct FileLocation {
+pub(crate) struct FileLocation {
     /// The file's name as the user gave it.
-    pub file: String,
-    pub line: Option<u32>,
-    pub column: Option<u32>,
+    pub(crate) file: String,
+    pub(crate) line: Option<u32>,
+    pub(crate) column: Option<u32>,
 }
 
 impl Finding {
     /// Converts a diagnostic, with its labels and calls as further places.
-    pub fn of(diagnostic: &Diagnostic, sources: &Sources) -> Self {
+    pub(crate) fn of(diagnostic: &Diagnostic, sources: &Sources) -> Self {
         let at = |span: Span| {
             let place = sources.line_column(span);
             let file = sources.get(span.source).name.clone();
@@ -56,7 +56,7 @@ impl Finding {
 
 /// A SARIF log with one run.
 #[derive(Debug, Serialize)]
-pub struct Log {
+pub(crate) struct Log {
     #[serde(rename = "$schema")]
     schema: &'static str,
     version: &'static str,
@@ -147,7 +147,7 @@ struct Region {
 }
 
 /// Builds the log of all findings. Files below `root`, the working directory, have relative names.
-pub fn log(findings: &[Finding], root: &str) -> Log {
+pub(crate) fn log(findings: &[Finding], root: &str) -> Log {
     let mut places: BTreeMap<&str, usize> = findings.iter().map(|finding| (&*finding.code, 0)).collect();
     places.values_mut().enumerate().for_each(|(number, place)| *place = number);
     let rules = places.keys().map(|code| rule(code)).collect();
@@ -174,16 +174,14 @@ pub fn log(findings: &[Finding], root: &str) -> Log {
 
 fn rule(code: &str) -> Rule {
     let pages: Vec<explain::Page> = explain::pages(code).collect();
-    let joined = |text: &dyn Fn(&explain::Page) -> String| {
-        pages.iter().map(text).map(|text| text.trim_end().to_owned()).collect::<Vec<_>>().join("\n\n")
+    let joined = |text: fn(&str) -> String| {
+        pages.iter().map(|page| text(page.text).trim_end().to_owned()).collect::<Vec<_>>().join("\n\n")
     };
     Rule {
         id: code.to_owned(),
         short_description: pages.first().map(|page| Text { text: page.title.to_owned() }),
-        help: (!pages.is_empty()).then(|| Help {
-            text: joined(&explain::Page::plain_text),
-            markdown: joined(&|page| page.text.to_owned()),
-        }),
+        help: (!pages.is_empty())
+            .then(|| Help { text: joined(explain::plain_text), markdown: joined(str::to_owned) }),
     }
 }
 

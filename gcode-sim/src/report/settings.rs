@@ -1,6 +1,4 @@
 //! The control settings for `--control`, as text and as data.
-use std::fmt::Write;
-
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -8,18 +6,18 @@ use gcode_lang::control::{CODE_RANGES, CodeCallKind, ROWS, SEQUENTIAL_CODES};
 
 /// The document of `settings --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct SettingsReport {
-    pub settings: Vec<SettingReport>,
+pub(crate) struct SettingsReport {
+    pub(crate) settings: Vec<SettingReport>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct SettingReport {
+pub(crate) struct SettingReport {
     /// The key for `--control`, before the `=`; a range is given by its first and last key.
-    pub key: String,
+    pub(crate) key: String,
     /// Its meaning, with the parameter's number where a control has one.
-    pub meaning: String,
+    pub(crate) meaning: String,
     /// Allowed values, in words.
-    pub allowed: String,
+    pub(crate) allowed: String,
 }
 
 impl SettingReport {
@@ -30,7 +28,7 @@ impl SettingReport {
 
 impl SettingsReport {
     /// Returns all settings.
-    pub fn new() -> Self {
+    pub(crate) fn all() -> Self {
         let rows = ROWS.iter().map(|row| SettingReport::new(row.key, row.meaning, row.values.to_string()));
         let mut settings: Vec<_> = rows.collect();
         settings.push(SettingReport::new("#1000 to #1031", "an input signal", "0 or 1"));
@@ -56,17 +54,11 @@ impl SettingsReport {
     }
 
     /// Formats the settings for a terminal.
-    pub fn text(&self) -> String {
-        self.settings.iter().fold(String::new(), |mut text, SettingReport { key, meaning, allowed }| {
-            let _ = writeln!(text, "{key:<16} {meaning} [{allowed}]");
-            text
-        })
-    }
-}
-
-impl Default for SettingsReport {
-    fn default() -> Self {
-        Self::new()
+    pub(crate) fn text(&self) -> String {
+        let line = |SettingReport { key, meaning, allowed }: &SettingReport| {
+            format!("{key:<16} {meaning} [{allowed}]\n")
+        };
+        self.settings.iter().map(line).collect()
     }
 }
 

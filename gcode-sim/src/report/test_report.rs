@@ -1,70 +1,78 @@
-//! What came of the cases of `test`, as text and as data.
+//! The results of the cases of `test`, as text and as data.
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::changes::{append_entries, change_found, counted, place_in};
+use super::changes::{append_entries, calls_in, change_found, place_in};
+use super::figures::count;
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::alarm::kinds::PS0076;
 use gcode_lang::diag::Severity;
 use gcode_review::alarm_code;
 use gcode_review::{BlockLocation, Change, Totals};
 
-/// The document of `test --format json`, and what `test --merge` reads.
+/// The document of `test --format json`, which `test --merge` reads.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct TestReport {
-    /// The kind of the numbers.
-    pub basis: String,
+pub(crate) struct TestReport {
+    /// Basis of the numbers.
+    pub(crate) basis: String,
     /// The shard of the cases; `None` for all.
-    pub shard: Option<Shard>,
+    pub(crate) shard: Option<Shard>,
     /// Tolerance for equality, mm or degrees.
-    pub tolerance: f64,
-    pub cases: Vec<CaseReport>,
+    pub(crate) tolerance: f64,
+    /// The cases in the order of their names.
+    pub(crate) cases: Vec<CaseReport>,
     /// The names of the cases whose results were accepted now.
-    pub accepted: Vec<String>,
+    pub(crate) accepted: Vec<String>,
 }
 
-/// One of several parts of the cases, run on machines side by side.
+/// One of several parts of the cases, which run on separate machines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Shard {
+pub(crate) struct Shard {
     /// Counts from 1.
-    pub number: usize,
-    pub of: usize,
+    pub(crate) number: usize,
+    /// Number of shards.
+    pub(crate) of: usize,
     /// Number of cases in all shards.
-    pub cases: usize,
+    pub(crate) cases: usize,
 }
 
-#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+/// The result of one case.
+#[derive(Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct CaseReport {
-    pub name: String,
+pub(crate) struct CaseReport {
+    /// Path of the case below the given folder.
+    pub(crate) name: String,
     /// The main program's file; without one, a file of the case.
-    pub file: Option<String>,
-    pub answer: CaseAnswer,
-    pub changes: Vec<Change>,
-    /// What an accepted result of an earlier version does not record, so that it is not compared.
+    pub(crate) file: Option<String>,
+    pub(crate) answer: CaseAnswer,
+    pub(crate) changes: Vec<Change>,
+    /// Aspects that an accepted result of an earlier version does not record, so that they are not compared.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub not_compared: Vec<String>,
+    pub(crate) not_compared: Vec<String>,
     /// The first error of the verification against the reference.
-    pub against: Option<FirstFailure>,
-    /// Why the case is invalid.
-    pub error: Option<String>,
-    pub totals: Option<Totals>,
-    /// How the run ended, in words.
-    pub ending: Option<String>,
+    pub(crate) against: Option<FirstFailure>,
+    /// The reason why the case is invalid.
+    pub(crate) error: Option<String>,
+    pub(crate) totals: Option<Totals>,
+    /// The end of the run, in words.
+    pub(crate) ending: Option<String>,
     /// The files of the programs that `changes` and `against` name.
-    pub files: BTreeMap<String, String>,
+    pub(crate) files: BTreeMap<String, String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+/// Result of comparing a case with its accepted result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum CaseAnswer {
+pub(crate) enum CaseAnswer {
     /// As accepted.
+    #[default]
     Same,
+    /// Different from the accepted result.
     Changed,
     /// Accepted by an earlier version that recorded less; everything it recorded is unchanged.
     Older,
@@ -74,24 +82,25 @@ pub enum CaseAnswer {
     Refused,
 }
 
-/// What is said of [`CaseAnswer::Older`].
+/// Text for [`CaseAnswer::Older`].
 pub(super) const OLDER_TEXT: &str =
     "accepted by an earlier version that recorded less; everything it recorded is unchanged";
 
 /// The first error of a failed verdict.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct FirstFailure {
+pub(crate) struct FirstFailure {
     /// The code of the finding.
-    pub code: String,
-    pub message: String,
+    pub(crate) code: String,
+    pub(crate) message: String,
     /// The block that causes it, if any.
-    pub place: Option<BlockLocation>,
+    pub(crate) place: Option<BlockLocation>,
 }
 
 impl TestReport {
-    /// With the cases in the order of their names: a whole run and its merged shards are the same document.
-    pub fn new(
+    /// Builds the report with the cases in the order of their names, so that a whole run and its merged shards are
+    /// the same document.
+    pub(crate) fn new(
         shard: Option<Shard>,
         tolerance: f64,
         mut cases: Vec<CaseReport>,
@@ -103,8 +112,8 @@ impl TestReport {
         Self { basis, shard, tolerance, cases, accepted }
     }
 
-    /// The same for people: what isn't as accepted, and how many are.
-    pub fn text(&self) -> String {
+    /// Formats the cases that are not as accepted, and the numbers of all, for a terminal.
+    pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         self.cases.iter().for_each(|case| case.append_text(&mut text));
         for name in &self.accepted {
@@ -113,25 +122,21 @@ impl TestReport {
             let ending = ending.map(|words| format!(", which ends with {words}")).unwrap_or_default();
             let _ = writeln!(text, "accepted {name}{ending}");
         }
-        let count = |answer| self.cases.iter().filter(|case| case.answer == answer).count();
-        let mut words = vec![format!("{} as accepted", count(CaseAnswer::Same))];
-        let others = [
-            (CaseAnswer::Changed, "changed"),
-            (CaseAnswer::Older, "accepted by an earlier version"),
-            (CaseAnswer::New, "new"),
-            (CaseAnswer::Refused, "refused"),
-        ];
-        for (answer, word) in others.into_iter().filter(|(answer, _)| count(*answer) > 0) {
-            words.push(format!("{} {word}", count(answer)));
-        }
+        let number = |answer| self.cases.iter().filter(|case| case.answer == answer).count();
         let failing = self.cases.iter().filter(|case| case.against.is_some()).count();
-        if failing > 0 {
-            words.push(format!("{failing} failing verification"));
-        }
-        let _ = writeln!(text, "{}: {}", counted(self.cases.len() as u64, "case"), words.join(", "));
+        let others = [
+            (number(CaseAnswer::Changed), "changed"),
+            (number(CaseAnswer::Older), "accepted by an earlier version"),
+            (number(CaseAnswer::New), "new"),
+            (number(CaseAnswer::Refused), "refused"),
+            (failing, "failing verification"),
+        ];
+        let others = others.iter().filter(|(number, _)| 0 < *number);
+        let others: String = others.map(|(number, word)| format!(", {number} {word}")).collect();
+        let same = number(CaseAnswer::Same);
+        let _ = writeln!(text, "{}: {same} as accepted{others}", count(self.cases.len(), "case"));
         if let Some(Shard { number, of, cases }) = self.shard.filter(|_| self.cases.is_empty()) {
-            let _ =
-                writeln!(text, "shard {number}/{of} is empty: {} in total", counted(cases as u64, "case"));
+            let _ = writeln!(text, "shard {number}/{of} is empty: {} in total", count(cases, "case"));
         }
         let (lacking, open): (Vec<_>, Vec<_>) = self
             .cases
@@ -152,55 +157,39 @@ impl TestReport {
         text
     }
 
-    /// What stands in the way of cases that can't be used.
-    pub fn refused(&self) -> impl Iterator<Item = String> + '_ {
+    /// Returns the errors of the invalid cases.
+    pub(crate) fn refused(&self) -> impl Iterator<Item = String> + '_ {
         let refused = self.cases.iter().filter(|case| case.answer == CaseAnswer::Refused);
         refused.map(|case| format!("case {}: {}", case.name, case.error.as_deref().unwrap_or_default()))
     }
 
-    /// What isn't as accepted or fails its reference, each with its place.
-    pub fn findings(&self) -> Vec<Finding> {
+    /// Returns the findings of all cases that are not as accepted or fail verification.
+    pub(crate) fn findings(&self) -> Vec<Finding> {
         self.cases.iter().flat_map(CaseReport::findings).collect()
     }
 }
 
 impl CaseReport {
-    /// A case and its answer, and nothing else yet.
-    pub fn new(name: String, file: Option<String>, answer: CaseAnswer) -> Self {
-        Self {
-            name,
-            file,
-            answer,
-            changes: Vec::new(),
-            not_compared: Vec::new(),
-            against: None,
-            error: None,
-            totals: None,
-            ending: None,
-            files: BTreeMap::new(),
-        }
-    }
-
-    /// As accepted, and not against its reference.
-    pub fn is_good(&self) -> bool {
+    /// Returns true if the case is as accepted and passes verification.
+    pub(crate) fn is_good(&self) -> bool {
         self.answer == CaseAnswer::Same && self.against.is_none()
     }
 
-    /// The alarm that the run ended with.
+    /// Returns the alarm that ended the run.
     fn alarm(&self) -> Option<&str> {
         self.ending.as_deref().filter(|words| words.starts_with("alarm"))
     }
 
-    /// As [`gcode_review::Record::lacks_program`].
+    /// Returns true if a called program is not found, like [`gcode_review::Record::lacks_program`].
     fn lacks_program(&self) -> bool {
         self.alarm().is_some_and(|words| alarm_code(words) == Some(PS0076.code))
     }
 
-    /// What isn't as it should be; nothing of a good case.
+    /// Writes the failures of a case; nothing for a good one.
     pub(super) fn append_text(&self, text: &mut String) {
         let name = &self.name;
         let mut totals = self.totals.as_ref().map_or_else(String::new, |totals| {
-            format!("{}, {}", counted(totals.holes as u64, "hole"), counted(totals.moves, "move"))
+            format!("{}, {}", count(totals.holes, "hole"), count(totals.moves, "move"))
         });
         if let Some(alarm) = self.alarm() {
             totals.push_str(&format!("; {alarm}"));
@@ -223,34 +212,30 @@ impl CaseReport {
         }
     }
 
-    /// What can't be held against a result of an earlier version.
+    /// Returns the line on aspects that the accepted result does not record.
     pub(super) fn unrecorded_text(&self) -> String {
         format!("not compared (not recorded in the accepted result): {}", self.not_compared.join(", "))
     }
 
     fn findings(&self) -> Vec<Finding> {
         let whole = || self.file.clone().map(|file| FileLocation { file, line: Some(1), column: None });
-        let found =
-            |code: &str, message: String, at: Option<FileLocation>, calls: &[BlockLocation]| Finding {
-                code: code.to_owned().into(),
-                severity: Severity::Error,
-                message: format!("{}: {message}", self.name),
-                at: at.or_else(whole),
-                related: calls
-                    .iter()
-                    .filter_map(|call| Some((place_in(call, &self.files)?, "called from here".to_owned())))
-                    .collect(),
-            };
+        let found = |code: &str, message: String, place: Option<&BlockLocation>| Finding {
+            code: code.to_owned().into(),
+            severity: Severity::Error,
+            message: format!("{}: {message}", self.name),
+            at: place.and_then(|place| place_in(place, &self.files)).or_else(whole),
+            related: place.map_or_else(Vec::new, |place| calls_in(&place.calls, &self.files)),
+        };
         let mut all = Vec::new();
         match self.answer {
             CaseAnswer::Refused => {
-                all.push(found("case-refused", self.error.clone().unwrap_or_default(), None, &[]));
+                all.push(found("case-refused", self.error.clone().unwrap_or_default(), None));
             }
-            CaseAnswer::New => all.push(found("case-new", "nothing accepted yet".to_owned(), None, &[])),
+            CaseAnswer::New => all.push(found("case-new", "nothing accepted yet".to_owned(), None)),
             CaseAnswer::Same | CaseAnswer::Changed | CaseAnswer::Older => {}
         }
         if !self.not_compared.is_empty() {
-            all.push(found("case-older", self.unrecorded_text(), None, &[]));
+            all.push(found("case-older", self.unrecorded_text(), None));
         }
         let before = format!("{}: ", self.name);
         for change in &self.changes {
@@ -258,9 +243,7 @@ impl CaseReport {
             all.push(Finding { at: found.at.or_else(whole), ..found });
         }
         if let Some(FirstFailure { code, message, place }) = &self.against {
-            let calls = place.as_ref().map_or(&[][..], |place| &place.calls);
-            let at = place.as_ref().and_then(|place| place_in(place, &self.files));
-            all.push(found(code, message.clone(), at, calls));
+            all.push(found(code, message.clone(), place.as_ref()));
         }
         all
     }

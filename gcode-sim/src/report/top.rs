@@ -22,13 +22,9 @@ pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopVi
     let side = side_along_holes(&found).unwrap_or_else(|| side(machine));
     let holes = simulation.extracted.holes.iter().zip(found).enumerate();
     let drawn = holes.map(|(index, (found, hole))| DrawnHole {
-        id: (index + 1).to_string(),
-        nominal: None,
         actual: Some(hole),
-        status: HoleStatus::Unjudged,
-        position_deviation: None,
         rotary_angle: rotary.angle(found),
-        remarks: Vec::new(),
+        ..blank_hole((index + 1).to_string(), HoleStatus::Unjudged)
     });
     let mut holes: Vec<DrawnHole> = drawn.collect();
     hide_constant_rotary(&mut holes);
@@ -53,45 +49,29 @@ pub fn of_verdict(
     let rotary = Rotary::of(machine);
     let found = &simulation.extracted.holes;
     let by_id: BTreeMap<_, _> = reference.holes.iter().map(|hole| (hole.id.as_deref(), hole)).collect();
-    let wanted = |id: &str| by_id.get(&Some(id)).copied();
-    let judged = verdict.holes.iter().map(|hole| DrawnHole {
-        id: hole.id.clone(),
-        nominal: wanted(&hole.id).cloned(),
-        actual: Some(found[hole.drilled_index].hole(no_location)),
-        status: if hole.ok { HoleStatus::Good } else { HoleStatus::Bad },
-        position_deviation: Some(hole.position_deviation),
-        rotary_angle: rotary.angle(&found[hole.drilled_index]),
-        remarks: hole
-            .objections
-            .first()
-            .into_iter()
-            .map(|code| match *code {
-                "hole-depth" => format!("depth {}", with_sign(hole.depth_error)),
-                other => other.trim_start_matches("hole-").to_owned(),
-            })
-            .collect(),
+    let nominal = |id: &str| by_id.get(&Some(id)).copied();
+    let judged = verdict.holes.iter().map(|hole| {
+        let remark = hole.objections.first().map(|code| match *code {
+            "hole-depth" => format!("depth {}", with_sign(hole.depth_error)),
+            other => other.trim_start_matches("hole-").to_owned(),
+        });
+        DrawnHole {
+            nominal: nominal(&hole.id).cloned(),
+            actual: Some(found[hole.drilled_index].hole(no_location)),
+            position_deviation: Some(hole.position_deviation),
+            rotary_angle: rotary.angle(&found[hole.drilled_index]),
+            remarks: remark.into_iter().collect(),
+            ..blank_hole(hole.id.clone(), if hole.ok { HoleStatus::Good } else { HoleStatus::Bad })
+        }
     });
-    let missing = verdict.missing.iter().map(|id| DrawnHole {
-        id: id.clone(),
-        nominal: wanted(id).cloned(),
-        actual: None,
-        status: HoleStatus::Missing,
-        position_deviation: None,
-        rotary_angle: None,
-        remarks: Vec::new(),
-    });
-    let extra = verdict.extra.iter().map(|extra| DrawnHole {
-        id: extra
-            .hole
-            .from
-            .as_ref()
-            .map_or_else(String::new, |from| format!("{}:{}", from.program, from.line)),
-        nominal: None,
-        actual: Some(extra.hole.clone()),
-        status: HoleStatus::Extra,
-        position_deviation: None,
-        rotary_angle: None,
-        remarks: Vec::new(),
+    let missing = verdict
+        .missing
+        .iter()
+        .map(|id| DrawnHole { nominal: nominal(id).cloned(), ..blank_hole(id.clone(), HoleStatus::Missing) });
+    let extra = verdict.extra.iter().map(|extra| {
+        let from = extra.hole.from.as_ref();
+        let id = from.map_or_else(String::new, |from| format!("{}:{}", from.program, from.line));
+        DrawnHole { actual: Some(extra.hole.clone()), ..blank_hole(id, HoleStatus::Extra) }
     });
     let mut holes: Vec<DrawnHole> = judged.chain(missing).chain(extra).collect();
     hide_constant_rotary(&mut holes);
@@ -113,6 +93,19 @@ pub fn of_verdict(
         is_rotary_reversed: rotary.is_reversed(),
         holes,
         ..TopView::default()
+    }
+}
+
+/// Returns a hole without nominal, actual and remarks.
+pub(super) fn blank_hole(id: String, status: HoleStatus) -> DrawnHole {
+    DrawnHole {
+        id,
+        nominal: None,
+        actual: None,
+        status,
+        position_deviation: None,
+        rotary_angle: None,
+        remarks: Vec::new(),
     }
 }
 

@@ -1,7 +1,8 @@
-//! A verdict as an inspection table: nominal, actual, deviation, position, out of tolerance.
+//! A verdict as an inspection table: nominal, actual, deviation, position, out of tolerance; and its summary.
+use std::fmt::Write;
+
 use super::figures::{count, rounded, signed, signed_to};
-use super::verdict_summary::{append_line, made_by, summary};
-use gcode_inspect::verify::{HoleGeometry, HoleVerdict, Verdict};
+use gcode_inspect::verify::{Answer, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict};
 
 /// Extent and order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,10 +38,7 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
     } else {
         lines(&mut text, &holes);
         if holes.len() < all {
-            append_line(
-                &mut text,
-                &format!("the worst {} of {all} holes; --full lists them all\n", holes.len()),
-            );
+            let _ = writeln!(text, "the worst {} of {all} holes; --full lists them all", holes.len());
         }
     }
     summary(&mut text, verdict);
@@ -61,36 +59,40 @@ fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     order.into_iter().map(|index| &holes[index]).collect()
 }
 
+/// Names and widths of the columns between a hole's name and its verdict.
+const COLUMNS: [(&str, usize); 12] = [
+    ("x", 9),
+    ("y", 9),
+    ("z", 9),
+    ("dx", 8),
+    ("dy", 8),
+    ("dz", 8),
+    ("entry", 7),
+    ("bottom", 7),
+    ("tilt", 7),
+    ("depth", 8),
+    ("Φ", 7),
+    ("out", 7),
+];
+
 /// Writes one line per hole.
 fn lines(text: &mut String, holes: &[&HoleVerdict]) {
     if holes.is_empty() {
         return;
     }
     let wide = holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(4, 12);
-    append_line(
-        text,
-        &format!(
-            "{:<wide$} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  verdict",
-            "hole", "x", "y", "z", "dx", "dy", "dz", "entry", "bottom", "tilt", "depth", "Φ", "out"
-        ),
-    );
+    let mut line = |name: &str, cells: [String; 12], verdict: &str| {
+        let cells = cells.iter().zip(COLUMNS).map(|(cell, (_, wide))| format!(" {cell:>wide$}"));
+        let _ = writeln!(text, "{name:<wide$}{}  {verdict}", cells.collect::<String>());
+    };
+    line("hole", COLUMNS.map(|(name, _)| name.to_owned()), "verdict");
     for hole in holes {
         let [x, y, z] = hole.nominal.entry.map(|v| rounded(v, 3));
         let [dx, dy, dz] = off(hole).map(signed);
-        append_line(
-            text,
-            &format!(
-                "{:<wide$} {x:>9} {y:>9} {z:>9} {dx:>8} {dy:>8} {dz:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  {}",
-                hole.id,
-                rounded(hole.at_entry, 4),
-                rounded(hole.at_bottom, 4),
-                rounded(hole.tilt, 4),
-                signed(hole.depth_error),
-                rounded(hole.position_deviation, 4),
-                rounded(hole.out_of_tolerance, 4),
-                remarks_of(hole)
-            ),
-        );
+        let [entry, bottom, tilt] = [hole.at_entry, hole.at_bottom, hole.tilt].map(|v| rounded(v, 4));
+        let [phi, out] = [hole.position_deviation, hole.out_of_tolerance].map(|v| rounded(v, 4));
+        let depth = signed(hole.depth_error);
+        line(&hole.id, [x, y, z, dx, dy, dz, entry, bottom, tilt, depth, phi, out], &remarks_of(hole));
     }
     text.push('\n');
 }
@@ -98,15 +100,15 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
 /// Writes every column, with a line each for nominal, actual and deviation.
 fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     let head = ["x", "y", "z", "i", "j", "k", "d", "l"].map(|name| format!("{name:>10}")).concat();
-    append_line(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
+    let _ = writeln!(text, "{:<11}{head}", format!("hole {}", hole.id));
     let columns = |placed: &HoleGeometry| {
         let [x, y, z] = placed.entry.map(|v| rounded(v, 4));
         let [i, j, k] = placed.axis.map(|v| rounded(v, 6));
         let d = placed.diameter.map_or("-".to_owned(), |d| rounded(d, 3));
         [x, y, z, i, j, k, d, rounded(placed.depth, 4)].map(|column| format!("{column:>10}")).concat()
     };
-    append_line(text, &format!("{:<11}{}", " nominal", columns(&hole.nominal)));
-    append_line(text, &format!("{:<11}{}", " actual", columns(&hole.actual)));
+    let _ = writeln!(text, "{:<11}{}", " nominal", columns(&hole.nominal));
+    let _ = writeln!(text, "{:<11}{}", " actual", columns(&hole.actual));
     let (nominal, actual) = (&hole.nominal, &hole.actual);
     let axis = [0, 1, 2].map(|i| signed_to(actual.axis[i] - nominal.axis[i], 6));
     let diameter = match (actual.diameter, nominal.diameter) {
@@ -115,22 +117,22 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     };
     let rest = [diameter, signed(hole.depth_error)];
     let all = off(hole).map(signed).into_iter().chain(axis).chain(rest);
-    append_line(
+    let _ = writeln!(
         text,
-        &format!("{:<11}{}", " deviation", all.map(|column| format!("{column:>10}")).collect::<String>()),
+        "{:<11}{}",
+        " deviation",
+        all.map(|column| format!("{column:>10}")).collect::<String>()
     );
-    append_line(
+    let _ = writeln!(
         text,
-        &format!(
-            " position   Φ{}, tolerance Φ{tolerance}, out of tolerance by {} (entry {}, bottom {}, tilt {}°)",
-            rounded(hole.position_deviation, 4),
-            rounded(hole.out_of_tolerance, 4),
-            rounded(hole.at_entry, 4),
-            rounded(hole.at_bottom, 4),
-            rounded(hole.tilt, 4)
-        ),
+        " position   Φ{}, tolerance Φ{tolerance}, out of tolerance by {} (entry {}, bottom {}, tilt {}°)",
+        rounded(hole.position_deviation, 4),
+        rounded(hole.out_of_tolerance, 4),
+        rounded(hole.at_entry, 4),
+        rounded(hole.at_bottom, 4),
+        rounded(hole.tilt, 4)
     );
-    append_line(text, &format!(" verdict    {}; made by {}", remarks_of(hole), made_by(hole)));
+    let _ = writeln!(text, " verdict    {}; made by {}", remarks_of(hole), made_by(hole));
     text.push('\n');
 }
 
@@ -143,10 +145,110 @@ fn remarks_of(hole: &HoleVerdict) -> String {
     if hole.ok { "pass".to_owned() } else { format!("FAIL {}", why.join(", ")) }
 }
 
+/// Number of missing and of extra holes that are listed; the others are counted.
+const MAX_LISTED: usize = 12;
+
+/// Writes the summary below the table: the answer, the worst hole, missing and extra holes.
+fn summary(text: &mut String, verdict: &Verdict) {
+    let good = verdict.holes.iter().filter(|hole| hole.ok).count();
+    let nominal = verdict.holes.len() + verdict.missing.len();
+    let motion = verdict.findings.iter().filter(|f| f.severity == "error" && f.from_motion).count();
+    let others = [
+        (verdict.missing.len(), format!("{} missing", verdict.missing.len())),
+        (verdict.extra.len(), format!("{} extra", verdict.extra.len())),
+        (motion, format!("{} in the motion", count(motion, "error"))),
+    ];
+    let mut parts = vec![format!("{good} of {} in tolerance", count(nominal, "hole"))];
+    parts.extend(others.into_iter().filter(|(number, _)| *number != 0).map(|(_, part)| part));
+    let _ = writeln!(text, "{}     {}", answer_word(verdict.verdict), parts.join(", "));
+    if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
+        let _ = writeln!(
+            text,
+            "worst    Φ{}, tolerance Φ{}: {}",
+            rounded(worst, 4),
+            verdict.tolerance,
+            from.replace("; ", "\n         ")
+        );
+        let by_phi =
+            |a: &&HoleVerdict, b: &&HoleVerdict| a.position_deviation.total_cmp(&b.position_deviation);
+        if let Some(hole) = verdict.holes.iter().rev().max_by(by_phi) {
+            let _ = writeln!(text, "         made by {}", made_by(hole));
+        }
+    }
+    if let Some(neighbours) = &verdict.neighbours {
+        append_neighbours(text, neighbours);
+    }
+    if let Some(rounding) = verdict.rounding {
+        let tolerance = verdict.tolerance;
+        let share = rounding / tolerance * 100.0;
+        let _ = writeln!(
+            text,
+            "rounding to the control's least increment alone can cause Φ{rounding:.4}: {share:.1} % of the \
+             tolerance zone"
+        );
+        if tolerance < rounding {
+            let _ = writeln!(
+                text,
+                "WARNING  this control's least increment is too coarse for Φ{tolerance}: use a finer \
+                 increment or a wider tolerance"
+            );
+        }
+    }
+    for what in &verdict.not_checked {
+        let _ = writeln!(text, "not checked: {what}");
+    }
+    if !verdict.missing.is_empty() {
+        let _ = writeln!(text, "missing  {}", list_first(&verdict.missing, |id| id.clone(), ", "));
+    }
+    if !verdict.extra.is_empty() {
+        let why = |extra: &ExtraHole| extra.why.trim_start_matches("extra ").to_owned();
+        let _ = writeln!(text, "extra    {}", list_first(&verdict.extra, why, "\n         "));
+    }
+}
+
+/// Writes the distances of neighbours and the places of the extremes.
+fn append_neighbours(text: &mut String, neighbours: &Neighbours) {
+    let Neighbours { metric, nominal, with_six, with_six_nominal, min, max } = neighbours;
+    let _ = writeln!(
+        text,
+        "neighbour distance, nominal {nominal:.4} mm ({metric}); {with_six} of {with_six_nominal} inner \
+         holes have all six neighbours"
+    );
+    for (what, extreme) in [("nearest", min), ("farthest", max)] {
+        if let Some(Distance { distance, between: [one, other] }) = extreme {
+            let _ = writeln!(text, "           {what:<8} {distance:.4} mm: {one} and {other}");
+        }
+    }
+}
+
+/// Joins the first few items and the number of the others.
+fn list_first<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> String {
+    let mut shown: Vec<_> = all.iter().take(MAX_LISTED).map(name).collect();
+    if MAX_LISTED < all.len() {
+        shown.push(format!("… and {} more", all.len() - MAX_LISTED));
+    }
+    shown.join(between)
+}
+
+/// Returns `O8101 line 53, T2, called from O8100 line 20`.
+fn made_by(hole: &HoleVerdict) -> String {
+    let tool = hole.from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
+    let calls: Vec<_> =
+        hole.calls.iter().map(|c| format!(", called from {} line {}", c.program, c.line)).collect();
+    format!("{} line {}{tool}{}", hole.from.program, hole.from.line, calls.concat())
+}
+
+/// Returns the answer in capitals.
+pub(super) fn answer_word(answer: Answer) -> &'static str {
+    match answer {
+        Answer::Pass => "PASS",
+        Answer::Fail => "FAIL",
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gcode_inspect::verify::Answer;
     use gcode_part::Origin;
 
     fn hole(id: &str, phi: f64, objections: &[&'static str]) -> HoleVerdict {

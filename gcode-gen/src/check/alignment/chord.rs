@@ -19,7 +19,7 @@ const TRIAL_PLACEMENTS: [(f64, f64); 2] = [(-0.3, 0.25), (0.1, -0.2)];
 
 pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let job = bench.job;
-    let mut tried = TrialResult::default();
+    let mut tried = bench.result();
     let (mut off, allowed) = (0.0_f64, tolerance(job));
     let mut farthest = 0.0_f64;
     for (high, turned) in TRIAL_PLACEMENTS {
@@ -41,16 +41,14 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
         let found = [570, 571, 572].map(|number| common_variable(&run, number));
         let wanted = [pair[0] as f64, pair[1] as f64, difference];
         if !found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-6) {
-            let message = format!("#570 to #572 are {found:?}; a search through all pairs gives {wanted:?}");
-            tried.refusals.push(format!("{}: {message}\n", bench.name()));
+            tried.refuse(format!("#570 to #572 are {found:?}; a search through all pairs gives {wanted:?}"));
         }
         for (end, name) in ends(job).into_iter().zip(["E", "F"]) {
             let there = corrected_position(bench, &run, part, end)?;
             let far = distance(there, end);
             off = off.max(far);
             if far.is_nan() || far > allowed {
-                let message = format!("{name} is at {there:?} after the correction, {far} mm from {end:?}");
-                tried.refusals.push(format!("{}: {message}\n", bench.name()));
+                tried.refuse(format!("{name} is at {there:?} after the correction, {far} mm from {end:?}"));
             }
         }
     }
@@ -58,13 +56,11 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
         tried.refusals.extend(search::search_advice(bench, "the candidates of these parts are", farthest));
     }
     check_touched_candidates(bench, &mut tried)?;
-    tried.report = format!(
-        "{}  of {} by {} candidates the pair of the exhaustive search; after the correction E and F are \
-         {off:.4} mm from their model positions\n",
-        bench.name(),
-        job.chord.candidates,
-        job.chord.candidates
-    );
+    let count = job.chord.candidates;
+    tried.report(format!(
+        "of {count} by {count} candidates the pair of the exhaustive search; after the correction E and F are \
+         {off:.4} mm from their model positions"
+    ));
     Ok(tried)
 }
 
@@ -92,8 +88,7 @@ fn check_touched_candidates(bench: &TrialProgram<'_>, tried: &mut TrialResult) -
         let [x, y, z] = [x / a, (y - high) / b, z / a];
         let off = ((x * x + y * y + z * z).sqrt() - 1.0) * a.min(b);
         if off.is_nan() || off.abs() > 0.001 {
-            let message = format!("the point in #{first} is {off} mm off the touched surface");
-            tried.refusals.push(format!("{}: {message}\n", bench.name()));
+            tried.refuse(format!("the point in #{first} is {off} mm off the touched surface"));
         }
     }
     Ok(())

@@ -6,6 +6,8 @@ mod runout;
 mod search;
 mod sine;
 
+use std::fmt::Display;
+
 use gcode_control::{Outcome, Value};
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::{Machine, Placement};
@@ -19,16 +21,29 @@ use super::{CheckError, CheckedPackage, PackageVerdict, Programs, broken_package
 use crate::families::alignment;
 use crate::package::{Package, file_name};
 
-/// Result of one program's trial.
-#[derive(Default)]
+/// Result of one program's trial, as text for the terminal: a line of the report, refusals and warnings.
 struct TrialResult {
-    /// A paragraph for the terminal.
+    /// File name of the program, before each message.
+    name: String,
     report: String,
     refusals: Vec<String>,
-    /// Warnings for the terminal.
     warnings: Vec<String>,
     /// Time of one run, seconds.
     seconds: f64,
+}
+
+impl TrialResult {
+    fn refuse(&mut self, message: impl Display) {
+        self.refusals.push(format!("{}: {message}\n", self.name));
+    }
+
+    fn warn(&mut self, message: impl Display) {
+        self.warnings.push(format!("warning: {}: {message}\n", self.name));
+    }
+
+    fn report(&mut self, message: impl Display) {
+        self.report = format!("{}  {message}\n", self.name);
+    }
 }
 
 type Trial = fn(&TrialProgram<'_>) -> Result<TrialResult, CheckError>;
@@ -74,7 +89,17 @@ impl TrialProgram<'_> {
         file_name(self.main)
     }
 
-    fn broken(&self, error: &dyn std::fmt::Display) -> CheckError {
+    /// Returns a result without messages.
+    fn result(&self) -> TrialResult {
+        let (refusals, warnings) = (Vec::new(), Vec::new());
+        TrialResult { name: self.name(), report: String::new(), refusals, warnings, seconds: 0.0 }
+    }
+
+    fn surface(&self) -> Surface {
+        Surface::Ellipsoid { a: self.job.surface.a, b: self.job.surface.b }
+    }
+
+    fn broken(&self, error: &dyn Display) -> CheckError {
         broken_package(&self.name(), error)
     }
 
@@ -98,8 +123,7 @@ impl TrialProgram<'_> {
     fn run(&self, part: Placement, variables: Vec<(u32, f64)>) -> Result<Run, CheckError> {
         let mut request = self.request(part)?;
         request.variables = variables;
-        let surface = Surface::Ellipsoid { a: self.job.surface.a, b: self.job.surface.b };
-        let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
+        let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(self.surface()));
         run(&request, &mut self.programs(), &mut probe).map_err(|e| self.broken(&e))
     }
 

@@ -28,11 +28,11 @@ const TRIAL_PLACEMENTS: [[[f64; 3]; 2]; 4] = [
 ];
 
 pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
-    let mut tried = TrialResult::default();
+    let mut tried = bench.result();
     let noise = match fit_uncertainty(bench.job) {
         Ok(passed) => NoiseEstimate::of(bench.job, passed),
         Err(why) => {
-            tried.refusals.push(format!("{}: {}\n", bench.name(), describe_fit_error(bench.job, why)));
+            tried.refuse(describe_fit_error(bench.job, why));
             return Ok(tried);
         }
     };
@@ -49,9 +49,7 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
         let stopped = bench.stop_messages(&run);
         tried.seconds = run.control.seconds().0;
         if !stopped.is_empty() {
-            let stands =
-                format!("{}: with the part shifted by {shift:?} and tilted by {tilt:?}\n", bench.name());
-            tried.refusals.push(stands);
+            tried.refuse(format!("with the part shifted by {shift:?} and tilted by {tilt:?}"));
             tried.refusals.extend(stopped);
             missed |= is_contact_missed(&run);
             continue;
@@ -63,7 +61,7 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
             worst[kind] = worst[kind].max(off);
             if off.is_nan() || off > TOLERANCES[kind] {
                 let message = format!("#{number} is {}, nominal {real}", common_variable(&run, number));
-                tried.refusals.push(format!("{}: {message}\n", bench.name()));
+                tried.refuse(message);
             }
         }
     }
@@ -71,13 +69,12 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
         tried.refusals.extend(search::advice(bench, &TRIAL_PLACEMENTS.map(placed)));
     }
     let [shift, tilt] = worst;
-    tried.warnings.extend(noise.warning().map(|warning| format!("warning: {}: {warning}\n", bench.name())));
-    tried.report = format!(
-        "{}  shifts of up to 0.3 mm and tilts of up to 0.3 degrees are determined to {shift:.4} mm and \
-         {tilt:.4} degrees; {}\n",
-        bench.name(),
+    noise.warning().into_iter().for_each(|warning| tried.warn(warning));
+    tried.report(format!(
+        "shifts of up to 0.3 mm and tilts of up to 0.3 degrees are determined to {shift:.4} mm and \
+         {tilt:.4} degrees; {}",
         noise.sentence()
-    );
+    ));
     Ok(tried)
 }
 

@@ -15,7 +15,7 @@ const TILTS: [f64; 3] = [0.0, 0.08, -0.031];
 pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let table = &bench.job.sine_table;
     let step = table.gauge_blocks.step().mm();
-    let mut tried = TrialResult::default();
+    let mut tried = bench.result();
     let mut worst = 0.0_f64;
     // After the first run-out the table is at the job's angle; after a later one at the angle of the previous
     // setting.
@@ -45,20 +45,18 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
             && (common_variable(&run, 596) - made.0).abs() < 1e-9
             && common_variable(&run, 583).is_nan();
         if !holds {
-            let message = format!(
+            tried.refuse(format!(
                 "for a tilt of {tilt} degrees on a table at {stands} the program gives PHI {angle}, H \
                  {height}, {change} more, {left} seconds left; nominal PHI {wanted}"
-            );
-            tried.refusals.push(format!("{}: {message}\n", bench.name()));
+            ));
         }
     }
-    tried.warnings.extend(warnings(table).map(|told| format!("warning: {}: {told}\n", bench.name())));
-    tried.report = format!(
-        "{}  the sine table's height for each tilt within {worst:.4} mm; half a step of {} is {}\n",
-        bench.name(),
+    warnings(table).for_each(|warning| tried.warn(warning));
+    tried.report(format!(
+        "the sine table's height for each tilt within {worst:.4} mm; half a step of {} is {}",
         table.gauge_blocks.name,
         step / 2.0
-    );
+    ));
     Ok(tried)
 }
 

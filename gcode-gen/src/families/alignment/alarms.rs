@@ -2,13 +2,13 @@
 //! call are omitted: the generator writes and tries the calls.
 
 /// An alarm that a macro or main program raises because of the machine, the part or the operation.
-pub struct MacroAlarm {
+pub(crate) struct MacroAlarm {
     /// n of `#3000=n`.
-    pub number: u32,
+    pub(crate) number: u32,
     /// Text as the control shows it.
-    pub text: &'static str,
+    pub(crate) text: &'static str,
     /// Remedy at the machine.
-    pub remedy: &'static str,
+    pub(crate) remedy: &'static str,
 }
 
 const fn alarm(number: u32, text: &'static str, remedy: &'static str) -> MacroAlarm {
@@ -24,7 +24,7 @@ const START: &str = "The path to the part would lead through it. Move the ball u
 const NEEDS: &str = "The program's second block or the call has been changed: load the programs again.";
 
 /// The alarms in the order of the work.
-pub const ALARMS: &[MacroAlarm] = &[
+pub(crate) const ALARMS: &[MacroAlarm] = &[
     alarm(138, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
     alarm(139, "G16 G51 G51.1 G68 IN FORCE", CHANGED),
     alarm(140, "START ABOVE POLE OR AT +X", START),

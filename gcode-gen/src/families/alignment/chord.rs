@@ -2,54 +2,37 @@
 //! and corrects the work offset and B by it.
 use gcode_part::job::Alignment;
 
-use super::writes::Writes;
-use super::{Macro, Measurement, begin, common_remarks};
-use crate::families::control;
-use crate::nc::block::Block;
-use crate::nc::number::number;
-use crate::nc::program::Program as Text;
+use super::{Macro, Measurement, begin, common_remarks, control, number};
+use crate::nc::{Block, ProgramText};
 
 /// O-number of the main program.
-pub const MAIN: u32 = 8200;
+pub(crate) const MAIN: u32 = 8200;
 
 /// O-number of the macro that chooses the pair and corrects the offset.
-pub const MATCH: u32 = 8201;
+pub(crate) const MATCH: u32 = 8201;
 /// O-number of the macro that touches candidates if none were entered.
-const TOUCH: u32 = 8202;
+pub(super) const TOUCH: u32 = 8202;
 
 /// Name, first common variable of the candidates, and angle between successive candidates of a spiral. One
 /// angle is the golden angle, the other has the opposite sense, so that no two pairs are alike.
 const POINTS: [(&str, f64, f64); 2] = [("E", 501.0, 137.508), ("F", 531.0, -100.0)];
 
-pub(super) const MEASUREMENT: Measurement = Measurement {
-    main: MAIN,
-    title: "CHORD E F OF A PART TO BE SET UP",
-    write,
-    macros: &[
-        Macro {
-            number: MATCH,
-            file: "O8201_chord.nc",
-            text: include_str!("chord.nc"),
-            writes: Writes(&[(501, 560), (570, 578)]),
-        },
-        Macro {
-            number: TOUCH,
-            file: "O8202_candidates.nc",
-            text: include_str!("candidates.nc"),
-            writes: Writes(&[(501, 560), (578, 578)]),
-        },
-    ],
-    writes: Writes(&[]),
-};
+pub(super) const MEASUREMENT: Measurement =
+    Measurement { main: MAIN, title: "CHORD E F OF A PART TO BE SET UP", write, macros: MACROS };
 
-fn write(job: &Alignment, text: &mut Text) {
+pub(super) const MACROS: &[Macro] = &[
+    Macro { number: MATCH, file: "O8201_chord.nc", text: include_str!("chord.nc") },
+    Macro { number: TOUCH, file: "O8202_candidates.nc", text: include_str!("candidates.nc") },
+];
+
+fn write(job: &Alignment, text: &mut ProgramText) {
     let rotary = job.machine.rotary.letter;
     let chord = &job.chord;
     let k = control::alarm_thousands(job.control.dialect);
     let [e, f] = [chord.e_radius, chord.f_radius].map(number);
     text.remark(format!("E AT X {e} Z 0., F AT X {f} Z 0. ON THE SURFACE"));
     common_remarks(job, text);
-    for line in [
+    text.remarks([
         format!("CANDIDATES {} OF E IN #501 ON, X Y Z EACH, OF F IN #531 ON", chord.candidates),
         "#570 #571 THE CHOSEN NUMBERS, #572 THEIR CHORD MINUS THAT OF THE MODEL".to_owned(),
         "#574 #576 WHAT IS ADDED TO THE WORK OFFSET IN Y AND THE ROTARY".to_owned(),
@@ -66,39 +49,30 @@ fn write(job: &Alignment, text: &mut Text) {
         format!("ALARMS {k}061-{k}076 BY O{MATCH}, {k}120-{k}137 BY O{TOUCH}"),
         "START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X".to_owned(),
         format!("AFTERWARDS {rotary}0. TURNS THE CHORD INTO THE PLANE Z 0"),
-    ] {
-        text.remark(line);
-    }
+    ]);
     begin(job, text);
-    for ((name, first, turn), x) in POINTS.into_iter().zip([&e, &f]) {
-        text.block(touch(job, first, turn, x).comment(name));
+    let common = [('A', job.surface.a), ('B', job.surface.b), ('C', chord.circle)];
+    let candidates = f64::from(chord.candidates);
+    for ((name, first, turn), x) in POINTS.into_iter().zip([chord.e_radius, chord.f_radius]) {
+        let touch = [
+            ('D', x),
+            ('F', job.probe_feed),
+            ('H', candidates),
+            ('I', first),
+            ('K', turn),
+            ('R', job.probe_radius),
+            ('V', job.probe_search),
+        ];
+        text.block(Block::call(TOUCH, common).numbers(touch).comment(name));
     }
-    text.block(
-        Block::call(MATCH)
-            .word('A', number(job.surface.a))
-            .word('B', number(job.surface.b))
-            .word('C', number(chord.circle))
-            .word('D', &e)
-            .word('E', &f)
-            .word('H', number(f64::from(chord.candidates)))
-            .word('T', number(chord.uneven))
-            .word('U', number(f64::from(job.machine.rotary.sign)))
-            .word('V', number(job.probe_search))
-            .comment("CHORD"),
-    );
-    text.block(Block::of("M30"));
-}
-
-fn touch(job: &Alignment, first: f64, turn: f64, x: &str) -> Block {
-    Block::call(TOUCH)
-        .word('A', number(job.surface.a))
-        .word('B', number(job.surface.b))
-        .word('C', number(job.chord.circle))
-        .word('D', x)
-        .word('F', number(job.probe_feed))
-        .word('H', number(f64::from(job.chord.candidates)))
-        .word('I', number(first))
-        .word('K', number(turn))
-        .word('R', number(job.probe_radius))
-        .word('V', number(job.probe_search))
+    let choose = [
+        ('D', chord.e_radius),
+        ('E', chord.f_radius),
+        ('H', candidates),
+        ('T', chord.uneven),
+        ('U', f64::from(job.machine.rotary.sign)),
+        ('V', job.probe_search),
+    ];
+    text.block(Block::call(MATCH, common).numbers(choose).comment("CHORD"));
+    text.block("M30");
 }

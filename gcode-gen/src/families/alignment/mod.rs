@@ -6,28 +6,26 @@
 mod alarms;
 mod chord;
 mod ellipse;
-mod machine_file;
-mod resident;
 mod runout;
 mod sine;
 mod writes;
 
 use gcode_part::job::Alignment;
 
-use self::resident::{Macro, Resident};
-use self::writes::Writes;
-use super::{Family, control, start};
-use crate::nc::program::Program as Text;
+use super::{Family, Macro, control, package, start};
+use crate::nc::{ProgramText, number};
 use crate::package::{Package, Program};
 
-pub use alarms::{ALARMS, MacroAlarm};
-pub use chord::{MAIN as CHORD, MATCH as CHORD_MATCH};
-pub use ellipse::MAIN as ELLIPSE;
-pub use runout::MAIN as RUNOUT;
-pub use sine::{LARGEST_TILT, MAIN as SINE_TABLE, STEEPEST, gap};
+pub(crate) use alarms::{ALARMS, MacroAlarm};
+pub(crate) use chord::{MAIN as CHORD, MATCH as CHORD_MATCH};
+pub(crate) use ellipse::MAIN as ELLIPSE;
+pub(crate) use runout::MAIN as RUNOUT;
+pub(crate) use sine::{LARGEST_TILT, MAIN as SINE_TABLE, STEEPEST, gap};
 
-pub const FAMILY: Family =
-    Family { name: "alignment", new_job: include_str!("new.toml"), resident: resident::of_the_defaults };
+pub(crate) const FAMILY: Family =
+    Family { name: "alignment", new_job: include_str!("new.toml"), macros: MACROS };
+
+const MACROS: &[&[Macro]] = &[runout::MACROS, sine::MACROS, chord::MACROS, ellipse::MACROS];
 
 /// One measurement.
 struct Measurement {
@@ -35,18 +33,9 @@ struct Measurement {
     main: u32,
     title: &'static str,
     /// Writes the main program below its title.
-    write: fn(&Alignment, &mut Text),
+    write: fn(&Alignment, &mut ProgramText),
     /// Macros that it calls.
     macros: &'static [Macro],
-    /// Common variables that the main program itself writes.
-    writes: Writes,
-}
-
-impl Measurement {
-    /// Returns the common variables that the main program or its macros write.
-    fn overwrites(&self) -> String {
-        Writes::all(self.macros.iter().map(|one| one.writes).chain([self.writes]))
-    }
 }
 
 /// All measurements in the order of the work: each needs the corrections of those before it.
@@ -54,47 +43,60 @@ const ALL: &[Measurement] =
     &[runout::MEASUREMENT, sine::MEASUREMENT, chord::MEASUREMENT, ellipse::MEASUREMENT];
 
 /// Emits the main programs, the resident macros and the machine file of a job.
-pub fn emit(job: &Alignment) -> Package {
+pub(crate) fn emit(job: &Alignment) -> Package {
     let main = |measurement: &Measurement| {
-        let mut text = Text::new(measurement.main, measurement.title, job.control.dialect);
-        text.remark(format!("OVERWRITES {}", measurement.overwrites()));
+        let mut text = ProgramText::new(measurement.main, measurement.title, job.control.dialect);
+        text.remark(format!("OVERWRITES {}", overwritten_by(measurement)));
         (measurement.write)(job, &mut text);
         Program { number: measurement.main, text: text.finish() }
     };
-    let mut programs: Vec<_> = ALL.iter().map(main).collect();
-    programs.extend(Resident::of(job).programs());
-    Package {
-        mains: ALL.iter().map(|measurement| measurement.main).collect(),
-        programs,
-        machine: machine_file::machine_file(job),
+    let marks = [("{rotary}", job.machine.rotary.letter.to_string())];
+    let mut package = package(job.control, ALL.iter().map(main).collect(), MACROS, &marks, machine_file(job));
+    for program in &mut package.programs {
+        program.text = program.text.replace("{writes}", &writes::remark([program.number]));
     }
+    package
 }
 
 /// Returns the main programs in the order of the work, each with the common variables that it and its macros
 /// overwrite.
-pub fn overwritten() -> impl Iterator<Item = (u32, String)> {
-    ALL.iter().map(|measurement| (measurement.main, measurement.overwrites()))
+pub(crate) fn overwritten() -> impl Iterator<Item = (u32, String)> {
+    ALL.iter().map(|measurement| (measurement.main, overwritten_by(measurement)))
+}
+
+fn overwritten_by(measurement: &Measurement) -> String {
+    writes::remark(measurement.macros.iter().map(|one| one.number).chain([measurement.main]))
 }
 
 /// Commands the initial modes of all measurements. A local shift of the rotary axis is cancelled, because its
 /// axis number differs between machines and no macro can read it; the macros refuse shifts in X, Y and Z.
-fn begin(job: &Alignment, text: &mut Text) {
+fn begin(job: &Alignment, text: &mut ProgramText) {
     start::emit_modes(text);
     start::emit_cancel(&job.machine.rotary.letter.to_string(), text);
 }
 
 /// Writes the remarks common to the heads of all main programs.
-fn common_remarks(job: &Alignment, text: &mut Text) {
+fn common_remarks(job: &Alignment, text: &mut ProgramText) {
     let rotary = job.machine.rotary;
-    let sign = if rotary.sign < 0 { "-" } else { "" };
-    for line in [
+    text.remarks([
         "NUMBERS ARE MILLIMETRES AND DEGREES, FEEDS MM/MIN".to_owned(),
-        format!("CONTROL {}, MACHINE FILE MACHINE.TOML", control::remark(job.control)),
+        control::machine_remark(job.control),
         format!("WORK ZERO G54 X Z ON THE AXIS OF {}, Y AT THE CENTRE OF THE", rotary.letter),
         "ELLIPSOID, FOR THE CENTRE OF THE STYLUS BALL. THE HEAD DOES NOT TURN".to_owned(),
-        format!("ROTARY {} = {sign}AZIMUTH, FROM X TOWARDS Z", rotary.letter),
-    ] {
-        text.remark(line);
-    }
-    start::remarks("XYZ", &rotary.letter.to_string()).iter().for_each(|line| text.remark(line));
+        format!("ROTARY {}, FROM X TOWARDS Z", control::rotary_command(rotary, "AZIMUTH")),
+    ]);
+    text.remarks(start::remarks("XYZ", &rotary.letter.to_string()));
+}
+
+/// Returns the text of `machine.toml`.
+fn machine_file(job: &Alignment) -> String {
+    format!(
+        "{}{}\n\
+         # The stylus ball; the programs move its centre.\n\
+         [probe]\n\
+         radius = {:?}\n",
+        control::machine_file(job.control),
+        control::rotary_table(job.machine.rotary, 'y', "its axis goes through the part's origin"),
+        job.probe_radius
+    )
 }

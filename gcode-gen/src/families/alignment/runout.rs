@@ -2,33 +2,22 @@
 //! the control. After the operator's correction a second pass measures the remainder.
 use gcode_part::job::Alignment;
 
-use super::writes::Writes;
-use super::{Macro, Measurement, begin, common_remarks};
-use crate::families::control;
-use crate::nc::block::Block;
-use crate::nc::number::number;
-use crate::nc::program::Program as Text;
+use super::{Macro, Measurement, begin, common_remarks, control, number};
+use crate::nc::{Block, ProgramText};
 
 /// O-number of the main program.
-pub const MAIN: u32 = 8210;
+pub(crate) const MAIN: u32 = 8210;
 
 /// O-number of the macro with readings and fit.
-const FIT: u32 = 8211;
+pub(super) const FIT: u32 = 8211;
 
-pub(super) const MEASUREMENT: Measurement = Measurement {
-    main: MAIN,
-    title: "RUN-OUT OF A PART TO BE SET UP",
-    write,
-    macros: &[Macro {
-        number: FIT,
-        file: "O8211_run_out.nc",
-        text: include_str!("runout.nc"),
-        writes: Writes(&[(580, 585), (600, 699), (800, 931), (936, 946)]),
-    }],
-    writes: Writes(&[(585, 585), (590, 595)]),
-};
+pub(super) const MEASUREMENT: Measurement =
+    Measurement { main: MAIN, title: "RUN-OUT OF A PART TO BE SET UP", write, macros: MACROS };
 
-fn write(job: &Alignment, text: &mut Text) {
+pub(super) const MACROS: &[Macro] =
+    &[Macro { number: FIT, file: "O8211_run_out.nc", text: include_str!("runout.nc") }];
+
+fn write(job: &Alignment, text: &mut ProgramText) {
     let rotary = job.machine.rotary.letter;
     let runout = &job.runout;
     let k = control::alarm_thousands(job.control.dialect);
@@ -39,7 +28,7 @@ fn write(job: &Alignment, text: &mut Text) {
         runout.readings
     ));
     common_remarks(job, text);
-    for line in [
+    text.remarks([
         format!("CALLS O{FIT} TWICE, BETWEEN THEM A STOP TO CORRECT THE PART"),
         "#580 #581 SHIFT OF THE PART IN X AND Z, #582 #583 ITS TILT ABOUT".to_owned(),
         "X AND Z, OF THE LAST PASS".to_owned(),
@@ -51,21 +40,19 @@ fn write(job: &Alignment, text: &mut Text) {
         format!("ALARMS {k}138-{k}160 BY O{FIT}"),
         format!("START WITH THE BALL ABOVE THE POLE OF THE PART OR AT +X, {rotary} FREE TO"),
         "TURN".to_owned(),
-    ] {
-        text.remark(line);
-    }
+    ]);
     begin(job, text);
     // These values are of the previous part; the first to be cleared are those that mark a pass as complete.
     for number in [585].into_iter().chain((590..596).rev()) {
-        text.block(Block::of(format!("#{number}=#0")));
+        text.block(format!("#{number}=#0"));
     }
     text.block(pass(job).comment("FIRST PASS"));
     for of_pass in 0..6 {
-        text.block(Block::of(format!("#{}=#{}", 590 + of_pass, 580 + of_pass)));
+        text.block(format!("#{}=#{}", 590 + of_pass, 580 + of_pass));
     }
-    text.block(Block::of(format!("#3006=1(PART OFF #580-#583 AT {rotary}0)")));
+    text.block(format!("#3006=1(PART OFF #580-#583 AT {rotary}0)"));
     text.block(pass(job).comment("WHAT REMAINS"));
-    text.block(Block::of("M30"));
+    text.block("M30");
 }
 
 fn pass(job: &Alignment) -> Block {
@@ -86,5 +73,5 @@ fn pass(job: &Alignment) -> Block {
         ('W', job.probe_noise),
         ('T', runout.y_shift),
     ];
-    arguments.into_iter().fold(Block::call(FIT), |block, (letter, value)| block.word(letter, number(value)))
+    Block::call(FIT, arguments)
 }

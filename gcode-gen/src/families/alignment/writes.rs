@@ -1,38 +1,40 @@
-//! Common variables that a program overwrites, for the heads of programs and macros and for the set-up sheet.
+//! Common variables that the programs overwrite, for the heads of programs and macros and for the set-up sheet.
 //!
 //! A control keeps #500 to #999 while it is switched off, and other cycles of the shop may store values
 //! there.
 
-/// Ranges of common variables, inclusive, in ascending order.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Writes(pub(super) &'static [(u32, u32)]);
+/// Programs with the ranges of common variables that they write themselves, inclusive.
+const WRITES: &[(u32, &[(u32, u32)])] = &[
+    (super::chord::MATCH, &[(501, 560), (570, 578)]),
+    (super::chord::TOUCH, &[(501, 560), (578, 578)]),
+    (super::runout::MAIN, &[(585, 585), (590, 595)]),
+    (super::runout::FIT, &[(580, 585), (600, 699), (800, 931), (936, 946)]),
+    (super::sine::MAIN, &[(583, 583), (596, 596)]),
+    (super::sine::TABLE, &[(586, 589)]),
+];
 
-impl Writes {
-    /// Returns `#501-#560 #578`, or a statement that there are none.
-    pub(super) fn remark(self) -> String {
-        Self::all([self])
-    }
+/// Returns `#501-#560 #578`, the ranges of several programs merged, or a statement that there are none.
+pub(super) fn remark(programs: impl IntoIterator<Item = u32>) -> String {
+    let of_program = |number| WRITES.iter().filter(move |(program, _)| *program == number);
+    merged(programs.into_iter().flat_map(of_program).flat_map(|(_, ranges)| *ranges).copied().collect())
+}
 
-    /// Merges the ranges of several programs; adjacent ranges are joined.
-    pub(super) fn all(several: impl IntoIterator<Item = Self>) -> String {
-        let mut ranges: Vec<_> = several.into_iter().flat_map(|one| one.0).copied().collect();
-        ranges.sort_unstable();
-        let mut joined: Vec<(u32, u32)> = Vec::new();
-        for (from, to) in ranges {
-            match joined.last_mut() {
-                Some(last) if from <= last.1 + 1 => last.1 = last.1.max(to),
-                _ => joined.push((from, to)),
-            }
+/// Joins ranges that overlap or meet.
+fn merged(mut ranges: Vec<(u32, u32)>) -> String {
+    ranges.sort_unstable();
+    let mut joined: Vec<(u32, u32)> = Vec::new();
+    for (from, to) in ranges {
+        match joined.last_mut() {
+            Some(last) if from <= last.1 + 1 => last.1 = last.1.max(to),
+            _ => joined.push((from, to)),
         }
-        if joined.is_empty() {
-            return "NO COMMON VARIABLE".to_owned();
-        }
-        let named: Vec<_> = joined
-            .into_iter()
-            .map(|(from, to)| if from == to { format!("#{from}") } else { format!("#{from}-#{to}") })
-            .collect();
-        named.join(" ")
     }
+    if joined.is_empty() {
+        return "NO COMMON VARIABLE".to_owned();
+    }
+    let range =
+        |(from, to): (u32, u32)| if from == to { format!("#{from}") } else { format!("#{from}-#{to}") };
+    joined.into_iter().map(range).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -41,9 +43,9 @@ mod tests {
 
     #[test]
     fn ranges_that_meet_are_one() {
-        assert_eq!(Writes(&[]).remark(), "NO COMMON VARIABLE");
-        assert_eq!(Writes(&[(501, 560), (578, 578)]).remark(), "#501-#560 #578");
-        let all = [Writes(&[(580, 585), (600, 699)]), Writes(&[(586, 589), (585, 585), (700, 700)])];
-        assert_eq!(Writes::all(all), "#580-#589 #600-#700");
+        assert_eq!(merged(Vec::new()), "NO COMMON VARIABLE");
+        assert_eq!(merged(vec![(501, 560), (578, 578)]), "#501-#560 #578");
+        let all = vec![(580, 585), (600, 699), (586, 589), (585, 585), (700, 700)];
+        assert_eq!(merged(all), "#580-#589 #600-#700");
     }
 }

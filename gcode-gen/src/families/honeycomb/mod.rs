@@ -3,33 +3,43 @@
 //!
 //! See `docs/methods/honeycomb.md`. The main program contains no number that follows from diameter, pitch and
 //! length: changing D, B or X gives another closed pattern.
-mod machine_file;
-pub mod macros;
-
 use gcode_part::job::{Honeycomb, Metric, Spacing};
 
-use self::macros::{COMB, Resident};
 use super::start::Start;
-use super::{Family, control};
-use crate::nc::block::Block;
-use crate::nc::number::number;
-use crate::nc::program::Program as Text;
+use super::{Family, Macro, control, package};
+use crate::nc::{Block, ProgramText, number};
 use crate::package::{Package, Program};
 
 /// O-number of the main program.
-pub const MAIN: u32 = 8300;
+const MAIN: u32 = 8300;
+/// O-number of the macro for the whole pattern: rows, angles, pitch.
+const COMB: u32 = 8301;
 
-pub const FAMILY: Family =
-    Family { name: "honeycomb", new_job: include_str!("new.toml"), resident: macros::of_the_defaults };
+/// π with as many digits as all three dialects accept in one number: the error on a metre of circumference is
+/// 1 nm.
+const PI: &str = "3.14159265";
+
+const MACROS: &[&[Macro]] =
+    &[&[Macro { number: COMB, file: "O8301_honeycomb.nc", text: include_str!("comb.nc") }]];
+
+pub(super) const FAMILY: Family =
+    Family { name: "honeycomb", new_job: include_str!("new.toml"), macros: MACROS };
 
 /// Emits the main program, the resident macro and the machine file of a job.
-pub fn emit(job: &Honeycomb) -> Package {
-    let programs = vec![Program { number: MAIN, text: main(job) }, Resident::of(job).program()];
-    Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
+pub(super) fn emit(job: &Honeycomb) -> Package {
+    let clamp_code = |code: Option<u32>| code.map_or_else(String::new, |code| format!("\nM{code}"));
+    let marks = [
+        ("{pi}", PI.to_owned()),
+        ("{rotary}", job.machine.rotary.letter.to_string()),
+        ("{unclamp}", clamp_code(job.machine.clamp.map(|clamp| clamp.off))),
+        ("{clamp}", clamp_code(job.machine.clamp.map(|clamp| clamp.on))),
+    ];
+    let main = Program { number: MAIN, text: main(job) };
+    package(job.control, vec![main], MACROS, &marks, machine_file(job))
 }
 
 fn main(job: &Honeycomb) -> String {
-    let mut text = Text::new(MAIN, "HONEYCOMB OF RADIAL HOLES ON A CYLINDER", job.control.dialect);
+    let mut text = ProgramText::new(MAIN, "HONEYCOMB OF RADIAL HOLES ON A CYLINDER", job.control.dialect);
     // The operator chooses the angle of the first row: a shift of the rotary axis rotates the whole pattern.
     let start = Start {
         control: job.control,
@@ -38,18 +48,18 @@ fn main(job: &Honeycomb) -> String {
         axes: "XYZ",
         cancelled_rotaries: String::new(),
     };
-    header(job).into_iter().chain(start.remarks()).for_each(|line| text.remark(line));
-    let drill = &job.drill;
-    let retract = number(job.machine.retract);
+    text.remarks(header(job));
+    text.remarks(start.remarks());
     start.blocks(&mut text);
-    text.block(Block::of(format!("T{} M06", drill.number)));
-    text.block(Block::of(format!("S{:.0} M03", drill.speed)));
-    text.block(Block::of(format!("G43 H{} Z{retract}", drill.number)));
-    text.block(Block::of("M08"));
+    let drill = &job.drill;
+    text.blocks([
+        format!("T{} M06", drill.number),
+        format!("S{:.0} M03", drill.speed),
+        format!("G43 H{} Z{}", drill.number, number(job.machine.retract)),
+        "M08".to_owned(),
+    ]);
     text.block(call(job));
-    text.block(Block::of("M09"));
-    text.block(Block::of("M05"));
-    text.block(Block::of("M30"));
+    text.blocks(["M09", "M05", "M30"]);
     text.finish()
 }
 
@@ -58,8 +68,7 @@ fn header(job: &Honeycomb) -> Vec<String> {
     let cylinder = job.cylinder;
     let [diameter, outer, length] = [cylinder.diameter, cylinder.outer, cylinder.length].map(number);
     let rotary = job.machine.rotary;
-    let sign = if rotary.sign < 0 { "-" } else { "" };
-    let (wanted, letter) = match job.spacing {
+    let (nominal, letter) = match job.spacing {
         Spacing::Pitch(pitch) => (format!("PITCH {} SPECIFIED", number(pitch)), 'B'),
         Spacing::Divisions(divisions) => (format!("{divisions} ROWS OF EACH OF TWO GROUPS"), 'E'),
     };
@@ -74,11 +83,11 @@ fn header(job: &Honeycomb) -> Vec<String> {
     let k = control::alarm_thousands(job.control.dialect);
     let mut lines = vec![
         format!("DIAMETER {outer}, LENGTH {length}, DRILL {}", number(job.drill.diameter)),
-        format!("{wanted} ON DIAMETER {diameter}, {measured}"),
+        format!("{nominal} ON DIAMETER {diameter}, {measured}"),
         "NUMBERS ARE MILLIMETRES AND DEGREES, FEEDS MM/MIN".to_owned(),
-        format!("CONTROL {}, MACHINE FILE MACHINE.TOML", control::remark(job.control)),
+        control::machine_remark(job.control),
         "WORK ZERO G54 X AT THE FIRST HOLE, Y ON THE AXIS, Z ON THE SURFACE".to_owned(),
-        format!("ROTARY {} TURNS ABOUT X, {} = {sign}ROW*180/N", rotary.letter, rotary.letter),
+        format!("ROTARY {} TURNS ABOUT X, {}", rotary.letter, control::rotary_command(rotary, "ROW*180/N")),
         format!("CALLS O{COMB}, WHICH COMPUTES ROWS, ANGLES AND PITCH FROM {letter} AND D"),
         format!("CHANGE D, {letter} OR X IN ITS CALL AND THE PATTERN CLOSES AGAIN"),
         "A DRILL, B PITCH, C CLEARANCE, D DIAMETER OF THE PITCH, E DIVISIONS".to_owned(),
@@ -118,5 +127,29 @@ fn call(job: &Honeycomb) -> Block {
         ('Q', drill.peck),
         ('U', f64::from(machine.rotary.sign)),
     ];
-    arguments.into_iter().fold(Block::call(COMB), |block, (letter, value)| block.word(letter, number(value)))
+    Block::call(COMB, arguments)
+}
+
+/// Returns the text of `machine.toml`.
+fn machine_file(job: &Honeycomb) -> String {
+    format!(
+        "{}{}\n\
+         # The spindle is along z.\n\
+         [head]\n\
+         kind = \"fixed\"\n\
+         direction = [0.0, 0.0, 1.0]\n\
+         \n\
+         # The part's origin is on the cylinder's axis, the programs' Z0 on its surface.\n\
+         [part]\n\
+         origin = [0.0, 0.0, {:?}]\n\
+         \n\
+         [[tool]]\n\
+         number = {}\n\
+         diameter = {:?}\n",
+        control::machine_file(job.control),
+        control::rotary_table(job.machine.rotary, 'x', "its axis is the cylinder's"),
+        -job.cylinder.outer / 2.0,
+        job.drill.number,
+        job.drill.diameter
+    )
 }

@@ -4,178 +4,195 @@
 //! The method is that of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*; see
 //! `docs/methods/pin-holes.md`. The main program contains no number that follows from a, b, r and the
 //! azimuth: changing R moves the hole to its correct new position.
-mod machine_file;
-pub mod macros;
+use gcode_part::job::{AxisDirection, HeadKind, HoleSpec, PinHoles, Tool};
 
-use gcode_part::job::{AxisDirection, HeadKind, HoleSpec, PinHoles};
-
-use self::macros::{HEAD, HOLE, Resident};
 use super::start::Start;
-use super::{Family, control};
-use crate::nc::block::Block;
-use crate::nc::number::number;
-use crate::nc::program::Program as Text;
+use super::{Family, Macro, control, package};
+use crate::nc::{Block, ProgramText, number};
 use crate::order::{HeadSetting, ToolPass, passes};
 use crate::package::{Package, Program};
 
 /// O-number of the main program.
-pub const MAIN: u32 = 8100;
+const MAIN: u32 = 8100;
+/// O-number of the macro for one hole: approach, feed, retract.
+const HOLE: u32 = 8101;
+/// O-number of the macro that computes the head angle of a radius and sets the head.
+const HEAD: u32 = 8102;
 
-pub const FAMILY: Family =
-    Family { name: "pin-holes", new_job: include_str!("new.toml"), resident: macros::of_the_defaults };
+const MACROS: &[&[Macro]] = &[&[
+    Macro { number: HOLE, file: "O8101_pin_hole.nc", text: include_str!("hole.nc") },
+    Macro { number: HEAD, file: "O8102_head_angle.nc", text: include_str!("head.nc") },
+]];
+
+pub(super) const FAMILY: Family =
+    Family { name: "pin-holes", new_job: include_str!("new.toml"), macros: MACROS };
 
 /// Emits the main program, the resident macros and the machine file of a job.
-pub fn emit(job: &PinHoles) -> Package {
-    let mut programs = vec![Program { number: MAIN, text: Main::new(job).text() }];
-    programs.extend(Resident::of(job).programs());
-    Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
+pub(super) fn emit(job: &PinHoles) -> Package {
+    let start = Start {
+        control: job.control,
+        changed_alarm: 17,
+        shifted_alarm: 18,
+        axes: "XYZ",
+        cancelled_rotaries: job.machine.rotary.letter.to_string(),
+    };
+    let passes = passes(job);
+    let mut text = ProgramText::new(MAIN, "PIN HOLES ON AN ELLIPSOID OF REVOLUTION", job.control.dialect);
+    text.remarks(header(job));
+    text.remarks(start.remarks());
+    for ToolPass { tool, .. } in &passes {
+        text.remark(format!("{} LENGTH {}", tool_remark(tool), number(tool.length)));
+    }
+    start.blocks(&mut text);
+    let angle_set = job.macros.common + 1;
+    text.block(Block::of(format!("#{angle_set}=#0")).comment("HEAD NOT SET YET"));
+    for (index, pass) in passes.iter().enumerate() {
+        tool_blocks(job, pass, passes.get(index + 1), &mut text);
+    }
+    text.block(Block::of(format!("#{angle_set}=#0")).comment("HEAD ANGLE NO LONGER VALID"));
+    text.block("M30");
+    let main = Program { number: MAIN, text: text.finish() };
+    package(job.control, vec![main], MACROS, &marks(job), machine_file(job))
 }
 
-struct Main<'j> {
-    job: &'j PinHoles,
-    resident: Resident,
-    start: Start,
-    text: Text,
+/// Returns the remarks at the head: conditions for the run.
+fn header(job: &PinHoles) -> [String; 18] {
+    let (a, b) = (number(job.surface.a), number(job.surface.b));
+    let rotary = job.machine.rotary;
+    let head = match job.machine.head.kind {
+        HeadKind::Manual => "SET BY HAND AT A STOP".to_owned(),
+        HeadKind::Axis(letter) => format!("MOVED AS AXIS {letter}"),
+    };
+    let common = job.macros.common;
+    let k = control::alarm_thousands(job.control.dialect);
+    [
+        format!("HOLES {}, SURFACE [X*X+Z*Z]/A/A+Y*Y/B/B = 1, A {a} B {b}", job.holes.len()),
+        "NUMBERS ARE MILLIMETRES AND DEGREES, FEEDS MM/MIN".to_owned(),
+        control::machine_remark(job.control),
+        "WORK ZERO G54 IS THE CENTRE OF THE ELLIPSOID, Y ITS AXIS".to_owned(),
+        format!("ROTARY {}, FROM X TOWARDS Z", control::rotary_command(rotary, "AZIMUTH")),
+        format!("HEAD ANGLE FROM X TOWARDS Y, {head}"),
+        format!("CALLS O{HEAD} HEAD ANGLE OF A RADIUS, AND O{HOLE} ONE HOLE"),
+        "THEY COMPUTE EQUATION 8 OF IMPROVED PROCESSING TECHNOLOGY OF".to_owned(),
+        "POSITIONING PIN HOLE ON MELON MOLD FROM A, B AND R".to_owned(),
+        format!("TO MOVE A HOLE CHANGE R OR W IN ITS O{HOLE} CALLS AND R IN THE"),
+        format!("O{HEAD} CALL ABOVE, WHERE THE HEAD DOES NOT SUIT A HOLE O{HOLE}"),
+        format!("CALLS O{HEAD} ITSELF BEFORE IT CUTS"),
+        "A EQUATORIAL RADIUS, B POLAR RADIUS, C CLEARANCE, D DEPTH".to_owned(),
+        "E FEED OUT, F FEED IN, H 0. NORMAL 1. AXIAL, Q PIVOT TO TIP".to_owned(),
+        format!("R RADIUS, U SIGN OF {}, V RETRACT, W AZIMUTH", rotary.letter),
+        format!("COMMON VARIABLES #{common} HEAD ANGLE TO SET, #{} ANGLE SET", common + 1),
+        format!("ALARMS {k}001-{k}017 BY O{HOLE}, {k}021-{k}030 BY O{HEAD}"),
+        "START WITH THE TOOL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
+    ]
 }
 
-impl<'j> Main<'j> {
-    fn new(job: &'j PinHoles) -> Self {
-        let text = Text::new(MAIN, "PIN HOLES ON AN ELLIPSOID OF REVOLUTION", job.control.dialect);
-        let start = Start {
-            control: job.control,
-            changed_alarm: 17,
-            shifted_alarm: 18,
-            axes: "XYZ",
-            cancelled_rotaries: job.machine.rotary.letter.to_string(),
-        };
-        Self { job, resident: Resident::of(job), start, text }
-    }
-
-    fn text(mut self) -> String {
-        let passes = passes(self.job);
-        self.header(&passes);
-        self.start();
-        for (index, pass) in passes.iter().enumerate() {
-            self.tool(pass, passes.get(index + 1));
-        }
-        self.text
-            .block(Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD ANGLE NO LONGER VALID"));
-        self.text.block(Block::of("M30"));
-        self.text.finish()
-    }
-
-    /// Writes the remarks at the head: conditions for the run.
-    fn header(&mut self, passes: &[ToolPass<'_>]) {
-        let job = self.job;
-        let (a, b) = (number(job.surface.a), number(job.surface.b));
-        let holes = job.holes.len();
-        let rotary = job.machine.rotary;
-        let sign = if rotary.sign < 0 { "-" } else { "" };
-        let head = match job.machine.head.kind {
-            HeadKind::Manual => "SET BY HAND AT A STOP".to_owned(),
-            HeadKind::Axis(letter) => format!("MOVED AS AXIS {letter}"),
-        };
-        let control = control::remark(job.control);
-        let common = self.resident.common;
-        let k = control::alarm_thousands(job.control.dialect);
-        let lines = [
-            format!("HOLES {holes}, SURFACE [X*X+Z*Z]/A/A+Y*Y/B/B = 1, A {a} B {b}"),
-            "NUMBERS ARE MILLIMETRES AND DEGREES, FEEDS MM/MIN".to_owned(),
-            format!("CONTROL {control}, MACHINE FILE MACHINE.TOML"),
-            "WORK ZERO G54 IS THE CENTRE OF THE ELLIPSOID, Y ITS AXIS".to_owned(),
-            format!("ROTARY {} = {sign}AZIMUTH, FROM X TOWARDS Z", rotary.letter),
-            format!("HEAD ANGLE FROM X TOWARDS Y, {head}"),
-            format!("CALLS O{HEAD} HEAD ANGLE OF A RADIUS, AND O{HOLE} ONE HOLE"),
-            "THEY COMPUTE EQUATION 8 OF IMPROVED PROCESSING TECHNOLOGY OF".to_owned(),
-            "POSITIONING PIN HOLE ON MELON MOLD FROM A, B AND R".to_owned(),
-            format!("TO MOVE A HOLE CHANGE R OR W IN ITS O{HOLE} CALLS AND R IN THE"),
-            format!("O{HEAD} CALL ABOVE, WHERE THE HEAD DOES NOT SUIT A HOLE O{HOLE}"),
-            format!("CALLS O{HEAD} ITSELF BEFORE IT CUTS"),
-            "A EQUATORIAL RADIUS, B POLAR RADIUS, C CLEARANCE, D DEPTH".to_owned(),
-            "E FEED OUT, F FEED IN, H 0. NORMAL 1. AXIAL, Q PIVOT TO TIP".to_owned(),
-            format!("R RADIUS, U SIGN OF {}, V RETRACT, W AZIMUTH", rotary.letter),
-            format!("COMMON VARIABLES #{common} HEAD ANGLE TO SET, #{} ANGLE SET", common + 1),
-            format!("ALARMS {k}001-{k}017 BY O{HOLE}, {k}021-{k}030 BY O{HEAD}"),
-            "START WITH THE TOOL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
-        ];
-        for line in lines.into_iter().chain(self.start.remarks()) {
-            self.text.remark(line);
-        }
-        for ToolPass { tool, .. } in passes {
-            let (diameter, length) = (number(tool.diameter), number(tool.length));
-            self.text.remark(format!("T{} {} DIAMETER {diameter} LENGTH {length}", tool.number, tool.name));
-        }
-    }
-
-    fn start(&mut self) {
-        self.start.blocks(&mut self.text);
-        self.text.block(Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD NOT SET YET"));
-    }
-
-    fn tool(&mut self, pass: &ToolPass<'_>, next: Option<&ToolPass<'_>>) {
-        let tool = pass.tool;
-        let diameter = number(tool.diameter);
-        self.text.remark(format!("T{} {} DIAMETER {diameter}", tool.number, tool.name));
-        self.text.block(Block::of(format!("T{} M06", tool.number)));
-        self.text.block(Block::of(format!("S{:.0} M03", tool.speed)));
-        self.text.block(Block::of("M08"));
-        for setting in &pass.settings {
-            let head = self.head_call(pass, setting);
-            self.text.block(head);
-            for hole in &setting.holes {
-                let call = self.hole_call(pass, hole);
-                self.text.block(call);
-            }
-        }
-        self.text.block(Block::of("M09"));
-        // The tip is then at least V above the pole, whatever the angle of the head: see O8102. This includes
-        // the next tool, which may be longer.
-        let reach = next.map_or(0.0, |next| self.reach(next)).max(self.reach(pass));
-        let height = [self.job.surface.b, reach, self.job.machine.retract].map(number);
-        self.text
-            .block(Block::of(format!("G90 G00 Y[{}]", height.join("+"))).comment("B+Q+V, CLEAR OF THE PART"));
-        self.text.block(Block::of("M05"));
-    }
-
-    /// Returns the distance from the head's pivot to the tip.
-    fn reach(&self, pass: &ToolPass<'_>) -> f64 {
-        self.job.machine.head.pivot + pass.tool.length
-    }
-
-    fn head_call(&self, pass: &ToolPass<'_>, setting: &HeadSetting<'_>) -> Block {
-        let job = self.job;
-        Block::call(HEAD)
-            .word('A', number(job.surface.a))
-            .word('B', number(job.surface.b))
-            .word('R', number(setting.radius))
-            .word('H', flag(setting.axis))
-            .word('Q', number(self.reach(pass)))
-            .word('V', number(job.machine.retract))
-            .comment("HEAD")
-    }
-
-    fn hole_call(&self, pass: &ToolPass<'_>, hole: &HoleSpec) -> Block {
-        let job = self.job;
-        Block::call(HOLE)
-            .word('A', number(job.surface.a))
-            .word('B', number(job.surface.b))
-            .word('R', number(hole.radius))
-            .word('W', number(hole.azimuth))
-            .word('H', flag(hole.axis))
-            .word('D', number(hole.depth))
-            .word('C', number(job.machine.clearance))
-            .word('V', number(job.machine.retract))
-            .word('F', number(pass.tool.feed))
-            .word('E', number(pass.tool.retract_feed))
-            .word('U', number(f64::from(job.machine.rotary.sign)))
-            .word('Q', number(self.reach(pass)))
-            .comment(format!("HOLE {}", hole.id))
-    }
+fn tool_remark(tool: &Tool) -> String {
+    format!("T{} {} DIAMETER {}", tool.number, tool.name, number(tool.diameter))
 }
 
-fn flag(axis: AxisDirection) -> &'static str {
+/// Writes the blocks of one tool, from its change to the position clear of the part.
+fn tool_blocks(job: &PinHoles, pass: &ToolPass<'_>, next: Option<&ToolPass<'_>>, text: &mut ProgramText) {
+    let tool = pass.tool;
+    text.remark(tool_remark(tool));
+    text.blocks([format!("T{} M06", tool.number), format!("S{:.0} M03", tool.speed), "M08".to_owned()]);
+    for setting in &pass.settings {
+        text.block(head_call(job, tool, setting));
+        text.blocks(setting.holes.iter().map(|hole| hole_call(job, tool, hole)));
+    }
+    text.block("M09");
+    // The tip is then at least V above the pole, whatever the angle of the head: see O8102. This includes
+    // the next tool, which may be longer.
+    let longest = next.map_or(0.0, |next| reach(job, next.tool)).max(reach(job, tool));
+    let height = [job.surface.b, longest, job.machine.retract].map(number);
+    text.block(Block::of(format!("G90 G00 Y[{}]", height.join("+"))).comment("B+Q+V, CLEAR OF THE PART"));
+    text.block("M05");
+}
+
+/// Returns the distance from the head's pivot to the tip.
+fn reach(job: &PinHoles, tool: &Tool) -> f64 {
+    job.machine.head.pivot + tool.length
+}
+
+fn head_call(job: &PinHoles, tool: &Tool, setting: &HeadSetting<'_>) -> Block {
+    let arguments = [
+        ('A', job.surface.a),
+        ('B', job.surface.b),
+        ('R', setting.radius),
+        ('H', axial_flag(setting.axis)),
+        ('Q', reach(job, tool)),
+        ('V', job.machine.retract),
+    ];
+    Block::call(HEAD, arguments).comment("HEAD")
+}
+
+fn hole_call(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> Block {
+    let arguments = [
+        ('A', job.surface.a),
+        ('B', job.surface.b),
+        ('R', hole.radius),
+        ('W', hole.azimuth),
+        ('H', axial_flag(hole.axis)),
+        ('D', hole.depth),
+        ('C', job.machine.clearance),
+        ('V', job.machine.retract),
+        ('F', tool.feed),
+        ('E', tool.retract_feed),
+        ('U', f64::from(job.machine.rotary.sign)),
+        ('Q', reach(job, tool)),
+    ];
+    Block::call(HOLE, arguments).comment(format!("HOLE {}", hole.id))
+}
+
+/// Returns the argument H.
+fn axial_flag(axis: AxisDirection) -> f64 {
     match axis {
-        AxisDirection::Normal => "0.",
-        AxisDirection::Axial => "1.",
+        AxisDirection::Normal => 0.0,
+        AxisDirection::Axial => 1.0,
     }
+}
+
+/// Returns the marks of the macros. A common variable holds the head angle to be set; the next one holds the
+/// angle that is set, and is vacant until then.
+fn marks(job: &PinHoles) -> [(&'static str, String); 5] {
+    let common = job.macros.common;
+    let (set_head, spindle_note) = match job.machine.head.kind {
+        HeadKind::Manual => (
+            format!("M09\nM05\n#3006=1(SET HEAD TO ANGLE IN #{common})\nM03\nM08"),
+            "\n(STOPS SPINDLE AND COOLANT FOR THE OPERATOR, THEN M03 M08)",
+        ),
+        HeadKind::Axis(letter) => (format!("G90 G00 {letter}#{common}"), ""),
+    };
+    [
+        ("{rotary}", job.machine.rotary.letter.to_string()),
+        ("{angle}", common.to_string()),
+        ("{set}", (common + 1).to_string()),
+        ("{set_head}", set_head),
+        ("{spindle_note}", spindle_note.to_owned()),
+    ]
+}
+
+/// Returns the text of `machine.toml`.
+fn machine_file(job: &PinHoles) -> String {
+    let head = job.machine.head;
+    let kind = match head.kind {
+        HeadKind::Manual => "kind = \"manual\"".to_owned(),
+        HeadKind::Axis(letter) => format!("kind = \"axis\"\nletter = \"{letter}\""),
+    };
+    let tool = |tool: &Tool| {
+        let Tool { number, length, diameter, .. } = tool;
+        format!("\n[[tool]]\nnumber = {number}\nlength = {length:?}\ndiameter = {diameter:?}\n")
+    };
+    format!(
+        "{}{}\n\
+         # The head tilts the tool in the xy plane; its angle counts from x towards y.\n\
+         [head]\n\
+         {kind}\n\
+         pivot = {:?}\n\
+         {}",
+        control::machine_file(job.control),
+        control::rotary_table(job.machine.rotary, 'y', "its axis goes through the part's origin"),
+        head.pivot,
+        job.tools.iter().map(tool).collect::<String>()
+    )
 }

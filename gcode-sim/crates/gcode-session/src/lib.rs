@@ -21,14 +21,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![warn(missing_docs)]
-mod block_locator;
-mod endless_cause;
-mod likely_causes;
+mod causes;
 mod trace;
 
 use std::sync::Arc;
 
-use self::block_locator::BlockLocator;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Note, Observer, Outcome, Progress};
@@ -45,11 +42,7 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, EventSink};
 use gcode_lang::program::{Library, Memory};
 use gcode_lang::source::{Bytes, Span};
-use gcode_part::Flutes;
-use gcode_part::HoleList;
-use gcode_part::ProcessLimits;
-use gcode_part::Reference;
-use gcode_part::Surface;
+use gcode_part::{Flutes, HoleList, ProcessLimits, Reference, Surface};
 
 /// A program and the conditions of its run.
 #[derive(Clone, Debug)]
@@ -163,17 +156,12 @@ pub fn run_observed<S: EventSink>(
         return Err(SessionError::NoProgram { name: request.name.clone() });
     }
     if let Some(second) = memory.duplicates().next() {
-        let line = memory.sources().line_column(second.span).line;
-        return Err(SessionError::DuplicateProgram {
-            name: request.name.clone(),
-            line,
-            program: second.label(),
-        });
+        let (line, program) = (memory.sources().line_column(second.span).line, second.label());
+        return Err(SessionError::DuplicateProgram { name: request.name.clone(), line, program });
     }
     let mut control = Control::new(memory, request.settings.clone());
-    for (number, value) in
-        presets(&request.machine, &request.settings).chain(request.variables.iter().copied())
-    {
+    let presets = presets(&request.machine, &request.settings);
+    for (number, value) in presets.chain(request.variables.iter().copied()) {
         control.set_variable(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
     }
     if let Some(progress) = &request.progress {
@@ -227,15 +215,15 @@ pub enum GrindingError {
 pub fn grind(
     request: &Request,
     library: &mut impl Library,
-    wanted: &Flutes,
+    nominal: &Flutes,
 ) -> Result<GrindingRun, GrindingError> {
-    let mut follower = FluteTracker::new(&request.machine, *wanted)?;
-    let run = run(request, library, &mut follower)?;
-    let mut ground = follower.finish();
-    ground.findings.extend(run.note_findings());
-    ground.findings.extend(likely_causes::unset_work_offsets(&run, &request.machine, "flutes"));
-    ground.findings.extend(run.stop_finding());
-    Ok(GrindingRun { run, result: ground, nominal: *wanted })
+    let mut tracker = FluteTracker::new(&request.machine, *nominal)?;
+    let run = run(request, library, &mut tracker)?;
+    let mut result = tracker.finish();
+    result.findings.extend(run.note_findings());
+    result.findings.extend(causes::unset_work_offsets(&run, &request.machine, "flutes"));
+    result.findings.extend(run.stop_finding());
+    Ok(GrindingRun { run, result, nominal: *nominal })
 }
 
 impl GrindingRun {
@@ -269,11 +257,9 @@ pub fn read_stylus(
     let mut rapids = RapidChecker::new(&request.machine, surface, radius);
     let mut extractor = HoleExtractor::new(&request.machine).with_surface(Some(surface));
     let run = run(request, library, &mut (&mut (&mut stylus, &mut rapids), &mut extractor))?;
-    let mut followed = stylus.finish();
-    followed.findings.extend(rapids.finish());
-    followed.findings.extend(run.note_findings());
-    followed.findings.extend(run.stop_finding());
-    Ok(StylusRun { run, readings: followed })
+    let mut readings = stylus.finish();
+    readings.findings.extend(rapids.finish().into_iter().chain(run.findings()));
+    Ok(StylusRun { run, readings })
 }
 
 /// A run with the holes that it makes.
@@ -315,33 +301,40 @@ pub fn simulate_observed<S: EventSink>(
         .with_process_limits(&request.conduct);
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
-    extracted.findings.extend(run.note_findings());
-    extracted.findings.extend(run.stop_finding());
+    extracted.findings.extend(run.findings());
     Ok(Simulation { run, extracted })
 }
 
 impl Simulation {
     /// Verifies the holes against a reference, and adds likely causes to a verdict with findings.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
-        let places = BlockLocator::of(&self.run);
-        let locate = |span| places.locate(span);
+        let locate = |span| self.run.locate(span);
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
-        let told = verdict.has_findings();
-        verdict.add_likely_causes(likely_causes::likely_causes(&self.run, machine, told), &locate);
+        let causes = causes::likely_causes(&self.run, machine, verdict.has_findings());
+        verdict.add_likely_causes(causes, &locate);
         verdict
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.
     pub fn hole_list(&self) -> HoleList {
-        let places = BlockLocator::of(&self.run);
-        self.extracted.list(|span| places.locate(span))
+        self.extracted.list(|span| self.run.locate(span))
     }
 }
 
 impl Run {
     /// Returns program and line of a block: `O8101`, 31.
     pub fn locate(&self, span: Span) -> (String, u32) {
-        BlockLocator::of(self).locate(span)
+        let memory = self.control.memory();
+        let line = memory.sources().line_column(span).line;
+        match memory.program_at(span) {
+            Some(program) => (program.label(), line),
+            None => (memory.sources().get(span.source).name.clone(), line),
+        }
+    }
+
+    /// Returns the notes, then the finding that ended the run before its end.
+    pub fn findings(&self) -> impl Iterator<Item = Diagnostic> + '_ {
+        self.note_findings().chain(self.stop_finding())
     }
 
     /// Returns the control's notes as findings: actions without an alarm that are probably unintended are warnings.
@@ -352,7 +345,7 @@ impl Run {
                 Diagnostic::new(kind, message).with_backtrace(Backtrace { block, calls: None }).help(help);
             match note {
                 // G53 without axes is a deliberate wait.
-                Note::NoAxis { code: 530 } => finding.with_severity(Severity::Note),
+                Note::NoAxis(530) => finding.with_severity(Severity::Note),
                 _ => finding,
             }
         })
@@ -382,28 +375,28 @@ impl Run {
     }
 
     fn limit_finding(&self) -> Diagnostic {
+        let limit = |message| Diagnostic::new(&LIMIT, message).with_backtrace(self.control.backtrace());
         let Some((first, last)) = self.control.endless_loop() else {
             let (blocks, moves) = (self.control.blocks(), self.control.moves());
-            if self.control.is_cancelled() {
-                let message = format!("the run was interrupted after {blocks} blocks and {moves} moves");
-                let finding = Diagnostic::new(&LIMIT, message).with_backtrace(self.control.backtrace());
-                return finding.help("results cover the blocks executed so far");
-            }
-            let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
-            let finding = Diagnostic::new(&LIMIT, message).with_backtrace(self.control.backtrace());
-            return finding.help("check for a loop that never ends; --max-blocks raises the limit");
+            return if self.control.is_cancelled() {
+                limit(format!("the run was interrupted after {blocks} blocks and {moves} moves"))
+                    .help("results cover the blocks executed so far")
+            } else {
+                limit(format!("the program has not ended after {blocks} blocks and {moves} moves"))
+                    .help("check for a loop that never ends; --max-blocks raises the limit")
+            };
         };
         let ((program, from), (other, to)) = (self.locate(first), self.locate(last));
         let to = if program == other { format!("line {to}") } else { format!("line {to} of {other}") };
-        let message = format!(
+        let finding = limit(format!(
             "the program never ends: the blocks from line {from} of {program} to {to} repeat without change"
-        );
-        let finding = Diagnostic::new(&LIMIT, message).with_backtrace(self.control.backtrace());
-        if let Some(why) = endless_cause::unchanged_counter(&self.control, first, last) {
-            return finding
-                .note(why)
-                .help("check where the step gets its value: a step of 0 makes no progress");
+        ));
+        match causes::unchanged_counter(&self.control, first, last) {
+            Some(why) => {
+                finding.note(why).help("check where the step gets its value: a step of 0 makes no progress")
+            }
+            None => finding
+                .help("end a wait for an input with --input '#1005=1', a main program's M99 with --cycles 1"),
         }
-        finding.help("end a wait for an input with --input '#1005=1', a main program's M99 with --cycles 1")
     }
 }

@@ -101,12 +101,8 @@ impl Observer for Trace {
         let Some(block) = control.next_block() else { return };
         self.read_source(control, block.source);
         let key = (block.source, block.start);
-        let executed = self.blocks.entry(key).or_insert_with(|| ExecutedBlock {
-            block,
-            count: 0,
-            values: Vec::new(),
-            is_truncated: false,
-        });
+        let new = || ExecutedBlock { block, count: 0, values: Vec::new(), is_truncated: false };
+        let executed = self.blocks.entry(key).or_insert_with(new);
         executed.count += 1;
         for number in self.named_variables.get(&key).into_iter().flatten() {
             if let Ok(value) = control.variable(*number) {
@@ -142,28 +138,21 @@ impl Observer for Trace {
 impl ExecutedBlock {
     fn record_value(&mut self, number: u32, role: VariableRole, value: Value) {
         let at = self.values.iter().position(|values| values.number == number && values.role == role);
-        match at {
-            Some(at) => self.values[at].add(value),
-            None if self.values.len() < MAX_VALUES => {
-                self.values.push(VariableValues::new(number, role, value))
-            }
-            None => self.is_truncated = true,
+        if at.is_none() && self.values.len() == MAX_VALUES {
+            self.is_truncated = true;
+            return;
         }
-    }
-}
-
-impl VariableValues {
-    fn new(number: u32, role: VariableRole, value: Value) -> Self {
-        let range = value.as_number().map(|number| (number, number));
-        Self { number, role, count: 1, first: value, last: value, range }
-    }
-
-    fn add(&mut self, value: Value) {
-        self.count += 1;
-        self.last = value;
+        let at = at.unwrap_or_else(|| {
+            let (first, last) = (value, value);
+            self.values.push(VariableValues { number, role, count: 0, first, last, range: None });
+            self.values.len() - 1
+        });
+        let values = &mut self.values[at];
+        values.count += 1;
+        values.last = value;
         if let Some(number) = value.as_number() {
-            let (low, high) = self.range.unwrap_or((number, number));
-            self.range = Some((low.min(number), high.max(number)));
+            let (low, high) = values.range.unwrap_or((number, number));
+            values.range = Some((low.min(number), high.max(number)));
         }
     }
 }

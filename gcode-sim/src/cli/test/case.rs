@@ -11,7 +11,7 @@ use gcode_inspect::verify::{self, Tolerances};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_part::NominalPart;
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
-use gcode_session::{Run, SessionError};
+use gcode_session::Run;
 
 /// Name of the file with the accepted result.
 pub(super) const ACCEPTED: &str = "accepted.json";
@@ -38,12 +38,14 @@ impl Case {
         let main = self.lost().map_or_else(|| main_program::of(&self.folder, &self.programs), Err);
         let unclear = || self.programs.first().cloned().unwrap_or_else(|| self.accepted());
         let file = Some(main.as_ref().map_or_else(|_| unclear(), PathBuf::clone).display().to_string());
-        let empty = |answer| CaseReport::new(self.name.clone(), file.clone(), answer);
-        let tried = main.and_then(|program| self.evaluate(&program, libraries, tolerance, empty));
-        tried.unwrap_or_else(|refusal| {
-            let error = Some(refusal.to_string());
-            CaseResult { report: CaseReport { error, ..empty(CaseAnswer::Refused) }, record: None }
-        })
+        let tried = main.and_then(|program| self.evaluate(&program, libraries, tolerance));
+        let mut result = tried.unwrap_or_else(|refusal| {
+            let (answer, error) = (CaseAnswer::Refused, Some(refusal.to_string()));
+            CaseResult { report: CaseReport { answer, error, ..CaseReport::default() }, record: None }
+        });
+        result.report.name.clone_from(&self.name);
+        result.report.file = file;
+        result
     }
 
     /// Returns the path of the accepted result, or the folder's own path if the folder is gone.
@@ -68,7 +70,6 @@ impl Case {
         program: &Path,
         libraries: &[PathBuf],
         tolerance: f64,
-        empty: impl Fn(CaseAnswer) -> CaseReport,
     ) -> Result<CaseResult, UsageError> {
         // A broken link counts as present, so that reading it reports the error.
         let there =
@@ -94,8 +95,7 @@ impl Case {
             }
             Some(NominalPart::Flutes(_)) | None => None,
         };
-        let refused = |error: SessionError| UsageError::new(error.to_string());
-        let revision = Revision::of(&request, &mut folders, surface).map_err(refused)?;
+        let revision = Revision::of(&request, &mut folders, surface)?;
         if revision.is_cut_off() {
             return Err(cut_off(&revision));
         }
@@ -107,8 +107,7 @@ impl Case {
                 fails(verdict.verdict, &verdict.diagnostics, &revision.simulation.run)
             }
             Some(NominalPart::Flutes(flutes)) => {
-                let grinding = gcode_session::grind(&request, &mut folders, flutes);
-                let grinding = grinding.map_err(|error| UsageError::new(error.to_string()))?;
+                let grinding = gcode_session::grind(&request, &mut folders, flutes)?;
                 let verdict = grinding.verify();
                 fails(verdict.verdict, &verdict.diagnostics, &grinding.run)
             }
@@ -133,13 +132,14 @@ impl Case {
         };
         let record = &revision.record;
         let report = CaseReport {
+            answer,
             files: files(&revision, &changes, against.as_ref()),
             changes,
             not_compared,
             against,
             totals: Some(record.totals.clone()),
             ending: Some(record.words().to_owned()),
-            ..empty(answer)
+            ..CaseReport::default()
         };
         Ok(CaseResult { report, record: Some(revision.record) })
     }
@@ -183,8 +183,5 @@ fn files(
         .flat_map(|place| std::iter::once(place).chain(&place.calls))
         .map(|place| place.program.as_str())
         .collect();
-    if named.is_empty() {
-        return BTreeMap::new();
-    }
     revision.files().into_iter().filter(|(program, _)| named.contains(program.as_str())).collect()
 }

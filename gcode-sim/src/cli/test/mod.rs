@@ -13,12 +13,12 @@ use clap::Args;
 use self::case::{ACCEPTED, Case, CaseResult};
 use super::format::TestFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
+use crate::report::junit;
 use crate::report::test_report::{CaseAnswer, Shard, TestReport};
-use crate::report::{junit, sarif};
 use gcode_review::Record;
 
 #[derive(Debug, Args)]
-pub(super) struct TestArguments {
+pub(super) struct Arguments {
     /// Folders with cases, at any depth
     #[arg(value_name = "DIR", required_unless_present = "merge")]
     folders: Vec<PathBuf>,
@@ -56,7 +56,7 @@ pub(super) struct TestArguments {
     format: TestFormat,
 }
 
-pub(super) fn run(arguments: &TestArguments) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     if arguments.watch {
         return watch::run(arguments, tolerance);
@@ -86,11 +86,11 @@ fn print(report: &TestReport, format: TestFormat) -> Result<(), UsageError> {
             let document = junit::document(report);
             output::print(&document.map_err(|why| UsageError::new(format!("no JUnit XML: {why}")))?)
         }
-        TestFormat::Sarif => output::json(&sarif::log(&report.findings(), &options::working_folder())),
+        TestFormat::Sarif => output::sarif(report.findings()),
     }
 }
 
-fn run_cases(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, UsageError> {
+fn run_cases(arguments: &Arguments, tolerance: f64) -> Result<TestReport, UsageError> {
     let (shard, cases) = cases(arguments)?;
     let mut tried = all(&cases, &arguments.libraries, tolerance);
     let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };
@@ -98,7 +98,7 @@ fn run_cases(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Us
 }
 
 /// Returns the selected cases, and the shard that they form.
-fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), UsageError> {
+fn cases(arguments: &Arguments) -> Result<(Option<Shard>, Vec<Case>), UsageError> {
     let mut cases = find::cases(&arguments.folders)?;
     if cases.is_empty() {
         return Err(UsageError::new("no cases: a case is a folder with a program (.nc)"));
@@ -127,20 +127,10 @@ fn shard(text: &str) -> Result<(usize, usize), UsageError> {
         .ok_or_else(|| UsageError::new(format!("--shard {text}: write K/N; the second of four parts is 2/4")))
 }
 
-/// Runs the cases on all cores; the results are in the order of the cases.
+/// Runs the cases on all cores, each of which takes the next case until none is left; the results are in the order
+/// of the cases.
 fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<CaseResult> {
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    progress::of_cases(cases.len(), &done, || all_of(cases, libraries, tolerance, &next, &done))
-}
-
-/// Lets every core take the next case until none is left, and counts the finished ones.
-fn all_of(
-    cases: &[Case],
-    libraries: &[PathBuf],
-    tolerance: f64,
-    next: &AtomicUsize,
-    counted: &AtomicUsize,
-) -> Vec<CaseResult> {
+    let (next, counted) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let work = || {
         let mut done = Vec::new();
         loop {
@@ -151,16 +141,16 @@ fn all_of(
         }
     };
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
-    let mut tried: Vec<(usize, CaseResult)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<(usize, CaseResult)>>| match worker.join() {
-            Ok(done) => done,
-            Err(panic) => std::panic::resume_unwind(panic),
-        };
-        workers.into_iter().flat_map(join).collect()
-    });
-    tried.sort_by_key(|(index, _)| *index);
-    tried.into_iter().map(|(_, tried)| tried).collect()
+    let run = || {
+        std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+            let joined = workers.into_iter().map(|worker| worker.join());
+            joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+        })
+    };
+    let mut results: Vec<(usize, CaseResult)> = progress::of_cases(cases.len(), &counted, run);
+    results.sort_by_key(|(index, _)| *index);
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Writes the results as the accepted ones, all files or none.
@@ -172,13 +162,12 @@ fn accept(cases: &[Case], tried: &mut [CaseResult]) -> Result<Vec<String>, Usage
         let is_taken = |record: &&Record| is_other && !record.lacks_program();
         let Some(record) = record.as_ref().filter(is_taken) else { continue };
         let text = record.to_json().map_err(|error| UsageError::new(error.to_string()))?;
-        files.push((case.folder.join(ACCEPTED), text.into_bytes()));
+        files.push((case.folder.join(ACCEPTED), text));
         names.push(report.name.clone());
         report.answer = CaseAnswer::Same;
         report.changes.clear();
         report.not_compared.clear();
     }
-    let files: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), bytes.as_slice())).collect();
     output::write_all(&files)?;
     Ok(names)
 }

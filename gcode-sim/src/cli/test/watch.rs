@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use super::{TestArguments, all, case, cases};
+use super::{Arguments, all, case, cases};
 use crate::cli::{ExitStatus, UsageError, output};
 use crate::report::test_report::TestReport;
 
@@ -15,7 +15,7 @@ type Stamps = BTreeMap<PathBuf, (Option<SystemTime>, u64)>;
 
 /// Prints the results of all cases, then of those affected by each saved file. Returns only if printing
 /// fails.
-pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(arguments: &Arguments, tolerance: f64) -> Result<ExitStatus, UsageError> {
     let folders = || arguments.folders.iter().chain(&arguments.libraries);
     let mut stamps = stamps(folders());
     let mut changed: Option<Vec<PathBuf>> = None;
@@ -34,11 +34,7 @@ pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<ExitStatu
 }
 
 /// Runs the cases whose folders contain the changed files, or all cases if a changed file is elsewhere.
-fn round(
-    arguments: &TestArguments,
-    tolerance: f64,
-    changed: Option<&[PathBuf]>,
-) -> Result<String, UsageError> {
+fn round(arguments: &Arguments, tolerance: f64, changed: Option<&[PathBuf]>) -> Result<String, UsageError> {
     let (shard, mut cases) = cases(arguments)?;
     let mut text = String::new();
     if let Some(changed) = changed {

@@ -1,15 +1,15 @@
 //! JSON Schemas of the files that users write and of the results written as JSON.
 //!
 //! They are derived from the types that are read and written, so that schemas and documents always agree.
-mod types;
-
+use schemars::generate::SchemaSettings;
+use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::report::budget::BudgetReport;
 use crate::report::changes::ChangesReport;
 use crate::report::check::CheckReport;
-use crate::report::explained::ExplainReport;
+use crate::report::explain::ExplainReport;
 use crate::report::pictures::{CompareReport, RenderReport};
 use crate::report::readings::ReadingsReport;
 use crate::report::run::RunReport;
@@ -45,13 +45,13 @@ pub const FORMATS: &[Format] = &[
         name: "reference",
         about: "a list of holes: --reference",
         is_toml: false,
-        schema: types::read::<HoleList>,
+        schema: read::<HoleList>,
     },
     Format {
         name: "accepted",
         about: "an accepted result of a case: accepted.json",
         is_toml: false,
-        schema: types::read::<AcceptedFile>,
+        schema: read::<AcceptedFile>,
     },
     result::<RunReport>("run", "the result of run"),
     result::<HoleList>("holes", "the result of holes, and of reference for a part with holes"),
@@ -70,12 +70,12 @@ pub const FORMATS: &[Format] = &[
 ];
 
 const fn file<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
-    Format { name, about, is_toml: true, schema: types::toml::<T> }
+    Format { name, about, is_toml: true, schema: toml::<T> }
 }
 
 /// Returns the format of a command's JSON result.
 pub const fn result<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
-    Format { name, about, is_toml: false, schema: types::written::<T> }
+    Format { name, about, is_toml: false, schema: written::<T> }
 }
 
 impl Format {
@@ -84,5 +84,64 @@ impl Format {
         let mut schema = (self.schema)();
         schema.insert("title".to_owned(), self.about.into());
         schema.to_value()
+    }
+}
+
+/// Returns the schema of a JSON file that is read.
+fn read<T: JsonSchema>() -> Schema {
+    of::<T>(SchemaSettings::draft2020_12())
+}
+
+/// Returns the schema of a result.
+fn written<T: JsonSchema>() -> Schema {
+    of::<T>(SchemaSettings::draft2020_12().for_serialize())
+}
+
+/// Returns the schema of a TOML file, without references: editors ignore keywords beside `$ref`.
+fn toml<T: JsonSchema>() -> Schema {
+    let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
+    of::<T>(settings.with_transform(RecursiveTransform(without_null)))
+}
+
+fn of<T: JsonSchema>(settings: SchemaSettings) -> Schema {
+    settings.with_transform(RecursiveTransform(without_bits)).into_generator().into_root_schema_for::<T>()
+}
+
+/// Removes number formats: the width of an integer is an implementation detail.
+fn without_bits(schema: &mut Schema) {
+    schema.remove("format");
+}
+
+/// Removes null: TOML has none, and an optional key keeps its own type.
+fn without_null(schema: &mut Schema) {
+    let Some(object) = schema.as_object_mut() else { return };
+    if let Some(Value::Array(types)) = object.get_mut("type") {
+        types.retain(|name| name != "null");
+        if let [only] = types.as_slice() {
+            let only = only.clone();
+            object.insert("type".to_owned(), only);
+        }
+    }
+    if let Some(Value::Array(values)) = object.get_mut("enum") {
+        values.retain(|value| !value.is_null());
+    }
+    lift_only_choice(object);
+}
+
+/// Replaces `anyOf` of a schema and null by the schema.
+fn lift_only_choice(object: &mut Map<String, Value>) {
+    let Some(Value::Array(choices)) = object.get_mut("anyOf") else { return };
+    let others = choices.len();
+    choices.retain(|choice| choice["type"] != "null");
+    if choices.len() == others {
+        return;
+    }
+    if let [Value::Object(only)] = choices.as_slice() {
+        let only = only.clone();
+        object.remove("anyOf");
+        for (key, value) in only {
+            // The description of the key takes precedence over that of its table.
+            object.entry(key).or_insert(value);
+        }
     }
 }
