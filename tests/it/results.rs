@@ -41,8 +41,11 @@ fn against_schema(document: &Value) -> Vec<String> {
     schema.iter_errors(document).map(|error| format!("{}: {error}", error.instance_path())).collect()
 }
 
-/// The code, file and line of every result of a SARIF log, which must be valid.
-fn entries(log: &Value) -> Vec<(&str, &str, Option<u64>)> {
+/// Code, file and line of a result.
+type Entry<'l> = (&'l str, &'l str, Option<u64>);
+
+/// The results of a SARIF log, which must be valid.
+fn entries(log: &Value) -> Vec<Entry<'_>> {
     assert_eq!(against_schema(log), Vec::<String>::new());
     let results = log["runs"][0]["results"].as_array().unwrap();
     let entries = results.iter().map(|result| {
@@ -105,7 +108,7 @@ fn findings_of_verify_and_changes_of_diff_are_sarif() {
     std::fs::write(place.path().join("new.nc"), drill("0.").replace("M00\n", "")).unwrap();
     std::fs::write(place.path().join("wanted.csv"), "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n")
         .unwrap();
-    let expected: [(&str, &[(&str, &str, Option<u64>)]); 3] = [
+    let expected: [(&str, &[Entry<'_>]); 3] = [
         ("verify old.nc --reference wanted.csv", &[]),
         ("diff old.nc new.nc", &[("hole-moved", "new.nc", Some(3)), ("stop", "new.nc", Some(3))]),
         ("diff old.nc old.nc", &[]),
