@@ -187,7 +187,7 @@ fn drawn_hole(case: &HoleCase) -> DrawnHole {
 fn words(sheet: &Sheet) -> String {
     let mut lines: Vec<String> =
         sheet.labels.iter().map(|(_, lines)| format!("label: {}", lines.join(" | "))).collect();
-    lines.extend(sheet.magnification.map(|times| format!("misfits: ×{times:.0}")));
+    lines.extend(sheet.magnification.map(|times| format!("deviations: ×{times:.0}")));
     lines.extend(sheet.notes.iter().map(|note| format!("note: {note}")));
     lines.join("\n")
 }
