@@ -110,7 +110,7 @@ fn a_chord_of_the_right_length_may_join_the_wrong_points() {
 }
 
 /// The reading at both ends of the ellipse for each way in which a part can stand wrong: as the simulator follows it, and as
-/// −(n·s) − δ·(x·n_y − y·n_x) says. In z, about x and about y there is no first order.
+/// −(n·s) − δ·(x·n_y − y·n_x) gives. In z, about x and about y there is no first order.
 #[test]
 fn the_ellipse_shows_three_of_six_misplacements() {
     let (bench, job) = example();
@@ -126,7 +126,7 @@ fn the_ellipse_shows_three_of_six_misplacements() {
             "0.01°"
         };
         let following =
-            read_stylus(&request, &mut Programs(&bench.package), surface, job.probe_radius).unwrap();
+            read_stylus(&request, &mut Programs(&bench.package), surface, job.probe.radius).unwrap();
         let readings = &following.readings.passes[0].readings;
         let ends = [&readings[0], &readings[readings.len() - 1]].map(|reading| {
             let normal = surface.nearest(&reading.ball_centre).normal;
