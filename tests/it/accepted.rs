@@ -14,8 +14,8 @@ use gcode_sim::report::changes::ChangesReport;
 use gcode_tests::verify::machine_of;
 use gcode_tests::workspace;
 
-/// Blocks of a program that are looked at: the first rows of a honeycomb tell what its macro does, and the whole is held
-/// against the reference elsewhere.
+/// Limit of executed blocks: the first rows of a honeycomb show the effect of its macro, and the whole is compared with the reference
+/// elsewhere.
 const BLOCKS: u64 = 2000;
 const TOLERANCE: f64 = 0.0001;
 const REMEDY: &str = "look at the change; where it is meant, cargo xtask bless accepts it";
@@ -63,7 +63,7 @@ pub(crate) fn request(main: &Path) -> Request {
     request
 }
 
-/// What an operator has noted of the points E and F before a program matches their chord: ten of each, 36° apart on a
+/// Candidates of the points E and F before a program matches their chord: ten of each, 36° apart on a
 /// circle of radius 1 mm about x = 812.4 and x = 318 of the ellipsoid 1158.8, 724.3. Three variables a point from #501 on.
 fn candidates() -> Vec<(u32, f64)> {
     let points = [812.4, 318.0].into_iter().flat_map(|x| (0..10).map(move |k| (x, Deg(36.0 * f64::from(k)))));
@@ -95,7 +95,7 @@ fn accepted(main: &Path) -> PathBuf {
     workspace().join("tests/accepted").join(below).with_extension("json")
 }
 
-/// What is different from what was accepted, in the words of `diff`; nothing where nothing is.
+/// The differences from the accepted result as `diff` shows them; `None` if there is none.
 fn describe_difference(name: &str, old: &Record, new: &Record) -> Option<String> {
     let found = changes(old, new, TOLERANCE);
     let report = ChangesReport::new(("as accepted", old), (name, new), &found, Vec::new(), TOLERANCE);
@@ -103,7 +103,7 @@ fn describe_difference(name: &str, old: &Record, new: &Record) -> Option<String>
 }
 
 #[test]
-fn every_example_does_what_was_accepted_and_every_macro_is_in_one() {
+fn every_example_runs_as_accepted_and_every_macro_is_in_one() {
     let mut wrong = String::new();
     let mut executed = BTreeSet::new();
     for main in mains() {
@@ -134,50 +134,58 @@ fn every_example_does_what_was_accepted_and_every_macro_is_in_one() {
 }
 
 #[test]
-fn nothing_is_accepted_of_a_program_that_is_gone() {
+fn every_accepted_result_has_its_program() {
     let known: Vec<PathBuf> = mains().iter().map(|main| accepted(main)).collect();
     for file in folder(&workspace().join("tests/accepted")).iter().flat_map(|path| folder(path)) {
         assert!(known.contains(&file), "{}: its example is gone: delete it", file.display());
     }
 }
 
-/// The folders with one macro changed.
-struct Changed {
+/// The folders of a main program, whose called programs are edited as they are read, by the names of their files.
+pub(crate) struct EditedLibrary<F> {
     folders: Folders,
-    number: u32,
-    from: &'static str,
-    to: &'static str,
+    edit: F,
 }
 
-impl Library for Changed {
+impl<F: FnMut(&str, String) -> String> EditedLibrary<F> {
+    pub(crate) fn new(main: &Path, edit: F) -> Self {
+        Self { folders: folders(main), edit }
+    }
+
+    fn edited(&mut self, found: Option<(String, Vec<u8>)>) -> Option<(String, Vec<u8>)> {
+        let (name, bytes) = found?;
+        let text = (self.edit)(&name, String::from_utf8(bytes).unwrap());
+        Some((name, text.into_bytes()))
+    }
+}
+
+impl<F: FnMut(&str, String) -> String> Library for EditedLibrary<F> {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        let (name, bytes) = self.folders.program(number)?;
-        if number != self.number {
-            return Some((name, bytes));
-        }
-        let text = String::from_utf8(bytes).unwrap();
-        assert!(text.contains(self.from), "{} isn't in O{number}", self.from);
-        Some((name, text.replace(self.from, self.to).into_bytes()))
+        let found = self.folders.program(number);
+        self.edited(found)
     }
 
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
-        self.folders.named(name)
+        let found = self.folders.named(name);
+        self.edited(found)
     }
 }
 
 /// The radius of every hole 0.01 mm larger: hole 1, axial at azimuth 0, moves along x by just that.
 #[test]
-fn a_macro_that_moves_a_hole_is_refused_and_the_move_is_shown() {
+fn a_macro_that_moves_a_hole_differs_by_that_move() {
     let main = workspace().join("examples/melon-mould/O8100.nc");
-    let mut library =
-        Changed { folders: folders(&main), number: 8101, from: "#18+[#17", to: "#18+0.01+[#17" };
+    let (from, to) = ("#18+[#17", "#18+0.01+[#17");
+    let mut library = EditedLibrary::new(&main, |name, text| {
+        assert!(!name.contains("8101") || text.contains(from), "{from} isn't in O8101");
+        if name.contains("8101") { text.replace(from, to) } else { text }
+    });
     let old = Record::from_json(&std::fs::read_to_string(accepted(&main)).unwrap()).unwrap();
-    let told = describe_difference("O8100", &old, &revision(&main, &mut library).record).expect("a change");
-    // The rotary turns the way of the others.
+    let text = describe_difference("O8100", &old, &revision(&main, &mut library).record).expect("a change");
     let entry = "hole-moved     holes 1, 2, 3, 4, 5: moved by X +0.0100 of the machine, up to 0.0100 mm (hole 1: \
                  +0.0100 +0.0000 +0.0000 mm)";
-    assert!(told.starts_with(entry), "{told}");
-    assert!(told.contains("new O8101:"), "{told}");
-    assert!(told.contains("called from O8100:"), "{told}");
-    assert!(told.contains("\n1 change\n"), "{told}");
+    assert!(text.starts_with(entry), "{text}");
+    assert!(text.contains("new O8101:"), "{text}");
+    assert!(text.contains("called from O8100:"), "{text}");
+    assert!(text.contains("\n1 change\n"), "{text}");
 }

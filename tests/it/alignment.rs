@@ -1,57 +1,22 @@
-//! The alignment programs on parts that stand misplaced in ways they are not told: what they find, and what comes of it.
-use std::path::Path;
+//! The alignment programs on parts that are misplaced by amounts they don't know: what they find, and what the correction achieves.
+use std::fmt::Write;
 
 use nalgebra::{Point3, Rotation3, Translation3, Vector3};
 use proptest::prelude::*;
 
-use gcode_control::{Outcome, Value};
 use gcode_gen::check::Programs;
-use gcode_gen::families;
-use gcode_gen::package::file_name;
-use gcode_inspect::holes::HoleExtractor;
-use gcode_inspect::machine::{Frame, Machine, Placement};
+use gcode_inspect::machine::{Frame, Placement};
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::units::Deg;
 use gcode_part::NominalPart;
-use gcode_part::Surface;
-use gcode_part::job::Job;
-use gcode_session::{Request, Run, run, simulate};
+use gcode_session::{Run, simulate};
+use gcode_tests::bench::{Bench, alarm, example, marks, placement, value};
+use gcode_tests::workspace;
 
-fn example(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);
-    std::fs::read_to_string(path.join("job.toml")).unwrap()
-}
-
-/// Runs one of a job's main programs on a misplaced part; `more` stands behind the machine file.
-fn measured(job: &str, main: u32, part: Placement, more: &str, variables: Vec<(u32, f64)>) -> Run {
-    let job = Job::parse(job).unwrap_or_else(|error| panic!("{error}\n{job}"));
-    let Job::Alignment(wanted) = &job else { panic!("no alignment") };
-    let package = families::emit(&job);
-    let machine = Machine::parse(&format!("{}{more}", package.machine)).unwrap();
-    let machine = Machine { part, ..machine };
-    let text = package.program(main).unwrap().text.clone().into_bytes();
-    let mut request = Request::new(file_name(main), text, machine);
-    request.variables = variables;
-    let surface = Surface::Ellipsoid { a: wanted.surface.a, b: wanted.surface.b };
-    let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
-    run(&request, &mut Programs(&package), &mut probe).unwrap()
-}
-
-fn common(run: &Run, number: u32) -> f64 {
-    match run.control.variable(number).unwrap() {
-        Value::Number(value) => value,
-        Value::Vacant => panic!("#{number} is vacant"),
-    }
-}
-
-fn placed(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
-    Placement { shift: shift.into(), tilt: tilt.map(Deg), ..Placement::default() }
-}
-
-/// What the run-out program found: shift in x and z, tilt about x and z.
+/// The run-out's result: shift in x and z, tilt about x and z.
 fn found(run: &Run) -> [f64; 4] {
-    assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stop_finding());
-    [580, 581, 582, 583].map(|number| common(run, number))
+    assert_eq!(alarm(run), None);
+    [580, 581, 582, 583].map(|number| value(run, number))
 }
 
 fn near(found: [f64; 4], [x, _, z]: [f64; 3], [about_x, _, about_z]: [f64; 3]) -> bool {
@@ -82,8 +47,7 @@ proptest! {
             .replace("a = 1158.8", &format!("a = {a}"))
             .replace("b = 724.3", &format!("b = {b}"))
             .replace("[-25.0, 25.0, 11]", &format!("[{from:.3}, {to:.3}, 9]"));
-        let run = measured(&job, 8210, placed(shift, tilt), "", Vec::new());
-        let found = found(&run);
+        let found = found(&Bench::of(&job).run(8210, &placement(shift, tilt), &[]));
         prop_assert!(near(found, shift, tilt), "{:?} where {:?} {:?} is", found, shift, tilt);
     }
 
@@ -94,15 +58,15 @@ proptest! {
         count in 1usize..=10,
     ) {
         let model = [[812.4, 516.49, 0.0], [318.0, 696.5, 0.0]];
-        let job = example("alignment").replace("candidates = 10", &format!("candidates = {count}"));
+        let bench = Bench::example("alignment", &[&format!("candidates = 10 => candidates = {count}")]);
         let points: Vec<[f64; 3]> = scatter
             .iter()
             .enumerate()
             .map(|(index, by)| std::array::from_fn(|axis| model[index / 10][axis] + by[axis]))
             .collect();
-        let variables = (501..).zip(points.iter().flatten().copied()).collect();
-        let run = measured(&job, 8200, Placement::default(), "", variables);
-        prop_assert!(matches!(run.outcome, Outcome::End), "{:?}", run.stop_finding());
+        let variables: Vec<_> = (501..).zip(points.iter().flatten().copied()).collect();
+        let run = bench.run(8200, &Placement::default(), &variables);
+        prop_assert_eq!(alarm(&run), None);
         // The model's chord by the ellipse's equation.
         let y = |x: f64| 724.3 * (1.0 - x * x / (1158.8 * 1158.8)).sqrt();
         let chord = Point3::new(812.4, y(812.4), 0.0) - Point3::new(318.0, y(318.0), 0.0);
@@ -116,22 +80,20 @@ proptest! {
                 }
             }
         }
-        prop_assert_eq!((common(&run, 570), common(&run, 571)), (best.0 as f64, best.1 as f64));
-        prop_assert!((common(&run, 572) - best.2).abs() < 1e-7);
+        prop_assert_eq!((value(&run, 570), value(&run, 571)), (best.0 as f64, best.1 as f64));
+        prop_assert!((value(&run, 572) - best.2).abs() < 1e-7);
     }
 }
 
-/// The five holes of the main example on a part that stands so, with this in Y of G54.
+/// The five holes of the main example on a misplaced part, with Y of G54.
 fn five_holes(part: Placement, zero: f64) -> Verdict {
-    let job = Job::parse(&example("melon-mould")).unwrap();
-    let package = families::emit(&job);
-    let machine = Machine { part, ..Machine::parse(&package.machine).unwrap() };
-    let reference = NominalPart::from_job(&job).unwrap().into_holes().unwrap();
-    let text = package.main().unwrap().text.clone().into_bytes();
-    let mut request = Request::new("O8100.nc", text, machine.clone());
+    let bench = Bench::example("melon-mould", &[]);
+    let mut request = bench.request(8100);
+    request.machine.part = part;
     request.variables.push((5222, zero));
-    let done = simulate(&request, &mut Programs(&package), reference.surface).unwrap();
-    done.verify(&reference, Tolerances::of(&reference, Some(0.1)), &machine)
+    let reference = NominalPart::from_job(&bench.job).unwrap().into_holes().unwrap();
+    let done = simulate(&request, &mut Programs(&bench.package), reference.surface).unwrap();
+    done.verify(&reference, Tolerances::of(&reference, Some(0.1)), &request.machine)
 }
 
 /// What is left of a misplacement when the part is moved back by what was found: R'⁻¹·(R·p + d − d'), written out with
@@ -147,33 +109,34 @@ fn corrected(shift: [f64; 3], tilt: [f64; 3], found: [f64; 4]) -> Placement {
     let (about_x, about_y, about_z) = left.rotation.euler_angles();
     let shift = left.translation.vector;
     let tilt = [about_x, about_y, about_z].map(|angle| Deg::from_rad(angle).0);
-    let part = placed(shift.into(), tilt);
+    let part = placement(shift.into(), tilt);
     assert!((part.frame().to_homogeneous() - left.to_homogeneous()).norm() < 1e-9, "the same motion");
     part
 }
 
-/// What alignment is for: before it the holes are out, after the run-out and the chord they are within Φ0.1. The run-out alone isn't
-/// enough for a part that stands too high or too low: O8200 touches it, and corrects Y of the work offset. The positions are those of
-/// the table in docs/methods/alignment.md.
+/// Before alignment the holes are out of position, after the run-out and the chord they are within Φ0.1. The run-out alone isn't enough for
+/// a part that stands too high or too low: O8200 touches it and corrects Y of the work offset. The positions are those of the table in
+/// docs/methods/alignment.md.
 #[test]
-fn after_the_correction_the_five_holes_hold_and_before_they_do_not() {
+fn the_five_holes_are_in_tolerance_after_the_correction_alone() {
+    let bench = Bench::example("alignment", &[]);
     let mut rows: Vec<String> = (1..=5).map(|id| format!("| {id} |")).collect();
     for (shift, tilt) in [
         ([0.3, 0.25, -0.2], [0.15, 0.0, -0.3]),
         ([-0.25, -0.3, 0.3], [-0.3, 0.0, 0.2]),
         ([0.06, 0.0, 0.0], [0.0, 0.0, 0.0]),
     ] {
-        let before = five_holes(placed(shift, tilt), 0.0);
+        let before = five_holes(placement(shift, tilt), 0.0);
         assert_eq!(before.verdict, Answer::Fail, "{shift:?} {tilt:?}");
-        let found = found(&measured(&example("alignment"), 8210, placed(shift, tilt), "", Vec::new()));
+        let found = found(&bench.run(8210, &placement(shift, tilt), &[]));
         let part = corrected(shift, tilt, found);
         let run_out = five_holes(part, 0.0);
         let enough = if shift[1] == 0.0 { Answer::Pass } else { Answer::Fail };
         assert_eq!(run_out.verdict, enough, "{shift:?} {tilt:?}: {:?}", run_out.worst);
-        let chord = measured(&example("alignment"), 8200, part, "", Vec::new());
-        assert!(matches!(chord.outcome, Outcome::End), "{:?}", chord.stop_finding());
-        assert!((common(&chord, 574) - shift[1]).abs() < 0.001, "{}", common(&chord, 574));
-        let after = five_holes(part, common(&chord, 5222));
+        let chord = bench.run(8200, &part, &[]);
+        assert_eq!(alarm(&chord), None);
+        assert!((value(&chord, 574) - shift[1]).abs() < 0.001, "{}", value(&chord, 574));
+        let after = five_holes(part, value(&chord, 5222));
         assert_eq!(after.verdict, Answer::Pass, "{found:?}: {:?}", after.worst);
         assert_eq!(after.holes.len(), 5);
         assert!(after.worst.unwrap() < 0.05, "{found:?}: {:?}", after.worst);
@@ -188,100 +151,38 @@ fn after_the_correction_the_five_holes_hold_and_before_they_do_not() {
             row.push_str(&format!(" {:.3} |", after.position_deviation));
         }
     }
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/methods/alignment.md");
-    let page = std::fs::read_to_string(page).unwrap();
-    assert!(
-        rows.iter().all(|row| page.contains(row)),
-        "docs/methods/alignment.md has other figures than\n{}",
-        rows.join("\n")
-    );
+    rows.iter().for_each(|row| on_the_page(row));
 }
 
-/// B's own errors, of which the fit knows nothing: the table of docs/methods/alignment.md. By hand: about an axis at z = 0.01 the
-/// part goes round by −0.01·sin φ in x, as if it stood at z = −0.01; about one that leans by 0.001° about x, as if it leaned by
-/// −0.001°. An axis at x = 0.01 is a part at x = −0.01 and a touch that is always noted 0.01 farther out, which the page has as +0.012
-/// and −0.0014°.
-#[test]
-fn an_axis_that_is_not_where_the_program_believes_it_is_taken_for_the_part() {
-    for (error, expected) in [
-        ("centre.x = { fixed = 0.01 }", [0.0017, 0.0, 0.0, -0.0014]),
-        ("centre.z = { fixed = 0.01 }", [0.0, -0.01, 0.0, 0.0]),
-        ("tilt.x = { fixed = 0.001 }", [0.0, 0.0, -0.001, 0.0]),
-        ("tilt.z = { fixed = 0.001 }", [0.0011, 0.0, 0.0, -0.0011]),
-    ] {
-        let more = format!("\n[errors.rotary]\n{error}\n");
-        let found = found(&measured(&example("alignment"), 8210, Placement::default(), &more, Vec::new()));
-        for (found, expected) in found.into_iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-4, "{error}: {found} is not {expected}");
-        }
-    }
+/// Fails if docs/methods/alignment.md doesn't have this text.
+pub(crate) fn on_the_page(text: &str) {
+    let page = std::fs::read_to_string(workspace().join("docs/methods/alignment.md")).unwrap();
+    assert!(page.contains(text), "docs/methods/alignment.md doesn't have\n{text}");
 }
 
 /// A second pass on the corrected part shows what is left: next to nothing.
 #[test]
 fn a_second_pass_shows_what_remains() {
     let (shift, tilt) = ([0.3, 0.0, -0.2], [0.15, 0.0, -0.3]);
-    let first = measured(&example("alignment"), 8210, placed(shift, tilt), "", Vec::new());
-    assert_eq!(common(&first, 590), common(&first, 580), "nobody corrected anything here");
-    assert!(common(&first, 585) < 1e-5, "the fit leaves nothing: {}", common(&first, 585));
-    let second = measured(&example("alignment"), 8210, corrected(shift, tilt, found(&first)), "", Vec::new());
+    let bench = Bench::example("alignment", &[]);
+    let first = bench.run(8210, &placement(shift, tilt), &[]);
+    assert_eq!(value(&first, 590), value(&first, 580), "the part isn't corrected between the passes here");
+    assert!(value(&first, 585) < 1e-5, "the fit leaves nothing: {}", value(&first, 585));
+    let second = bench.run(8210, &corrected(shift, tilt, found(&first)), &[]);
     let left = found(&second);
     assert!(left.iter().all(|value| value.abs() < 1e-4), "{left:?}");
 }
 
-/// The alarm that a run ended with.
-fn alarm(run: &Run) -> String {
-    match &run.outcome {
-        Outcome::Alarm(stopped) => stopped.alarm.row().message.to_string(),
-        other => panic!("{other:?}"),
-    }
-}
-
+/// The standard deviations of the results with a noisy probe: the table of docs/methods/alignment.md.
 #[test]
-fn what_cannot_be_measured_is_an_alarm_and_leaves_no_result() {
-    let job = example("alignment");
-    let far = |shift| measured(&job, 8210, placed(shift, [0.0; 3]), "", Vec::new());
-    for (run, message) in [
-        (far([-12.0, 0.0, 0.0]), "NO CONTACT"),
-        (far([12.0, 0.0, 0.0]), "TOUCHES V BEFORE SURFACE"),
-        (
-            measured(
-                &job.replace("a = 1158.8", "a = 724.3").replace("812.4", "612.4"),
-                8210,
-                Placement::default(),
-                "",
-                Vec::new(),
-            ),
-            "TILT NOT TOLD FROM SHIFT",
-        ),
-        (
-            measured(
-                &job.replace("[-25.0, 25.0, 11]", "[-2.0, 2.0, 11]"),
-                8210,
-                Placement::default(),
-                "",
-                Vec::new(),
-            ),
-            "TILT NOT TOLD FROM SHIFT",
-        ),
-        (measured(&job, 8200, Placement::default(), "", vec![(501, 812.0)]), "A CANDIDATE IS MISSING"),
-    ] {
-        assert_eq!(alarm(&run), message);
-        for number in [570, 573, 580, 584] {
-            assert_eq!(run.control.variable(number), Ok(Value::Vacant), "#{number}, {message}");
-        }
-    }
-}
-
-/// How far the results go off with a noisy probe: the table of docs/methods/alignment.md.
-#[test]
-fn noise_of_the_probe_is_passed_on_as_the_page_says() {
+fn noise_of_the_probe_spreads_the_results_as_the_page_states() {
     let mut sums = [0.0; 4];
     let parts = 40;
+    let bench = Bench::example("alignment", &[]);
     for seed in 0..parts {
-        let more = format!("\n[errors.probe]\nnoise = {{ normal = 0.001 }}\nseed = {seed}\n");
-        let run = measured(&example("alignment"), 8210, placed([0.1, 0.0, 0.0], [0.0; 3]), &more, Vec::new());
-        let found = found(&run);
+        let noise = format!("\n[errors.probe]\nnoise = {{ normal = 0.001 }}\nseed = {seed}\n");
+        let noisy = bench.clone().with_machine(&noise);
+        let found = found(&noisy.run(8210, &placement([0.1, 0.0, 0.0], [0.0; 3]), &[]));
         for (sum, (found, real)) in sums.iter_mut().zip(found.into_iter().zip([0.1, 0.0, 0.0, 0.0])) {
             *sum += (found - real) * (found - real) / f64::from(parts);
         }
@@ -293,13 +194,13 @@ fn noise_of_the_probe_is_passed_on_as_the_page_says() {
     }
 }
 
-/// A right-hand turn about X by 0.2° takes the pole towards Z+ and sinks what lies towards Z+: between supports 1 m apart in Z by 1000·sin 0.2°,
-/// 20 times the 0.1745 of the set-up sheet. So it is the side towards Z+ that gets the shim where #582 is above 0.
+/// A right-hand rotation about X by 0.2° takes the pole towards Z+ and lowers the side towards Z+: between supports 1 m apart in Z by
+/// 1000·sin 0.2°, 20 times the 0.1745 of the set-up sheet. So the side towards Z+ gets the shim if #582 is above 0.
 #[test]
-fn the_sheet_shims_the_side_that_a_tilt_of_known_sign_has_sunk() {
+fn the_set_up_sheet_shims_the_side_that_a_tilt_lowers() {
     for tilt in [0.2, -0.2] {
-        let part = placed([0.0; 3], [tilt, 0.0, 0.0]);
-        let [_, _, about_x, _] = found(&measured(&example("alignment"), 8210, part, "", Vec::new()));
+        let part = placement([0.0; 3], [tilt, 0.0, 0.0]);
+        let [_, _, about_x, _] = found(&Bench::example("alignment", &[]).run(8210, &part, &[]));
         assert!((about_x - tilt).abs() < 0.004, "{about_x}");
         let stands = part.frame();
         let [top, towards, away] =
@@ -314,5 +215,87 @@ fn the_sheet_shims_the_side_that_a_tilt_of_known_sign_has_sunk() {
         "is 0.1745 mm thick for each 0.01° and metre between the supports in Z",
     ] {
         assert!(sheet.contains(words), "{words}");
+    }
+}
+
+/// Both ends 0.9 aside, the way of azimuths that grow: by hand, tan = (812.4 + 318)·0.9/(812.4² + 318²) = 0.001 336 7, which is
+/// 0.076 59°. A chord turned by that leaves 0.9 − 812.4·0.001 336 7 = −0.186 at E and +0.475 at F. E alone 0.9 aside is
+/// 812.4·0.9/761 118 = 0.055 04°. X and Z of G54 stay, wherever the marks are.
+#[test]
+fn marks_correct_y_and_the_rotary_alone() {
+    let aside = |of: std::ops::Range<u32>, axis: u32, by: f64| -> Vec<(u32, f64)> {
+        let moved = |n: u32| of.contains(&n) && (n - 501) % 3 == axis;
+        let one_each = |n: u32| if n < 531 { 501 + (n - 501) % 3 } else { 531 + (n - 531) % 3 };
+        let marks = marks();
+        let first = |n: u32| marks.iter().find(|(number, _)| *number == one_each(n)).unwrap().1;
+        (501..561).map(|n| (n, first(n) + if moved(n) { by } else { 0.0 })).collect()
+    };
+    for (set, y, rotary) in [
+        (aside(501..561, 2, 0.9), 0.0, 0.076_59),
+        (aside(501..531, 2, 0.9), 0.0, 0.055_04),
+        (aside(501..561, 2, -0.9), 0.0, -0.076_59),
+        (aside(501..561, 0, 0.9), 0.0, 0.0),
+        (aside(501..561, 1, -0.3), -0.3, 0.0),
+    ] {
+        for sign in [1.0, -1.0] {
+            let bench = Bench::example("alignment", &[&format!("sign = 1 }} => sign = {sign} }}")]);
+            let run = bench.run(8200, &Placement::default(), &set);
+            assert_eq!(alarm(&run), None);
+            assert!((value(&run, 574) - y).abs() < 1e-6, "{}", value(&run, 574));
+            assert!((value(&run, 576) - sign * rotary).abs() < 2e-5, "{}", value(&run, 576));
+            assert_eq!([5221, 5223].map(|number| value(&run, number)), [0.0; 2]);
+            assert!(
+                (value(&run, 5222) - y).abs() < 0.0006 && (value(&run, 5225) - sign * rotary).abs() < 0.0006
+            );
+        }
+    }
+}
+
+/// By hand: with the zero of X too far out by w every point is w nearer to the axis, which the page's table has as −0.012 and +0.0014° for
+/// 0.01. With the zero of Z off the ball touches a round part beside its middle: nothing of first order. With the zero of Y off the part
+/// stands lower by w. Marks show all three with the sign that corrects them.
+#[test]
+fn a_wrong_work_zero_is_taken_for_the_part_as_the_page_states() {
+    let bench = Bench::example("alignment", &[]);
+    let good = Placement::default();
+    let mut table = String::new();
+    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let zero = [(5221 + axis as u32, 0.05)];
+        let run = bench.run(8210, &good, &zero);
+        assert_eq!(alarm(&run), None, "{name}");
+        let touched = bench.run(8200, &good, &zero);
+        assert_eq!(alarm(&touched), None, "{name}");
+        // What is typed in is read in the same work offset.
+        let typed =
+            marks().into_iter().map(|(n, v)| (n, if (n - 501) as usize % 3 == axis { v - 0.05 } else { v }));
+        let marked = bench.run(8200, &good, &typed.chain(zero).collect::<Vec<_>>());
+        assert_eq!(alarm(&marked), None, "{name}");
+        let mut row = format!("| {name} |");
+        for (number, places) in [(580, 3), (581, 3), (582, 4), (583, 4), (584, 3), (585, 4)] {
+            let _ = write!(row, " {} |", figure(value(&run, number), places));
+        }
+        let by = [573, 574, 575].map(|number| figure(value(&marked, number), 3)).join(", ");
+        let _ = writeln!(table, "{row} {} | {by} |", figure(value(&touched, 574), 3));
+    }
+    on_the_page(&table);
+}
+
+/// `+0.050`, `0`.
+fn figure(value: f64, places: usize) -> String {
+    let text = format!("{value:+.places$}");
+    if text.trim_start_matches(['+', '-', '0', '.']).is_empty() { "0".to_owned() } else { text }
+}
+
+/// 200·sin 38.5° is 124.503 by the set of 87: 1.003 for the last digit, which leaves 123.5, and no block is as thick. At 0° no block is
+/// needed, and the angle has no error.
+#[test]
+fn the_sine_table_program_names_the_gauge_blocks() {
+    for (phi, words) in [
+        ("38.5", "(BLOCKS 100 + 20 + 3.5 + 1.003)\n(THEY MAKE 0.10 SECONDS OF ARC TOO MUCH)\n"),
+        ("0.0", "(NO BLOCKS, THE TABLE LIES FLAT)\n(AFTER O8210"),
+    ] {
+        let bench = Bench::example("alignment", &[&format!("phi = 38.5 => phi = {phi}")]);
+        let text = &bench.package.program(8230).unwrap().text;
+        assert!(text.contains(&format!("(GAUGE BLOCKS METRIC-87)\n{words}")), "{text}");
     }
 }

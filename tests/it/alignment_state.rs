@@ -2,10 +2,10 @@
 //! half written that the next program would take for whole.
 use std::collections::{BTreeMap, BTreeSet};
 
-use gcode_control::{Control, Limits, Observer};
+use gcode_control::{Control, Limits, Observer, Outcome};
 use gcode_gen::package::file_name;
 use gcode_inspect::machine::Placement;
-use gcode_tests::alignment::{Bench, alarm, kept_variables, marks, placement, vacant, value};
+use gcode_tests::bench::{Bench, alarm, kept_variables, marks, placement, vacant, value};
 use gcode_tests::workspace;
 
 /// The common variables that each file's blocks assign.
@@ -45,7 +45,7 @@ fn ranges(numbers: &BTreeSet<u32>) -> String {
 
 #[test]
 fn every_head_names_the_common_variables_that_are_overwritten() {
-    let bench = Bench::of(&[]);
+    let bench = Bench::example("alignment", &[]);
     let mut all = Assigned::default();
     let good = Placement::default();
     let tilt = [(583, 0.1), (585, 0.001)];
@@ -53,11 +53,14 @@ fn every_head_names_the_common_variables_that_are_overwritten() {
     for (main, set) in
         [(8210, &[][..]), (8230, &tilt), (8200, &[]), (8200, &marks()), (8200, &anew), (8220, &[])]
     {
-        assert_eq!(alarm(&bench.run_observed(main, &good, set, &mut all)), None, "O{main}");
+        assert_eq!(alarm(&bench.run_observed(main, &good, set, &mut (), &mut all)), None, "O{main}");
     }
     // As many readings as there may be; they are taken before the fit begins.
-    let most = Bench { limits: Limits { blocks: 4_000 }, ..Bench::of(&[("25.0, 11]", "25.0, 100]")]) };
-    most.run_observed(8210, &good, &[], &mut all);
+    let most = Bench {
+        limits: Limits { blocks: 4_000 },
+        ..Bench::example("alignment", &["25.0, 11] => 25.0, 100]"])
+    };
+    most.run_observed(8210, &good, &[], &mut (), &mut all);
 
     let readme = std::fs::read_to_string(workspace().join("macros/README.md")).unwrap();
     let page = std::fs::read_to_string(workspace().join("docs/methods/alignment.md")).unwrap();
@@ -105,12 +108,12 @@ fn of(state: &[(u32, f64)], number: u32) -> Option<f64> {
 /// asin(124.23/200) = 38.400 16, or 128.29 (200·sin 39.9° = 128.289 92), asin(128.29/200) = 39.900 03.
 #[test]
 fn reset_in_o8230_uses_no_tilt_twice() {
-    let bench = Bench::of(&[]);
+    let bench = Bench::example("alignment", &[]);
     for (stands, wanted, new) in [(None, 38.4, 38.400_162), (Some(40.0), 39.9, 39.900_028)] {
         let mut set = vec![(583, 0.1), (585, 0.001)];
         set.extend(stands.map(|angle| (596, angle)));
         let mut states = States::default();
-        bench.run_observed(8230, &Placement::default(), &set, &mut states);
+        bench.run_observed(8230, &Placement::default(), &set, &mut (), &mut states);
         let mut met = BTreeSet::new();
         for state in &states.0 {
             let next = bench.run(8230, &Placement::default(), state);
@@ -133,17 +136,18 @@ fn reset_in_o8230_uses_no_tilt_twice() {
 fn reset_in_o8210_leaves_no_mixture_of_two_parts() {
     let yesterday: Vec<_> = (580..586).chain(590..596).map(|number| (number, 0.25)).collect();
     let mut states = States::default();
-    let whole = Bench::of(&[]).run_observed(
+    let whole = Bench::example("alignment", &[]).run_observed(
         8210,
         &placement([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]),
         &yesterday,
+        &mut (),
         &mut states,
     );
     assert_eq!(alarm(&whole), None);
     assert!(states.0.len() > 30, "every write is another state");
     for first in [580, 590] {
         let results = |state: &[(u32, f64)]| [0, 1, 2, 3, 4, 5].map(|n| of(state, first + n));
-        let [before, after] = [results(&yesterday), results(&kept_variables(&whole))];
+        let [before, after] = [results(&yesterday), results(&kept_variables(&whole.control))];
         assert!(before != after && after.iter().all(Option::is_some));
         for state in &states.0 {
             let now = results(state);
@@ -161,11 +165,11 @@ fn results_are_vacant(state: &[(u32, f64)]) -> bool {
 /// Of points that were touched and of marks: the next run uses all of them, touches all anew, or moves nothing and says why.
 #[test]
 fn reset_in_o8200_leaves_no_points_that_are_used_in_part_or_twice() {
-    let bench = Bench::of(&[]);
+    let bench = Bench::example("alignment", &[]);
     let high = placement([0.0, 0.2, 0.0], [0.0; 3]);
     for set in [Vec::new(), marks()] {
         let mut states = States::default();
-        let whole = bench.run_observed(8200, &high, &set, &mut states);
+        let whole = bench.run_observed(8200, &high, &set, &mut (), &mut states);
         assert_eq!(alarm(&whole), None);
         let wanted = value(&whole, 574);
         let mut met = BTreeSet::new();
@@ -190,4 +194,27 @@ fn reset_in_o8200_leaves_no_points_that_are_used_in_part_or_twice() {
         assert_eq!(met, BTreeSet::from([None, Some(refused)]));
         assert!((501..=560).chain([578]).all(|number| vacant(&whole, number)));
     }
+}
+
+/// Yesterday's results of both passes are gone from the start, and what a fit has found so far is none.
+#[test]
+fn a_run_out_that_is_broken_off_leaves_nothing() {
+    let bench = Bench::example("alignment", &[]);
+    let yesterday: Vec<_> = (580..586).chain(590..596).map(|number| (number, 0.25)).collect();
+    let off = placement([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]);
+    let whole = bench.run(8210, &off, &yesterday);
+    assert!((580..586).chain(590..596).all(|number| !vacant(&whole, number)));
+    // The first pass ends behind half of the blocks; 22 readings of 12 blocks are done after 400 at most, then four rounds of the fit.
+    let all = whole.control.blocks();
+    for part in [0.05, 0.1, 0.2, 0.3, 0.4, 0.45] {
+        let blocks = (all as f64 * part) as u64;
+        let run = Bench { limits: Limits { blocks }, ..bench.clone() }.run(8210, &off, &yesterday);
+        assert!(matches!(run.outcome, Outcome::Limit), "{:?}", run.outcome);
+        assert!((580..586).chain(590..596).all(|number| vacant(&run, number)), "{blocks} of {all}");
+    }
+    // In the second pass the first one's stand, and none of its own.
+    let blocks = (all as f64 * 0.8) as u64;
+    let run = Bench { limits: Limits { blocks }, ..bench }.run(8210, &off, &yesterday);
+    assert!((580..586).all(|number| vacant(&run, number)));
+    assert!((590..596).all(|number| !vacant(&run, number)));
 }

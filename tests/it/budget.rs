@@ -1,6 +1,5 @@
-//! The error budget against the other ways to the same numbers: `verify` on the emitted program, and the machine file.
+//! The error budget compared with `verify` on the emitted program and with a machine that has the errors.
 use std::num::NonZeroUsize;
-use std::path::Path;
 use std::sync::atomic::AtomicUsize;
 
 use gcode_gen::check::check;
@@ -9,10 +8,10 @@ use gcode_inspect::budget::{Budget, BudgetRequest, budget};
 use gcode_inspect::machine::{Machine, error_file};
 use gcode_part::NominalPart;
 use gcode_part::job::Job;
+use gcode_tests::workspace;
 
 fn example(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);
-    std::fs::read_to_string(path).unwrap()
+    std::fs::read_to_string(workspace().join("examples").join(name)).unwrap()
 }
 
 fn found(job: &Job, errors: &str, samples: usize) -> Budget {
@@ -33,7 +32,7 @@ fn found(job: &Job, errors: &str, samples: usize) -> Budget {
 
 /// A machine without errors drills what `verify` finds of the emitted program: rounding is in both.
 #[test]
-fn without_errors_the_budget_is_what_verify_says() {
+fn without_errors_the_budget_agrees_with_verify() {
     for name in ["melon-mould/job.toml", "prolate/job.toml", "head-by-axis/job.toml"] {
         let job = Job::parse(&example(name)).unwrap();
         let package = families::emit(&job);
@@ -54,7 +53,7 @@ fn without_errors_the_budget_is_what_verify_says() {
 /// A fixed error in the budget is the same one in a machine file, but for rounding: the program sets the head to a whole increment,
 /// and an axis may then be rounded the other way, which is Φ0.002.
 #[test]
-fn a_fixed_error_is_off_as_far_as_on_a_machine_with_that_error() {
+fn a_fixed_error_displaces_holes_as_on_a_machine_with_that_error() {
     let job = Job::parse(&example("melon-mould/job.toml")).unwrap();
     for (errors, least) in [
         (

@@ -1,28 +1,11 @@
 //! `check` on what stands in this repository: nothing to find in macros and examples, a page and a case for each rule.
-use std::path::{Path, PathBuf};
-
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Severity;
 use gcode_lang::program::NoLibrary;
 use gcode_lint::rules::ALL;
 use gcode_lint::{CheckResult, check};
 use gcode_sim::cli::library::Folders;
-use gcode_tests::workspace;
-
-/// The programs below `dir`.
-fn programs(dir: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(dir).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(programs(&path));
-        } else if path.extension().is_some_and(|e| e == "nc") {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
-}
+use gcode_tests::{files_below, workspace};
 
 fn messages(checked: &CheckResult) -> Vec<String> {
     checked.findings.iter().map(|f| format!("{}: {}", f.code(), f.message)).collect()
@@ -34,7 +17,7 @@ fn macros_and_examples_have_no_findings() {
     let beside =
         ["melon-mould", "nc-repository/macros"].map(|folder| workspace().join("examples").join(folder));
     let all =
-        programs(&workspace().join("macros")).into_iter().chain(programs(&workspace().join("examples")));
+        ["macros", "examples"].into_iter().flat_map(|folder| files_below(&workspace().join(folder), "nc"));
     let mut seen = 0;
     // What was published is wrong on purpose: docs/examples/published-honeycomb.md shows what is found in it.
     let published = workspace().join("examples/published-honeycomb");
@@ -98,7 +81,7 @@ fn every_rule_has_a_case() {
 /// Whatever stands in a file, it can be checked; the cases of the suite hold every kind of fault.
 #[test]
 fn every_program_of_the_suite_can_be_checked() {
-    for path in programs(&workspace().join("tests/suite")) {
+    for path in files_below(&workspace().join("tests/suite"), "nc") {
         let bytes = std::fs::read(&path).unwrap();
         let whole = check("whole", bytes.clone(), &Settings::default(), &mut NoLibrary);
         let again = check("whole", bytes.clone(), &Settings::default(), &mut NoLibrary);

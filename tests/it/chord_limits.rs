@@ -1,25 +1,23 @@
-//! What chord matching can't see: a hundred parts that stand exactly right, each matched from candidates that don't, by the
-//! emitted program itself; and what the ellipse sees. The tables of docs/methods/alignment.md are what comes out here.
+//! Limits of chord matching: a hundred parts in their place, each matched by the emitted program from candidates that aren't; and what
+//! the ellipse shows. The tables of docs/methods/alignment.md are the results.
 use std::fmt::Write;
 
-use gcode_control::Outcome;
 use gcode_gen::check::Programs;
-use gcode_gen::families;
-use gcode_gen::package::Package;
-use gcode_inspect::machine::RandomStream;
-use gcode_inspect::machine::{Machine, Setup};
+use gcode_inspect::machine::{Placement, RandomStream, Setup};
 use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
 use gcode_part::Surface;
 use gcode_part::job::{Alignment, Job};
-use gcode_session::{Request, read_stylus, run};
-use gcode_tests::workspace;
+use gcode_session::read_stylus;
+use gcode_tests::bench::{Bench, alarm, value};
 use nalgebra::{Point3, distance};
 
-fn example() -> Alignment {
-    let text = std::fs::read_to_string(workspace().join("examples/alignment/job.toml")).unwrap();
-    let Ok(Job::Alignment(job)) = Job::parse(&text) else { panic!("the example is an alignment") };
-    job
+use crate::alignment::on_the_page;
+
+fn example() -> (Bench, Alignment) {
+    let bench = Bench::example("alignment", &[]);
+    let Job::Alignment(job) = bench.job.clone() else { panic!("the example is an alignment") };
+    (bench, job)
 }
 
 /// The point of the surface over x and z.
@@ -45,7 +43,7 @@ fn candidates(job: &Alignment, x: f64, draw: RandomStream) -> Vec<Point3<f64>> {
         .collect()
 }
 
-/// What one matching did to a part that stood right; mm.
+/// Effects of one matching on a part in its place; mm.
 struct Matched {
     /// The chord taken less the model's, without its sign; and that of the first of the hundred pairs.
     length: f64,
@@ -57,19 +55,15 @@ struct Matched {
     after_ellipse: f64,
 }
 
-fn matched(job: &Alignment, package: &Package, draw: RandomStream) -> Matched {
-    let machine = Machine::parse(&package.machine).unwrap();
+fn matched(job: &Alignment, bench: &Bench, draw: RandomStream) -> Matched {
     let ends = [job.chord.e_radius, job.chord.f_radius];
     let measured = [0, 1].map(|end| candidates(job, ends[end], draw.branch(end as u64)));
-    let mut request =
-        Request::new("O8200.nc", package.program(8200).unwrap().text.as_bytes(), machine.clone());
-    for (first, points) in [501, 531].into_iter().zip(&measured) {
-        let values = points.iter().flat_map(|point| [point.x, point.y, point.z]);
-        request.variables.extend((first..).zip(values));
-    }
-    let ran = run(&request, &mut Programs(package), &mut ()).unwrap();
-    assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
-    let value = |number: u32| ran.control.variable(number).unwrap().number();
+    let candidates = [501, 531].into_iter().zip(&measured).flat_map(|(first, points)| {
+        (first..).zip(points.iter().flat_map(|point| [point.x, point.y, point.z]))
+    });
+    let ran = bench.run(8200, &Placement::default(), &candidates.collect::<Vec<_>>());
+    assert_eq!(alarm(&ran), None);
+    let value = |number: u32| value(&ran, number);
     let [e, f] = ends.map(|x| on_surface(job, x, 0.0));
     let [chosen_e, chosen_f] = [570, 571].map(|number| value(number) as usize - 1);
     let model = distance(&e, &f);
@@ -78,7 +72,7 @@ fn matched(job: &Alignment, package: &Package, draw: RandomStream) -> Matched {
     let out = |shift: [f64; 3]| {
         let mut at = Position::default();
         (at[0], at[1], at[2], at[4]) = (hole.x + shift[0], hole.y + shift[1], hole.z + shift[2], value(576));
-        distance(&machine.forward(&at, &Setup::default()).tip, &hole)
+        distance(&bench.machine().forward(&at, &Setup::default()).tip, &hole)
     };
     Matched {
         length: value(572).abs(),
@@ -97,11 +91,9 @@ fn row(name: &str, mut values: Vec<f64>) -> String {
 
 /// Of a hundred parts the chord taken is right to a few hundredths at worst, and the points taken are not.
 #[test]
-fn the_right_length_says_little_about_the_points() {
-    let job = example();
-    let package = families::emit(&Job::Alignment(job.clone()));
-    let all: Vec<_> =
-        (0..100).map(|part| matched(&job, &package, RandomStream::new(1).branch(part))).collect();
+fn a_chord_of_the_right_length_may_join_the_wrong_points() {
+    let (bench, job) = example();
+    let all: Vec<_> = (0..100).map(|part| matched(&job, &bench, RandomStream::new(1).branch(part))).collect();
     let of = |value: fn(&Matched) -> f64| all.iter().map(value).collect::<Vec<_>>();
     let mut table = String::new();
     for (name, values) in [
@@ -117,30 +109,24 @@ fn the_right_length_says_little_about_the_points() {
     on_the_page(&table);
 }
 
-fn on_the_page(table: &str) {
-    let page = std::fs::read_to_string(workspace().join("docs/methods/alignment.md")).unwrap();
-    assert!(page.contains(table), "docs/methods/alignment.md has not this table:\n{table}");
-}
-
 /// The reading at both ends of the ellipse for each way in which a part can stand wrong: as the simulator follows it, and as
 /// −(n·s) − δ·(x·n_y − y·n_x) says. In z, about x and about y there is no first order.
 #[test]
-fn the_ellipse_sees_three_of_six() {
-    let job = example();
-    let package = families::emit(&Job::Alignment(job.clone()));
+fn the_ellipse_shows_three_of_six_misplacements() {
+    let (bench, job) = example();
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
     let mut table = String::new();
     for (name, index) in ["x", "y", "z", "about x", "about y", "about z"].into_iter().zip(0..) {
-        let mut machine = Machine::parse(&package.machine).unwrap();
+        let mut request = bench.request(8220);
         let by = if index < 3 {
-            machine.part.shift[index] = 0.05;
+            request.machine.part.shift[index] = 0.05;
             "0.05 mm"
         } else {
-            machine.part.tilt[index - 3] = Deg(0.01);
+            request.machine.part.tilt[index - 3] = Deg(0.01);
             "0.01°"
         };
-        let request = Request::new("O8220.nc", package.program(8220).unwrap().text.as_bytes(), machine);
-        let following = read_stylus(&request, &mut Programs(&package), surface, job.probe_radius).unwrap();
+        let following =
+            read_stylus(&request, &mut Programs(&bench.package), surface, job.probe_radius).unwrap();
         let readings = &following.readings.passes[0].readings;
         let ends = [&readings[0], &readings[readings.len() - 1]].map(|reading| {
             let normal = surface.nearest(&reading.ball_centre).normal;
@@ -165,8 +151,8 @@ fn the_ellipse_sees_three_of_six() {
 /// By hand: both points 1 mm along z on the surface. Of the ellipsoid y falls by b·z²/(2·a²·√(1 − x²/a²)), which is 0.000 378 2 at
 /// x = 812.4 and 0.000 280 5 at 318; the chord is (494.4, −180.0…) long, so that it grows by 0.34·0.000 097 7.
 #[test]
-fn points_that_are_aside_together_have_the_chord_of_the_model() {
-    let job = example();
+fn points_displaced_together_have_the_chord_of_the_model() {
+    let (_, job) = example();
     let [e, f] = [job.chord.e_radius, job.chord.f_radius]
         .map(|x| [on_surface(&job, x, 0.0), on_surface(&job, x, 1.0)]);
     let longer = distance(&e[1], &f[1]) - distance(&e[0], &f[0]);

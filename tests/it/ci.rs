@@ -4,18 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use gcode_tests::programs::{program, run_line};
+use gcode_tests::{copy_folder, workspace};
 
 fn example() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/nc-repository")
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        let target = to.join(path.file_name().unwrap());
-        if path.is_dir() { copy(&path, &target) } else { std::fs::copy(&path, target).map(drop).unwrap() }
-    }
+    workspace().join("examples/nc-repository")
 }
 
 /// The folders that programs are looked for in, without gcode-sim.
@@ -43,7 +35,7 @@ fn git_with(path: impl IntoIterator<Item = PathBuf>, place: &Path, arguments: &[
 }
 
 fn page() -> String {
-    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/ci.md")).unwrap()
+    std::fs::read_to_string(workspace().join("docs/ci.md")).unwrap()
 }
 
 fn move_the_row(place: &Path) {
@@ -58,7 +50,7 @@ fn move_the_row(place: &Path) {
 fn repository() -> tempfile::TempDir {
     let repository = tempfile::tempdir().unwrap();
     let place = repository.path();
-    copy(&example(), place);
+    copy_folder(&example(), place);
     assert!(git(place, &["init", "--quiet"]).status.success());
     git(place, &["add", "--all"]);
     let first = git(place, &["commit", "--quiet", "-m", "Programs"]);
@@ -163,7 +155,7 @@ fn the_hook_refuses_a_merge_of_what_holds_alone() {
 fn the_commands_of_the_workflow_do_what_the_page_says() {
     let text = std::fs::read_to_string(example().join(".github/workflows/programs.yml")).unwrap();
     let place = tempfile::tempdir().unwrap();
-    copy(&example(), place.path());
+    copy_folder(&example(), place.path());
     move_the_row(place.path());
     let mut codes = Vec::new();
     for line in text.lines().filter_map(|line| line.trim().strip_prefix("- run: gcode-sim ")) {

@@ -1,22 +1,13 @@
-//! Laws of cutter compensation and corner words: the tool's centre keeps the radius, and what waits is told in the end.
+//! Properties of cutter compensation and corner words: the tool's centre keeps the radius, and no move stays pending.
 use std::fmt::Write;
 
-use gcode_control::{Control, Limits, Outcome};
+use gcode_control::Outcome;
 use gcode_lang::control::Settings;
-use gcode_lang::motion::{Event, EventKind, EventSink, Position};
-use gcode_lang::program::{Memory, NoLibrary};
+use gcode_lang::motion::{EventKind, Position};
+use gcode_tests::expect::{self, Ran, Recorder};
 use proptest::prelude::*;
 
 type Point = (f64, f64);
-
-/// What the machine was told: the block's line in the program, the way in the plane of X and Y, and all of it as text.
-#[derive(Default)]
-struct RecordedPath {
-    starts: Vec<usize>,
-    at: Position,
-    moves: Vec<(usize, PathPart)>,
-    text: Vec<String>,
-}
 
 #[derive(Clone, Copy, Debug)]
 enum PathPart {
@@ -60,34 +51,31 @@ impl PathPart {
     }
 }
 
-impl EventSink for RecordedPath {
-    fn event(&mut self, event: &Event<'_>) {
-        self.text.push(format!("{:?} {:?}", event.kind, event.seconds));
-        let line = self.starts.partition_point(|start| *start <= event.block.start as usize);
-        let from = (self.at[0], self.at[1]);
-        let way = match &event.kind {
-            EventKind::Rapid { to } | EventKind::Feed { to, .. } => {
-                self.at = *to;
-                PathPart::Line(from, (to[0], to[1]))
-            }
-            EventKind::Arc { to, arc, .. } => {
-                self.at = *to;
-                PathPart::Arc(from, arc.centre, arc.sweep.to_rad())
-            }
-            _ => return,
-        };
-        self.moves.push((line, way));
-    }
+/// A run: its outcome, the machine's end position, its events, and its moves in X and Y with the lines of their blocks.
+struct PlaneRun {
+    outcome: Outcome,
+    position: Position,
+    recorder: Recorder,
+    moves: Vec<(usize, PathPart)>,
 }
 
-fn run(text: &str, settings: &Settings) -> (Outcome, Position, RecordedPath) {
-    let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-    let mut memory = Memory::default();
-    memory.load("case.nc", text.as_bytes());
-    let mut control = Control::new(memory, settings.clone());
-    let mut told = RecordedPath { starts, ..RecordedPath::default() };
-    let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
-    (outcome, control.machine_position(), told)
+fn run(text: &str, settings: &Settings) -> PlaneRun {
+    let Ran { control, outcome, recorder } = expect::run_on(text.as_bytes(), settings.clone(), 500);
+    let mut at = (0.0, 0.0);
+    let moves = recorder.0.iter().filter_map(|(block, kind, _)| {
+        let line = control.memory().sources().line_column(*block).line as usize;
+        let from = at;
+        let (to, part) = match kind {
+            EventKind::Rapid { to } | EventKind::Feed { to, .. } => {
+                (to, PathPart::Line(from, (to[0], to[1])))
+            }
+            EventKind::Arc { to, arc, .. } => (to, PathPart::Arc(from, arc.centre, arc.sweep.to_rad())),
+            _ => return None,
+        };
+        at = (to[0], to[1]);
+        Some((line, part))
+    });
+    PlaneRun { moves: moves.collect(), outcome, position: control.machine_position(), recorder }
 }
 
 /// Corners of a convex contour, counterclockwise, on a circle of 50 to 90 mm; and how far each side bulges: the part
@@ -158,17 +146,17 @@ fn round(corners: &[Point], bulges: &[f64], outside: bool, radius: f64) -> (Stri
 
 const NOTHING: f64 = 1e-9;
 
-/// Holds the told path against the contour: never nearer than the radius, and beside its own segments exactly there.
+/// Compares the path with the contour: never nearer than the radius, and beside its own segments exactly there.
 fn keeps_the_radius(
     text: &str,
     ways: &[(usize, PathPart)],
     radius: f64,
     tolerance: f64,
 ) -> Result<(), TestCaseError> {
-    let (outcome, _, told) = run(text, &Settings::default());
+    let PlaneRun { outcome, moves, .. } = run(text, &Settings::default());
     prop_assert!(matches!(outcome, Outcome::End), "{outcome:?}\n{text}");
     let (first, last) = (ways[0].0, ways[ways.len() - 1].0);
-    for (line, way) in told.moves.iter().filter(|(line, _)| (first..=last).contains(line)) {
+    for (line, way) in moves.iter().filter(|(line, _)| (first..=last).contains(line)) {
         for step in 1..40 {
             let point = way.at(f64::from(step) / 40.0);
             // The first side and the last are one line, but for rounding.
@@ -181,7 +169,7 @@ fn keeps_the_radius(
         }
     }
     for (line, _) in ways {
-        prop_assert!(told.moves.iter().any(|(told, _)| told == line), "line {line} isn't there\n{text}");
+        prop_assert!(moves.iter().any(|(own, _)| own == line), "line {line} isn't there\n{text}");
     }
     Ok(())
 }
@@ -209,8 +197,7 @@ proptest! {
         keeps_the_radius(&text, &ways, radius, 2e-5)?;
     }
 
-    /// What the corner words make of the path, as the machine is told without compensation, is what compensation
-    /// keeps its distance from.
+    /// Compensation keeps its distance from the path that the corner words make without compensation.
     #[test]
     fn round_corners_by_words_the_centre_keeps_the_radius(
         (corners, _) in contours(), outside in any::<bool>(), radius in 1_u32..1000,
@@ -226,18 +213,18 @@ proptest! {
             format!("{line}{}\n", if corner { &word } else { "" })
         });
         let text: String = lines.collect();
-        let (outcome, _, shaped) = run(&text.replace("G41 D1", "G40"), &Settings::default());
-        prop_assert!(matches!(outcome, Outcome::End), "{outcome:?}\n{text}");
+        let shaped = run(&text.replace("G41 D1", "G40"), &Settings::default());
+        prop_assert!(matches!(shaped.outcome, Outcome::End), "{:?}\n{text}", shaped.outcome);
         let ways: Vec<_> = shaped.moves.into_iter().filter(|(line, _)| (6..=last).contains(line)).collect();
         keeps_the_radius(&text, &ways, radius, NOTHING)?;
     }
 
-    /// G41 with a radius of 0 tells the machine what G40 does.
+    /// G41 with a radius of 0 makes the moves of G40.
     #[test]
-    fn a_radius_of_nothing_changes_nothing((corners, bulges) in contours(), outside in any::<bool>()) {
+    fn a_radius_of_0_changes_nothing((corners, bulges) in contours(), outside in any::<bool>()) {
         let (text, _) = round(&corners, &bulges, outside, 0.0);
-        let (_, _, with) = run(&text, &Settings::default());
-        let (_, _, without) = run(&text.replace("G41 D1", "G40"), &Settings::default());
+        let with = run(&text, &Settings::default());
+        let without = run(&text.replace("G41 D1", "G40"), &Settings::default());
         prop_assert_eq!(with.moves.len(), without.moves.len());
         for ((line, way), (other, plain)) in with.moves.iter().zip(&without.moves) {
             prop_assert_eq!(line, other);
@@ -269,21 +256,21 @@ fn blocks() -> impl Strategy<Value = String> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(3000) })]
 
-    /// Whatever a program does, the run is the same every time, and the tool is where it was told to go last.
+    /// Every program runs the same every time, and the tool is at the end of its last move.
     #[test]
-    fn what_waits_is_told_in_the_end(
+    fn no_move_stays_pending_at_the_end(
         blocks in prop::collection::vec(blocks(), 1..25), radius in 0..3000_i32, type_b in any::<bool>(), read in 3..6_usize
     ) {
         let head = format!("O1\n#13001={}.\n#13002=0.8\nF500\nG41 D1 G1 X5. Y-5.\n", f64::from(radius) / 1000.0);
         let text = format!("{}{}\nM30\nO2\n#2=#2+1\nM99\n", head.replace(".\n#13002", "\n#13002"), blocks.join("\n"));
         let settings = Settings { starts_up_by_type_b: type_b, lookahead_blocks: read, ..Settings::default() };
-        let (outcome, position, told) = run(&text, &settings);
-        let (again, _, same) = run(&text, &settings);
-        prop_assert_eq!(format!("{outcome:?}"), format!("{again:?}"));
-        prop_assert_eq!(&told.text, &same.text);
+        let (one, other) = (run(&text, &settings), run(&text, &settings));
+        prop_assert_eq!(format!("{:?}", one.outcome), format!("{:?}", other.outcome));
+        prop_assert_eq!(&one.recorder, &other.recorder);
+        let last = one.recorder.positions().last().copied().unwrap_or_default();
         for axis in 0..3 {
-            let apart = position[axis] - told.at[axis];
-            prop_assert!(apart.abs() < 1e-6, "axis {axis}: {apart}, {outcome:?}\n{text}");
+            let apart = one.position[axis] - last[axis];
+            prop_assert!(apart.abs() < 1e-6, "axis {axis}: {apart}, {:?}\n{text}", one.outcome);
         }
     }
 }

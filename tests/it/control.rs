@@ -1,34 +1,13 @@
-//! Laws of the control: it never panics, and it runs the same program the same way every time.
+//! Properties of the control: it never panics, and it runs the same program the same way every time.
 use gcode_control::{Control, Limits, Outcome};
 use gcode_lang::control::Settings;
-use gcode_lang::motion::{Event, EventSink};
 use gcode_lang::program::{Memory, NoLibrary};
+use gcode_tests::expect::{self, Recorder};
 use proptest::prelude::*;
 
-/// Everything told, as text.
-#[derive(Default)]
-struct EventLog(Vec<String>);
-
-impl EventSink for EventLog {
-    fn event(&mut self, event: &Event<'_>) {
-        if self.0.len() < 1000 {
-            self.0.push(format!("{:?} {:?}", event.kind, event.seconds));
-        }
-    }
-}
-
-fn run(program: &[u8], settings: &Settings) -> (String, Vec<String>) {
-    let mut memory = Memory::default();
-    memory.load("case.nc", program);
-    let mut control = Control::new(memory, settings.clone());
-    let mut told = EventLog::default();
-    let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
-    let end = match outcome {
-        Outcome::End => "end".to_owned(),
-        Outcome::Limit => "limit".to_owned(),
-        Outcome::Alarm(stopped) => format!("{} {} {:?}", stopped.alarm.code(), stopped.alarm, stopped.span),
-    };
-    (end, told.0)
+fn run(program: &[u8], settings: &Settings) -> (String, Recorder) {
+    let ran = expect::run_on(program, settings.clone(), 500);
+    (format!("{:?}", ran.outcome), ran.recorder)
 }
 
 /// Pieces that real blocks are made of, right and wrong ones.

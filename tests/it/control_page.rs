@@ -1,8 +1,6 @@
-//! The examples in docs/control.md and docs/dialects.md are run: what stands there is what happens.
-use std::path::Path;
-
+//! The examples in docs/control.md and docs/dialects.md run as the pages state.
 use gcode_sim::report::explain;
-use gcode_tests::expect;
+use gcode_tests::{expect, workspace};
 
 /// A line's program and the end it must come to: `` `program` → `end` ``.
 fn examples(page: &str) -> Vec<(String, String)> {
@@ -36,9 +34,8 @@ fn never_raised(page: &str) -> Vec<String> {
 }
 
 #[test]
-fn what_is_never_raised_has_no_row_among_the_alarms() {
-    let page =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/control.md")).unwrap();
+fn an_alarm_that_is_never_raised_has_no_page() {
+    let page = std::fs::read_to_string(workspace().join("docs/control.md")).unwrap();
     let never = never_raised(&page);
     assert!(never.len() > 60, "the codes were found");
     let pages = explain::findings();
@@ -46,10 +43,9 @@ fn what_is_never_raised_has_no_row_among_the_alarms() {
     assert_eq!(raised.map(|page| page.code).collect::<Vec<_>>(), [""; 0]);
 }
 
-/// Runs the examples of a page, each behind `head`, and holds them against what the page says.
-fn holds(name: &str, head: &str, at_least: usize) {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
-    let page = std::fs::read_to_string(page).unwrap();
+/// Runs the examples of a page, each behind `head`, and compares their ends with the page's.
+fn check(name: &str, head: &str, at_least: usize) {
+    let page = std::fs::read_to_string(workspace().join("docs").join(name)).unwrap();
     let shown = examples(&page);
     assert!(shown.len() > at_least, "the examples were found");
     let mut wrong = String::new();
@@ -65,15 +61,15 @@ fn holds(name: &str, head: &str, at_least: usize) {
             wrong.push_str(&format!("{program}\n    {difference}\n"));
         }
     }
-    assert!(wrong.is_empty(), "docs/{name} says something else than happens:\n{wrong}");
+    assert!(wrong.is_empty(), "docs/{name} is wrong:\n{wrong}");
 }
 
 #[test]
-fn the_page_on_the_control_shows_what_happens() {
-    holds("control.md", "", 80);
+fn the_examples_of_the_page_on_the_control_run_as_stated() {
+    check("control.md", "", 80);
 }
 
 #[test]
-fn the_page_on_families_shows_what_happens() {
-    holds("dialects.md", "(@DIALECT=haas-ngc)\n", 20);
+fn the_examples_of_the_page_on_dialects_run_as_stated() {
+    check("dialects.md", "(@DIALECT=haas-ngc)\n", 20);
 }

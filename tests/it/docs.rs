@@ -1,7 +1,7 @@
 //! The sessions shown in README.md and docs/ are run: what stands there is what comes out.
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use gcode_tests::{programs, workspace};
+use gcode_tests::{copy_folder, files_below, programs, workspace};
 
 /// A command of a ```` ```console ```` block and the lines under it; a line `...` stands for any lines.
 struct ConsoleExample {
@@ -48,20 +48,11 @@ fn matches(shown: &[String], real: &[&str]) -> bool {
     }
 }
 
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        let target = to.join(path.file_name().unwrap());
-        if path.is_dir() { copy(&path, &target) } else { std::fs::copy(&path, target).map(drop).unwrap() }
-    }
-}
-
 /// Runs a page's sessions in order in a copy of what they may read.
 fn check(page: &Path) {
     let place = tempfile::tempdir().unwrap();
     for folder in ["examples", "macros"] {
-        copy(&workspace().join(folder), &place.path().join(folder));
+        copy_folder(&workspace().join(folder), &place.path().join(folder));
     }
     for shown in sessions(&std::fs::read_to_string(page).unwrap()) {
         let Some(line) = as_program(&shown.command) else {
@@ -87,24 +78,13 @@ fn check(page: &Path) {
 }
 
 #[test]
-fn the_readme_shows_what_happens() {
+fn the_readme_shows_real_sessions() {
     check(&workspace().join("README.md"));
 }
 
 #[test]
-fn the_pages_in_docs_show_what_happens() {
-    fn pages(dir: &Path, found: &mut Vec<PathBuf>) {
-        for entry in std::fs::read_dir(dir).into_iter().flatten() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                pages(&path, found);
-            } else if path.extension().is_some_and(|e| e == "md") {
-                found.push(path);
-            }
-        }
+fn the_pages_in_docs_show_real_sessions() {
+    for folder in ["docs", "examples"] {
+        files_below(&workspace().join(folder), "md").iter().for_each(|page| check(page));
     }
-    let mut found = Vec::new();
-    pages(&workspace().join("docs"), &mut found);
-    pages(&workspace().join("examples"), &mut found);
-    found.iter().for_each(|page| check(page));
 }

@@ -1,16 +1,15 @@
-//! The ellipse program of an alignment: the ball's distance from the surface along the emitted path, the count of moves, what
-//! is refused, and the reading on a misplaced part.
-use gcode_control::Outcome;
+//! The ellipse program of an alignment: the ball's distance from the surface along the emitted path, the count of moves, and the
+//! reading on a misplaced part.
 use gcode_gen::check::Programs;
-use gcode_gen::families;
-use gcode_gen::package::Package;
-use gcode_inspect::machine::Machine;
-use gcode_lang::motion::{Event, EventKind, EventSink};
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::{Machine, Placement};
+use gcode_lang::control::Increment;
+use gcode_lang::program::NoLibrary;
 use gcode_lang::units::{Deg, Mm};
-use gcode_part::Surface;
-use gcode_part::job::Job;
-use gcode_part::tilted_ellipsoid;
+use gcode_part::{Surface, tilted_ellipsoid};
 use gcode_session::{Request, StylusRun, read_stylus, run};
+use gcode_tests::bench::{Bench, alarm, value};
+use gcode_tests::expect::Recorder;
 use nalgebra::Vector3;
 
 /// An ellipsoid, the ends of the path, the ball, the chord error, the control.
@@ -38,7 +37,7 @@ const MELON: Path = Path {
 };
 
 impl Path {
-    fn package(&self) -> Package {
+    fn bench(&self) -> Bench {
         let Self { a, b, from, to, radius, chord_error, dialect, increment } = self;
         let text = format!(
             "family = \"alignment\"\n\
@@ -51,48 +50,29 @@ impl Path {
              runout = {{ heights = [1.0, 2.0], angles = [-25.0, 25.0, 11] }}\n\
              ellipse = {{ from = {from:?}, to = {to:?}, chord_error = {chord_error:?} }}\n"
         );
-        families::emit(&Job::parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}")))
+        Bench::of(&text)
     }
 
     fn surface(&self) -> Surface {
         Surface::Ellipsoid { a: self.a, b: self.b }
     }
 
-    fn request(&self, package: &Package) -> Request {
-        let machine = Machine::parse(&package.machine).unwrap();
-        Request::new("O8220.nc", package.program(8220).unwrap().text.as_bytes(), machine)
-    }
-
     /// What is read on a part that is shifted and tilted about z.
     fn read(&self, shift: [f64; 3], tilt: f64) -> StylusRun {
-        let package = self.package();
-        let mut request = self.request(&package);
+        let bench = self.bench();
+        let mut request = bench.request(8220);
         request.machine.part.shift = Vector3::from(shift);
         request.machine.part.tilt[2] = Deg(tilt);
-        read_stylus(&request, &mut Programs(&package), self.surface(), self.radius).unwrap()
+        read_stylus(&request, &mut Programs(&bench.package), self.surface(), self.radius).unwrap()
     }
 }
 
 /// The points of the path, where the ball is fed from contact to contact.
-#[derive(Default)]
-struct Points {
-    all: Vec<[f64; 2]>,
-}
-
-impl EventSink for Points {
-    fn event(&mut self, event: &Event<'_>) {
-        if let EventKind::Feed { to, .. } = &event.kind {
-            self.all.push([to[0], to[1]]);
-        }
-    }
-}
-
 fn points(path: &Path) -> Vec<[f64; 2]> {
-    let package = path.package();
-    let mut points = Points::default();
-    let ran = run(&path.request(&package), &mut Programs(&package), &mut points).unwrap();
-    assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
-    points.all
+    let mut recorder = Recorder::default();
+    let ran = path.bench().run_to(8220, &mut recorder);
+    assert_eq!(alarm(&ran), None);
+    recorder.moves().filter(|(kind, _)| *kind == 'F').map(|(_, to)| [to[0], to[1]]).collect()
 }
 
 /// The distance of a point outside from the ellipse, by trying: the least of the distances to points of it, ever closer
@@ -180,57 +160,17 @@ fn no_path_has_fewer_moves() {
     }
 }
 
-#[test]
-fn what_can_not_be_followed_is_refused() {
-    let package = MELON.package();
-    let text = &package.program(8220).unwrap().text;
-    let cases = [
-        ("A1158.8", "", 101),
-        ("A1158.8", "A-1.", 101),
-        ("B724.3", "", 102),
-        ("C2.", "C0.", 103),
-        ("D318.", "", 104),
-        ("D318.", "D-1.", 104),
-        ("D318.", "D1158.9", 104),
-        ("E812.4", "", 105),
-        ("E812.4", "E1159.", 105),
-        ("E812.4", "E318.", 106),
-        ("F200.", "F0.", 107),
-        ("Q0.002", "", 108),
-        ("Q0.002", "Q0.0009", 108),
-        ("R3.", "", 109),
-        ("V50.", "V1.9", 110),
-        ("G21", "G20", 111),
-        ("M05", "G93", 111),
-        ("M05", "G41 D1", 111),
-        ("M05", "G43 H1", 111),
-    ];
-    for (from, to, number) in cases {
-        assert!(text.contains(from), "{from} isn't in\n{text}");
-        let mut request = MELON.request(&package);
-        request.bytes = text.replace(from, to).into_bytes().into();
-        let mut points = Points::default();
-        let ran = run(&request, &mut Programs(&package), &mut points).unwrap();
-        let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
-        assert_eq!(stopped.alarm.code().raised, Some(3000 + number), "{to} in place of {from}");
-        assert!(points.all.is_empty(), "nothing is fed before: {to} in place of {from}");
-    }
-}
-
 /// The modes are back, and the program runs on a second call from where it ended.
 #[test]
-fn it_ends_clear_of_the_part_with_the_modes_it_found() {
-    let package = MELON.package();
-    let mut request = MELON.request(&package);
-    let text = package
-        .program(8220)
-        .unwrap()
-        .text
-        .replace("N70 M30", "#500=#4001\n#501=#4003\n#502=#5001\n#503=#5002\nM30");
-    request.bytes = text.replace("G90 G94", "G91 G94").replace("N50 B0.", "G90 B0.\nG91").into_bytes().into();
-    let ran = run(&request, &mut Programs(&package), &mut ()).unwrap();
-    assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
-    let value = |number: u32| ran.control.variable(number).unwrap().number();
+fn the_program_ends_clear_of_the_part_with_the_modes_it_found() {
+    let bench = MELON
+        .bench()
+        .edited(8220, "N70 M30 => #500=#4001;#501=#4003;#502=#5001;#503=#5002;M30")
+        .edited(8220, "G90 G94 => G91 G94")
+        .edited(8220, "N50 B0. => G90 B0.;G91");
+    let ran = bench.run(8220, &Placement::default(), &[]);
+    assert_eq!(alarm(&ran), None);
+    let value = |number: u32| value(&ran, number);
     assert_eq!((value(500), value(501)), (0.0, 91.0));
     let end = [value(502), value(503)];
     assert!((distance(&MELON, end) - 50.0 - 3.0).abs() < 0.002, "{end:?}");
@@ -239,7 +179,7 @@ fn it_ends_clear_of_the_part_with_the_modes_it_found() {
 /// A part that stands aside by s and is tilted by δ about z has its surface moved along the normal by n·s + δ·(x·n_y − y·n_x);
 /// the ball gets that much nearer, up to what bends over so short a way.
 #[test]
-fn a_misplaced_part_is_read_as_far_as_it_is_off() {
+fn the_reading_on_a_misplaced_part_is_its_displacement_along_the_normal() {
     for (shift, tilt) in [
         ([0.05, 0.0, 0.0], 0.0),
         ([0.0, -0.04, 0.0], 0.0),
@@ -264,21 +204,20 @@ fn a_misplaced_part_is_read_as_far_as_it_is_off() {
 
 /// The indicator of figure 5 by its formula, and the machine's own ball of radius 0 sent against the tilted part along x.
 #[test]
-fn the_machine_finds_what_the_formula_of_figure_5_says() {
+fn the_machine_finds_the_reading_of_the_formula_of_figure_5() {
     for tilt in [1.0, -1.0, 0.3] {
         let text = format!("[probe]\nradius = 0.0001\n[part]\ntilt = [0.0, 0.0, {tilt:?}]\n");
         let machine = Machine::parse(&text).unwrap();
         let program = b"O1\nG21 G90 G94 G00 X1500. Y200.\nG31 X1000. F100.\n#500=#5061\nM30\n%\n";
         let mut request = Request::new("O1.nc", program.as_slice(), machine);
-        request.settings.increment = gcode_lang::control::Increment::IsC;
+        request.settings.increment = Increment::IsC;
         let surface = MELON.surface();
-        let mut probe =
-            gcode_inspect::holes::HoleExtractor::new(&request.machine).with_surface(Some(surface));
-        let ran = run(&request, &mut Programs(&MELON.package()), &mut probe).unwrap();
-        let x = ran.control.variable(500).unwrap().number();
-        let said = tilted_ellipsoid(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();
+        let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
+        let ran = run(&request, &mut NoLibrary, &mut probe).unwrap();
+        let x = value(&ran, 500);
+        let indicated = tilted_ellipsoid(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();
         // The ball's radius, and half an increment.
-        let wanted = said.radius + said.change;
-        assert!((x - wanted.0).abs() < 3e-4, "{x} is not {wanted}");
+        let expected = indicated.radius + indicated.change;
+        assert!((x - expected.0).abs() < 3e-4, "{x} is not {expected}");
     }
 }

@@ -1,89 +1,55 @@
-//! Every literal word of the examples and of the macros they call, changed by a small step: one entry where the program does
-//! something else, and none where it doesn't.
+//! Every literal word of the examples and of the macros they call, changed by a small step: one entry if the program has another
+//! effect, and none otherwise.
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
 use gcode_control::Limits;
-use gcode_lang::program::Library;
 use gcode_review::{Change, Record, Revision, changes};
-use gcode_sim::cli::library::Folders;
 use gcode_tests::workspace;
-use serde_json::Value;
 
-use crate::accepted::{folders, mains, request};
+use crate::accepted::{EditedLibrary, mains, request};
 use crate::words::{Slip, slips, with};
 
 /// All of a honeycomb.
 const BLOCKS: u64 = 200_000;
 
-/// The main program and those that it calls, by their files, as they are read or with one of them written otherwise.
-struct Texts {
-    folders: Folders,
-    read: BTreeMap<String, String>,
-    /// The name of a file and its text now.
-    other: Option<(String, String)>,
-}
-
-impl Texts {
-    fn with_text(&mut self, found: Option<(String, Vec<u8>)>) -> Option<(String, Vec<u8>)> {
-        let (name, bytes) = found?;
-        self.read.insert(name.clone(), String::from_utf8_lossy(&bytes).into_owned());
-        match &self.other {
-            Some((other, text)) if *other == name => Some((name, text.clone().into_bytes())),
-            _ => Some((name, bytes)),
-        }
-    }
-}
-
-impl Library for Texts {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        let found = self.folders.program(number);
-        self.with_text(found)
-    }
-
-    fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
-        let found = self.folders.named(name);
-        self.with_text(found)
-    }
-}
-
-/// What a program does, with one of its files written otherwise, and the files it calls.
-fn run(main: &Path, other: Option<(String, String)>) -> Option<(Record, BTreeMap<String, String>)> {
+/// Runs a program with one of its files edited (the main program has no name here), and gives the files that it calls.
+fn run(main: &Path, other: Option<(&str, String)>) -> Option<(Record, BTreeMap<String, String>)> {
     let mut request = request(main);
     request.limits = Limits { blocks: BLOCKS };
-    let mut texts = Texts { folders: folders(main), read: BTreeMap::new(), other: None };
-    match other {
-        Some((name, text)) if name.is_empty() => request.bytes = text.into_bytes().into(),
-        other => texts.other = other,
+    if let Some(("", text)) = &other {
+        request.bytes = text.clone().into_bytes().into();
     }
-    let record = Revision::of(&request, &mut texts, None).ok()?.record;
-    Some((record, texts.read))
+    let mut read = BTreeMap::new();
+    let mut library = EditedLibrary::new(main, |name, text| {
+        read.insert(name.to_owned(), text.clone());
+        other.as_ref().filter(|(edited, _)| *edited == name).map_or(text, |(_, edited)| edited.clone())
+    });
+    let record = Revision::of(&request, &mut library, None).ok()?.record;
+    Some((record, read))
 }
 
-/// What a program does, without how its blocks are written and how long it takes.
-pub(crate) fn effect(record: &Record) -> Value {
-    let mut value: Value = serde_json::from_str(&record.to_json().unwrap()).unwrap();
-    value["totals"] = Value::Null;
-    without_blocks(&mut value);
-    value
-}
-
-fn without_blocks(value: &mut Value) {
-    match value {
-        Value::Array(all) => all.iter_mut().for_each(without_blocks),
-        Value::Object(all) => {
-            all.remove("block");
-            all.values_mut().for_each(without_blocks);
+/// The effect of a program as text: its record without the text of the blocks and without the totals.
+pub(crate) fn effect(record: &Record) -> String {
+    let mut effect = String::new();
+    for line in record.to_json().unwrap().lines().filter(|line| !line.starts_with("\"totals\"")) {
+        let mut parts = line.split("\"block\":\"");
+        effect.push_str(parts.next().unwrap());
+        for part in parts {
+            // A quotation mark ends the text of a block unless a backslash stands before it.
+            let end = part.match_indices('"').find(|(at, _)| !part[..*at].ends_with('\\')).unwrap().0;
+            effect.push_str(&part[end..]);
         }
-        _ => {}
+        effect.push('\n');
     }
+    effect
 }
 
-/// How slips of one letter have come out.
+/// Results of slips of one letter.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
-    /// Nothing that is executed is different.
+    /// The effect is the same.
     idle: usize,
     one: usize,
     wrong: usize,
@@ -110,7 +76,7 @@ fn count_effects(nth: usize, only: &str) -> (BTreeMap<String, Tally>, String) {
                 if number % nth != 0 {
                     continue;
                 }
-                let Some((new, _)) = run(&main, Some((file.clone(), with(&text, &slip)))) else { continue };
+                let Some((new, _)) = run(&main, Some((&file, with(&text, &slip)))) else { continue };
                 let found = changes(&old, &new, 0.0001);
                 let is_idle = effect(&new) == before;
                 let kind = format!("{}{}", slip.letter, if slip.is_argument { " of a call" } else { "" });
@@ -145,7 +111,7 @@ fn shown(main: &str, program: &str, slip: &Slip, is_idle: bool, found: &[Change]
     )
 }
 
-/// The entry is of what the word says.
+/// Whether the entry is of the word's kind.
 fn is_named(slip: &Slip, change: &Change) -> bool {
     let codes: &[&str] = match (slip.is_argument, slip.letter) {
         (true, _) => return true,
@@ -161,8 +127,8 @@ fn is_named(slip: &Slip, change: &Change) -> bool {
     codes.iter().any(|code| change.code.starts_with(code))
 }
 
-/// Every ninth word; with EVERY_WORD in the environment all of them, of the examples with that in their names (`examples` for
-/// all), and how they have come out.
+/// Every ninth word; with EVERY_WORD in the environment all of them, of the examples with that in their names (`examples` for all), and
+/// the results by letter.
 #[test]
 fn a_word_of_the_examples_changed_is_one_entry() {
     let only = std::env::var("EVERY_WORD").ok();
@@ -174,6 +140,6 @@ fn a_word_of_the_examples_changed_is_one_entry() {
         }
     }
     assert!(wrong.is_empty(), "{wrong}");
-    let told: usize = tallies.values().map(|tally| tally.one).sum();
-    assert!(told > 100 || only.is_some(), "too few to tell: {tallies:?}");
+    let named: usize = tallies.values().map(|tally| tally.one).sum();
+    assert!(named > 100 || only.is_some(), "too few: {tallies:?}");
 }

@@ -12,9 +12,7 @@ use gcode_part::ProbedPart;
 use gcode_review::CODES;
 use gcode_session::{Request, grind, read_stylus, simulate};
 use gcode_sim::report::explain::{self, Page};
-use gcode_tests::{expect, workspace};
-
-use crate::house_rules::below;
+use gcode_tests::{expect, files_below, workspace};
 
 fn is_finding(page: &Page) -> bool {
     page.code == "limit" || page.code.contains('-')
@@ -27,7 +25,7 @@ fn every_page_has_its_row_and_every_code_is_there_once() {
     assert_eq!(codes.len(), listed.len(), "{listed:?}");
     let folder = workspace().join("docs/explain");
     let page = |path: &PathBuf| path.strip_prefix(&folder).unwrap().with_extension("").display().to_string();
-    let files: BTreeSet<String> = below(&folder, "md").iter().map(page).collect();
+    let files: BTreeSet<String> = files_below(&folder, "md").iter().map(page).collect();
     assert_eq!(files, codes, "a file that no row has");
 }
 

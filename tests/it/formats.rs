@@ -1,7 +1,7 @@
-//! `--format` is the same everywhere: every command that answers something has it, with the same words.
+//! Every command that answers something has `--format` with the same words; every command has its manual page and completions.
 use gcode_tests::programs::run_line;
 
-/// What each command can write, the default first; those that write a file for something else have no `--format`.
+/// The formats of each command, the default first; commands that write a file for something else have no `--format`.
 const COMMANDS: &[(&str, &str, &[&str])] = &[
     ("gcode-sim", "run", &["text", "json"]),
     ("gcode-sim", "holes", &["text", "json", "csv"]),
@@ -31,15 +31,42 @@ fn help(line: &str) -> String {
     String::from_utf8(run_line(&format!("{line} --help"), &std::env::temp_dir()).stdout).unwrap()
 }
 
+/// The commands that a program's help lists.
+fn commands(program: &str) -> Vec<String> {
+    let text = help(program);
+    let list = text.split("Commands:\n").nth(1).unwrap().lines().take_while(|line| !line.is_empty());
+    let names = list.filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    names.filter(|name| !name.is_empty() && *name != "help").map(str::to_owned).collect()
+}
+
 #[test]
 fn every_command_is_in_the_list() {
     for program in ["gcode-sim", "gcode-gen"] {
-        let text = help(program);
-        let commands = text.split("Commands:\n").nth(1).unwrap().lines().take_while(|line| !line.is_empty());
-        let names = commands.filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
-        let names: Vec<&str> = names.filter(|name| !name.is_empty() && *name != "help").collect();
         let listed = COMMANDS.iter().filter(|(of, ..)| *of == program).map(|(_, name, _)| *name);
-        assert_eq!(names, listed.collect::<Vec<_>>(), "{program}");
+        assert_eq!(commands(program), listed.collect::<Vec<_>>(), "{program}");
+    }
+}
+
+#[test]
+fn every_command_has_its_manual_page_and_completions_in_every_shell() {
+    for program in ["gcode-sim", "gcode-gen"] {
+        let place = tempfile::tempdir().unwrap();
+        let done = run_line(&format!("{program} man ."), place.path());
+        assert_eq!(done.status.code(), Some(0), "{done:?}");
+        assert!(place.path().join(format!("{program}.1")).is_file());
+        let commands = commands(program);
+        for command in &commands {
+            let page = std::fs::read_to_string(place.path().join(format!("{program}-{command}.1"))).unwrap();
+            assert!(page.contains(".SH SYNOPSIS"), "{page}");
+        }
+        for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+            let done = run_line(&format!("{program} completions {shell}"), place.path());
+            let text = String::from_utf8(done.stdout).unwrap();
+            for command in &commands {
+                assert!(text.contains(command.as_str()), "{program} {shell}: {command}");
+            }
+        }
+        assert_eq!(run_line(&format!("{program} man nowhere"), place.path()).status.code(), Some(2));
     }
 }
 
@@ -59,9 +86,9 @@ fn every_answer_has_its_formats_in_the_same_words() {
         };
         let part: String =
             after.lines().take_while(|line| !line.starts_with("      --")).collect::<Vec<_>>().join("\n");
-        let said: Vec<&str> = part.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-        assert_eq!(said[0], "Output format", "{command}");
-        let values = said.iter().filter_map(|line| line.strip_prefix("- "));
+        let lines: Vec<&str> = part.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        assert_eq!(lines[0], "Output format", "{command}");
+        let values = lines.iter().filter_map(|line| line.strip_prefix("- "));
         let values: Vec<(&str, &str)> = values
             .map(|line| line.split_once(':').map_or((line, ""), |(name, words)| (name, words.trim())))
             .collect();
@@ -70,7 +97,7 @@ fn every_answer_has_its_formats_in_the_same_words() {
             let wanted = WORDS.iter().find(|(known, _)| known == name).map_or("", |(_, words)| words);
             assert_eq!(*words, wanted, "{command} --format {name}");
         }
-        assert!(said.contains(&format!("[default: {}]", formats[0]).as_str()), "{command}: {said:?}");
+        assert!(lines.contains(&format!("[default: {}]", formats[0]).as_str()), "{command}: {lines:?}");
         let mut wanted = formats.to_vec();
         names.sort_unstable();
         wanted.sort_unstable();

@@ -1,41 +1,14 @@
-//! The emitted honeycomb programs on the control: random jobs, called wrongly, with faults put in, counted.
-use std::path::Path;
-
-use gcode_control::Outcome;
-use gcode_gen::check::{Programs, check};
+//! The emitted honeycomb programs on the control: random jobs, faults in the macro, blocks counted.
+use gcode_gen::check::{CheckedPackage, check};
 use gcode_gen::families;
-use gcode_gen::package::Package;
-use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Verdict};
-use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{Event, EventKind, EventSink, Position};
-use gcode_part::job::Job;
-use gcode_session::{Request, Run, run};
+use gcode_lang::motion::Position;
+use gcode_tests::bench::{Bench, alarm, example};
+use gcode_tests::expect::Recorder;
 use proptest::prelude::*;
 
 /// A small job: diameter 100, pitch 20, length 90: 9 rows of each group, 5 and 4 holes.
-const SMALL: &str = r#"family = "honeycomb"
-[control]
-dialect = "fanuc-31i"
-increment = "IS-B"
-[machine]
-rotary = { letter = "B", sign = 1 }
-[tolerance]
-position = 0.1
-[cylinder]
-diameter = 100.0
-length = 90.0
-[pattern]
-pitch = 20.0
-metric = "arc"
-[drill]
-diameter = 5.0
-depth = 12.0
-"#;
-
-fn job(text: &str) -> Job {
-    Job::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
-}
+const SMALL: &str = include_str!("../suite/macro/a_honeycomb_refuses_wrong_arguments/job.toml");
 
 fn changed(changes: &[(&str, &str)]) -> String {
     changes.iter().fold(SMALL.to_owned(), |text, (from, to)| {
@@ -44,21 +17,20 @@ fn changed(changes: &[(&str, &str)]) -> String {
     })
 }
 
-/// The verdict on a job's programs, after a change of the macro by hand.
-fn verdict(text: &str, changes: &[(&str, &str)]) -> Verdict {
-    let job = job(text);
-    let mut package = families::emit(&job);
-    for (from, to) in changes {
-        let program = package.programs.iter_mut().find(|program| program.text.contains(from)).expect(from);
-        program.text = program.text.replace(from, to);
-    }
-    check(&job, &package).unwrap().verdict.into_holes().unwrap()
+fn checked(text: &str) -> CheckedPackage {
+    let bench = Bench::of(text);
+    check(&bench.job, &bench.package).unwrap()
 }
 
-fn ran(package: &Package, sink: &mut impl EventSink) -> Run {
-    let main = package.main().unwrap();
-    let machine = Machine::parse(&package.machine).unwrap();
-    run(&Request::new("O8300.nc", main.text.as_bytes(), machine), &mut Programs(package), sink).unwrap()
+/// The verdict on a job's programs, after a change of the macro by hand.
+fn verdict(text: &str, changes: &[(&str, &str)]) -> Verdict {
+    let mut bench = Bench::of(text);
+    for (from, to) in changes {
+        let mut programs = bench.package.programs.iter_mut();
+        let program = programs.find(|program| program.text.contains(from)).expect(from);
+        program.text = program.text.replace(from, to);
+    }
+    check(&bench.job, &bench.package).unwrap().verdict.into_holes().unwrap()
 }
 
 /// π·100/(20·√3) = 9.07 rows; π·100/18/cos 30° = 20.153; 90/20.153 = 4.47: 5 holes in even rows, and with half a pitch
@@ -74,7 +46,7 @@ fn the_small_job_counted_by_hand() {
 }
 
 #[test]
-fn every_kind_of_job_holds() {
+fn jobs_of_every_kind_pass() {
     for changes in [
         &[("sign = 1", "sign = -1")][..],
         &[("\"arc\"", "\"chord\"")],
@@ -91,22 +63,20 @@ fn every_kind_of_job_holds() {
         &[("depth = 12.0", "depth = 12.0\nnumber = 12\nspeed = 700\nfeed = 33.3\npeck = 0.7")],
     ] {
         let text = changed(changes);
-        let checked = check(&job(&text), &families::emit(&job(&text))).unwrap();
-        assert_eq!(checked.refusals, Vec::<String>::new(), "{text}");
+        assert_eq!(checked(&text).refusals, Vec::<String>::new(), "{text}");
     }
 }
 
 /// 53 rows at the coarsest increment: half of 0.01° is 0.022 mm at 250 mm, Φ0.044.
 #[test]
-fn a_coarse_increment_spoils_a_large_cylinder_and_the_refusal_says_so() {
+fn a_coarse_increment_spoils_a_large_cylinder_and_the_refusal_suggests_a_finer_one() {
     let text = changed(&[
         ("IS-B", "IS-A"),
         ("diameter = 100.0", "diameter = 500.0"),
         ("position = 0.1", "position = 0.03"),
         ("pitch = 20.0", "pitch = 17.0"),
     ]);
-    let checked = check(&job(&text), &families::emit(&job(&text))).unwrap();
-    assert!(checked.refusals.concat().contains("use a finer increment or a wider tolerance"));
+    assert!(checked(&text).refusals.concat().contains("use a finer increment or a wider tolerance"));
 }
 
 proptest! {
@@ -118,7 +88,7 @@ proptest! {
         (divisions, pitched, chord, sign) in (2u32..40, any::<bool>(), any::<bool>(), any::<bool>()),
         (length, depth, drill) in (0.1..9.0f64, 0.05..0.4f64, 0.2..0.5f64),
     ) {
-        // Lengths in pitches, depths in radii, so that what is asked for is possible.
+        // Lengths in pitches, depths in radii, so that every job is possible.
         let pitch = 3.627 * diameter / 2.0 / f64::from(divisions);
         let spacing = if pitched { format!("pitch = {pitch:.4}") } else { format!("divisions = {divisions}") };
         let outer = diameter + 2.0 * wall;
@@ -131,8 +101,7 @@ proptest! {
             ("diameter = 5.0", &format!("diameter = {:.3}", (drill * pitch).max(0.02))),
             ("depth = 12.0", &format!("depth = {:.3}", (depth * diameter / 2.0).max(0.1))),
         ]);
-        let job = job(&text);
-        let checked = check(&job, &families::emit(&job)).unwrap();
+        let checked = checked(&text);
         prop_assert!(checked.refusals.is_empty(), "{}\n{text}", checked.refusals.concat());
         let verdict = checked.verdict.into_holes().unwrap();
         let (worst, rounding) = (verdict.worst.unwrap(), verdict.rounding.unwrap());
@@ -149,8 +118,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// The macro rounds a quotient; the reference tries counts and measures. Where a count changes into the next they
-    /// have to change together, in both metrics.
+    /// The macro rounds a quotient; the reference tries counts and measures. Both change to the next count together, in both metrics.
     #[test]
     fn generator_and_reference_count_the_rows_alike(
         (divisions, over) in (2u32..60, prop_oneof![-0.001..0.001f64, -0.5..0.5f64]),
@@ -158,7 +126,7 @@ proptest! {
     ) {
         // Nearer to the half than the pitch's last printed digit, either count is right.
         prop_assume!(1e-4 < over.abs());
-        // So many rows of each group, and a half: 2·cos 30° of the pitch each.
+        // The rows of each group, and a half: 2·cos 30° of the pitch each.
         let pitch = std::f64::consts::PI * diameter / (3f64.sqrt() * (f64::from(divisions) + 0.5 + over));
         let text = changed(&[
             ("diameter = 100.0", &format!("diameter = {diameter:?}")),
@@ -193,18 +161,18 @@ fn a_fault_in_the_macro_is_named() {
         ("/[2*#14]/COS[30.]", "/[2*#14]/COS[31.]", "row-pitch", "the holes of a row are 20.36"),
         ("#18*#15]", "#18*[#15+.5]]", "row-angle", "20.5° apart, nominal 20.0000°"),
     ];
-    for (from, to, code, told) in faults {
+    for (from, to, code, text) in faults {
         let verdict = verdict(SMALL, &[(from, to)]);
         assert_eq!(verdict.verdict, Answer::Fail, "{from} -> {to}");
         let found = verdict.findings.iter().filter(|f| f.code == code);
         let words: Vec<_> = found.map(|f| format!("{} {}", f.message, f.notes.join(" "))).collect();
-        assert!(words.concat().contains(told), "{from} -> {to}: {:?} {words:?}", codes(&verdict));
+        assert!(words.concat().contains(text), "{from} -> {to}: {:?} {words:?}", codes(&verdict));
     }
 }
 
-/// A hole beside the cylinder, 60 off its axis, is in no row; what the others' rows say is still said.
+/// A hole beside the cylinder, 60 off its axis, is in no row; findings on the rows stay.
 #[test]
-fn a_hole_that_misses_the_cylinder_takes_no_advice_away() {
+fn a_hole_off_the_cylinder_hides_no_finding_on_the_rows() {
     let fault = ("#15=180/#14", "#15=FIX[178/#14]");
     let aside = ("G80\n", "G80\nG81 X10. Y60. Z-60. R2. F60.\nG80\n");
     let verdict = verdict(SMALL, &[fault, aside]);
@@ -213,136 +181,39 @@ fn a_hole_that_misses_the_cylinder_takes_no_advice_away() {
     assert!(told.len() == 1 && told[0].notes.concat().contains("105.26"), "{told:?}");
 }
 
-const CALL: &str = "G65 P8301 A5. B20. C2. D100. E0. F60. H0. I100. J0. Q5. U1. V50. X90. Z12.";
-
-/// Runs one call of the macro, changed, and answers with the alarm's number and text.
-fn called(changes: &[(&str, &str)], modes: &str) -> (u32, String) {
-    let call = changes.iter().fold(CALL.to_owned(), |call, (from, to)| {
-        assert!(call.contains(from), "{from}");
-        call.replace(from, to)
-    });
-    let package = families::emit(&job(SMALL));
-    let text = format!("O1\nG21 G17 G40 G80 G90 G94\n{modes}\n{call}\nM30\n");
-    let machine = Machine::parse(&package.machine).unwrap();
-    let mut moves = Count(0);
-    let done =
-        run(&Request::new("O1.nc", text.as_bytes(), machine), &mut Programs(&package), &mut moves).unwrap();
-    match &done.outcome {
-        Outcome::Alarm(stopped) => match &stopped.alarm {
-            Alarm::UserAlarm { number, text, .. } => {
-                assert_eq!(moves.0, 0, "moved before the alarm: {call}");
-                (u32::from(*number), text.to_string())
-            }
-            other => panic!("{call}: {other:?}"),
-        },
-        other => panic!("{call}: {other:?}"),
-    }
-}
-
-struct Count(u32);
-
-impl EventSink for Count {
-    fn event(&mut self, event: &Event<'_>) {
-        self.0 += u32::from(matches!(event.kind, EventKind::Rapid { .. } | EventKind::Feed { .. }));
-    }
-}
-
-/// What is changed in the call, and the alarm it must raise.
-type Case = (&'static [(&'static str, &'static str)], u32, &'static str);
-
-#[test]
-fn the_macro_refuses_what_cannot_be_before_anything_moves() {
-    let cases: [Case; 27] = [
-        (&[(" A5.", "")], 31, "A MISSING OR NOT POSITIVE"),
-        (&[("C2.", "C0.")], 32, "C MISSING OR NOT POSITIVE"),
-        (&[(" D100.", "")], 33, "D MISSING OR NOT POSITIVE"),
-        (&[("F60.", "F-60.")], 34, "F MISSING OR NOT POSITIVE"),
-        (&[("Q5.", "Q0.")], 35, "Q MISSING OR NOT POSITIVE"),
-        (&[(" X90.", "")], 36, "X MISSING OR NOT POSITIVE"),
-        (&[("Z12.", "Z-12.")], 37, "Z MISSING OR NOT POSITIVE"),
-        (&[("I100.", "I99.")], 38, "I MISSING OR BELOW D"),
-        (&[(" J0.", "")], 39, "J MUST BE FROM 0. TO D"),
-        (&[("J0.", "J101.")], 39, "J MUST BE FROM 0. TO D"),
-        (&[("Z12.", "Z50.")], 40, "Z REACHES THE AXIS"),
-        (&[("V50.", "V1.9")], 41, "V MUST NOT BE BELOW C"),
-        (&[("U1.", "U0.")], 42, "U MUST BE 1. OR -1."),
-        (&[(" H0.", "")], 43, "H MUST BE 0. OR 1."),
-        (&[("H0.", "H2.")], 43, "H MUST BE 0. OR 1."),
-        (&[(" B20.", "")], 44, "B MISSING OR NEGATIVE"),
-        (&[("B20.", "B-20.")], 44, "B MISSING OR NEGATIVE"),
-        (&[(" E0.", "")], 45, "E MISSING OR NEGATIVE"),
-        (&[("B20.", "B0."), ("E0.", "E8.5")], 46, "E NOT A WHOLE NUMBER"),
-        (&[("E0.", "E9.")], 47, "ONE OF B AND E MUST BE 0."),
-        (&[("B20.", "B0.")], 47, "ONE OF B AND E MUST BE 0."),
-        (&[("B20.", "B130.")], 48, "FEWER THAN 2 ROWS FIT"),
-        (&[("B20.", "B0."), ("E0.", "E1.")], 48, "FEWER THAN 2 ROWS FIT"),
-        (&[("A5.", "A21.")], 49, "HOLES WOULD OVERLAP"),
-        (&[("B20.", "B4.9")], 49, "HOLES WOULD OVERLAP"),
-        (&[("B20.", "B6."), ("Z12.", "Z20.")], 49, "HOLES WOULD OVERLAP"),
-        (&[("B20.", "B60."), ("Z12.", "Z49.")], 49, "HOLES WOULD OVERLAP"),
-    ];
-    for (changes, number, text) in cases {
-        assert_eq!(called(changes, ""), (number, text.to_owned()), "{changes:?}");
-    }
-    for modes in ["G20", "G18", "G41 D1", "G95", "G99 G81 Z-1. R1. F10. K0"] {
-        assert_eq!(called(&[], modes), (50, "NEEDS G17 G21 G40 G80 G94".to_owned()), "{modes}");
-    }
-}
-
-/// What the job's reference refuses, the macro refuses too, and what one of them lets pass, the other does.
+/// The job's reference and the macro refuse the same jobs.
 #[test]
 fn generator_and_macro_refuse_the_same() {
     for (pitch, depth) in [(6.0, 20.0), (60.0, 49.0), (6.0, 5.0), (20.0, 12.0)] {
-        let [p, z] = [format!("{pitch:?}"), format!("{depth:?}")];
-        let text =
-            changed(&[("pitch = 20.0", &format!("pitch = {p}")), ("depth = 12.0", &format!("depth = {z}"))]);
-        let refused = check(&job(&text), &families::emit(&job(&text))).is_err();
-        let done = ran(&families::emit(&job(&text)), &mut ());
-        assert_eq!(!matches!(done.outcome, Outcome::End), refused, "pitch {pitch} depth {depth}");
-    }
-}
-
-/// How far above the surface the drill is while the rotary turns.
-struct Turns {
-    at: Position,
-    lowest: f64,
-    turns: u32,
-}
-
-impl EventSink for Turns {
-    fn event(&mut self, event: &Event<'_>) {
-        let to = match &event.kind {
-            EventKind::Rapid { to } | EventKind::Feed { to, .. } => to,
-            _ => return,
-        };
-        if to[4] != self.at[4] {
-            self.turns += 1;
-            self.lowest = self.lowest.min(self.at[2]).min(to[2]);
-        }
-        self.at = *to;
+        let [p, z] = [format!("pitch = {pitch:?}"), format!("depth = {depth:?}")];
+        let bench = Bench::of(&changed(&[("pitch = 20.0", &p), ("depth = 12.0", &z)]));
+        let is_refused = check(&bench.job, &bench.package).is_err();
+        assert_eq!(alarm(&bench.run_to(8300, &mut ())).is_some(), is_refused, "{p} {z}");
     }
 }
 
 #[test]
 fn the_rotary_turns_only_while_the_drill_is_clear() {
-    for start in ["", "G00 Z5.", "G00 Z200."] {
-        let mut package = families::emit(&job(SMALL));
-        let call = package.programs[0].text.lines().find(|line| line.contains("P8301")).unwrap().to_owned();
-        package.programs[0].text = package.programs[0].text.replace(&call, &format!("{start}\n{call}"));
-        let mut sink = Turns { at: Position::default(), lowest: f64::INFINITY, turns: 0 };
-        assert!(matches!(ran(&package, &mut sink).outcome, Outcome::End));
-        assert_eq!(sink.turns, 17, "18 rows, the first at B0");
-        assert!(sink.lowest >= 50.0, "{start}: {}", sink.lowest);
+    for start in ["", "G00 Z5.;", "G00 Z200.;"] {
+        let bench = Bench::of(SMALL);
+        let text = &bench.package.program(8300).unwrap().text;
+        let call = text.lines().find(|line| line.contains("P8301")).unwrap();
+        let mut recorder = Recorder::default();
+        let ran = bench.clone().edited(8300, &format!("{call} => {start}{call}")).run_to(8300, &mut recorder);
+        assert_eq!(alarm(&ran), None);
+        let positions = [vec![Position::default()], recorder.positions()].concat();
+        let turns: Vec<_> = positions.windows(2).filter(|pair| pair[0][4] != pair[1][4]).collect();
+        assert_eq!(turns.len(), 17, "18 rows, the first at B0");
+        let lowest = turns.iter().map(|pair| pair[0][2].min(pair[1][2])).fold(f64::INFINITY, f64::min);
+        assert!(lowest >= 50.0, "{start}: {lowest}");
     }
 }
 
 /// A control manages about a thousand macro blocks a second.
 #[test]
 fn a_hole_costs_four_blocks_and_a_row_ten() {
-    let blocks = |changes: &[(&str, &str)]| {
-        let text = changed(changes);
-        ran(&families::emit(&job(&text)), &mut ()).control.blocks()
-    };
+    let blocks =
+        |changes: &[(&str, &str)]| Bench::of(&changed(changes)).run_to(8300, &mut ()).control.blocks();
     // Even rows end at 80.6 and 100.8, odd ones at 90.7 either way.
     let holes =
         blocks(&[("length = 90.0", "length = 101.0")]) - blocks(&[("length = 90.0", "length = 91.0")]);
@@ -352,20 +223,18 @@ fn a_hole_costs_four_blocks_and_a_row_ten() {
     assert_eq!(divided("divisions = 10") - divided("divisions = 9"), 2 * 10 + 4);
 }
 
-/// The example's D changed by hand closes on another cylinder.
+/// D changed by hand closes on another cylinder.
 #[test]
 fn a_diameter_changed_at_the_machine_closes_again() {
-    let other = changed(&[("diameter = 100.0", "diameter = 130.0")]);
-    let mut package = families::emit(&job(SMALL));
-    package.programs[0].text = package.programs[0].text.replace("D100.", "D130.").replace("I100.", "I130.");
-    package.machine = package.machine.replace("-50.0", "-65.0");
-    let verdict = check(&job(&other), &package).unwrap().verdict.into_holes().unwrap();
+    let other = Bench::of(&changed(&[("diameter = 100.0", "diameter = 130.0")]));
+    let mut bench = Bench::of(SMALL).edited(8300, "D100. => D130.").edited(8300, "I100. => I130.");
+    bench.package.machine = bench.package.machine.replace("-50.0", "-65.0");
+    let verdict = check(&other.job, &bench.package).unwrap().verdict.into_holes().unwrap();
     assert_eq!(verdict.verdict, Answer::Pass, "{:?}", verdict.findings);
 }
 
 #[test]
 fn the_new_job_is_the_example() {
     let family = families::ALL.iter().find(|family| family.name == "honeycomb").unwrap();
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/honeycomb/job.toml");
-    assert_eq!(std::fs::read_to_string(path).unwrap(), family.new_job);
+    assert_eq!(example("honeycomb"), family.new_job);
 }

@@ -1,64 +1,25 @@
-//! House rules: the order of modules, opening sentences, no unfinished work.
+//! House rules: dependencies, opening sentences, no unfinished work.
 use std::path::{Path, PathBuf};
 
-use gcode_tests::workspace;
+use gcode_tests::{files_below, workspace};
 
-/// Every file below `dir` whose name ends so.
-pub(crate) fn below(dir: &Path, extension: &str) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(dir).into_iter().flatten() {
-        let path = entry.unwrap().path();
-        if path.is_dir() && path.file_name().is_some_and(|n| n != "target") {
-            found.extend(below(&path, extension));
-        } else if path.extension().is_some_and(|e| e == extension) {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
-}
-
-/// Every Rust file below `dir`.
-fn sources(dir: &Path) -> Vec<PathBuf> {
-    below(dir, "rs")
-}
+use crate::module_circles::paths_behind;
 
 fn all_sources() -> Vec<PathBuf> {
     ["gcode-sim", "gcode-gen", "tests", "xtask"]
         .iter()
-        .flat_map(|dir| sources(&workspace().join(dir)))
+        .flat_map(|dir| files_below(&workspace().join(dir), "rs"))
         .collect()
 }
 
-/// The modules that a line names behind `root`, as `crate::` or `gcode_sim::`, one by one or in braces.
-fn named(line: &str, root: &str) -> Vec<String> {
-    let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
-    let mut found = Vec::new();
-    for path in line.split(root).skip(1) {
-        match path.strip_prefix('{') {
-            None => found.push(word(path)),
-            Some(list) => {
-                let mut depth = 0;
-                let outer = |c: char| {
-                    depth += i32::from(c == '{') - i32::from(c == '}');
-                    depth == 0 && c == ','
-                };
-                found.extend(list.split(outer).map(|path| word(path.trim())));
-            }
-        }
-    }
-    found.retain(|name| !name.is_empty());
-    found
-}
-
-/// Fails where a file below `dir` names another module behind `root` than the ones it may.
+/// Fails if a file below `dir` names another module behind `root`, as `crate::` or `gcode_sim::`, than it may.
 fn uses_only(dir: &str, root: &str, may: &[&str]) {
-    let files = sources(&workspace().join(dir));
+    let files = files_below(&workspace().join(dir), "rs");
     assert!(!files.is_empty(), "{dir} has no sources");
     for path in files {
         let text = std::fs::read_to_string(&path).unwrap();
         for (number, line) in text.lines().enumerate() {
-            for module in named(line, root) {
+            for module in paths_behind(line, root).into_iter().map(|mut path| path.swap_remove(0)) {
                 assert!(
                     may.contains(&module.as_str()),
                     "{}:{}: uses {root}{module}, and may use {} only",
@@ -71,14 +32,6 @@ fn uses_only(dir: &str, root: &str, may: &[&str]) {
     }
 }
 
-#[test]
-fn every_module_of_a_line_is_seen() {
-    let seen =
-        named("use gcode_sim::{job::{Burr, Nose}, part, verify::checks}; gcode_sim::holes::X", "gcode_sim::");
-    assert_eq!(seen, ["job", "part", "verify", "holes"]);
-    assert_eq!(named("use crate::units::Deg;", "crate::"), ["units"]);
-}
-
 /// The crates that a crate of gcode-sim depends on, as its Cargo.toml lists them.
 fn dependencies(name: &str) -> Vec<String> {
     let path = workspace().join("gcode-sim/crates").join(name).join("Cargo.toml");
@@ -86,7 +39,7 @@ fn dependencies(name: &str) -> Vec<String> {
     file["dependencies"].as_table().unwrap().keys().cloned().collect()
 }
 
-/// The text side knows no geometry, no command line, no picture and no page.
+/// The text side has no geometry, no command line, no picture and no page.
 #[test]
 fn the_language_side_depends_on_no_geometry_and_no_output() {
     let barred =
@@ -99,7 +52,7 @@ fn the_language_side_depends_on_no_geometry_and_no_output() {
 
 /// The nominal part is independent of NC code: its crate uses units and the names of controls alone.
 #[test]
-fn the_nominal_part_knows_no_program() {
+fn the_nominal_part_uses_no_program() {
     uses_only("gcode-sim/crates/gcode-part/src", "gcode_lang::", &["control", "units"]);
 }
 
@@ -116,7 +69,7 @@ fn the_reference_shares_nothing_with_the_generator() {
 }
 
 #[test]
-fn every_file_opens_with_what_it_is() {
+fn every_file_opens_with_a_sentence() {
     for path in all_sources() {
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.starts_with("//! "), "{} must open with a sentence", path.display());
@@ -124,7 +77,7 @@ fn every_file_opens_with_what_it_is() {
 }
 
 #[test]
-fn nothing_is_left_unfinished() {
+fn no_work_is_unfinished() {
     let words = [
         ["TO", "DO"].concat(),
         ["FIX", "ME"].concat(),
@@ -139,25 +92,21 @@ fn nothing_is_left_unfinished() {
     }
 }
 
-/// What merges and snapshots leave behind.
+/// Files that merges and snapshots leave behind.
 #[test]
 fn no_file_is_left_over() {
-    let left = |path: &Path| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        [".orig", ".rej", ".snap.new", ".bak"].iter().any(|end| name.ends_with(end))
-    };
-    fn look(dir: &Path, left: &dyn Fn(&Path) -> bool) {
+    fn check(dir: &Path) {
         for entry in std::fs::read_dir(dir).unwrap() {
             let path = entry.unwrap().path();
-            let hidden =
-                path.file_name().is_some_and(|n| n == "target" || n.to_string_lossy().starts_with('.'));
-            if path.is_dir() && !hidden {
-                look(&path, left);
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let is_left = [".orig", ".rej", ".snap.new", ".bak"].iter().any(|end| name.ends_with(end));
+            assert!(!is_left, "{} is left over", path.display());
+            if path.is_dir() && name != "target" && !name.starts_with('.') {
+                check(&path);
             }
-            assert!(!left(&path), "{} is left over", path.display());
         }
     }
-    look(&workspace(), &left);
+    check(&workspace());
 }
 
 /// A file has one subject; beyond this it has several.

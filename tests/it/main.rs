@@ -3,11 +3,7 @@
 
 mod accepted;
 mod alignment;
-mod alignment_guards;
-mod alignment_slips;
 mod alignment_state;
-mod alignment_touched;
-mod alignment_zero;
 mod arithmetic;
 mod blocks;
 mod budget;
@@ -30,15 +26,12 @@ mod example_pictures;
 mod explain;
 mod flute_sites;
 mod formats;
-mod hole_passes;
 mod honeycomb;
 mod house_rules;
 mod limits;
 mod misplaced;
 mod module_circles;
 mod mutations;
-mod order;
-mod packaging;
 #[cfg(feature = "browser")]
 mod page;
 mod pin_holes;
@@ -47,9 +40,6 @@ mod results;
 mod round_trip;
 mod schemas;
 mod sheet;
-mod silent_changes;
-mod sine_table;
-mod single_cause;
 mod start_state;
 mod watch;
 mod words;

@@ -1,19 +1,16 @@
-//! A part that stands elsewhere than the program believes: where the holes land on it.
-use std::path::Path;
-
+//! Positions of holes on a part that is misplaced.
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
 
 use gcode_gen::check::check;
-use gcode_gen::families;
 use gcode_inspect::machine::{Machine, Placement};
 use gcode_inspect::verify::{Tolerances, Verdict};
 use gcode_lang::program::NoLibrary;
 use gcode_lang::units::Deg;
 use gcode_part::Reference;
-use gcode_part::job::Job;
 use gcode_part::{Hole, HoleList, Unit};
 use gcode_session::{Request, simulate};
+use gcode_tests::bench::Bench;
 
 /// One axial hole at radius `r` with its mouth at height `y` and 15 deep, drilled at each angle of B.
 fn drilled(r: f64, y: f64, angles: &[f64], machine: &Machine, reference: &Reference) -> Verdict {
@@ -32,8 +29,8 @@ fn drilled(r: f64, y: f64, angles: &[f64], machine: &Machine, reference: &Refere
     done.verify(reference, Tolerances::of(reference, Some(1.0)), machine)
 }
 
-/// The holes of [`drilled`] on a part that stands where the program believes it.
-fn wanted(r: f64, y: f64, angles: &[f64]) -> Reference {
+/// The holes of [`drilled`] on a part in its place.
+fn nominal(r: f64, y: f64, angles: &[f64]) -> Reference {
     let hole = |b: &f64| Hole {
         id: None,
         entry: [r * Deg(*b).cos(), y, r * Deg(*b).sin()],
@@ -51,7 +48,7 @@ fn misplaced(lines: &str) -> Machine {
 
 fn phis(lines: &str, angles: &[f64]) -> Vec<f64> {
     let machine = misplaced(lines);
-    let verdict = drilled(300.0, 320.0, angles, &machine, &wanted(300.0, 320.0, angles));
+    let verdict = drilled(300.0, 320.0, angles, &machine, &nominal(300.0, 320.0, angles));
     assert_eq!(verdict.holes.len(), angles.len(), "{:?}", verdict.missing);
     verdict.holes.iter().map(|hole| hole.position_deviation).collect()
 }
@@ -76,7 +73,7 @@ fn a_part_shifted_by_0_05_puts_every_hole_out_by_0_1() {
 fn a_part_shifted_along_the_hole_changes_its_depth() {
     for (shift, deeper) in [("0.05", 0.05), ("-0.05", -0.05)] {
         let machine = misplaced(&format!("shift = [0, {shift}, 0]"));
-        let verdict = drilled(300.0, 320.0, &[0.0, 180.0], &machine, &wanted(300.0, 320.0, &[0.0, 180.0]));
+        let verdict = drilled(300.0, 320.0, &[0.0, 180.0], &machine, &nominal(300.0, 320.0, &[0.0, 180.0]));
         for hole in &verdict.holes {
             assert!(hole.position_deviation < 1e-9 && (hole.depth_error - deeper).abs() < 1e-9, "{hole:?}");
         }
@@ -87,7 +84,7 @@ fn a_part_shifted_along_the_hole_changes_its_depth() {
 /// (300·c + 305·s, 305·c − 300·s), and its axis is (s, c, 0) there: it meets the plane y = 320 a further
 /// (320 − that y)·s/c on. At B = 180 the drill stands at the part's −300, before the tilt.
 #[test]
-fn a_part_tilted_by_a_tenth_of_a_degree() {
+fn a_part_tilted_by_a_tenth_of_a_degree_puts_holes_out_by_hand_computed_amounts() {
     for tilt in [0.1, -0.1] {
         let (s, c) = (Deg(tilt).sin(), Deg(tilt).cos());
         let phi = |x: f64| {
@@ -117,9 +114,8 @@ fn a_part_turned_about_y_is_out_by_the_chord() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whatever way the part stands: on a reference that is moved just so, the holes are right again.
     #[test]
-    fn against_a_reference_that_is_moved_alike_nothing_is_off(
+    fn holes_on_a_misplaced_part_are_right_against_a_reference_moved_alike(
         (r, y) in (0.0..900.0, -200.0..700.0),
         shift in prop::array::uniform3(-2.0..2.0),
         tilt in prop::array::uniform3(-0.1..0.1),
@@ -130,7 +126,7 @@ proptest! {
         let angles = if r < 1.0 { vec![round(first)] } else { vec![round(first), round(first + 137.0)] };
         let part = Placement { shift: Vector3::from(shift), tilt: tilt.map(Deg), ..Placement::default() };
         let moved = part.frame().inverse();
-        let mut reference = wanted(r, y, &angles);
+        let mut reference = nominal(r, y, &angles);
         for hole in &mut reference.holes {
             hole.entry = (moved * Point3::from(hole.entry)).coords.into();
             hole.axis = (moved.rotation * Vector3::from(hole.axis)).into();
@@ -144,13 +140,10 @@ proptest! {
     }
 }
 
-/// The holes that a machine with errors drills are off, and straight: nothing is taken for a sideways move.
+/// The holes that a machine with errors drills are out of position and straight: no finding on a sideways move.
 #[test]
-fn a_machine_with_errors_moves_the_holes_and_nothing_else_is_found() {
-    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/melon-mould");
-    let job = Job::parse(&std::fs::read_to_string(example.join("job.toml")).unwrap()).unwrap();
-    let plain = std::fs::read_to_string(example.join("machine.toml")).unwrap();
-    let package = families::emit(&job);
+fn a_machine_with_errors_moves_the_holes_and_has_no_other_finding() {
+    let bench = Bench::example("melon-mould", &[]);
     let mut worst = Vec::new();
     for seed in 0..8 {
         let errors = format!(
@@ -158,9 +151,8 @@ fn a_machine_with_errors_moves_the_holes_and_nothing_else_is_found() {
              [errors.rotary]\nindex = {{ normal = 0.001 }}\ncentre.x = {{ normal = 0.005 }}\ntilt.z = {{ normal = 0.001 }}\nseed = {seed}\n\
              [errors.head]\nangle = {{ normal = 0.005 }}\nseed = {seed}\n"
         );
-        let mut package = package.clone();
-        package.machine = format!("{plain}\n{errors}");
-        let verdict = || check(&job, &package).unwrap().verdict.into_holes().unwrap();
+        let bench = bench.clone().with_machine(&format!("\n{errors}"));
+        let verdict = || check(&bench.job, &bench.package).unwrap().verdict.into_holes().unwrap();
         let found = verdict();
         let other: Vec<_> = found
             .diagnostics

@@ -2,9 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use gcode_tests::workspace;
-
-use crate::house_rules::below;
+use gcode_tests::{files_below, workspace};
 
 /// A module's path below the crate's root, `["lookahead", "request"]`.
 type Module = Vec<String>;
@@ -27,7 +25,7 @@ fn code_of(text: &str) -> String {
 }
 
 /// The paths behind a prefix such as `crate::`, one by one or in braces, each as far as it is made of names.
-fn paths_behind(code: &str, prefix: &str) -> Vec<Module> {
+pub(crate) fn paths_behind(code: &str, prefix: &str) -> Vec<Module> {
     let mut found = Vec::new();
     for (at, _) in code.match_indices(prefix) {
         let is_inside_a_word = code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
@@ -71,7 +69,7 @@ fn collect<'t>(text: &'t str, before: &mut Module, found: &mut Vec<Module>) -> &
 
 /// Which sibling modules of a crate use which.
 fn uses(source: &Path) -> Uses {
-    let files = below(source, "rs");
+    let files = files_below(source, "rs");
     let modules: BTreeSet<Module> = files.iter().map(|file| module_of(file, source)).collect();
     let mut uses = Uses::new();
     for file in &files {
@@ -116,7 +114,7 @@ fn in_circles(uses: &Uses) -> BTreeSet<&Module> {
 }
 
 #[test]
-fn paths_are_seen_one_by_one_and_in_braces() {
+fn paths_are_found_one_by_one_and_in_braces() {
     let found =
         paths_behind("use crate::{a::{B, c::D}, e as f}; x(crate::g::H::new()) mycrate::z", "crate::");
     let shown: Vec<_> = found.iter().map(|path| path.join("::")).collect();

@@ -1,18 +1,16 @@
 //! Files as senders, editors and memory dumps leave them: their line ends, their bytes, their sizes.
-use gcode_control::Outcome;
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::{parse, print};
-use gcode_tests::expect::{self, Ran};
+use gcode_tests::expect;
 use proptest::prelude::*;
 
-/// The program that all of the first tests write down in some way.
+/// The program that the first tests write in different ways.
 const LINES: [&str; 8] =
     ["%", "O0001(PLATE)", "G90 G00 X1.", "N10 #100=#100+1", "IF[#100 LT 3]GOTO 10", "Y[#100]", "M30", "%"];
 
 fn ends_as_the_program(bytes: &[u8]) {
-    let ran = expect::run(bytes);
-    let differences = ran.differences("end=normal; #100=3; path=R(1,0,0) R(1,3,0)");
-    assert!(differences.is_empty(), "{:?}: {differences:?}", String::from_utf8_lossy(bytes));
+    let wrong = expect::run(bytes).differences("end=normal; #100=3; path=R(1,0,0) R(1,3,0)");
+    assert!(wrong.is_empty(), "{:?}: {wrong:?}", String::from_utf8_lossy(bytes));
 }
 
 #[test]
@@ -29,7 +27,7 @@ fn line_ends_change_nothing() {
 }
 
 #[test]
-fn what_stands_round_a_tape_changes_nothing() {
+fn text_round_the_tape_changes_nothing() {
     let tape = LINES.join("\r\n");
     let body = LINES[1..7].join("\n");
     for text in [
@@ -57,7 +55,7 @@ fn printed(bytes: &[u8]) -> Vec<u8> {
     parse(SourceId(0), bytes).iter().flat_map(print).collect()
 }
 
-fn holds(text: &[u8], part: &[u8]) -> bool {
+fn contains(text: &[u8], part: &[u8]) -> bool {
     text.windows(part.len()).any(|window| window == part)
 }
 
@@ -72,10 +70,9 @@ fn comments_in_other_alphabets_stay_byte_for_byte() {
     ] {
         let program = [b"O1", comment, b"\nG0", comment, b"X1.\n#100=1", comment, b"\nM30\n"].concat();
         let text = printed(&program);
-        assert!(holds(&text, comment), "{:?}", String::from_utf8_lossy(&text));
+        assert!(contains(&text, comment), "{:?}", String::from_utf8_lossy(&text));
         assert_eq!(printed(&text), text);
-        let wrong = expect::run(&program).differences("end=normal; abs.X=1; #100=1");
-        assert!(wrong.is_empty(), "{wrong:?}");
+        expect::run(&program).must("end=normal; abs.X=1; #100=1");
     }
 }
 
@@ -88,7 +85,7 @@ proptest! {
     ) {
         let comment = [b"(", &bytes[..], b")"].concat();
         let program = [b"O1\nG0 X1.", &comment[..], b"Y2.\nM30\n"].concat();
-        prop_assert!(holds(&printed(&program), &comment));
+        prop_assert!(contains(&printed(&program), &comment));
         let wrong = expect::run(&program).differences("end=normal; path=R(1,2,0)");
         prop_assert!(wrong.is_empty(), "{:?}", wrong);
     }
@@ -119,12 +116,7 @@ fn a_memory_dump_of_forty_programs_runs() {
     let ran = expect::run(dump().as_bytes());
     assert_eq!(ran.control.memory().programs().len(), 40);
     // 1 + 2 + … + 40.
-    let wrong = ran.differences("end=normal; #100=820");
-    assert!(wrong.is_empty(), "{wrong:?}");
-}
-
-fn ended(ran: &Ran) -> bool {
-    matches!(ran.outcome, Outcome::End)
+    ran.must("end=normal; #100=820");
 }
 
 #[test]
@@ -134,9 +126,6 @@ fn a_hundred_thousand_lines_are_read_and_run() {
         text.push_str(&format!("N{line} G01 X{}. Y-{}.5\n", line % 200, line % 7));
     }
     text.push_str("M30\n%\n");
-    let ran = expect::run(text.as_bytes());
-    assert!(ended(&ran));
     // 99,990 = 499 × 200 + 190 = 14,284 × 7 + 2.
-    let wrong = ran.differences("end=normal; abs.X=190; abs.Y=-2.5");
-    assert!(wrong.is_empty(), "{wrong:?}");
+    expect::run(text.as_bytes()).must("end=normal; abs.X=190; abs.Y=-2.5");
 }

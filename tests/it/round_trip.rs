@@ -1,74 +1,10 @@
-//! Random pin-hole jobs: what is generated from a job, run as the control would, makes the job's holes.
+//! Random pin-hole jobs: the generated programs, run as on the control, make the job's holes.
 use std::fmt::Write;
 
-use gcode_gen::check::{CheckedPackage, check};
-use gcode_gen::families;
+use gcode_gen::check::check;
 use gcode_inspect::verify::Answer;
-use gcode_part::job::Job;
+use gcode_tests::bench::Bench;
 use proptest::prelude::*;
-
-/// Everything a job can differ in; numbers as a drawing has them, with more digits than the control's increment.
-#[derive(Clone, Debug)]
-struct RandomJob {
-    increment: &'static str,
-    dialect: &'static str,
-    sign: i8,
-    /// Letter and pivot of a head that is an axis.
-    head: Option<(char, f64)>,
-    lengths: [f64; 2],
-    a: f64,
-    b: f64,
-    clearance: f64,
-    retract: f64,
-    /// Radius as a part of a, azimuth, axial, depth.
-    holes: Vec<(f64, f64, bool, f64)>,
-}
-
-impl RandomJob {
-    fn text(&self) -> String {
-        let mut text = format!(
-            "family = \"pin-holes\"\n[control]\ndialect = \"{}\"\nincrement = \"{}\"\n[machine]\n\
-             rotary = {{ letter = \"B\", sign = {} }}\nclearance = {:?}\nretract = {:?}\n",
-            self.dialect,
-            self.increment,
-            self.sign,
-            self.clearance,
-            self.clearance + self.retract
-        );
-        match self.head {
-            Some((letter, pivot)) => {
-                let _ = write!(
-                    text,
-                    "[machine.head]\nkind = \"axis\"\nletter = \"{letter}\"\npivot = {pivot:?}\n"
-                );
-            }
-            None => text.push_str("[machine.head]\nkind = \"manual\"\n"),
-        }
-        let _ = write!(
-            text,
-            "[surface]\nkind = \"ellipsoid\"\na = {:?}\nb = {:?}\n[tolerance]\nposition = 0.1\n",
-            self.a, self.b
-        );
-        for (index, (diameter, length)) in [(7.8, self.lengths[0]), (8.0, self.lengths[1])].iter().enumerate()
-        {
-            let _ = write!(
-                text,
-                "[[tool]]\nnumber = {}\ndiameter = {diameter:?}\nlength = {length:?}\nspeed = 1500\nfeed = 10.0\n",
-                index + 1
-            );
-        }
-        for (index, (radius, azimuth, axial, depth)) in self.holes.iter().enumerate() {
-            let axis = if *axial { "axial" } else { "normal" };
-            let radius = radius * self.a;
-            let _ = write!(
-                text,
-                "[[hole]]\nid = \"{index}\"\nradius = {radius:?}\nazimuth = {azimuth:?}\naxis = \"{axis}\"\n\
-                 diameter = 8.0\ndepth = {depth:?}\n"
-            );
-        }
-        text
-    }
-}
 
 /// 24 holes on five radii from near 0 to 0.97·a, 15° apart in an arbitrary order of turns, so that on all but small parts no two
 /// meet.
@@ -86,7 +22,8 @@ fn holes() -> impl Strategy<Value = Vec<(f64, f64, bool, f64)>> {
     })
 }
 
-fn random_jobs() -> impl Strategy<Value = RandomJob> {
+/// Job files; numbers as a drawing has them, with more digits than the control's increment. The head may be an axis with a pivot.
+fn random_jobs() -> impl Strategy<Value = String> {
     let control = (
         prop::sample::select(vec!["IS-B", "IS-C"]),
         prop::sample::select(vec!["fanuc-31i", "fanuc-0i-f", "haas-ngc"]),
@@ -96,33 +33,42 @@ fn random_jobs() -> impl Strategy<Value = RandomJob> {
     let lengths = prop_oneof![Just([0.0, 0.0]), [0.0..200.0f64, 0.0..200.0f64]];
     let surface = (150.0..1200.0f64, prop_oneof![Just(1.0), 0.4..1.0f64, 1.0..2.5f64]);
     (control, head, lengths, surface, 0.5..5.0f64, 0.0..80.0f64, holes()).prop_map(
-        |((increment, dialect, sign), head, lengths, (a, ratio), clearance, retract, holes)| RandomJob {
-            increment,
-            dialect,
-            sign,
-            head,
-            lengths,
-            a,
-            b: a * ratio,
-            clearance,
-            retract,
-            holes,
+        |((increment, dialect, sign), head, lengths, (a, ratio), clearance, retract, holes)| {
+            let head = head.map_or("kind = \"manual\"".to_owned(), |(letter, pivot)| {
+                format!("kind = \"axis\"\nletter = \"{letter}\"\npivot = {pivot:?}")
+            });
+            let (retract, b) = (clearance + retract, a * ratio);
+            let mut text = format!(
+                "family = \"pin-holes\"\n[control]\ndialect = \"{dialect}\"\nincrement = \"{increment}\"\n[machine]\n\
+                 rotary = {{ letter = \"B\", sign = {sign} }}\nclearance = {clearance:?}\nretract = {retract:?}\n\
+                 [machine.head]\n{head}\n[surface]\nkind = \"ellipsoid\"\na = {a:?}\nb = {b:?}\n[tolerance]\nposition = 0.1\n"
+            );
+            for (number, diameter, length) in [(1, 7.8, lengths[0]), (2, 8.0, lengths[1])] {
+                let _ = write!(
+                    text,
+                    "[[tool]]\nnumber = {number}\ndiameter = {diameter:?}\nlength = {length:?}\nspeed = 1500\nfeed = 10.0\n"
+                );
+            }
+            for (id, (radius, azimuth, axial, depth)) in holes.into_iter().enumerate() {
+                let (radius, axis) = (radius * a, if axial { "axial" } else { "normal" });
+                let _ = write!(
+                    text,
+                    "[[hole]]\nid = \"{id}\"\nradius = {radius:?}\nazimuth = {azimuth:?}\naxis = \"{axis}\"\n\
+                     diameter = 8.0\ndepth = {depth:?}\n"
+                );
+            }
+            text
         },
     )
-}
-
-fn checked(text: &str) -> CheckedPackage {
-    let job = Job::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    check(&job, &families::emit(&job)).unwrap()
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
     #[test]
-    fn a_random_job_makes_its_holes(wanted in random_jobs()) {
-        let text = wanted.text();
-        let checked = checked(&text);
+    fn a_random_job_makes_its_holes(text in random_jobs()) {
+        let bench = Bench::of(&text);
+        let checked = check(&bench.job, &bench.package).unwrap();
         prop_assume!(!checked.refusals.concat().contains(" overlap: their axes come within "));
         prop_assert!(checked.refusals.is_empty(), "{}\n{text}", checked.refusals.concat());
         let verdict = checked.verdict.into_holes().unwrap();

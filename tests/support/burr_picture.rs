@@ -1,6 +1,6 @@
 //! Draws a burr's flutes as its job's programs grind them, or as the program `case.nc` does: cases of kind `picture` that have
 //! a `job.toml`.
-use gcode_draw::{Scene, helix_graph, side_view, tip_view};
+use gcode_draw::{Picture, helix_graph, side_view, tip_view};
 use gcode_gen::families;
 use gcode_inspect::machine::Machine;
 use gcode_lang::program::NoLibrary;
@@ -9,8 +9,8 @@ use gcode_part::job::Job;
 use gcode_session::{Request, grind};
 use gcode_sim::report::flute_view;
 
-/// The scene of one view; the job's form must be `moves`, for there is no library here.
-pub(super) fn scene(job: &str, program: Option<String>, view: &str) -> Scene {
+/// The picture of one view; the job's form must be `moves`, for there is no library here.
+pub(super) fn scene(job: &str, program: Option<String>, view: &str) -> Picture {
     let job = Job::parse(job).unwrap();
     let package = families::emit(&job);
     let main = package.main().unwrap();

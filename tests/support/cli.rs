@@ -2,12 +2,12 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::{Case, programs};
+use crate::{Case, copy_folder, programs};
 
 /// Runs the commands and holds the whole session, exit codes and new files included, against `session.snap`.
 pub(crate) fn run(case: &Case) {
     let place = tempfile::tempdir().unwrap();
-    copy(&case.dir, place.path());
+    copy_folder(&case.dir, place.path());
     let before = files(place.path());
     let mut session = String::new();
     for line in case.text("commands.txt").lines().filter(|line| !line.trim().is_empty()) {
@@ -28,20 +28,6 @@ pub(crate) fn run(case: &Case) {
         let _ = writeln!(session, "new files: {}", new.join(", "));
     }
     case.snapshot("session", &session);
-}
-
-/// The inputs of a case, its snapshots left out.
-fn copy(from: &Path, to: &Path) {
-    for entry in std::fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        let target = to.join(path.file_name().unwrap());
-        if path.is_dir() {
-            std::fs::create_dir(&target).unwrap();
-            copy(&path, &target);
-        } else if path.extension().is_none_or(|e| e != "snap" && e != "new") {
-            std::fs::copy(&path, target).unwrap();
-        }
-    }
 }
 
 /// The names of all files below `dir`, sorted.

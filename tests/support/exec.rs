@@ -38,7 +38,7 @@ pub(crate) fn alarm(case: &Case) {
 
 fn shown(ran: &Ran) -> String {
     let mut text = String::new();
-    for (span, kind) in &ran.events {
+    for (span, kind, _) in &ran.recorder.0 {
         writeln!(text, "{:>3}  {}", line(ran, *span), event(ran, kind)).unwrap();
     }
     match &ran.outcome {

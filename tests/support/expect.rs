@@ -1,4 +1,4 @@
-//! Runs a program on a control and holds the end of the run against what was worked out for it.
+//! Runs a program on a control and compares the end of the run with what was worked out for it.
 //!
 //! What is expected is a list with `; ` between its items:
 //!
@@ -9,19 +9,21 @@
 //! | `alarm=PS0112` | the control stopped with this alarm; with one of several, `PS0112\|PS0119`, where `why` says what is open |
 //! | `msg="TEXT"` | the alarm's text |
 //! | `stop=TEXT` | an operator stop with this text |
-//! | `note=lower-case` | the run told this note, by its name; `note=none` where it told none |
-//! | `stops=M00,M01` | all operator stops, in their order |
+//! | `note=lower-case` | the run has this note, by its name; `note=none` if it has none |
+//! | `stops=M00,M01` | all operator stops, in their order; `stops=` if there is none |
 //! | `passed_on=M77,M78` | the M codes left to the machine builder, in ascending order |
 //! | `printed="LINE\|LINE"` | what DPRNT printed, all of it |
-//! | `#100=1.5`, `#100=vacant` | the variable at the end; locals are those of the main program |
+//! | `#100=1.5`, `#100=vacant` | the variable at the end; locals are those of the main program; `#501-#560=vacant` all of these, `=known` if not vacant, `=#574` the value of another |
 //! | `abs.X=1`, `mach.X=1` | work and machine position |
 //! | `path=R(x,y,z) F(…) A(…) D(s)` | all rapids, cutting feeds, arcs (by their ends, machine X Y Z) and dwells |
 //! | `time_min=0.5` | the time of all blocks in minutes |
-//! | `amove=-10,20` | the ways of the A axis |
-//! | `within=0.001` | the tolerance of all numbers, 1e-6 where it isn't said |
+//! | `amove=-10,20` | the moves of the A axis |
+//! | `moves=0`, `moves=41..` | the number of moves, exactly or at least; `feeds=0` that of cutting feeds |
+//! | `within=0.001` | the tolerance of all numbers, 1e-6 if it isn't stated; `0.1±0.002` that of one number |
 //! | `why=TEXT` | always: the reason for the alarm, the last item. It begins with `open:` where several are right |
 //!
 //! A comment `(@KEY=VALUE)` in the program is a setting of the control, by the name it has on the command line.
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use gcode_control::{Control, Limits, Outcome, Value};
@@ -30,13 +32,38 @@ use gcode_lang::motion::{Event, EventKind, EventSink, Position};
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_lang::source::Span;
 
-/// Everything the machine was told, and a control at the end of its run.
+/// The events of a run: block, kind, seconds.
+#[derive(Debug, Default, PartialEq)]
+pub struct Recorder(pub Vec<(Span, EventKind, f64)>);
+
+impl EventSink for Recorder {
+    fn event(&mut self, event: &Event<'_>) {
+        self.0.push((event.block, event.kind.clone(), event.seconds.0));
+    }
+}
+
+impl Recorder {
+    /// The ends of all moves, each with R for a rapid, F for a feed and A for an arc.
+    pub fn moves(&self) -> impl Iterator<Item = (char, &Position)> {
+        self.0.iter().filter_map(|(_, kind, _)| match kind {
+            EventKind::Rapid { to } => Some(('R', to)),
+            EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => Some(('F', to)),
+            EventKind::Arc { to, .. } => Some(('A', to)),
+            _ => None,
+        })
+    }
+
+    /// The ends of all rapids and feeds from one to the next.
+    pub fn positions(&self) -> Vec<Position> {
+        self.moves().map(|(_, to)| *to).collect()
+    }
+}
+
+/// A control at the end of its run, and the events of the run.
 pub struct Ran {
     pub control: Control,
     pub outcome: Outcome,
-    /// What was told, each with its block.
-    pub events: Vec<(Span, EventKind)>,
-    path: Path,
+    pub recorder: Recorder,
 }
 
 /// The default control with the settings that the program's comments name.
@@ -53,16 +80,26 @@ pub fn settings(program: &[u8]) -> Settings {
 
 /// Runs a program to its end.
 pub fn run(program: &[u8]) -> Ran {
+    run_on(program, settings(program), 100_000)
+}
+
+/// Runs a program on a control with these settings.
+pub fn run_on(program: &[u8], settings: Settings, blocks: u64) -> Ran {
     let mut memory = Memory::default();
     memory.load("case.nc", program);
-    let mut control = Control::new(memory, settings(program));
-    let mut path = Path::default();
-    let outcome = control.run(Limits { blocks: 100_000 }, &mut NoLibrary, &mut path);
-    let events = std::mem::take(&mut path.events);
-    Ran { control, outcome, events, path }
+    let mut control = Control::new(memory, settings);
+    let mut recorder = Recorder::default();
+    let outcome = control.run(Limits { blocks }, &mut NoLibrary, &mut recorder);
+    Ran { control, outcome, recorder }
 }
 
 impl Ran {
+    /// Fails if something differs from `expected`.
+    pub fn must(&self, expected: &str) {
+        let wrong = self.differences(expected);
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    }
+
     /// What differs from `expected`, one line each.
     pub fn differences(&self, expected: &str) -> Vec<String> {
         let (demands, why) = expected.split_once("; why=").unwrap_or((expected, ""));
@@ -76,153 +113,169 @@ impl Ran {
             .collect()
     }
 
-    fn difference(&self, key: &str, wanted: &str, tolerance: f64) -> Option<String> {
-        let found = match key {
-            "end" if wanted == "repeats" => {
-                let found = self.control.endless_loop().is_some();
-                return self.not(found, "end=repeats");
-            }
-            "end" => return self.not(matches!(self.outcome, Outcome::End), "end=normal"),
-            "alarm" => {
-                let code = match &self.outcome {
-                    Outcome::Alarm(stopped) => stopped.alarm.code().to_string(),
-                    Outcome::End | Outcome::Limit => String::new(),
-                };
-                let holds = wanted.split('|').any(|wanted| wanted == code);
-                return self.not(holds, &format!("alarm={wanted}"));
-            }
-            "msg" => {
-                let holds =
-                    matches!(&self.outcome, Outcome::Alarm(s) if format!("\"{}\"", s.alarm) == wanted);
-                return self.not(holds, &format!("msg={wanted}"));
+    fn difference(&self, key: &str, expected: &str, tolerance: f64) -> Option<String> {
+        let (is_met, found) = match key {
+            "path" => self.path(expected, tolerance),
+            "moves" => at_least(self.control.moves(), expected),
+            "feeds" => {
+                at_least(self.recorder.moves().filter(|(kind, _)| *kind == 'F').count() as u64, expected)
             }
             "stop" => {
-                let holds = self.control.stops().iter().any(|s| s.text == wanted.trim_matches('"'));
-                return self.not(holds, &format!("stop={wanted}"));
-            }
-            "stops" => {
-                let kinds: Vec<_> =
-                    self.control.stops().iter().map(|stop| format!("{:?}", stop.kind)).collect();
-                return self.not(kinds.join(",") == wanted, &format!("stops={wanted}"));
-            }
-            "passed_on" => {
-                let codes: Vec<_> =
-                    self.control.auxiliary_codes().keys().map(|code| format!("M{code}")).collect();
-                return self.not(codes.join(",") == wanted, &format!("passed_on={wanted}"));
+                let texts: Vec<_> = self.control.stops().iter().map(|stop| &*stop.text).collect();
+                (texts.contains(&expected.trim_matches('"')), texts.join(", "))
             }
             "note" => {
-                let holds = self.control.notes().any(|(note, _)| note.describe().0.code == wanted);
-                let holds = if wanted == "none" { self.control.notes().next().is_none() } else { holds };
-                return self.not(holds, &format!("note={wanted}"));
+                let codes: BTreeSet<_> =
+                    self.control.notes().map(|(note, _)| note.describe().0.code).collect();
+                let is_met = if expected == "none" { codes.is_empty() } else { codes.contains(expected) };
+                (is_met, Vec::from_iter(codes).join(", "))
+            }
+            "amove" => close(&self.moves_of_axis(3), expected, tolerance),
+            "time_min" => close(&[self.control.seconds().0 / 60.0], expected, tolerance),
+            _ if key.starts_with('#') => return self.variables(key, expected, tolerance),
+            _ => match (self.text(key), key.split_once('.')) {
+                (Some(found), _) => (expected.split('|').any(|one| one == found) || expected == found, found),
+                (None, Some((frame, letter))) => {
+                    let axis = self.control.settings().axes.find(letter.as_bytes()[0]).unwrap();
+                    let position = match frame {
+                        "abs" => self.control.work_position(axis),
+                        "mach" => self.control.machine_position()[axis],
+                        _ => panic!("item {key}"),
+                    };
+                    close(&[position], expected, tolerance)
+                }
+                (None, None) => panic!("item {key}"),
+            },
+        };
+        (!is_met).then(|| format!("{key} is {found}, expected is {expected}; {}", self.end()))
+    }
+
+    /// What an item with a text compares.
+    fn text(&self, key: &str) -> Option<String> {
+        let alarm = match &self.outcome {
+            Outcome::Alarm(stopped) => Some(&stopped.alarm),
+            Outcome::End | Outcome::Limit => None,
+        };
+        Some(match key {
+            "end" if self.control.endless_loop().is_some() => "repeats".to_owned(),
+            "end" if matches!(self.outcome, Outcome::End) => "normal".to_owned(),
+            "end" => self.end(),
+            "alarm" => alarm.map_or("none".to_owned(), |alarm| alarm.code().to_string()),
+            "msg" => alarm.map_or("none".to_owned(), |alarm| format!("\"{alarm}\"")),
+            "stops" => {
+                let kinds = self.control.stops().iter().map(|stop| format!("{:?}", stop.kind));
+                kinds.collect::<Vec<_>>().join(",")
+            }
+            "passed_on" => {
+                let codes = self.control.auxiliary_codes().keys().map(|code| format!("M{code}"));
+                codes.collect::<Vec<_>>().join(",")
             }
             "printed" => {
-                let lines: Vec<_> =
-                    self.control.output().iter().map(|l| String::from_utf8_lossy(l)).collect();
-                let found = lines.join("|");
-                let holds = format!("\"{found}\"") == wanted;
-                return (!holds).then(|| format!("printed is \"{found}\", {wanted} is wanted"));
+                let lines =
+                    self.control.output().iter().map(|line| String::from_utf8_lossy(line).into_owned());
+                format!("\"{}\"", lines.collect::<Vec<_>>().join("|"))
             }
-            "path" => return self.path.difference(wanted, tolerance),
-            "amove" => self.path.ways(3),
-            "time_min" => vec![self.control.seconds().0 / 60.0],
-            _ if key.starts_with('#') => match self.variable(key[1..].parse().unwrap()) {
-                Value::Number(number) => vec![number],
-                Value::Vacant if wanted == "vacant" => return None,
-                Value::Vacant => return Some(format!("{key} is vacant, {wanted} is wanted")),
-            },
-            _ => {
-                let (frame, letter) = key.split_once('.').unwrap_or_else(|| panic!("item {key}"));
-                let axis = self.control.settings().axes.find(letter.as_bytes()[0]).unwrap();
-                vec![match frame {
-                    "abs" => self.control.work_position(axis),
-                    "mach" => self.control.machine_position()[axis],
-                    _ => panic!("item {key}"),
-                }]
-            }
-        };
-        let wanted_numbers: Option<Vec<f64>> = wanted.split(',').map(|w| w.parse().ok()).collect();
-        let holds = wanted_numbers.is_some_and(|wanted| is_close(&found, &wanted, tolerance));
-        (!holds).then(|| format!("{key} is {found:?}, {wanted} is wanted"))
+            _ => return None,
+        })
     }
 
-    /// A variable at the end; locals are those of the main program.
-    fn variable(&self, number: u32) -> Value {
-        if (1..=33).contains(&number) {
-            let known = self.control.variables().find(|(n, _)| *n == number);
-            return known.map_or(Value::Vacant, |(_, value)| Value::Number(value));
-        }
-        self.control.variable(number).unwrap()
-    }
-
-    fn not(&self, holds: bool, wanted: &str) -> Option<String> {
-        let ended = match &self.outcome {
+    fn end(&self) -> String {
+        match &self.outcome {
             Outcome::End => "the run ended normally".to_owned(),
             Outcome::Limit => "the run was ended by its limit of blocks".to_owned(),
             Outcome::Alarm(stopped) => format!("{} {}", stopped.alarm.code(), stopped.alarm),
+        }
+    }
+
+    /// Compares one variable or a range of them; locals are those of the main program.
+    fn variables(&self, key: &str, expected: &str, tolerance: f64) -> Option<String> {
+        let mut numbers = key.split('-').map(|number| number.trim_start_matches('#').parse().unwrap());
+        let first: u32 = numbers.next().unwrap();
+        let wrong = (first..=numbers.next().unwrap_or(first)).find_map(|number| {
+            let found = match number {
+                1..=33 => self.control.variables().find(|(n, _)| *n == number).map(|(_, value)| value),
+                _ => match self.control.variable(number).unwrap() {
+                    Value::Number(value) => Some(value),
+                    Value::Vacant => None,
+                },
+            };
+            let is_met = match found {
+                Some(value) => expected == "known" || close(&[value], &self.resolved(expected), tolerance).0,
+                None => expected == "vacant",
+            };
+            (!is_met).then(|| (number, found.map_or("vacant".to_owned(), |value| value.to_string())))
+        });
+        wrong.map(|(number, found)| format!("#{number} is {found}, expected is {expected}; {}", self.end()))
+    }
+
+    /// The value of the variable that an expectation begins with, as `#574±0.0006`.
+    fn resolved(&self, expected: &str) -> String {
+        let Some(variable) = expected.strip_prefix('#') else { return expected.to_owned() };
+        let digits = variable.find(|c: char| !c.is_ascii_digit()).unwrap_or(variable.len());
+        let value = self.control.variable(variable[..digits].parse().unwrap()).unwrap().number();
+        format!("{value}{}", &variable[digits..])
+    }
+
+    fn moves_of_axis(&self, axis: usize) -> Vec<f64> {
+        let positions: Vec<f64> =
+            std::iter::once(0.0).chain(self.recorder.moves().map(|(_, to)| to[axis])).collect();
+        positions.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| *way != 0.0).collect()
+    }
+
+    /// Moves and dwells as `path` has them, and whether they are those.
+    fn path(&self, expected: &str, tolerance: f64) -> (bool, String) {
+        let found: Vec<(char, Vec<f64>)> = self
+            .recorder
+            .0
+            .iter()
+            .filter_map(|(_, kind, _)| match kind {
+                EventKind::Rapid { to } => Some(('R', to.0[..3].to_vec())),
+                EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => Some(('F', to.0[..3].to_vec())),
+                EventKind::Arc { to, .. } => Some(('A', to.0[..3].to_vec())),
+                EventKind::Dwell { time } => Some(('D', vec![time.0])),
+                _ => None,
+            })
+            .collect();
+        let steps: Vec<&str> = expected.split_whitespace().collect();
+        let is_step = |(step, (letter, numbers)): (&&str, &(char, Vec<f64>))| {
+            let expected =
+                step.strip_prefix(*letter).and_then(|rest| rest.strip_prefix('(')?.strip_suffix(')'));
+            expected.is_some_and(|expected| close(numbers, expected, tolerance).0)
         };
-        (!holds).then(|| format!("{ended}; {wanted} is wanted"))
+        let is_met = steps.len() == found.len() && steps.iter().zip(&found).all(is_step);
+        let mut shown = String::new();
+        for (letter, numbers) in &found {
+            let numbers: Vec<_> = numbers.iter().map(f64::to_string).collect();
+            write!(shown, "{letter}({}) ", numbers.join(",")).unwrap();
+        }
+        (is_met, shown)
     }
 }
 
-/// The items of an expectation. A semicolon inside quotes belongs to its item.
+/// The items of an expectation.
 fn items(expected: &str) -> impl Iterator<Item = (&str, &str)> {
     expected.split("; ").map(|item| item.trim().split_once('=').unwrap_or_else(|| panic!("item {item}")))
 }
 
-fn is_close(found: &[f64], wanted: &[f64], tolerance: f64) -> bool {
-    found.len() == wanted.len() && found.iter().zip(wanted).all(|(f, w)| (f - w).abs() <= tolerance)
+/// Whether a count is the number, or at least the number before `..`.
+fn at_least(found: u64, expected: &str) -> (bool, String) {
+    let is_met = match expected.strip_suffix("..") {
+        Some(least) => least.parse::<u64>().unwrap() <= found,
+        None => expected.parse() == Ok(found),
+    };
+    (is_met, found.to_string())
 }
 
-/// One thing the machine was told, by its letter and its numbers.
-type PathEntry = (char, Vec<f64>);
-
-#[derive(Default)]
-struct Path {
-    entries: Vec<PathEntry>,
-    stations: Vec<Position>,
-    events: Vec<(Span, EventKind)>,
-}
-
-impl EventSink for Path {
-    fn event(&mut self, event: &Event<'_>) {
-        self.events.push((event.block, event.kind.clone()));
-        let (letter, to) = match &event.kind {
-            EventKind::Rapid { to } => ('R', to),
-            EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => ('F', to),
-            EventKind::Arc { to, .. } => ('A', to),
-            EventKind::Dwell { time } => return self.entries.push(('D', vec![time.0])),
-            _ => return,
-        };
-        self.entries.push((letter, to.0[..3].to_vec()));
-        self.stations.push(*to);
-    }
-}
-
-impl Path {
-    fn ways(&self, axis: usize) -> Vec<f64> {
-        let places: Vec<f64> = std::iter::once(0.0).chain(self.stations.iter().map(|p| p[axis])).collect();
-        places.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| *way != 0.0).collect()
-    }
-
-    fn difference(&self, wanted: &str, tolerance: f64) -> Option<String> {
-        let wanted_path: Vec<PathEntry> = wanted
-            .split_whitespace()
-            .map(|step| {
-                let (letter, rest) = step.split_once('(').unwrap();
-                let numbers = rest.trim_end_matches(')').split(',').map(|n| n.parse().unwrap());
-                (letter.chars().next().unwrap(), numbers.collect())
-            })
-            .collect();
-        let same = |(a, b): (&PathEntry, &PathEntry)| a.0 == b.0 && is_close(&a.1, &b.1, tolerance);
-        let holds =
-            wanted_path.len() == self.entries.len() && self.entries.iter().zip(&wanted_path).all(same);
-        (!holds).then(|| {
-            let mut found = String::new();
-            for (letter, numbers) in &self.entries {
-                let numbers: Vec<_> = numbers.iter().map(f64::to_string).collect();
-                write!(found, "{letter}({}) ", numbers.join(",")).unwrap();
-            }
-            format!("path is {found}, {wanted} is wanted")
-        })
-    }
+/// Whether numbers are those of a list, and the numbers as text.
+fn close(found: &[f64], expected: &str, tolerance: f64) -> (bool, String) {
+    let tolerated = |number: &str| {
+        let (number, own) = number.split_once('±').unwrap_or((number, ""));
+        Some((number.parse::<f64>().ok()?, own.parse().unwrap_or(tolerance)))
+    };
+    let expected: Option<Vec<(f64, f64)>> = expected.split(',').map(tolerated).collect();
+    let is_met = expected.is_some_and(|expected| {
+        let is_close = |(found, (number, by)): (&f64, &(f64, f64))| (found - number).abs() <= *by;
+        found.len() == expected.len() && found.iter().zip(&expected).all(is_close)
+    });
+    (is_met, format!("{found:?}"))
 }

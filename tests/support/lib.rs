@@ -4,7 +4,7 @@
 //! picture's data), and what must come out stands beside it as snapshots. One file per kind in this folder.
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
-pub mod alignment;
+pub mod bench;
 #[cfg(feature = "browser")]
 pub mod browser;
 mod burr_picture;
@@ -17,6 +17,7 @@ pub mod expect;
 mod expected_verdict;
 pub mod fuzz;
 mod r#gen;
+mod macros;
 mod picture;
 pub mod programs;
 pub mod sheet;
@@ -31,11 +32,13 @@ type Run = fn(&Case);
 /// The kinds of cases by their folder under `suite/`.
 pub const KINDS: &[(&str, Run)] = &[
     ("alarm", exec::alarm),
+    ("changes", changes::run),
     ("check", check::run),
     ("cli", cli::run),
     ("control", control::run),
     ("exec", exec::run),
     ("gen", r#gen::run),
+    ("macro", macros::run),
     ("picture", picture::run),
     ("sheet", sheet::run),
     ("syntax", syntax::run),
@@ -76,6 +79,45 @@ impl Case {
         settings.set_prepend_module_to_snapshot(false);
         settings.set_omit_expression(true);
         settings.bind(|| insta::assert_snapshot!(name.to_owned(), shown));
+    }
+}
+
+/// A text with B in place of A, for an edit `A => B`, or of every A, for `A =>> B`; `;` is the end of a line.
+pub(crate) fn edited(text: &str, edit: &str) -> String {
+    let (from, to) = edit.split_once(" =>").unwrap();
+    let (is_everywhere, to) = to.strip_prefix('>').map_or((false, to), |to| (true, to));
+    let [from, to] = [from, to].map(|part| part.trim().replace(';', "\n"));
+    let count = text.matches(&from).count();
+    assert!(if is_everywhere { count > 1 } else { count == 1 }, "{from} is there {count} times:\n{text}");
+    text.replace(&from, &to)
+}
+
+/// The files below a folder with an extension, in the order of their paths; build results are left out.
+pub fn files_below(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).into_iter().flatten() {
+        let path = entry.unwrap().path();
+        if path.is_dir() && path.file_name().is_some_and(|name| name != "target") {
+            found.extend(files_below(&path, extension));
+        } else if path.extension().is_some_and(|own| own == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Copies a folder; snapshots of cases are left out.
+pub fn copy_folder(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy_folder(&path, &target);
+        } else if path.extension().is_none_or(|extension| extension != "snap" && extension != "new") {
+            std::fs::copy(&path, target).unwrap();
+        }
     }
 }
 

@@ -4,16 +4,15 @@
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
 use gcode_draw::{
-    Cylinder, Difference, DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, Sheet, Side, Size,
+    Cylinder, Difference, DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Sheet, Side, Size, Stroke,
     TopView, compare, development, lay_out, paint, png, top_view,
 };
 use gcode_inspect::machine::Machine;
 use gcode_part::Hole;
 use gcode_review::RevisionDiff;
 use gcode_sim::report::changed_view;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ImageFormat, RgbImage};
 use serde::Deserialize;
+use tiny_skia::{IntRect, Pixmap};
 
 use crate::changes::revision;
 use crate::{Case, burr_picture, root};
@@ -146,19 +145,16 @@ fn draw(text: &str) -> (Picture, Sheet) {
         rotary: "B".to_owned(),
         purpose: PicturePurpose::Verdict,
         holes: picture.hole.iter().map(drawn_hole).collect(),
-        path: picture
-            .path
-            .iter()
-            .map(|p| PathPiece {
-                points: p.points.clone(),
-                kind: if p.rapid { PathKind::Rapid } else { PathKind::Feed },
-            })
-            .collect(),
+        path: picture.path.iter().map(stroke).collect(),
         ..TopView::default()
     };
     let scene = if picture.unrolled { development(&view).unwrap() } else { top_view(&view) };
     let sheet = lay_out(&scene, size).unwrap();
     (picture, sheet)
+}
+
+fn stroke(case: &PathCase) -> Stroke<3> {
+    Stroke::new(if case.rapid { Pen::Rapid } else { Pen::Feed }, Shape::Line(case.points.clone()))
 }
 
 fn drawn_hole(case: &HoleCase) -> DrawnHole {
@@ -211,17 +207,10 @@ fn describe(difference: &Difference) -> String {
 }
 
 fn cropped(bytes: &[u8], [left, top, width, height]: [u32; 4]) -> Vec<u8> {
-    let whole = image::load_from_memory_with_format(bytes, ImageFormat::Png).unwrap().to_rgb8();
+    let whole = Pixmap::decode_png(bytes).unwrap();
     assert!(left + width <= whole.width() && top + height <= whole.height(), "the crop leaves the picture");
-    let part: RgbImage = image::imageops::crop_imm(&whole, left, top, width, height).to_image();
-    let mut bytes = Vec::new();
-    part.write_with_encoder(PngEncoder::new_with_quality(
-        &mut bytes,
-        CompressionType::Best,
-        FilterType::NoFilter,
-    ))
-    .unwrap();
-    bytes
+    let part = IntRect::from_xywh(left as i32, top as i32, width, height);
+    png(&part.and_then(|part| whole.clone_rect(part)).unwrap()).unwrap()
 }
 
 /// `INSTA_UPDATE=always` accepts what is new, as for snapshots.

@@ -2,7 +2,7 @@
 //! package that passes is written.
 mod alignment;
 
-use gcode_draw::Scene;
+use gcode_draw::Picture;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
@@ -41,7 +41,7 @@ pub struct CheckedPackage {
     /// Report as printed by `verify`.
     pub report: String,
     /// Pictures, each with its file name without `.png`.
-    pub pictures: Vec<(String, Scene)>,
+    pub pictures: Vec<(String, Picture)>,
     /// The verdict.
     pub verdict: PackageVerdict,
 }

@@ -2,7 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
-use gcode_draw::{Scene, Size};
+use gcode_draw::{Picture, Size};
 use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
@@ -85,7 +85,8 @@ fn stale_files(job: &Job, package: &Package, out: &Path) -> Vec<PathBuf> {
 /// Encodes the pictures as PNG by file name: `O8100.png`, and `O8400-tip.png` for a further view.
 pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)>, UsageError> {
     let size = Size::new(1600, 1200)?;
-    let drawn = |(name, scene): &(String, Scene)| Ok((format!("{name}.png"), gcode_draw::draw(scene, size)?));
+    let drawn =
+        |(name, picture): &(String, Picture)| Ok((format!("{name}.png"), gcode_draw::draw(picture, size)?));
     checked.pictures.iter().map(drawn).collect()
 }
 

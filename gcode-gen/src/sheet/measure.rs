@@ -36,69 +36,58 @@ pub fn characteristics(job: &Job, judgement: &PackageVerdict) -> Vec<Characteris
     }
 }
 
-fn characteristic(
-    reference: &str,
-    name: &'static str,
-    requirement: String,
-    predicted: String,
-) -> Characteristic {
-    Characteristic { reference: reference.to_owned(), name, requirement, predicted }
+impl Characteristic {
+    fn new(
+        reference: &str,
+        name: &'static str,
+        requirement: impl Into<String>,
+        predicted: impl Into<String>,
+    ) -> Self {
+        let (reference, requirement, predicted) =
+            (reference.to_owned(), requirement.into(), predicted.into());
+        Self { reference, name, requirement, predicted }
+    }
 }
 
 fn of_hole(hole: &HoleVerdict, verdict: &Verdict) -> Vec<Characteristic> {
     let reference = format!("hole {}", hole.id);
+    let position = format!("Φ{}", rounded(hole.position_deviation, 4));
+    let actual = format!("{} ({})", rounded(hole.actual.depth, 4), signed(hole.depth_error));
+    hole_characteristics(&reference, hole, verdict, position, actual)
+}
+
+/// Returns position, depth and diameter; the nominal values are those of `hole`.
+fn hole_characteristics(
+    reference: &str,
+    hole: &HoleVerdict,
+    verdict: &Verdict,
+    position: String,
+    depth: String,
+) -> Vec<Characteristic> {
+    let tolerance = format!("Φ{} (ISO 1101)", verdict.tolerance);
+    let nominal = format!("{} ±{}", rounded(hole.nominal.depth, 3), verdict.depth_tolerance);
     let mut all = vec![
-        characteristic(
-            &reference,
-            "position",
-            format!("Φ{} (ISO 1101)", verdict.tolerance),
-            format!("Φ{}", rounded(hole.position_deviation, 4)),
-        ),
-        characteristic(
-            &reference,
-            "depth",
-            depth(hole.nominal.depth, verdict),
-            format!("{} ({})", rounded(hole.actual.depth, 4), signed(hole.depth_error)),
-        ),
+        Characteristic::new(reference, "position", tolerance, position),
+        Characteristic::new(reference, "depth", nominal, depth),
     ];
     all.extend(hole.nominal.diameter.map(|nominal| {
-        let tool =
-            hole.actual.diameter.map_or("unknown".to_owned(), |d| format!("Φ{} (the tool's)", rounded(d, 3)));
-        characteristic(&reference, "diameter", diameter(nominal), tool)
+        let tool = |d: f64| format!("Φ{} (the tool's)", rounded(d, 3));
+        let tool = hole.actual.diameter.map_or("unknown".to_owned(), tool);
+        let limits = format!("Φ{}, limits: see the drawing", rounded(nominal, 3));
+        Characteristic::new(reference, "diameter", limits, tool)
     }));
     all
-}
-
-fn depth(nominal: f64, verdict: &Verdict) -> String {
-    format!("{} ±{}", rounded(nominal, 3), verdict.depth_tolerance)
-}
-
-fn diameter(nominal: f64) -> String {
-    format!("Φ{}, limits: see the drawing", rounded(nominal, 3))
 }
 
 /// Returns the characteristics of a pattern: the extremes over all holes.
 fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
     let reference = format!("all {} holes", verdict.holes.len());
-    let mut all = vec![characteristic(
-        &reference,
-        "position",
-        format!("Φ{} (ISO 1101)", verdict.tolerance),
-        format!("at most Φ{}", rounded(verdict.worst.unwrap_or(0.0), 4)),
-    )];
+    let worst = format!("at most Φ{}", rounded(verdict.worst.unwrap_or(0.0), 4));
     let errors = || verdict.holes.iter().map(|hole| hole.depth_error);
     let (least, most) = (errors().fold(f64::INFINITY, f64::min), errors().fold(f64::NEG_INFINITY, f64::max));
-    if let Some(first) = verdict.holes.first() {
-        let off = format!("{} to {}", signed(least), signed(most));
-        all.push(characteristic(&reference, "depth", depth(first.nominal.depth, verdict), off));
-        all.extend(first.nominal.diameter.map(|nominal| {
-            let tool = first
-                .actual
-                .diameter
-                .map_or("unknown".to_owned(), |d| format!("Φ{} (the tool's)", rounded(d, 3)));
-            characteristic(&reference, "diameter", diameter(nominal), tool)
-        }));
-    }
+    let off = format!("{} to {}", signed(least), signed(most));
+    let Some(first) = verdict.holes.first() else { return Vec::new() };
+    let mut all = hole_characteristics(&reference, first, verdict, worst, off);
     all.extend(verdict.neighbours.iter().flat_map(of_neighbours));
     all
 }
@@ -113,40 +102,30 @@ fn of_neighbours(neighbours: &Neighbours) -> Vec<Characteristic> {
         None => "none".to_owned(),
     };
     let pitch = || format!("{} ({metric})", rounded(*wanted, 4));
+    let new = |name: &'static str, requirement: String, predicted: String| {
+        Characteristic::new("neighbours", name, requirement, predicted)
+    };
     vec![
-        characteristic("neighbours", "minimum distance", pitch(), place(min)),
-        characteristic("neighbours", "maximum distance", pitch(), place(max)),
-        characteristic(
-            "neighbours",
-            "holes with all six neighbours",
-            with_six_wanted.to_string(),
-            with_six.to_string(),
-        ),
+        new("minimum distance", pitch(), place(min)),
+        new("maximum distance", pitch(), place(max)),
+        new("holes with all six neighbours", with_six_wanted.to_string(), with_six.to_string()),
     ]
 }
 
 fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
     let number = |value: Option<f64>, places: usize| value.map_or("-".to_owned(), |v| rounded(v, places));
+    let (nominal, flutes) = (verdict.nominal_flutes.to_string(), verdict.flutes.to_string());
+    let (surface, helix) =
+        (format!("at most {}", verdict.tolerance), format!("0° ±{}°", verdict.helix_tolerance));
+    let helix_error = format!("{}°", number(verdict.helix_error, 3));
+    let index = format!("even ±{}°", verdict.index_tolerance);
+    let index_error = format!("{}° off", number(verdict.index_error, 4));
+    let off = number(verdict.surface_deviation, 4);
     let mut all = vec![
-        characteristic("flutes", "number", verdict.nominal_flutes.to_string(), verdict.flutes.to_string()),
-        characteristic(
-            "tooth bottom",
-            "contact deviation",
-            format!("at most {}", verdict.tolerance),
-            number(verdict.surface_deviation, 4),
-        ),
-        characteristic(
-            "flutes",
-            "helix angle deviation",
-            format!("0° ±{}°", verdict.helix_tolerance),
-            format!("{}°", number(verdict.helix_error, 3)),
-        ),
-        characteristic(
-            "flutes",
-            "index between neighbours",
-            format!("even ±{}°", verdict.index_tolerance),
-            format!("{}° off", number(verdict.index_error, 4)),
-        ),
+        Characteristic::new("flutes", "number", nominal, flutes),
+        Characteristic::new("tooth bottom", "contact deviation", surface, off),
+        Characteristic::new("flutes", "helix angle deviation", helix, helix_error),
+        Characteristic::new("flutes", "index between neighbours", index, index_error),
     ];
     // Helix angles can be measured at these polar angles, on the specified law.
     all.extend(verdict.laws.iter().map(|law| {
@@ -154,7 +133,7 @@ fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
         let requirement = format!("{}° ±{}°", rounded(wanted, 2), verdict.helix_tolerance);
         let place = format!("{}° from the tip", law.polar);
         let found = law.measured.map_or("not measured".to_owned(), |angle| format!("{}°", rounded(angle, 2)));
-        characteristic(&place, "helix angle", requirement, found)
+        Characteristic::new(&place, "helix angle", requirement, found)
     }));
     all
 }
@@ -170,28 +149,21 @@ fn of_alignment(job: &Alignment) -> Vec<Characteristic> {
     let (e, f) = (job.chord.e_radius, job.chord.f_radius);
     let (across, up) = (e - f, height(e) - height(f));
     let chord = (across * across + up * up).sqrt();
-    let mut all = vec![
-        characteristic(
-            "sine table",
-            "angle",
-            format!("{}°", short(table.phi)),
-            format!("{}″ error of the blocks", signed_to(setting.remainder, 2)),
-        ),
-        characteristic(
-            "chord E F",
-            "length",
-            rounded(chord, 4),
-            "the model's; #572 is the difference of the best pair".to_owned(),
-        ),
-    ];
-    all.extend(job.runout.heights.map(|y| {
-        let place = format!("y {}", short(y));
-        characteristic(&place, "run-out", "see the drawing".to_owned(), "not predicted".to_owned())
-    }));
     let limits = &job.limits;
+    let blocks = format!("{}″ error of the blocks", signed_to(setting.remainder, 2));
     let run_out = format!("#580 #581 ±{} mm, #582 #583 ±{}°", short(limits.shift), short(limits.tilt));
-    all.push(characteristic("O8210, last pass", "shift and tilt", run_out, "not predicted".to_owned()));
+    let best = "the model's; #572 is the difference of the best pair";
+    let first = [
+        Characteristic::new("sine table", "angle", format!("{}°", short(table.phi)), blocks),
+        Characteristic::new("chord E F", "length", rounded(chord, 4), best),
+    ];
+    let heights = job.runout.heights.map(|y| format!("y {}", short(y)));
+    let heights =
+        heights.map(|place| Characteristic::new(&place, "run-out", "see the drawing", "not predicted"));
     let dial = format!("±{} mm", short(limits.dial));
-    all.push(characteristic("O8220", "dial along the ellipse", dial, "not predicted".to_owned()));
-    all
+    let last = [
+        Characteristic::new("O8210, last pass", "shift and tilt", run_out, "not predicted"),
+        Characteristic::new("O8220", "dial along the ellipse", dial, "not predicted"),
+    ];
+    first.into_iter().chain(heights).chain(last).collect()
 }

@@ -103,8 +103,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let name = format!("{is} against {was}");
         let (machine, reference) = (&new_request.machine, reference.as_ref());
         let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), reference);
-        let scene = gcode_draw::top_view(&view);
-        render::write(&scene, "1600x1200", path)?;
+        let picture = gcode_draw::top_view(&view);
+        render::write(&picture, "1600x1200", path)?;
         output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
     if let (Some(path), Some(old_trace), Some(new_trace)) = (&arguments.page, &old_trace, &new_trace) {

@@ -8,7 +8,7 @@ use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
-use gcode_draw::{FluteView, Scene, Size, TopView};
+use gcode_draw::{FluteView, Picture, Size, TopView};
 use gcode_inspect::verify::Tolerances;
 use gcode_part::NominalPart;
 use gcode_session::Request;
@@ -66,14 +66,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     )?;
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
-    let (scene, view, run) = match nominal {
+    let (picture, view, run) = match nominal {
         Some(NominalPart::Flutes(mut flutes)) => {
             flutes.surface_tolerance = tolerance.unwrap_or(flutes.surface_tolerance);
             let grind = |request: &Request| gcode_session::grind(request, &mut folders, &flutes);
             let grinding = progress::of_run(&mut request, grind)?;
             let drawn = flute_view::of(&name(&request), &grinding, &grinding.verify());
             let view = arguments.view.unwrap_or(View::Side);
-            (flute_scene(view, &drawn)?, view, grinding.run)
+            (flute_picture(view, &drawn)?, view, grinding.run)
         }
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
@@ -90,21 +90,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                 None => top::of_holes(&name(&request), &simulation, &request.machine),
             };
             let view = arguments.view.unwrap_or(View::Top);
-            (hole_scene(view, &drawn)?, view, simulation.run)
+            (hole_picture(view, &drawn)?, view, simulation.run)
         }
     };
-    write(&scene, &arguments.size, &arguments.output)?;
+    write(&picture, &arguments.size, &arguments.output)?;
     let view = view.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
     let report = RenderReport { picture: arguments.output.display().to_string(), view };
     output::report(&report, RenderReport::text, arguments.format)?;
     Ok(super::findings(&run.findings().collect::<Vec<_>>(), &run))
 }
 
-fn hole_scene(view: View, drawn: &TopView) -> Result<Scene, UsageError> {
+fn hole_picture(view: View, drawn: &TopView) -> Result<Picture, UsageError> {
     let message = match view {
         View::Top => return Ok(gcode_draw::top_view(drawn)),
         View::Development => match gcode_draw::development(drawn) {
-            Some(scene) => return Ok(scene),
+            Some(picture) => return Ok(picture),
             None => "--view development unrolls a cylinder: give its job with --reference",
         },
         View::Side | View::Tip | View::Helix => {
@@ -114,7 +114,7 @@ fn hole_scene(view: View, drawn: &TopView) -> Result<Scene, UsageError> {
     Err(UsageError::new(message))
 }
 
-fn flute_scene(view: View, drawn: &FluteView) -> Result<Scene, UsageError> {
+fn flute_picture(view: View, drawn: &FluteView) -> Result<Picture, UsageError> {
     match view {
         View::Side => Ok(gcode_draw::side_view(drawn)),
         View::Tip => Ok(gcode_draw::tip_view(drawn)),
@@ -125,15 +125,15 @@ fn flute_scene(view: View, drawn: &FluteView) -> Result<Scene, UsageError> {
     }
 }
 
-/// Draws a scene to a PNG file of exactly this size.
-pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageError> {
+/// Draws a picture to a PNG file of exactly this size.
+pub(super) fn write(picture: &Picture, size: &str, path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
     if path.extension().is_some_and(is_other) {
         let (path, png) = (path.display(), path.with_extension("png"));
         return Err(UsageError::new(format!("{path}: a picture is a PNG file: name it {}", png.display())));
     }
     let size: Size = size.parse()?;
-    output::write(path, &gcode_draw::draw(scene, size)?)
+    output::write(path, &gcode_draw::draw(picture, size)?)
 }
 
 /// Returns the file name of the program without its folder.

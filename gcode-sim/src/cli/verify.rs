@@ -11,7 +11,7 @@ use super::{ExitStatus, UsageError, options, output, page, progress, render};
 use crate::report::sarif::Finding;
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view, top};
-use gcode_draw::Scene;
+use gcode_draw::Picture;
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Flutes;
@@ -96,9 +96,9 @@ fn flutes(
     let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, nominal))?;
     let verdict = grinding.verify();
     let table = || flute_table::table(&verdict);
-    let scene = || gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
+    let picture = || gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
     let result = (&verdict, verdict.verdict, verdict.diagnostics.as_slice());
-    print_verdict(arguments, result, &grinding.run, table, scene)
+    print_verdict(arguments, result, &grinding.run, table, picture)
 }
 
 /// Prints a verdict with its findings and draws its picture.
@@ -107,7 +107,7 @@ fn print_verdict(
     (verdict, answer, findings): (&impl Serialize, Answer, &[Diagnostic]),
     run: &Run,
     table: impl Fn() -> String,
-    scene: impl Fn() -> Scene,
+    picture: impl Fn() -> Picture,
 ) -> Result<ExitStatus, UsageError> {
     let sources = run.control.memory().sources();
     match arguments.format {
@@ -116,7 +116,7 @@ fn print_verdict(
         FindingFormat::Sarif => output::sarif(findings.iter().map(|finding| Finding::of(finding, sources)))?,
     }
     if let Some(path) = &arguments.picture {
-        render::write(&scene(), "1600x1200", path)?;
+        render::write(&picture(), "1600x1200", path)?;
         output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
     Ok(match (super::findings(findings, run), answer) {
@@ -139,8 +139,8 @@ fn holes(
         let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
         let view = || top::of_verdict(&name, simulation, reference, verdict, &machine);
         let result = (verdict, verdict.verdict, verdict.diagnostics.as_slice());
-        let scene = || gcode_draw::main_view(&view());
-        print_verdict(arguments, result, &simulation.run, || table(verdict, layout), scene)
+        let picture = || gcode_draw::main_view(&view());
+        print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
     if let Some(path) = &arguments.page {
         let traced = page::simulate_traced(request, &mut folders, reference.surface)?;

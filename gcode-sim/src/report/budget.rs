@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::figures::count;
-use gcode_draw::{Bar, Bars};
+use gcode_draw::{Bar, Plot, PlotBody};
 use gcode_inspect::budget::{Budget, BudgetRequest, ErrorShare, Statistics};
 use gcode_inspect::machine::Distribution;
 
@@ -135,13 +135,13 @@ impl BudgetReport {
     }
 
     /// Returns the shares of the sources as bars.
-    pub(crate) fn bars(&self) -> Bars {
+    pub(crate) fn bars(&self) -> Plot {
         let bar = |row: &SourceRow| Bar {
             name: row.source.clone(),
             length: row.share,
             text: format!("{:.1} %, {:.4} mm", row.share * 100.0, row.moves),
         };
-        Bars {
+        Plot {
             title: "Error sources: share of the mean square".to_owned(),
             notes: vec![
                 format!(
@@ -153,7 +153,7 @@ impl BudgetReport {
                 ),
                 format!("{} samples, seed {}; {}", self.samples, self.seed, self.basis),
             ],
-            bars: self.sources.iter().map(bar).collect(),
+            body: PlotBody::Bars(self.sources.iter().map(bar).collect()),
         }
     }
 }

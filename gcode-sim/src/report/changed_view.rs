@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::figures::{count, rounded};
 use super::hole_changes::remarks;
 use super::top::{Rotary, blank_hole, hide_constant_rotary, outline, round_up, side, side_along_holes};
-use gcode_draw::{DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, TopView};
+use gcode_draw::{DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Stroke, TopView};
 use gcode_inspect::machine::Machine;
 use gcode_part::Reference;
 use gcode_review::{Change, Leg, Paired, Record, Revision, RevisionDiff};
@@ -120,36 +120,38 @@ fn is_of_one_hole(code: &str) -> bool {
 
 struct Path {
     /// Cuts that make no hole: unchanged, new and old ones.
-    cuts: Vec<PathPiece>,
+    cuts: Vec<Stroke<3>>,
     has_other_rapids: bool,
 }
 
 fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Path {
     let mut has_other_rapids = false;
-    let mut pieces: BTreeMap<PathKind, Vec<PathPiece>> = BTreeMap::new();
+    let mut pieces: BTreeMap<Pen, Vec<Vec<[f64; 3]>>> = BTreeMap::new();
     for (place, side) in sides.into_iter().enumerate() {
         let different: BTreeSet<usize> = compared.steps[place].iter().copied().collect();
         let legs = side.record.path(machine, MAX_MOVES, MAX_POINTS);
         has_other_rapids |= legs.iter().any(|leg| leg.kind == "rapid" && different.contains(&leg.step));
         for leg in legs.iter().filter(|leg| leg.kind != "rapid" && !leg.is_of_hole) {
-            let kind = match (different.contains(&leg.step), place) {
+            let pen = match (different.contains(&leg.step), place) {
                 (false, 0) => continue,
-                (false, _) => PathKind::Kept,
-                (true, 0) => PathKind::Gone,
-                (true, _) => PathKind::New,
+                (false, _) => Pen::Unchanged,
+                (true, 0) => Pen::Old,
+                (true, _) => Pen::New,
             };
-            append_leg(pieces.entry(kind).or_default(), leg, kind);
+            append_leg(pieces.entry(pen).or_default(), leg);
         }
     }
-    Path { cuts: pieces.into_values().flatten().collect(), has_other_rapids }
+    let strokes = |(pen, lines): (Pen, Vec<Vec<[f64; 3]>>)| {
+        lines.into_iter().map(move |points| Stroke::new(pen, Shape::Line(points)))
+    };
+    Path { cuts: pieces.into_iter().flat_map(strokes).collect(), has_other_rapids }
 }
 
 /// Joins consecutive cuts to one line, so that their dashes continue.
-fn append_leg(pieces: &mut Vec<PathPiece>, leg: &Leg, kind: PathKind) {
+fn append_leg(pieces: &mut Vec<Vec<[f64; 3]>>, leg: &Leg) {
     let mut points = leg.points.iter().map(|point| point.coords.into());
-    let ends_at = |piece: &&mut PathPiece| piece.points.last().copied() == points.clone().next();
-    match pieces.last_mut().filter(ends_at) {
-        Some(piece) => piece.points.extend(points.skip(1)),
-        None => pieces.push(PathPiece { points: points.by_ref().collect(), kind }),
+    match pieces.last_mut().filter(|piece| piece.last().copied() == points.clone().next()) {
+        Some(piece) => piece.extend(points.skip(1)),
+        None => pieces.push(points.by_ref().collect()),
     }
 }

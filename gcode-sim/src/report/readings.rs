@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::report::figures::count;
 use gcode_control::Outcome;
-use gcode_draw::{Chart, Curve, Graph, Pen, Plot};
+use gcode_draw::{Chart, Curve, Graph, Pen, Plot, PlotBody};
 use gcode_inspect::stylus::{Gap, Reading, ReadingPass};
 use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Severity;
@@ -246,7 +246,7 @@ impl ReadingsReport {
             .into_iter()
             .flatten()
             .collect(),
-            chart: Chart {
+            body: PlotBody::Chart(Chart {
                 x_label: "Path of the ball centre, mm".to_owned(),
                 guides: Vec::new(),
                 gaps,
@@ -257,7 +257,7 @@ impl ReadingsReport {
                     has_zero_line: true,
                     markers: Vec::new(),
                 }],
-            },
+            }),
         }
     }
 }

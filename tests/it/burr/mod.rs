@@ -1,18 +1,16 @@
 //! Burrs from job to verdict: random jobs, both forms of the program, how many moves there are, what the macro refuses.
 mod sample_jobs;
 
-use gcode_control::Outcome;
 use gcode_gen::check::{Programs, check};
-use gcode_gen::families;
-use gcode_gen::package::{Package, file_name};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::Answer;
 use gcode_inspect::verify::flutes::FluteVerdict;
-use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_lang::motion::{EventKind, Position};
 use gcode_lang::units::{Deg, ln};
 use gcode_part::NominalPart;
-use gcode_part::job::Job;
-use gcode_session::{Request, grind, run};
+use gcode_session::{Request, grind};
+use gcode_tests::bench::{Bench, alarm};
+use gcode_tests::expect::Recorder;
 use proptest::prelude::*;
 
 use self::sample_jobs::{Wish, example, wishes};
@@ -22,10 +20,10 @@ fn two_flutes() -> Wish {
     Wish { flutes: 2, ..example() }
 }
 
-/// What is emitted must pass; its verdict.
+/// The verdict on the emitted programs, which must pass.
 fn passed(wish: &Wish) -> FluteVerdict {
-    let job = wish.job();
-    let checked = check(&job, &families::emit(&job)).unwrap();
+    let bench = wish.bench();
+    let checked = check(&bench.job, &bench.package).unwrap();
     assert!(checked.refusals.is_empty(), "{}\n{}", checked.refusals.concat(), wish.text());
     let verdict = checked.verdict.into_flutes().unwrap();
     assert!(verdict.verdict == Answer::Pass);
@@ -57,17 +55,20 @@ proptest! {
     }
 }
 
-/// The verdict on an emitted program in which `from` is replaced.
-fn replaced(from: &str, to: &str) -> FluteVerdict {
-    let job = two_flutes().job();
-    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+fn grind_flutes(bench: &Bench) -> FluteVerdict {
+    let NominalPart::Flutes(flutes) = NominalPart::from_job(&bench.job).unwrap() else {
         panic!("a burr has flutes")
     };
-    let mut package = families::emit(&job);
-    for program in &mut package.programs {
+    grind(&bench.request(8400), &mut Programs(&bench.package), &flutes).unwrap().verify()
+}
+
+/// The verdict on an emitted program in which `from` is replaced.
+fn replaced(from: &str, to: &str) -> FluteVerdict {
+    let mut bench = two_flutes().bench();
+    for program in &mut bench.package.programs {
         program.text = program.text.replace(from, to);
     }
-    grind(&request(&package), &mut Programs(&package), &wanted).unwrap().verify()
+    grind_flutes(&bench)
 }
 
 /// On the cylinder the contact's way is 19/cos 20° mm, and X, A go 19 and 66.036°: G94 takes 68.7/(200/20.219) min, in
@@ -108,32 +109,16 @@ fn an_offset_that_is_off_is_told_as_that() {
     assert!(told.notes[0].contains("X40.030 Y-15.000 from the C axis"), "{told:?}");
 }
 
-/// Every motion of a run.
-#[derive(Default)]
-struct Path(Vec<(bool, Position, f64)>);
-
-impl EventSink for Path {
-    fn event(&mut self, event: &Event<'_>) {
-        match &event.kind {
-            EventKind::Rapid { to } => self.0.push((true, *to, event.seconds.0)),
-            EventKind::Feed { to, .. } => self.0.push((false, *to, event.seconds.0)),
-            _ => {}
-        }
-    }
-}
-
-fn request(package: &Package) -> Request {
-    let main = package.main().unwrap();
-    let machine = Machine::parse(&package.machine).unwrap();
-    Request::new(file_name(main.number), main.text.as_bytes(), machine)
-}
-
-fn path(wish: &Wish) -> Path {
-    let package = families::emit(&wish.job());
-    let mut path = Path::default();
-    let done = run(&request(&package), &mut Programs(&package), &mut path).unwrap();
-    assert!(matches!(done.outcome, Outcome::End), "{:?}", done.outcome);
-    path
+/// Every rapid and feed of a burr's program: whether it is a rapid, its end, its seconds.
+fn moves(wish: &Wish) -> Vec<(bool, Position, f64)> {
+    let mut recorder = Recorder::default();
+    assert_eq!(alarm(&wish.bench().run_to(8400, &mut recorder)), None);
+    let moves = recorder.0.into_iter().filter_map(|(_, kind, seconds)| match kind {
+        EventKind::Rapid { to } => Some((true, to, seconds)),
+        EventKind::Feed { to, .. } => Some((false, to, seconds)),
+        _ => None,
+    });
+    moves.collect()
 }
 
 /// The control computes the very points that the generator writes out, and as fast.
@@ -144,9 +129,9 @@ fn both_forms_make_the_same_moves() {
     // Where the speed along the flute is what keeps moves short.
     let steady = Wish { offset: [-69.4, 34.9], diameter: 4.5, chord_error: 0.009, ..arcs.clone() };
     for wish in [two_flutes(), arcs, published, steady] {
-        let (computed, written) = (path(&wish), path(&Wish { form: "moves", ..wish.clone() }));
-        assert_eq!(computed.0.len(), written.0.len());
-        for (one, other) in computed.0.iter().zip(&written.0) {
+        let (computed, written) = (moves(&wish), moves(&Wish { form: "moves", ..wish.clone() }));
+        assert_eq!(computed.len(), written.len());
+        for (one, other) in computed.iter().zip(&written) {
             assert_eq!(one.0, other.0);
             let apart = one.1.0.iter().zip(&other.1.0).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             // A C that falls halfway between two increments may go either way, and A after it.
@@ -206,85 +191,29 @@ fn there_are_as_few_moves_as_hold_the_chord_error() {
 /// Forward kinematics decides: the same programs on a machine with one axis turned round grind no such burr.
 #[test]
 fn each_axis_sign_counts() {
-    let job = two_flutes().job();
-    let package = families::emit(&job);
-    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
-        panic!("a burr has flutes")
-    };
     for letter in ["X", "Y", "A", "B", "C"] {
-        let (before, after) = package.machine.split_once(&format!("letter = \"{letter}\"")).unwrap();
+        let mut bench = two_flutes().bench();
+        let (before, after) = bench.package.machine.split_once(&format!("letter = \"{letter}\"")).unwrap();
         let turned = after.replacen("sign = 1", "sign = -1", 1);
-        let machine = format!("{before}letter = \"{letter}\"{turned}");
-        let package = Package { machine, ..package.clone() };
-        let verdict = grind(&request(&package), &mut Programs(&package), &wanted).unwrap().verify();
-        assert!(verdict.verdict == Answer::Fail, "{letter} turned round isn't noticed");
+        bench.package.machine = format!("{before}letter = \"{letter}\"{turned}");
+        assert!(grind_flutes(&bench).verdict == Answer::Fail, "the direction of {letter} doesn't count");
     }
 }
 
 #[test]
 fn without_a_wheel_there_is_no_verdict() {
-    let job = example().job();
-    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+    let bench = example().bench();
+    let NominalPart::Flutes(flutes) = NominalPart::from_job(&bench.job).unwrap() else {
         panic!("a burr has flutes")
     };
-    let package = Package { machine: String::new(), ..families::emit(&job) };
-    let error = grind(&request(&package), &mut Programs(&package), &wanted).unwrap_err().to_string();
+    let request = Request { machine: Machine::default(), ..bench.request(8400) };
+    let error = grind(&request, &mut Programs(&bench.package), &flutes).unwrap_err().to_string();
     assert!(error.starts_with("the machine file has no [wheel]"), "{error}");
-}
-
-/// One argument of the macro's call is changed; the alarm comes before anything moves.
-#[test]
-fn the_macro_refuses_what_can_not_be_ground() {
-    let cases = [
-        ("A[#1*360./16.] ", "", 81),
-        ("B20.", "B0.", 82),
-        ("B20.", "B75.", 82),
-        ("C85.", "C90.", 83),
-        ("C85. ", "", 83),
-        ("D0.002", "D0.0009", 84),
-        ("E30.", "E-30.", 85),
-        ("F200. ", "", 86),
-        ("H0.", "H2.", 87),
-        ("H0. ", "", 87),
-        ("I40. ", "", 88),
-        ("J-15. ", "", 89),
-        (" R6.", " R0.", 90),
-        ("V2.3", "V0.", 91),
-        ("W19.", "W-1.", 92),
-        (" W19.", "", 92),
-        (" R6.", " K5. Q4. R6.", 93),
-        (" R6.", " Q4. R6.", 93),
-        (" R6.", " K14. R6.", 94),
-        (" R6.", " K14. Q6. R6.", 95),
-        ("G21", "G20", 96),
-    ];
-    let package = families::emit(&example().job());
-    let text = &package.main().unwrap().text;
-    for (from, to, number) in cases.into_iter().chain([("S3000 M03", "G93", 96)]) {
-        assert!(text.contains(from), "{from} isn't in\n{text}");
-        let mut request = request(&package);
-        request.bytes = text.replacen(from, to, 1).into_bytes().into();
-        let mut path = Path::default();
-        let done = run(&request, &mut Programs(&package), &mut path).unwrap();
-        let Outcome::Alarm(stopped) = &done.outcome else { panic!("{to} raises nothing") };
-        assert_eq!(stopped.alarm.code().to_string(), format!("MC{}", 3000 + number), "{from} -> {to}");
-        assert!(path.0.is_empty(), "{to} is refused after a move");
-    }
-    // What the refused ones differ from is fine.
-    assert!(passed(&Wish { profile: Some((14.0 / 6.0, 4.0 / 6.0)), ..example() }).flutes == 16);
 }
 
 /// The verdict on a program with more blocks before its end, at C 0 with the wheel clear of the burr.
 fn with(blocks: &str) -> FluteVerdict {
-    let job = two_flutes().job();
-    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
-        panic!("a burr has flutes")
-    };
-    let mut package = families::emit(&job);
-    let main = package.programs.iter_mut().find(|program| program.number == 8400).unwrap();
-    assert!(main.text.contains(" G00 C0.\n"));
-    main.text = main.text.replace(" G00 C0.\n", &format!(" G00 C0.\n{blocks}"));
-    grind(&request(&package), &mut Programs(&package), &wanted).unwrap().verify()
+    grind_flutes(&two_flutes().bench().edited(8400, &format!("G00 C0. => G00 C0.;{blocks}")))
 }
 
 /// The blank stands `depth` above the tooth bottom at Y 0; the wheel goes along it from X -19 to X 0.
@@ -320,7 +249,7 @@ fn what_goes_into_the_blank_without_a_pass_is_told() {
 }
 
 fn example_depth() -> f64 {
-    let NominalPart::Flutes(wanted) = NominalPart::from_job(&example().job()).unwrap() else {
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&example().bench().job).unwrap() else {
         panic!("a burr has flutes")
     };
     wanted.tooth_depth.max(wanted.surface_tolerance)
@@ -372,8 +301,8 @@ fn near_the_tip_moves_are_shorter_for_the_helix_angle() {
 #[test]
 fn a_control_too_coarse_for_the_helix_angle_is_told() {
     let text = format!("{}[tolerance]\nhelix = 0.05\n", two_flutes().text());
-    let job = Job::parse(&text).unwrap();
-    let Err(error) = check(&job, &families::emit(&job)) else { panic!("nothing is refused") };
+    let bench = Bench::of(&text);
+    let Err(error) = check(&bench.job, &bench.package) else { panic!("nothing is refused") };
     let error = error.to_string();
     assert!(error.starts_with("the helix angle cannot be kept within 0.05°"), "{error}");
     assert!(error.contains("control.increment = \"IS-C\", if the control has it"), "{error}");

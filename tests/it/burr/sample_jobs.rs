@@ -1,5 +1,5 @@
-//! Burrs that somebody might wish for, as jobs.
-use gcode_part::job::Job;
+//! Jobs of burrs, chosen and random.
+use gcode_tests::bench::Bench;
 use proptest::prelude::*;
 
 /// The keys of a job that differ from test to test.
@@ -52,8 +52,8 @@ impl Wish {
         )
     }
 
-    pub(super) fn job(&self) -> Job {
-        Job::parse(&self.text()).unwrap_or_else(|error| panic!("{error}\n{}", self.text()))
+    pub(super) fn bench(&self) -> Bench {
+        Bench::of(&self.text())
     }
 }
 

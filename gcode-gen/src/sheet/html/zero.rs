@@ -1,11 +1,12 @@
 //! The work zero: a drawing for each family, and the offsets and signs in words.
+use gcode_draw::{Align, Pen, arc};
 use gcode_inspect::verify::Verdict;
 use gcode_part::Flutes;
 use gcode_part::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
 use gcode_sim::report::figures::short;
 use maud::{Markup, html};
 
-use super::drawing::{Anchor, Paper, WIDTH, arrow, centre_line, drawing, line, path, text, thin, zero_sign};
+use super::drawing::{Drawing, WIDTH};
 use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
 use crate::sheet::stop_instructions::tip_is_programmed;
@@ -136,46 +137,33 @@ fn of_alignment(job: &Alignment) -> Markup {
 fn section(surface: Surface, rotary: char, mut tools: Vec<([f64; 4], String)>) -> Markup {
     let (a, b) = (surface.a, surface.b);
     let scale = (150.0 / a).min(220.0 / b);
-    let (wide, high) = (a * scale, b * scale);
-    let paper = Paper { origin: [wide + 40.0, high + 60.0], scale };
-    let height = high + 100.0;
-    let [left, right] = [paper.at(-a, 0.0), paper.at(a, 0.0)];
-    let dome =
-        format!("M{:.1} {:.1}A{wide:.1} {high:.1} 0 0 1 {:.1} {:.1}", left[0], left[1], right[0], right[1]);
-    let zero = paper.at(0.0, 0.0);
-    let column = right[0] + 60.0;
+    let (wide, high, unit) = (a * scale, b * scale, 1.0 / scale);
+    let mut drawing = Drawing::new([wide + 40.0, high + 60.0], high + 100.0, unit);
+    let zero = [0.0, 0.0];
+    drawing.line(Pen::Edge, arc(zero, [a, b], [180.0, 0.0]));
+    drawing.line(Pen::Edge, [[-a - 15.0 * unit, 0.0], [a + 25.0 * unit, 0.0]]);
+    drawing.text([a, 0.0], 30.0, -4.0, Align::Left, "X");
+    drawing.line(Pen::Centre, [[0.0, -25.0 * unit], [0.0, b + 36.0 * unit]]);
+    drawing.text([0.0, b], 0.0, 44.0, Align::Centre, format!("Y, axis of {rotary}"));
+    drawing.zero(zero, 12.0, -20.0, "G54 X0 Y0 Z0");
+    drawing.text([-a / 2.0, 0.0], 0.0, -20.0, Align::Centre, format!("a {}", short(a)));
+    drawing.text([0.0, b / 2.0], -6.0, 0.0, Align::Right, format!("b {}", short(b)));
     // From the top down, each label below the previous one.
     tools.sort_by(|(one, _), (other, _)| other[1].total_cmp(&one[1]));
-    let more = tools.len().saturating_sub(8);
-    tools.truncate(8);
-    let mut below = 24.0;
-    let tools = tools.into_iter().map(|([x, y, across, up], label)| {
-        let tip = paper.at(x, y);
-        let back = [tip[0] + 42.0 * across, tip[1] - 42.0 * up];
-        let place = [column, f64::max(below, back[1])];
-        below = place[1] + 16.0;
-        html! {
-            (arrow(back, tip))
-            (thin(back, [place[0] - 3.0, place[1] - 4.0]))
-            (text(place, Anchor::Start, &label))
-        }
-    });
-    let content = html! {
-        (path(&dome))
-        (line([left[0] - 15.0, left[1]], [right[0] + 25.0, right[1]]))
-        (text([right[0] + 30.0, right[1] + 4.0], Anchor::Start, "X"))
-        (centre_line([zero[0], height - 15.0], [zero[0], 24.0]))
-        (text([zero[0], 16.0], Anchor::Middle, &format!("Y, axis of {rotary}")))
-        (zero_sign(zero))
-        (text([zero[0] + 12.0, zero[1] + 20.0], Anchor::Start, "G54 X0 Y0 Z0"))
-        (text([(zero[0] + left[0]) / 2.0, zero[1] + 20.0], Anchor::Middle, &format!("a {}", short(a))))
-        (text([zero[0] - 6.0, zero[1] - high / 2.0], Anchor::End, &format!("b {}", short(b))))
-        @for tool in tools { (tool) }
-        @if more > 0 {
-            (text([column, zero[1] + 36.0], Anchor::Start, &format!("and {more} more")))
-        }
-    };
-    drawing(height, "The section z = 0 of the part with the work zero at its centre", content)
+    let column = a + 60.0 * unit;
+    let mut top = b + 36.0 * unit;
+    for ([x, y, across, up], label) in tools.iter().take(8) {
+        let back = [x + 42.0 * unit * across, y + 42.0 * unit * up];
+        let place = [column, back[1].min(top)];
+        top = place[1] - 16.0 * unit;
+        drawing.arrow(back, [*x, *y]);
+        drawing.line(Pen::Dimension, [back, [place[0] - 3.0 * unit, place[1] + 4.0 * unit]]);
+        drawing.text(place, 0.0, 0.0, Align::Left, label);
+    }
+    if tools.len() > 8 {
+        drawing.text([column, 0.0], 0.0, -36.0, Align::Left, format!("and {} more", tools.len() - 8));
+    }
+    drawing.markup("The section z = 0 of the part with the work zero at its centre")
 }
 
 fn honeycomb(job: &Honeycomb) -> Vec<String> {
@@ -205,35 +193,27 @@ fn honeycomb(job: &Honeycomb) -> Vec<String> {
 fn of_honeycomb(job: &Honeycomb) -> Markup {
     let (length, outer, bore) = (job.cylinder.length, job.cylinder.outer, job.cylinder.bore);
     let scale = (180.0 / length).min(120.0 / outer);
-    let radius = outer / 2.0;
-    let paper = Paper { origin: [70.0, 60.0], scale };
-    let [first, last] = [paper.at(0.0, 0.0), paper.at(length, -outer)];
-    let (middle, height) = ((first[1] + last[1]) / 2.0, last[1] + 45.0);
-    let sides = format!("M{:.1} {:.1}H{:.1}V{:.1}H{:.1}Z", first[0], first[1], last[0], last[1], first[0]);
-    let end = [last[0] + 105.0 + radius * scale, middle];
-    let content = html! {
-        (path(&sides))
-        (centre_line([first[0] - 25.0, middle], [last[0] + 30.0, middle]))
-        (text([last[0] + 8.0, middle - 5.0], Anchor::Start, &format!("axis of {}, X", job.machine.rotary.letter)))
-        (arrow([first[0], 16.0], [first[0], first[1] - 9.0]))
-        (text([first[0] + 8.0, 22.0], Anchor::Start, &format!("T{}, first hole", job.drill.number)))
-        (zero_sign(first))
-        (text([first[0] + 12.0, first[1] - 6.0], Anchor::Start, "G54 X0 Z0"))
-        (text([(first[0] + last[0]) / 2.0, last[1] + 20.0], Anchor::Middle, &format!("holes from X0 to X{}", short(length))))
-        circle cx=(format!("{:.1}", end[0])) cy=(format!("{:.1}", end[1])) r=(format!("{:.1}", radius * scale)) {}
-        @if bore > 0.0 {
-            circle cx=(format!("{:.1}", end[0])) cy=(format!("{:.1}", end[1])) r=(format!("{:.1}", bore / 2.0 * scale)) {}
-        }
-        (centre_line([end[0], first[1] - 30.0], [end[0], last[1] + 12.0]))
-        (zero_sign([end[0], first[1]]))
-        (text([end[0] + 12.0, first[1] - 6.0], Anchor::Start, "Y0 Z0"))
-        (text([end[0], last[1] + 26.0], Anchor::Middle, &format!("Φ{}", short(outer))))
-    };
-    drawing(
-        height,
-        "The cylinder from the side and along its axis, with the work zero on its surface",
-        content,
-    )
+    let (radius, unit) = (outer / 2.0, 1.0 / scale);
+    let mut drawing = Drawing::new([70.0, 60.0], outer * scale + 105.0, unit);
+    let zero = [0.0, 0.0];
+    drawing.line(Pen::Edge, [zero, [length, 0.0], [length, -outer], [0.0, -outer], zero]);
+    drawing.line(Pen::Centre, [[-25.0 * unit, -radius], [length + 30.0 * unit, -radius]]);
+    let axis = format!("axis of {}, X", job.machine.rotary.letter);
+    drawing.text([length, -radius], 8.0, 5.0, Align::Left, axis);
+    drawing.arrow([0.0, 44.0 * unit], [0.0, 9.0 * unit]);
+    drawing.text(zero, 8.0, 38.0, Align::Left, format!("T{}, first hole", job.drill.number));
+    drawing.zero(zero, 12.0, 6.0, "G54 X0 Z0");
+    let holes = format!("holes from X0 to X{}", short(length));
+    drawing.text([length / 2.0, -outer], 0.0, -20.0, Align::Centre, holes);
+    let end = length + radius + 105.0 * unit;
+    drawing.circle([end, -radius], radius);
+    if bore > 0.0 {
+        drawing.circle([end, -radius], bore / 2.0);
+    }
+    drawing.line(Pen::Centre, [[end, 30.0 * unit], [end, -outer - 12.0 * unit]]);
+    drawing.zero([end, 0.0], 12.0, 6.0, "Y0 Z0");
+    drawing.text([end, -outer], 0.0, -26.0, Align::Centre, format!("Φ{}", short(outer)));
+    drawing.markup("The cylinder from the side and along its axis, with the work zero on its surface")
 }
 
 fn burr(job: &Burr) -> Vec<String> {
@@ -270,37 +250,27 @@ fn of_burr(job: &Burr) -> Markup {
     let (left, right) = (pole.min(-ex), shank.max(-ex));
     let (low, high) = ((-radius).min(-ey), radius.max(-ey));
     let scale = (360.0 / (right - left)).min(170.0 / (high - low));
-    let paper = Paper { origin: [50.0 - left * scale, 40.0 + high * scale], scale };
-    let height = (high - low) * scale + 130.0;
-    let (r, nose) = (radius * scale, -pole * scale);
-    let [top, bottom, back] = [paper.at(0.0, radius), paper.at(0.0, -radius), paper.at(shank, radius)];
-    let outline = format!(
-        "M{:.1} {:.1}H{:.1}A{nose:.1} {r:.1} 0 0 0 {:.1} {:.1}H{:.1}",
-        back[0], top[1], top[0], bottom[0], bottom[1], back[0]
-    );
-    let wheel = format!(
-        "M{:.1} {:.1}A90 90 0 0 1 {:.1} {:.1}",
-        bottom[0] - 64.0,
-        bottom[1] + 27.0,
-        bottom[0] + 64.0,
-        bottom[1] + 27.0
-    );
-    let (centre, c) = (paper.at(0.0, 0.0), paper.at(-ex, -ey));
-    let across = 9.0;
-    let content = html! {
-        (path(&outline))
-        (centre_line([paper.at(pole, 0.0)[0] - 15.0, centre[1]], [back[0] + 12.0, centre[1]]))
-        (thin([centre[0], top[1]], [centre[0], bottom[1]]))
-        (text([back[0] + 14.0, centre[1] + 4.0], Anchor::Start, "X, A"))
-        g stroke="#0072b2" { (path(&wheel)) }
-        (text([bottom[0] + 70.0, bottom[1] + 32.0], Anchor::Start, "wheel"))
-        (zero_sign(bottom))
-        (text([bottom[0] + 12.0, bottom[1] + 46.0], Anchor::Start, "G54 X0 Y0 at C0"))
-        (line([c[0] - across, c[1]], [c[0] + across, c[1]]))
-        (line([c[0], c[1] - across], [c[0], c[1] + across]))
-        (text([c[0] + 12.0, c[1] - 8.0], Anchor::Start, &format!("axis of C: {} {} from here to the cylinder's end", short(ex), short(ey))))
-        (thin(c, centre))
-        (text([WIDTH - 8.0, height - 10.0], Anchor::End, &format!("Φ{}, flutes {} long", short(2.0 * radius), short(job.shape.length))))
-    };
-    drawing(height, "The burr at C0 with the wheel touching it at the work zero", content)
+    let unit = 1.0 / scale;
+    let origin = [50.0 - left * scale, 40.0 + high * scale];
+    let mut drawing = Drawing::new(origin, (high - low) * scale + 130.0, unit);
+    let nose = arc([0.0, 0.0], [-pole, radius], [90.0, 270.0]);
+    drawing.line(Pen::Edge, [vec![[shank, radius]], nose, vec![[shank, -radius]]].concat());
+    drawing.line(Pen::Centre, [[pole - 15.0 * unit, 0.0], [shank + 12.0 * unit, 0.0]]);
+    drawing.line(Pen::Dimension, [[0.0, radius], [0.0, -radius]]);
+    drawing.text([shank, 0.0], 14.0, -4.0, Align::Left, "X, A");
+    let wheel = 90.0 * unit;
+    drawing.line(Pen::Tool, arc([0.0, -radius - wheel], [wheel, wheel], [135.0, 45.0]));
+    let contact = [0.0, -radius];
+    drawing.text(contact, 70.0, -32.0, Align::Left, "wheel");
+    drawing.zero(contact, 12.0, -46.0, "G54 X0 Y0 at C0");
+    let ([x, y], across) = ([-ex, -ey], 9.0 * unit);
+    drawing.line(Pen::Edge, [[x - across, y], [x + across, y]]);
+    drawing.line(Pen::Edge, [[x, y - across], [x, y + across]]);
+    let axis = format!("axis of C: {} {} from here to the cylinder's end", short(ex), short(ey));
+    drawing.text([x, y], 12.0, 8.0, Align::Left, axis);
+    drawing.line(Pen::Dimension, [[x, y], [0.0, 0.0]]);
+    let size = format!("Φ{}, flutes {} long", short(2.0 * radius), short(job.shape.length));
+    let [right, down] = [WIDTH - 8.0 - origin[0], drawing.height - 10.0 - origin[1]];
+    drawing.text([0.0, 0.0], right, -down, Align::Right, size);
+    drawing.markup("The burr at C0 with the wheel touching it at the work zero")
 }

@@ -1,7 +1,7 @@
-//! A block of words: checked as a whole, then carried out.
+//! One block from top to bottom: read, checked as a whole, then carried out.
 //!
-//! What one block does, in this order (operator's manual, order of execution in a block; the machine builder
-//! decides about M codes, this is the usual choice):
+//! Order of execution in a block of words (operator's manual; the machine builder decides about M codes, this is the usual
+//! choice):
 //!  1. modal G codes, F S T D H;
 //!  2. tool change, spindle and coolant on;
 //!  3. tool length offset;
@@ -10,27 +10,25 @@
 //!  6. stop, end;
 //!  7. call or return.
 //!
-//! Most blocks of long programs are plain moves, for which six of these have nothing to do: see [`super::plain_move`].
-use super::block_effects::RunEnd;
-use super::checked::{ExecResult, locate};
+//! Most blocks of long programs are plain moves, for which only step 4 has an effect: see [`super::plain_move`].
 use super::control::Control;
 use super::executor::Executor;
 use super::flow::FrameKind;
+use super::functions::{ExecResult, locate};
 use super::notes::Note;
+use super::outcome::RunEnd;
 use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
-use super::state::State;
 use super::words::{BlockWords, CallingWord};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::StrokeLimits;
 use gcode_lang::motion::EventSink;
 use gcode_lang::program::modes::CutterSide;
 use gcode_lang::program::{CallCode, DialectSyntax, GuardedOp, Library, Memory, OpBody, OpKind, Words};
 use gcode_lang::source::Span;
 
 impl Control {
-    /// Reads the next block and does what it says. A statement never leads into another program: behind one the next block
-    /// is done at once, as long as there are fewer than `until`.
+    /// Executes the next block, and after a statement the blocks that follow it, up to `until` blocks in all: a statement
+    /// never leads into another program.
     #[inline(always)]
     pub(super) fn execute_block<S: EventSink>(
         &mut self,
@@ -39,6 +37,7 @@ impl Control {
         sink: &mut S,
     ) -> ExecResult<()> {
         let Self { memory, executor, plan, block_words, loop_detector, .. } = self;
+        executor.registers.block_effects.set_pause(until);
         let Some(program) = memory.get_mut(executor.flow.frame.program) else {
             return executor.end_of_program(memory);
         };
@@ -51,17 +50,16 @@ impl Control {
             executor.log.blocks += 1;
             executor.flow.frame.next = place + 1;
             match op.body() {
-                OpBody::Plain(OpKind::AssignFree(compute)) => executor.assign(compute)?,
+                OpBody::Plain(OpKind::AssignFree(assign)) => executor.assign(assign)?,
                 OpBody::Plain(OpKind::Statement(statement)) => {
                     executor.statement(program, statement, loop_detector, sink)?;
                 }
                 _ => break (program, op),
             }
-            if executor.log.blocks >= until || !executor.registers.block_effects.is_none() {
+            if executor.registers.block_effects.is_pause(executor.log.blocks) {
                 return Ok(());
             }
         };
-        // In a long file most blocks are plain moves.
         if let OpBody::Plain(OpKind::Words(words)) = op.body()
             && executor.plain_move(op, words, sink).is_some()
         {
@@ -69,46 +67,39 @@ impl Control {
         }
         let mut kind = match op.body() {
             OpBody::Plain(kind) => kind,
-            OpBody::Guarded(asked) if executor.check_guards(asked)? => return Ok(()),
-            OpBody::Guarded(asked) => &asked.kind,
+            OpBody::Guarded(guarded) if executor.check_guards(guarded)? => return Ok(()),
+            OpBody::Guarded(guarded) => &guarded.kind,
         };
         if let OpKind::If { condition, then } = kind
             && executor.registers.evaluate_condition(condition)?
         {
             kind = then;
         }
+        let is_parameter = executor.registers.state.is_in_parameter_input;
         match kind {
-            OpKind::AssignFree(compute) => return executor.assign_out_of_line(compute),
+            OpKind::AssignFree(assign) => return executor.assign_out_of_line(assign),
             OpKind::Statement(statement) => {
                 return executor.any_statement(program, statement, loop_detector, sink);
             }
-            OpKind::Empty if executor.registers.state.is_in_parameter_input && op.number.is_some() => {
-                return Err(
-                    Alarm::ParameterFormat { what: "R is missing".into() }.located_at(executor.flow.block)
-                );
+            OpKind::Empty if is_parameter && op.number.is_some() => {
+                let alarm = Alarm::ParameterFormat { what: "R is missing".into() };
+                return Err(alarm.located_at(executor.flow.block));
             }
-            OpKind::Empty if op.number.is_some() => {
-                executor.process_number_block(executor.flow.block, sink)?
-            }
+            OpKind::Empty if op.number.is_some() => executor.process_number_block(sink)?,
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
-            OpKind::Words(words) if executor.registers.state.is_in_parameter_input => {
-                executor.planner().plan_parameter(
-                    (words, op.number),
-                    block_words,
-                    plan,
-                    executor.flow.block,
-                )?;
-                return self.execute_plan(library, sink);
-            }
             OpKind::Words(words) => {
-                if executor.call_by_block(words, op.number, executor.flow.block)? {
+                if !is_parameter && executor.call_by_block(words, op.number)? {
                     executor.registers.state.codes.o = memory.get(executor.flow.frame.program).shown_number();
                     return Ok(());
                 }
-                executor.planner().plan_words(words, block_words, plan)?;
-                if let Some(number) = op.number {
-                    plan.state.codes.n = number;
+                plan.reset(&executor.registers.state);
+                if is_parameter {
+                    executor.registers.evaluate_words(words, None, block_words)?;
+                    executor.planner(block_words).plan_parameter(words, op.number, plan)?;
+                } else {
+                    executor.plan_words(words, block_words, plan)?;
+                    plan.state.codes.n = op.number.unwrap_or(plan.state.codes.n);
                 }
                 return self.execute_plan(library, sink);
             }
@@ -120,60 +111,65 @@ impl Control {
     }
 }
 
-impl Planner<'_> {
-    /// Checks a block of words and makes the plan of it. An alarm leaves no trace.
-    pub(super) fn plan_words(
+impl Executor {
+    /// Checks a block of words and makes its plan. An alarm leaves no trace.
+    fn plan_words(
         &self,
         words: &Words,
         block_words: &mut BlockWords,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
         let words = self.without_skipped(words);
-        plan.reset(&self.registers.state);
         let mut calling_word = None;
-        if !self.data.settings.code_calls.is_empty() {
-            if self.plan_macro_by_code(words, plan)? {
+        if !self.registers.data.settings.code_calls.is_empty() {
+            let planner = self.planner(block_words);
+            if planner.plan_macro_by_code(words, plan)? {
                 return Ok(());
             }
-            calling_word = self.subprogram_by_code(words)?;
+            calling_word = planner.subprogram_by_code(words)?;
         }
         self.registers.evaluate_words(words, calling_word.as_ref(), block_words)?;
-        self.plan_block(words, calling_word, block_words, plan)
+        self.planner(block_words).plan_block(words, calling_word, plan)
     }
 
-    /// The words of a block but for those behind a block skip that is on.
+    /// Returns the words of a block without those that a block skip inside it excludes.
     #[inline(always)]
     fn without_skipped<'a>(&self, words: &'a Words) -> &'a Words {
         let Some((switch, short)) = words.skipped_form() else { return words };
-        let is_on = self.data.is_skip_on(*switch);
+        let is_on = self.registers.data.is_skip_on(*switch);
         self.registers.block_effects.record_note(Note::BlockSkip { switch: (*switch).max(1), is_on });
         if is_on { short } else { words }
     }
+}
 
-    /// Makes the plan of a block of words that are collected. Nothing changes.
+impl Planner<'_> {
+    /// Makes the plan of a block whose words are evaluated.
     fn plan_block(
         &self,
         words: &Words,
         calling_word: Option<CallingWord>,
-        block_words: &BlockWords,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
-        let span = self.flow.block;
         self.check_words_with_return(words)?;
-        let axis_use = self.apply_modal_codes(block_words, plan, span)?;
-        if self.has_codes(block_words, &plan.state) {
-            self.plan_coded_words(block_words, plan, span)?;
-            self.plan_m_codes(block_words, plan)?;
+        let axis_use = self.apply_modal_codes(plan)?;
+        // A block with nothing but axis words and codes of group 01 has no other codes.
+        if self.words.has_letters(!self.data.settings.axes.letter_bits())
+            || self.words.has_other_g_codes
+            || !self.words.m_codes.is_empty()
+            || plan.state.modal.cutter != CutterSide::Off
+        {
+            self.plan_coded_words(plan)?;
+            self.plan_m_codes(plan)?;
         }
-        let has_new_length = self.plan_length(block_words, plan, span)?;
+        let has_new_length = self.plan_length(plan)?;
         match axis_use {
             Some(axis_use) => {
                 if has_new_length {
                     self.data.recompute_position(&mut plan.state);
                 }
-                self.execute_axis_use(axis_use, block_words, plan, span)?;
+                self.execute_axis_use(axis_use, plan)?;
             }
-            None => self.plan_motion(block_words, plan, has_new_length, span)?,
+            None => self.plan_motion(plan, has_new_length)?,
         }
         if let Some(call) = words.call() {
             self.plan_call(words, call, plan)?;
@@ -183,46 +179,23 @@ impl Planner<'_> {
         }
         if plan.commands_axes {
             plan.state.last_end_point = None;
-            self.check_flow_after_move(&plan.flow, span)?;
+            self.check_flow_after_move(&plan.flow)?;
         }
-        if self.needs_lookahead(block_words, &plan.state) {
-            self.plan_lookahead(axis_use, block_words, plan, span)?;
+        if self.needs_lookahead(&plan.state) {
+            self.plan_lookahead(axis_use, plan)?;
         }
-        self.check_unread(block_words, plan)?;
-        match &self.data.settings.stroke_limits {
-            Some(stroke) => self.check_stroke(stroke, plan, span),
-            None => Ok(()),
+        if let Some(unread) = self.words.first_unread() {
+            self.pass_to_machine_builder(unread, plan)?;
         }
+        self.check_stroke(plan)
     }
 
-    /// Whether a block has anything else than axis words and codes of group 01, or the state depends on D and F alone.
-    #[inline]
-    fn has_codes(&self, block_words: &BlockWords, state: &State) -> bool {
-        block_words.has_letters(!self.data.settings.axes.letter_bits())
-            || block_words.has_non_motion_words()
-            || block_words.m_code_count > 0
-            || state.modal.cutter != CutterSide::Off
-    }
-
-    /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block
-    /// without axes such words go to the machine builder's logic with his M code.
-    #[inline(always)]
-    fn check_unread(&self, block_words: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
-        match block_words.first_unread() {
-            Some(unread) => self.pass_to_machine_builder(unread, block_words, plan),
-            None => Ok(()),
-        }
-    }
-
+    /// Handles a word that nothing has read: with an M code of the machine builder and without axes it goes to that code's
+    /// logic, otherwise it raises an alarm.
     #[inline(never)]
-    fn pass_to_machine_builder(
-        &self,
-        (letter, span): (char, Span),
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-    ) -> ExecResult<()> {
+    fn pass_to_machine_builder(&self, (letter, span): (char, Span), plan: &mut BlockPlan) -> ExecResult<()> {
         match plan.auxiliary_codes.last() {
-            Some(code) if !self.data.names_axis(block_words) => {
+            Some(code) if !self.names_axis() => {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });
                 Ok(())
             }
@@ -230,7 +203,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Only N, P and L may stand beside M99 while G66 is on.
+    /// Raises the alarm of words other than N, P and L beside M99 while G66 is active.
     fn check_words_with_return(&self, words: &Words) -> ExecResult<()> {
         let returns = words.call().is_some_and(|call| call.kind == CallCode::Return);
         if !returns || self.flow.modal_calls.is_empty() {
@@ -243,28 +216,47 @@ impl Planner<'_> {
             None => Ok(()),
         }
     }
+
+    /// Checks the stroke of every move of a block. A real control stops on the way; here nothing has moved.
+    fn check_stroke(&self, plan: &BlockPlan) -> ExecResult<()> {
+        if self.data.settings.stroke_limits.is_none() {
+            return Ok(());
+        }
+        let mut result = plan.events.iter().try_for_each(|(kind, _)| self.data.check_move(kind));
+        if let Some(cycle_plan) = &plan.cycle_plan {
+            cycle_plan.expand(self.data, &mut |kind, _| {
+                if result.is_ok() {
+                    result = self.data.check_move(&kind);
+                }
+            });
+        }
+        if plan.uses_lookahead {
+            plan.lookahead.check_stroke(self.data)?;
+        }
+        self.locate(result)
+    }
 }
 
 impl Executor {
-    /// There is no block any more. A text may just stop; running into `%` or another program is running off the tape.
+    /// Ends a program after its last block: a text may end there, but `%` or another program raises an alarm.
     #[cold]
-    pub(super) fn end_of_program(&mut self, memory: &Memory) -> ExecResult<()> {
+    fn end_of_program(&mut self, memory: &Memory) -> ExecResult<()> {
         let frame = &self.flow.frame;
-        let main = frame.kind == FrameKind::Main;
+        let is_main = frame.kind == FrameKind::Main;
         let Some(program) = memory.programs().get(frame.program.0 as usize) else {
             return Err(Alarm::EndOfRecord.located_at(Span::default()));
         };
         self.flow.block = Span { start: program.span.end, ..program.span };
-        if main && !program.is_closed {
+        if is_main && !program.is_closed {
             self.registers.block_effects.end_run(RunEnd::ProgramEnd);
             return Ok(());
         }
         Err(Alarm::EndOfRecord.located_at(self.flow.block))
     }
 
-    /// Block skip, and ways of writing that not every control reads; whether the block isn't done.
+    /// Checks block skip and syntax that some controls refuse; returns true if the block is skipped.
     #[inline(never)]
-    pub(super) fn check_guards(&mut self, guarded: &GuardedOp) -> ExecResult<bool> {
+    fn check_guards(&mut self, guarded: &GuardedOp) -> ExecResult<bool> {
         if let Some(switch) = guarded.skip {
             let is_on = self.registers.data.is_skip_on(switch);
             self.log.note(Note::BlockSkip { switch: switch.max(1), is_on }, self.flow.block);
@@ -272,11 +264,11 @@ impl Executor {
                 return Ok(true);
             }
         }
-        for form in &guarded.dialect_syntax {
-            if !form.node.is_accepted(&self.registers.data.settings) {
-                return Err(form.node.alarm().located_at(form.span));
+        for syntax in &guarded.dialect_syntax {
+            if !syntax.node.is_accepted(&self.registers.data.settings) {
+                return Err(syntax.node.alarm().located_at(syntax.span));
             }
-            if form.node == DialectSyntax::LowerCase {
+            if syntax.node == DialectSyntax::LowerCase {
                 self.log.note(Note::LowerCase, self.flow.block);
             }
         }
@@ -284,42 +276,19 @@ impl Executor {
     }
 }
 
-impl Planner<'_> {
-    /// Looks at every move of a block before it happens. A real control stops on the way; here nothing has moved.
-    pub(super) fn check_stroke(&self, stroke: &StrokeLimits, plan: &BlockPlan, span: Span) -> ExecResult<()> {
-        for (kind, _) in &plan.events {
-            locate(self.data.check_event(stroke, kind), span)?;
-        }
-        if plan.uses_lookahead {
-            self.data.check_ready_moves(&plan.lookahead)?;
-        }
-        let mut result = Ok(());
-        if let Some(cycle_plan) = &plan.cycle_plan {
-            cycle_plan.expand(self.data, &mut |kind, _| {
-                if result.is_ok() {
-                    result = self.data.check_event(stroke, &kind);
-                }
-            });
-        }
-        locate(result, span)
-    }
-}
-
 impl Control {
-    /// Carries out the plan of a block of words. What can still alarm comes first.
+    /// Carries out the plan of a block of words. Steps that can still raise an alarm come first.
     fn execute_plan<S: EventSink>(&mut self, library: &mut impl Library, sink: &mut S) -> ExecResult<()> {
         let span = self.executor.flow.block;
         let mut flow = std::mem::take(&mut self.plan.flow);
         match &mut flow {
             BlockFlow::Call(call) => {
                 let at = call.span;
-                self.resolve_call(call, library).map_err(|alarm| alarm.located_at(at))?;
+                locate(self.resolve_call(call, library), at)?;
             }
-            BlockFlow::Return { number, target } => {
-                *target = self.find_return(*number).map_err(|alarm| alarm.located_at(span))?;
-            }
+            BlockFlow::Return { number, target } => *target = locate(self.find_return(*number), span)?,
             BlockFlow::Next if self.plan.commands_axes => {
-                self.executor.check_call_after_move().map_err(|alarm| alarm.located_at(span))?;
+                locate(self.executor.check_call_after_move(), span)?;
             }
             BlockFlow::Next | BlockFlow::CancelModal | BlockFlow::End => {}
         }
@@ -329,19 +298,17 @@ impl Control {
             return Err(alarm);
         }
         match flow {
-            BlockFlow::Next if self.plan.commands_axes => self.executor.call_after_move(span),
+            BlockFlow::Next if self.plan.commands_axes => self.executor.call_after_move(),
             BlockFlow::Next => {}
             BlockFlow::Call(call) => {
-                self.executor.make_call(&call, span);
-                let program = self.executor.flow.frame.program;
-                self.executor.registers.state.codes.o = self.memory.get(program).shown_number();
+                self.executor.make_call(&call);
+                self.show_program_number();
             }
             BlockFlow::Return { number, target } => {
-                if let Some(over) = self.return_to(number.zip(target)) {
-                    self.executor.registers.block_effects.end_run(over);
+                if let Some(end) = self.return_to(number.zip(target)) {
+                    self.executor.registers.block_effects.end_run(end);
                 }
-                let program = self.executor.flow.frame.program;
-                self.executor.registers.state.codes.o = self.memory.get(program).shown_number();
+                self.show_program_number();
                 if !self.executor.registers.block_effects.is_run_ended() {
                     self.loop_detector.record_jump(&mut self.executor);
                 }
@@ -353,5 +320,11 @@ impl Control {
             }
         }
         Ok(())
+    }
+
+    /// Sets #4115 to the number of the current program.
+    fn show_program_number(&mut self) {
+        let program = self.executor.flow.frame.program;
+        self.executor.registers.state.codes.o = self.memory.get(program).shown_number();
     }
 }

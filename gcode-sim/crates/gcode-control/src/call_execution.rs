@@ -1,15 +1,14 @@
-//! Calls and returns carried out: programs found, frames pushed and popped, modal calls triggered.
-use super::block_effects::RunEnd;
-use super::checked::ExecResult;
+//! Execution of calls and returns: finds programs, pushes and pops frames, triggers modal calls.
 use super::control::Control;
 use super::executor::Executor;
 use super::flow::{Frame, FrameKind, ModalCall};
+use super::functions::{ExecResult, locate};
 use super::notes::Note;
+use super::outcome::RunEnd;
 use super::plan::{CallKind, CallPlan, ProgramRef};
 use super::variables::{Locals, Value};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{CallCode, Library, OpIndex, Words};
-use gcode_lang::source::Span;
 
 impl Control {
     /// Finds the program of a call and checks the nesting, before anything of the block has happened.
@@ -23,18 +22,16 @@ impl Control {
         }
         let program = match &call.target {
             ProgramRef::Number(number) => {
-                let found = self.memory.fetch(*number, library);
-                found.ok_or(match call.is_external {
-                    true => Alarm::DeviceFileNotFound { number: *number, read_error: library.read_error() },
-                    false => Alarm::ProgramNotFound { number: *number, read_error: library.read_error() },
+                let (number, found) = (*number, self.memory.fetch(*number, library));
+                found.ok_or_else(|| match (call.is_external, library.read_error()) {
+                    (true, read_error) => Alarm::DeviceFileNotFound { number, read_error },
+                    (false, read_error) => Alarm::ProgramNotFound { number, read_error },
                 })?
             }
             ProgramRef::Name(name) => {
                 let found = self.memory.fetch_name(name, library);
-                found.ok_or_else(|| Alarm::FileNotFound {
-                    name: name.clone(),
-                    read_error: library.read_error(),
-                })?
+                let missing = || Alarm::FileNotFound { name: name.clone(), read_error: library.read_error() };
+                found.ok_or_else(missing)?
             }
             ProgramRef::Resolved(program, _) => *program,
         };
@@ -55,27 +52,20 @@ impl Control {
 
 impl Executor {
     /// Makes a call that [`Control::resolve_call`] has found.
-    pub(super) fn make_call(&mut self, call: &CallPlan, block: Span) {
+    pub(super) fn make_call(&mut self, call: &CallPlan) {
         let ProgramRef::Resolved(program, start) = call.target else { return };
-        if call.repeats == 0 {
-            self.log.note(Note::CallRepeatsZero, block);
+        let CallPlan { repeats, locals, origins, .. } = *call;
+        if repeats == 0 {
+            self.log.note(Note::CallRepeatsZero, self.flow.block);
             return;
         }
         let kind = match call.kind {
             CallKind::Modal | CallKind::EveryBlock => {
-                let every = call.kind == CallKind::EveryBlock;
-                let locals = call.locals;
-                let by_code = call.origins;
-                self.flow.modal_calls.push(ModalCall {
-                    program,
-                    repeats: call.repeats,
-                    locals,
-                    is_every_block: every,
-                    origins: by_code,
-                });
+                let is_every_block = call.kind == CallKind::EveryBlock;
+                self.flow.modal_calls.push(ModalCall { program, repeats, locals, is_every_block, origins });
                 self.update_modal_code();
-                if call.is_immediate && every {
-                    self.call_every_block_macro(&call.locals, block);
+                if call.is_immediate && is_every_block {
+                    self.call_every_block_macro(&locals);
                 }
                 return;
             }
@@ -83,20 +73,20 @@ impl Executor {
             CallKind::Macro => FrameKind::Macro,
         };
         if kind == FrameKind::Macro {
-            self.registers.variables.push_level(&call.locals);
+            self.registers.variables.push_level(&locals);
         }
-        let resets_arguments =
-            self.registers.data.settings.undocumented.repeats_reset_locals && call.repeats > 1;
-        let arguments = resets_arguments.then(|| Box::new(call.locals));
-        let modal = self.flow.frame.modal_call_count;
+        let resets_arguments = self.registers.data.settings.undocumented.repeats_reset_locals && repeats > 1;
         self.flow.push(Frame {
-            arguments,
-            modal_call_count: modal,
+            next: start,
+            start,
+            arguments: resets_arguments.then(|| Box::new(locals)),
+            modal_call_count: self.flow.frame.modal_call_count,
             is_external: call.is_external || self.flow.frame.is_external,
-            ..self.flow.callee_frame(program, start, kind, call.repeats, call.origins, block)
+            ..self.flow.callee_frame(program, kind, repeats, origins)
         });
     }
 
+    /// Raises the alarm of a call that is nested too deeply.
     pub(super) fn check_levels(&self, is_macro: bool) -> Result<(), Alarm> {
         if is_macro && self.registers.variables.level() >= self.registers.data.settings.macro_levels {
             return Err(Alarm::TooManyMacroCalls { limit: self.registers.data.settings.macro_levels });
@@ -107,7 +97,7 @@ impl Executor {
         Ok(())
     }
 
-    /// Back from a subprogram or macro to the program that called it.
+    /// Returns from a subprogram or macro to the program that called it.
     pub(super) fn pop(&mut self) {
         match self.flow.frame.kind {
             FrameKind::Macro => self.registers.variables.pop_level(),
@@ -127,7 +117,7 @@ impl Executor {
         }
     }
 
-    /// M99 without P in a called program: the next pass, or back.
+    /// M99 without P in a called program: begins the next pass or returns.
     pub(super) fn repeat_or_pop(&mut self) {
         let frame = &mut self.flow.frame;
         if frame.repeats == 0 {
@@ -142,54 +132,52 @@ impl Executor {
         }
     }
 
-    /// Whether a block with motion may make the modal call that waits for it.
+    /// Checks the modal call that a block with motion triggers.
     pub(super) fn check_call_after_move(&self) -> Result<(), Alarm> {
         self.flow.triggered_call().map_or(Ok(()), |_| self.check_levels(true))
     }
 
-    /// After a block with motion: the last modal call that this program's moves can trigger.
+    /// Calls the macro of G66 after a block with motion, if there is one.
     #[inline]
-    pub(super) fn call_after_move(&mut self, block: Span) {
+    pub(super) fn call_after_move(&mut self) {
         if let Some(index) = self.flow.triggered_call() {
-            self.make_modal_call(index, block);
+            let locals = self.flow.modal_calls[index].locals;
+            self.make_modal_call(index, FrameKind::Modal(index), &locals);
+        }
+    }
+
+    /// Calls the macro of G66.1 with the arguments of a block.
+    fn call_every_block_macro(&mut self, locals: &Locals) {
+        if let Some(index) = self.flow.triggered_call() {
+            self.make_modal_call(index, FrameKind::Macro, locals);
         }
     }
 
     #[inline(never)]
-    fn make_modal_call(&mut self, index: usize, block: Span) {
-        let ModalCall { program, repeats, locals, origins: by_code, .. } =
-            self.flow.modal_calls[index].clone();
-        let frame = Frame {
-            modal_call_count: index,
-            ..self.flow.callee_frame(program, 0, FrameKind::Modal(index), repeats, by_code, block)
-        };
-        self.registers.variables.push_level(&locals);
-        self.flow.push(frame);
+    fn make_modal_call(&mut self, index: usize, kind: FrameKind, locals: &Locals) {
+        let ModalCall { program, repeats, origins, .. } = self.flow.modal_calls[index];
+        let frame = self.flow.callee_frame(program, kind, repeats, origins);
+        self.registers.variables.push_level(locals);
+        self.flow.push(Frame { modal_call_count: index, ..frame });
     }
 
-    /// Under G66.1 a block of words is not executed: its words, G L N P among them, are the macro's arguments.
-    /// M99 and G67 stay what they are.
+    /// Calls the macro of G66.1, if it is active, instead of executing a block of words; returns true if it has. The words,
+    /// G L N P included, are the arguments; M99 and G67 are executed.
     #[inline]
-    pub(super) fn call_by_block(
-        &mut self,
-        words: &Words,
-        number: Option<u32>,
-        block: Span,
-    ) -> ExecResult<bool> {
-        if !self.flow.triggered_call().is_some_and(|i| self.flow.modal_calls[i].is_every_block) {
+    pub(super) fn call_by_block(&mut self, words: &Words, number: Option<u32>) -> ExecResult<bool> {
+        if !self.flow.triggered_call().is_some_and(|index| self.flow.modal_calls[index].is_every_block) {
             return Ok(false);
         }
-        self.call_by_words(words, number, block)
+        self.call_by_words(words, number)
     }
 
     #[inline(never)]
-    fn call_by_words(&mut self, words: &Words, number: Option<u32>, block: Span) -> ExecResult<bool> {
+    fn call_by_words(&mut self, words: &Words, number: Option<u32>) -> ExecResult<bool> {
         match words.call() {
             Some(call) if matches!(call.kind, CallCode::Cancel | CallCode::Return) => return Ok(false),
             Some(call) => {
-                return Err(
-                    Alarm::NotSimulated { what: "a call while G66.1 is on".into() }.located_at(call.span)
-                );
+                let what = "a call while G66.1 is on".into();
+                return Err(Alarm::NotSimulated { what }.located_at(call.span));
             }
             None => {}
         }
@@ -197,25 +185,12 @@ impl Executor {
         if let Some(number) = number {
             locals.set(14, Value::Number(f64::from(number)), 0);
         }
-        self.check_levels(true).map_err(|alarm| alarm.located_at(block))?;
-        self.flow.block = block;
-        self.call_every_block_macro(&locals, block);
+        locate(self.check_levels(true), self.flow.block)?;
+        self.call_every_block_macro(&locals);
         Ok(true)
     }
 
-    /// Calls the macro of G66.1.
-    pub(super) fn call_every_block_macro(&mut self, locals: &Locals, block: Span) {
-        let Some(index) = self.flow.triggered_call() else { return };
-        let ModalCall { program, repeats, origins: by_code, .. } = self.flow.modal_calls[index].clone();
-        let frame = Frame {
-            modal_call_count: index,
-            ..self.flow.callee_frame(program, 0, FrameKind::Macro, repeats, by_code, block)
-        };
-        self.registers.variables.push_level(locals);
-        self.flow.push(frame);
-    }
-
-    /// #4012.
+    /// Sets #4012.
     pub(super) fn update_modal_code(&mut self) {
         use gcode_lang::program::modes::ModalCall;
         self.registers.state.modal.call = match self.flow.modal_calls.last() {
@@ -225,7 +200,7 @@ impl Executor {
         };
     }
 
-    /// G67: the last modal call ends.
+    /// G67: ends the last modal call.
     pub(super) fn cancel_modal(&mut self) {
         self.flow.modal_calls.pop();
         self.update_modal_code();
@@ -233,7 +208,7 @@ impl Executor {
 }
 
 impl Control {
-    /// Where M99 P leads, before anything of its block has happened; `None` where it leads nowhere.
+    /// Returns the operation that M99 P jumps to, before anything of its block has happened; `None` without a jump.
     pub(super) fn find_return(&self, number: Option<u32>) -> Result<Option<OpIndex>, Alarm> {
         let Some(number) = number.filter(|_| !self.is_last_cycle()) else { return Ok(None) };
         let program = self.memory.get(self.return_frame().program);
@@ -241,19 +216,14 @@ impl Control {
         found.map(Some).ok_or(Alarm::SequenceNumberNotFound { number })
     }
 
-    /// Whether M99 of the main program ends the run.
+    /// Returns true if M99 of the main program ends the run.
     fn is_last_cycle(&self) -> bool {
-        let last = self
-            .executor
-            .registers
-            .data
-            .settings
-            .main_program_cycles
-            .is_some_and(|cycles| self.executor.flow.main_passes + 1 >= cycles);
-        last && self.executor.flow.frame.kind == FrameKind::Main
+        let Executor { registers, flow, .. } = &self.executor;
+        let cycles = registers.data.settings.main_program_cycles;
+        flow.frame.kind == FrameKind::Main && cycles.is_some_and(|cycles| flow.main_passes + 1 >= cycles)
     }
 
-    /// The frame in which the run goes on after M99.
+    /// Returns the frame in which the run continues after M99.
     fn return_frame(&self) -> &Frame {
         match self.executor.flow.frame.kind {
             FrameKind::Main => &self.executor.flow.frame,
@@ -261,7 +231,8 @@ impl Control {
         }
     }
 
-    /// M99, and M99 P with its number and the place that [`Control::find_return`] has found.
+    /// Executes M99, or M99 P with its number and the operation of [`Control::find_return`]; returns the end of the run, if
+    /// any.
     pub(super) fn return_to(&mut self, to: Option<(u32, OpIndex)>) -> Option<RunEnd> {
         let is_main = self.executor.flow.frame.kind == FrameKind::Main;
         let ends_run = self.is_last_cycle();

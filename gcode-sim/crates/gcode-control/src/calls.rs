@@ -1,22 +1,26 @@
-//! Calls and returns as a block commands them: prepared, resolved, made.
-use super::checked::ExecResult;
+//! Calls and returns that a block commands: by G65, G66 and M98, and by codes and addresses that parameters define.
 use super::flow::CallOrigins;
-use super::plan::{BlockFlow, BlockPlan, CallKind, CallPlan, ProgramRef};
+use super::functions::{ExecResult, locate};
+use super::plan::{BlockFlow, BlockPlan, CallKind, CallPlan, ProgramRef, TableWrite};
 use super::planner::Planner;
+use super::variables::{VACANT, Value};
+use super::words::{CallingWord, WordNumber, count};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::{CallCode, CallOp, CallTarget, Words, m_codes};
-use gcode_lang::source::Span;
+use gcode_lang::control::{CalledProgram, CodeCallKind};
+use gcode_lang::program::{CallCode, CallOp, CallTarget, LoweredWord, Words, m_codes};
 
 impl Planner<'_> {
-    /// 7. The call or return of a block.
+    /// 7. Plans the call or return of a block.
     pub(super) fn plan_call(&self, words: &Words, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
+        let count = |word: Option<&LoweredWord>| self.registers.count_of_word(words, word);
+        let refuse = |what: &str| Err(Alarm::NotSimulated { what: what.to_owned() }.located_at(call.span));
         let kind = match call.kind {
             CallCode::Return => {
-                let to = match &call.target {
-                    CallTarget::Number(word) => self.registers.count_of_word(words, word)?,
+                let number = match &call.target {
+                    CallTarget::Number(word) => count(Some(word))?,
                     CallTarget::Name(_) | CallTarget::None => None,
                 };
-                plan.flow = BlockFlow::Return { number: to, target: None };
+                plan.flow = BlockFlow::Return { number, target: None };
                 return Ok(());
             }
             CallCode::Cancel => {
@@ -26,47 +30,37 @@ impl Planner<'_> {
                 }
                 return Ok(());
             }
-            // Its moves trigger the calls before its own, and a new one would stand behind those it can't.
+            // The moves of the macro trigger the calls before its own; a new call would follow those it can't trigger.
             CallCode::EveryBlock | CallCode::AfterMoves
                 if self.flow.frame.modal_call_count < self.flow.modal_calls.len() =>
             {
-                let what = "a modal call inside a macro that a modal call runs".into();
-                return Err(Alarm::NotSimulated { what }.located_at(call.span));
+                return refuse("a modal call inside a macro that a modal call runs");
             }
             CallCode::EveryBlock => CallKind::EveryBlock,
             CallCode::Macro => CallKind::Macro,
             CallCode::AfterMoves => CallKind::Modal,
             CallCode::Local if !self.data.settings.has_local_calls => {
-                let what = "M97 with P (a call of the program itself, for M97-CALLS=1)".into();
-                return Err(Alarm::NotSimulated { what }.located_at(call.span));
+                return refuse("M97 with P (a call of the program itself, for M97-CALLS=1)");
             }
             CallCode::File if m_codes::find(198, self.data.settings.codes).is_none() => {
-                return Err(Alarm::NotSimulated { what: "M198 on this control".into() }.located_at(call.span));
+                return refuse("M198 on this control");
             }
             CallCode::Subprogram | CallCode::File | CallCode::Local => CallKind::Subprogram,
         };
-        let start = match &call.start {
-            Some(word) => self.registers.count_of_word(words, word)?,
-            None => None,
-        };
         let undocumented = &self.data.settings.undocumented;
         let missing = match kind {
-            CallKind::Subprogram if undocumented.missing_p_is_311 => {
-                Alarm::NoNameInCall.located_at(call.span)
-            }
-            _ => Alarm::ProgramNotNamed.located_at(call.span),
+            CallKind::Subprogram if undocumented.missing_p_is_311 => Alarm::NoNameInCall,
+            _ => Alarm::ProgramNotNamed,
         };
-        let mut repeats = match &call.repeats {
-            Some(word) => self.registers.count_of_word(words, word)?,
-            None => None,
-        };
+        let missing = missing.located_at(call.span);
+        let (start, mut repeats) = (count(call.start.as_ref())?, count(call.repeats.as_ref())?);
         let target = match &call.target {
             // M98 Q, M98 H and M97 P start in the same program.
             CallTarget::None if start.is_some() => ProgramRef::Resolved(self.flow.frame.program, 0),
             CallTarget::None => return Err(missing),
             CallTarget::Name(name) => ProgramRef::Name(name.clone()),
             CallTarget::Number(word) => {
-                let number = self.registers.count_of_word(words, word)?.ok_or(missing)?;
+                let number = count(Some(word))?.ok_or(missing)?;
                 // M98 P with more than four digits: repeats in front of a four-digit program number.
                 if call.kind == CallCode::Subprogram
                     && self.data.settings.reads_repeats_in_p
@@ -82,17 +76,14 @@ impl Planner<'_> {
         };
         let is_every_block = kind == CallKind::EveryBlock;
         let locals = self.registers.evaluate_arguments(words, &call.arguments, is_every_block)?;
-        let has_own_arguments =
-            self.data.settings.undocumented.every_block_calls_itself && !call.arguments.is_empty();
-        let calls_now = !is_every_block || has_own_arguments;
-        let repeats = repeats.unwrap_or(1);
+        let has_own_arguments = undocumented.every_block_calls_itself && !call.arguments.is_empty();
         plan.flow = BlockFlow::Call(Box::new(CallPlan {
             kind,
             target,
-            repeats,
+            repeats: repeats.unwrap_or(1),
             start,
             locals,
-            is_immediate: calls_now,
+            is_immediate: !is_every_block || has_own_arguments,
             origins: CallOrigins::default(),
             is_external: call.kind == CallCode::File,
             span: call.span,
@@ -100,9 +91,9 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// What comes first after a move is settled where its block does nothing else with the flow of the program.
+    /// Raises the alarm of a block that triggers a modal call by a move and does something else with the program flow.
     #[inline(always)]
-    pub(super) fn check_flow_after_move(&self, flow: &BlockFlow, block: Span) -> ExecResult<()> {
+    pub(super) fn check_flow_after_move(&self, flow: &BlockFlow) -> ExecResult<()> {
         let what = match flow {
             _ if self.flow.triggered_call().is_none() => return Ok(()),
             BlockFlow::Next | BlockFlow::Return { .. } => return Ok(()),
@@ -110,7 +101,170 @@ impl Planner<'_> {
             BlockFlow::CancelModal => "a modal macro call after a block that moves and has G67",
             BlockFlow::End => "a modal macro call after a block that moves and ends the program",
         };
-        let what = format!("{what} (write the move in a block of its own)");
-        Err(Alarm::NotSimulated { what }.located_at(block))
+        Err(self.not_simulated(format!("{what} (write the move in a block of its own)")))
+    }
+
+    /// Plans the call of a macro by a code, which stands first in the block; the other words are the arguments. Returns
+    /// true if there is one.
+    pub(super) fn plan_macro_by_code(&self, words: &Words, plan: &mut BlockPlan) -> ExecResult<bool> {
+        for (place, word) in words.list.iter().enumerate() {
+            let Some(called) = self.program_called_by(words, word)? else { continue };
+            if called.kind == CodeCallKind::Subprogram {
+                continue;
+            }
+            if place > 0 {
+                let what = "words before a code that calls a macro".into();
+                return Err(Alarm::MacroFormat { what }.located_at(words.list[0].span));
+            }
+            if let Some(second) = words.call() {
+                return Err(Alarm::TwoMacroCalls.located_at(second.span));
+            }
+            let call = self.macro_call(called, words, word)?;
+            plan.flow = BlockFlow::Call(Box::new(call));
+            return Ok(true);
+        }
+        Ok(false)
+    }
+
+    fn macro_call(&self, called: CalledProgram, words: &Words, code: &LoweredWord) -> ExecResult<CallPlan> {
+        let arguments = &words.list[1..];
+        let is_every_block =
+            called.kind == CodeCallKind::Modal && self.data.settings.code_calls.modal_is_every_block;
+        for word in arguments.iter().filter(|_| !is_every_block) {
+            match word.letter {
+                b'G' => return Err(Alarm::GAsArgument.located_at(word.span)),
+                // An option of some controls makes an argument of it.
+                b'P' => {
+                    let what = "P as an argument of a code that calls a macro".into();
+                    return Err(Alarm::NotSimulated { what }.located_at(word.span));
+                }
+                _ => {}
+            }
+        }
+        let repeats = arguments.iter().find(|word| word.letter == b'L');
+        let has_own_arguments =
+            self.data.settings.undocumented.every_block_calls_itself && !arguments.is_empty();
+        Ok(CallPlan {
+            kind: match called.kind {
+                CodeCallKind::Modal if is_every_block => CallKind::EveryBlock,
+                CodeCallKind::Modal => CallKind::Modal,
+                CodeCallKind::Macro | CodeCallKind::Subprogram => CallKind::Macro,
+            },
+            target: ProgramRef::Number(called.program),
+            repeats: self.registers.count_of_word(words, repeats)?.unwrap_or(1),
+            start: None,
+            locals: self.registers.evaluate_arguments(words, arguments, is_every_block)?,
+            is_immediate: !is_every_block || has_own_arguments,
+            origins: call_origins(code.letter),
+            is_external: false,
+            span: code.span,
+        })
+    }
+
+    /// Returns the word of a block that calls a subprogram; the other words of the block act first.
+    pub(super) fn subprogram_by_code(&self, words: &Words) -> ExecResult<Option<CallingWord>> {
+        let mut found = None;
+        for (place, word) in words.list.iter().enumerate() {
+            let Some(calling) = self.calling_word(words, place, word)? else { continue };
+            if found.is_some() || words.call().is_some() {
+                return Err(Alarm::TwoSubprogramCalls.located_at(word.span));
+            }
+            found = Some(calling);
+        }
+        Ok(found)
+    }
+
+    fn calling_word(
+        &self,
+        words: &Words,
+        index: usize,
+        word: &LoweredWord,
+    ) -> ExecResult<Option<CallingWord>> {
+        if let Some(call) = self.data.settings.code_calls.address_call(word.letter)
+            && self.code_may_call(word.letter)
+            && self.data.settings.axes.find(word.letter).is_none()
+        {
+            let Some(raw) = self.registers.evaluate_word(words, word)? else { return Ok(None) };
+            let number = match word.letter {
+                b'B' | b'S' | b'T' => f64::from(locate(count(raw, word.letter), word.span)?),
+                letter => self.registers.argument_value(raw, letter),
+            };
+            let (program, value) = (call.program, Some((call.variable, number)));
+            return Ok(Some(CallingWord { index, takes_repeats: false, program, value }));
+        }
+        let called = self.program_called_by(words, word)?;
+        let program =
+            called.filter(|called| called.kind == CodeCallKind::Subprogram).map(|called| called.program);
+        Ok(program.map(|program| CallingWord { index, takes_repeats: true, program, value: None }))
+    }
+
+    /// Plans the subprogram call of a word, with its repetitions.
+    pub(super) fn plan_calling_word(
+        &self,
+        words: &Words,
+        calling: &CallingWord,
+        plan: &mut BlockPlan,
+    ) -> ExecResult<()> {
+        let word = &words.list[calling.index];
+        let repeats = words.list.iter().find(|other| calling.takes_repeats && other.letter == b'L');
+        if let Some((number, value)) = calling.value {
+            plan.writes.push(TableWrite::Variable { number, value: Value::Number(value) });
+        }
+        plan.flow = BlockFlow::Call(Box::new(CallPlan {
+            kind: CallKind::Subprogram,
+            target: ProgramRef::Number(calling.program),
+            repeats: self.registers.count_of_word(words, repeats)?.unwrap_or(1),
+            start: None,
+            locals: VACANT,
+            is_immediate: true,
+            origins: call_origins(word.letter),
+            is_external: false,
+            span: word.span,
+        }));
+        Ok(())
+    }
+
+    /// Returns the program that a G or M code calls; inside a program that a code has called it is an ordinary code.
+    fn program_called_by(&self, words: &Words, word: &LoweredWord) -> ExecResult<Option<CalledProgram>> {
+        if !matches!(word.letter, b'G' | b'M') || !self.code_may_call(word.letter) {
+            return Ok(None);
+        }
+        let Some(raw) = self.registers.evaluate_word(words, word)? else { return Ok(None) };
+        let tenths = match (word.letter, raw) {
+            (b'G', WordNumber::Computed(value)) => (value * 10.0).round(),
+            (b'G', WordNumber::Literal(number)) => number.value() * 10.0,
+            _ => 10.0 * f64::from(locate(count(raw, b'M'), word.span)?),
+        };
+        let code = (0.0..=f64::from(u32::MAX)).contains(&tenths).then_some(tenths as u32);
+        Ok(code.and_then(|code| self.data.settings.code_calls.find_call(word.letter, code)))
+    }
+
+    fn code_may_call(&self, letter: u8) -> bool {
+        self.flow.frame.origins.allows_call(letter == b'G', self.data.settings.code_calls.allows_nested_calls)
+    }
+}
+
+fn call_origins(letter: u8) -> CallOrigins {
+    CallOrigins { has_g_code: letter == b'G', has_other_code: letter != b'G' }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Control, Limits, Value};
+    use gcode_lang::control::Settings;
+    use gcode_lang::motion::Axes;
+    use gcode_lang::program::{Memory, NoLibrary};
+
+    #[test]
+    fn b_calls_where_it_is_no_axis() {
+        for (axes, number) in [("XYZ", Value::Number(7.0)), ("XYZB", Value::Vacant)] {
+            let mut memory = Memory::default();
+            memory.load("b.nc", *b"O1\nB7\nM30\nO9028\n#100=#146\nM99\n");
+            let mut settings = Settings { axes: Axes::new(axes).unwrap(), ..Settings::default() };
+            settings.set("BCS", "1").unwrap();
+            let mut control = Control::new(memory, settings);
+            control.run(Limits::default(), &mut NoLibrary, &mut ());
+            assert_eq!(control.variable(100).unwrap(), number, "{axes}");
+        }
     }
 }

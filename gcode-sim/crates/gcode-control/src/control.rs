@@ -1,70 +1,331 @@
-//! A control with programs in its memory.
+//! A control with programs in its memory: its run, block by block, and what can be seen of it.
+use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use super::executor::Executor;
-use super::flow::Frame;
+use super::functions::ExecResult;
 use super::loop_detection::LoopDetector;
-use super::outcome::{Outcome, Progress};
+use super::notes::Note;
+use super::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress, RunEnd};
 use super::plan::BlockPlan;
-use super::variables::Value;
+use super::state::State;
+use super::variables::{Value, Vars};
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
-use gcode_lang::program::{Memory, ProgramId, Slot};
+use gcode_lang::motion::{AxisIndex, Backtrace, EventSink, Position};
+use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::{Library, Memory, Slot};
 use gcode_lang::source::Span;
+use gcode_lang::units::Seconds;
 
-/// A control with programs in its memory: everything a run is.
+/// Control with programs in its memory.
 #[derive(Debug)]
 pub struct Control {
     pub(super) memory: Memory,
     pub(super) executor: Executor,
     pub(super) plan: BlockPlan,
     pub(super) block_words: BlockWords,
-    pub(super) main: ProgramId,
-    pub(super) outcome: Option<Outcome>,
     pub(super) loop_detector: LoopDetector,
-    pub(super) progress: Option<Arc<Progress>>,
+    outcome: Option<Outcome>,
+    progress: Option<Arc<Progress>>,
 }
 
+/// Observer of a control between its blocks.
+pub trait Observer {
+    /// Returns false if the calls have no effect; consecutive statements are then executed without them.
+    fn is_active(&self) -> bool {
+        true
+    }
+
+    /// Called before a block; [`Control::next_block`] lowers it and changes nothing else.
+    fn before_block(&mut self, control: &mut Control);
+
+    /// Called after the block, or after the alarm that has stopped it.
+    fn after_block(&mut self, control: &Control);
+}
+
+/// No observer.
+impl Observer for () {
+    fn is_active(&self) -> bool {
+        false
+    }
+
+    fn before_block(&mut self, _: &mut Control) {}
+
+    fn after_block(&mut self, _: &Control) {}
+}
+
+impl<O: Observer> Observer for &mut O {
+    fn is_active(&self) -> bool {
+        (**self).is_active()
+    }
+
+    fn before_block(&mut self, control: &mut Control) {
+        (**self).before_block(control);
+    }
+
+    fn after_block(&mut self, control: &Control) {
+        (**self).after_block(control);
+    }
+}
+
+/// Optional observer.
+impl<O: Observer> Observer for Option<O> {
+    fn is_active(&self) -> bool {
+        self.as_ref().is_some_and(O::is_active)
+    }
+
+    fn before_block(&mut self, control: &mut Control) {
+        self.iter_mut().for_each(|observer| observer.before_block(control));
+    }
+
+    fn after_block(&mut self, control: &Control) {
+        self.iter_mut().for_each(|observer| observer.after_block(control));
+    }
+}
+
+/// A run ends after this number of moves, or [`MOVES_PER_BLOCK`] times its limit of blocks: a cycle with K or small pecks
+/// is one block, and a loop with it must end too.
+const MIN_MOVE_LIMIT: u64 = 1_000_000;
+
+const MOVES_PER_BLOCK: u64 = 20;
+
+/// Number of blocks between updates of [`Progress`].
+const PROGRESS_INTERVAL: u64 = 4096;
+
 impl Control {
-    /// A control switched on, about to run the first program of `memory`.
+    /// Returns a control after power-on that will run the first program of `memory`.
     pub fn new(memory: Memory, settings: Settings) -> Self {
-        let executor = Executor::new(settings);
         let mut control = Self {
             memory,
-            executor,
+            executor: Executor::new(settings),
             plan: BlockPlan::default(),
             block_words: BlockWords::default(),
-            main: ProgramId::default(),
-            outcome: None,
             loop_detector: LoopDetector::default(),
+            outcome: None,
             progress: None,
         };
-        control.select(ProgramId::default());
+        if let Some(program) = control.memory.programs().first() {
+            control.executor.registers.state.codes.o = program.shown_number();
+            control.executor.flow.block = program.span;
+        }
         control
     }
 
-    /// Makes another program of the memory the main program.
-    pub fn select(&mut self, program: ProgramId) {
-        self.main = program;
-        self.outcome = None;
-        self.executor.flow.callers.clear();
-        self.executor.flow.frame = Frame::main(program);
-        if let Some(program) = self.memory.programs().get(program.0 as usize) {
-            self.executor.registers.state.codes.o = program.shown_number();
-            self.executor.flow.block = program.span;
-        }
-    }
-
-    /// Lets somebody see how far the run is, and end it.
+    /// Shares the progress of the run, and lets its holder cancel it.
     pub fn set_progress(&mut self, progress: Arc<Progress>) {
         self.progress = Some(progress);
     }
 
-    /// Sets a variable before the run, as the operator would on the screen.
+    /// Sets a variable before the run, as on the control's screen.
     pub fn set_variable(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
-        let written =
-            self.executor.write(Slot::of(number), Value::Number(value), None, Span::default(), &mut ());
-        written.map_err(|alarm| alarm.node)
+        let (slot, value) = (Slot::of(number), Value::Number(value));
+        self.executor.write(slot, value, None, Span::default(), &mut ()).map_err(|alarm| alarm.node)
+    }
+
+    /// Runs to the end, to an alarm, or to a limit.
+    pub fn run<S: EventSink>(&mut self, limits: Limits, library: &mut impl Library, sink: &mut S) -> Outcome {
+        self.run_observed(limits, library, sink, &mut ())
+    }
+
+    /// Runs as [`Control::run`] and calls an observer before and after every block.
+    pub fn run_observed<S: EventSink>(
+        &mut self,
+        limits: Limits,
+        library: &mut impl Library,
+        sink: &mut S,
+        observer: &mut impl Observer,
+    ) -> Outcome {
+        if let Some(outcome) = self.final_outcome() {
+            return outcome;
+        }
+        self.loop_detector.endless_loop = None;
+        self.executor.log.max_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MIN_MOVE_LIMIT);
+        while self.executor.log.blocks < limits.blocks
+            && self.executor.log.moves <= self.executor.log.max_moves
+        {
+            if self.executor.log.blocks.is_multiple_of(PROGRESS_INTERVAL) && self.is_cancelled() {
+                break;
+            }
+            let until =
+                limits.blocks.min((self.executor.log.blocks / PROGRESS_INTERVAL + 1) * PROGRESS_INTERVAL);
+            while self.executor.log.blocks < until {
+                observer.before_block(self);
+                let until = if observer.is_active() { self.executor.log.blocks + 1 } else { until };
+                let result = self.execute_block(until, library, sink);
+                if !self.is_uneventful(&result)
+                    && let Some(outcome) = self.conclude(result, sink)
+                {
+                    observer.after_block(self);
+                    return *outcome;
+                }
+                observer.after_block(self);
+            }
+        }
+        self.outcome = Some(Outcome::Limit);
+        Outcome::Limit
+    }
+
+    /// Updates the [`Progress`] and returns true if its holder has cancelled the run.
+    pub fn is_cancelled(&self) -> bool {
+        self.progress.as_ref().is_some_and(|progress| {
+            progress.blocks.store(self.executor.log.blocks, Ordering::Relaxed);
+            progress.cancel.load(Ordering::Relaxed)
+        })
+    }
+
+    /// Executes one block; returns the outcome when the run ends. A block that raises an alarm has changed nothing.
+    pub fn step<S: EventSink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
+        if let Some(outcome) = self.final_outcome() {
+            return Some(outcome);
+        }
+        self.executor.log.max_moves = u64::MAX;
+        let result = self.execute_block(self.executor.log.blocks + 1, library, sink);
+        self.conclude(result, sink).map(|outcome| *outcome)
+    }
+
+    /// Returns the outcome if the run can't continue, as it can after a limit.
+    fn final_outcome(&self) -> Option<Outcome> {
+        self.outcome.clone().filter(|outcome| !matches!(outcome, Outcome::Limit))
+    }
+
+    /// Returns true if a block has neither an alarm nor another effect on the run, as most blocks.
+    #[inline(always)]
+    fn is_uneventful(&self, result: &ExecResult<()>) -> bool {
+        result.is_ok() && self.executor.registers.block_effects.is_none()
+    }
+
+    /// Records the note of a block; returns the outcome if the block has ended the run.
+    #[inline(never)]
+    fn conclude<S: EventSink>(&mut self, mut result: ExecResult<()>, sink: &mut S) -> Option<Box<Outcome>> {
+        let (note, run_end) = self.executor.registers.block_effects.take();
+        if run_end == Some(RunEnd::ProgramEnd)
+            && let Err(alarm) = self.executor.finish_lookahead(sink)
+        {
+            result = Err(alarm);
+        }
+        if let Some(note) = note {
+            self.executor.log.note(note, self.executor.flow.block);
+        }
+        let outcome = match result {
+            Ok(()) => match run_end? {
+                RunEnd::ProgramEnd => Outcome::End,
+                RunEnd::EndlessLoop | RunEnd::MoveLimit => Outcome::Limit,
+            },
+            Err(alarm) => {
+                self.executor.finish_before_alarm(&alarm, sink);
+                let backtrace = self.executor.flow.backtrace();
+                Outcome::Alarm(AlarmStop { alarm: alarm.node, span: alarm.span, backtrace })
+            }
+        };
+        // The last events may have had effects too.
+        self.executor.registers.block_effects.take();
+        self.outcome = Some(outcome.clone());
+        Some(Box::new(outcome))
+    }
+
+    /// Returns the memory.
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// Returns the settings, with the parameters that the program has written.
+    pub fn settings(&self) -> &Settings {
+        &self.executor.registers.data.settings
+    }
+
+    /// Returns the end of the run; `None` while it continues.
+    pub fn outcome(&self) -> Option<&Outcome> {
+        self.outcome.as_ref()
+    }
+
+    /// Iterates over the variables that aren't vacant, by number: the main program's locals before the reset of M30, and
+    /// the commons.
+    pub fn variables(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        self.executor.registers.variables.nonvacant()
+    }
+
+    /// Returns a variable of any kind, as the program would read it now.
+    pub fn variable(&self, number: u32) -> Result<Value, Alarm> {
+        self.executor.registers.without_side_effects(|registers| registers.read_variable(number))
+    }
+
+    /// Returns the local and common variables.
+    pub fn vars(&self) -> &Vars {
+        &self.executor.registers.variables
+    }
+
+    /// Returns the coordinate of an axis in the active work coordinate system, as #5001….
+    pub fn work_position(&self, axis: AxisIndex) -> f64 {
+        let state = &self.executor.registers.state;
+        self.executor.registers.data.to_program_unit(state, Some(axis), state.programmed[axis])
+    }
+
+    /// Returns the tool centre in machine coordinates, mm and degrees.
+    pub fn machine_position(&self) -> Position {
+        let mut centre = self.executor.registers.state.machine;
+        for axis in 0..self.settings().axes.len() {
+            centre[axis] = self.executor.registers.tool_centre(axis);
+        }
+        centre
+    }
+
+    /// Returns modes and positions.
+    pub fn state(&self) -> &State {
+        &self.executor.registers.state
+    }
+
+    /// Returns the block that began last and the calls that led to it.
+    pub fn backtrace(&self) -> Backtrace {
+        self.executor.flow.backtrace()
+    }
+
+    /// Returns the number of blocks executed.
+    pub fn blocks(&self) -> u64 {
+        self.executor.log.blocks
+    }
+
+    /// Returns the number of moves.
+    pub fn moves(&self) -> u64 {
+        self.executor.log.moves
+    }
+
+    /// Returns the duration of the motion, without acceleration.
+    pub fn seconds(&self) -> Seconds {
+        Seconds(self.executor.registers.clock.motion_seconds)
+    }
+
+    /// Returns the M codes for the machine builder's logic, which isn't simulated, each with its first block.
+    pub fn auxiliary_codes(&self) -> &BTreeMap<u32, Span> {
+        &self.executor.log.auxiliary_codes
+    }
+
+    /// Returns the lines of DPRNT and BPRNT without their ends; see [`printable`](super::printable) for BPRNT.
+    pub fn output(&self) -> &[Vec<u8>] {
+        &self.executor.log.printed
+    }
+
+    /// Returns the first and the last block of the endless loop that has ended the run; `None` if there is none.
+    pub fn endless_loop(&self) -> Option<(Span, Span)> {
+        let found = self.loop_detector.endless_loop?;
+        Some((self.memory.block_span(found.program, found.to)?, found.from))
+    }
+
+    /// Returns the operator stops in order, at most the first ten thousand.
+    pub fn stops(&self) -> &[OperatorStop] {
+        &self.executor.log.stops
+    }
+
+    /// Iterates over the notes, each with its first block.
+    pub fn notes(&self) -> impl Iterator<Item = (Note, Span)> + '_ {
+        self.executor.log.notes.iter().map(|(note, block)| (*note, *block))
+    }
+
+    /// Returns the work coordinate systems other than G54 that the run has moved in before anything set them, each with the
+    /// block that selected it first.
+    pub fn unset_work_systems(&self) -> &[(WorkSystem, Backtrace)] {
+        &self.executor.log.unset_systems
     }
 }

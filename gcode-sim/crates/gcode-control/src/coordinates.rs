@@ -1,52 +1,39 @@
-//! Programmed, work and machine coordinates.
+//! Programmed, work and machine coordinates, and the stored stroke check.
 use super::data::ControlData;
-use super::linear_motion::shortest_rotation;
-use super::offsets::Register;
 use super::state::{EndPoint, State};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
+use gcode_lang::control::StrokeLimits;
+use gcode_lang::motion::{AxisIndex, EventKind, MAX_AXES, PlanarArc, Position};
 use gcode_lang::program::modes::{Length, Unit};
-use gcode_lang::units::{round, round_scaled};
+use gcode_lang::units::{Deg, round, round_scaled};
 
 impl ControlData {
-    /// The zero of the active work coordinate system in machine coordinates.
-    pub(super) fn zero(&self, state: &State, axis: AxisIndex) -> f64 {
-        self.offsets.zero(self.offsets.work_system(state.modal.work), state, axis)
-    }
-
-    /// As [`ControlData::zero`], of all axes.
+    /// Returns the zero of the active work coordinate system of every axis, see [`ControlData::zero`].
     pub(super) fn zeros(&self, state: &State) -> Position {
-        let system = self.offsets.work_system(state.modal.work);
-        let mut zeros = Position::default();
-        for axis in 0..MAX_AXES {
-            zeros[axis] = self.offsets.zero(system, state, axis);
-        }
-        zeros
+        Position(std::array::from_fn(|axis| self.zero(state, axis)))
     }
 
-    /// A programmed point in machine coordinates, tool length included.
+    /// Returns a programmed point in machine coordinates, tool length included.
     pub(super) fn to_machine(&self, state: &State, point: &Position) -> Position {
         let work = state.transform.forward(*point);
         let zero = self.zeros(state);
-        let mut machine = Position::default();
-        for axis in 0..MAX_AXES {
-            machine[axis] = self.on_machine(work[axis], zero[axis], state.length_offset[axis]);
-        }
+        let to_machine = |axis| self.on_machine(work[axis], zero[axis], state.length_offset[axis]);
+        let mut machine = Position(std::array::from_fn(to_machine));
         for axis in self.settings.rollover_axes() {
-            // From where the axis stands, the shorter way: turns already made stay made.
+            // The shorter rotation from the current position; full rotations stay.
             let from = state.machine[axis] - self.zero(state, axis) - state.length_offset[axis];
             machine[axis] = self.remove_residue(state.machine[axis] + shortest_rotation(from, work[axis]));
         }
         machine
     }
 
-    /// A work coordinate in machine coordinates. Which of them is computed may depend on the block, the result must not.
+    /// Returns a work coordinate in machine coordinates; every caller adds in this order, so that all get the same bits.
     #[inline(always)]
     pub(super) fn on_machine(&self, work: f64, zero: f64, length: f64) -> f64 {
         self.remove_residue(work + zero + length)
     }
 
-    /// The tool in the work coordinate system, without the length offset.
+    /// Returns the tool position in the work coordinate system, without the length offset.
     fn work_point(&self, state: &State) -> Position {
         let mut work = Position::default();
         for axis in 0..self.settings.axes.len() {
@@ -56,15 +43,15 @@ impl ControlData {
         work
     }
 
-    /// Mirror, scaling or rotation were switched: the program stands elsewhere in its coordinates, and #5001… go on
-    /// showing where its last move was programmed to end.
+    /// Recomputes the programmed position after a change of mirror, scaling or rotation; #5001… keep showing the programmed
+    /// end of the last move.
     pub(super) fn apply_transform_change(&self, state: &mut State) {
         let (programmed, work) = (self.move_end(state), self.work_point(state));
         self.recompute_position(state);
         state.last_end_point = (state.programmed != programmed).then_some(EndPoint { programmed, work });
     }
 
-    /// The end of the last move as it was programmed.
+    /// Returns the end of the last move as programmed.
     pub(super) fn move_end(&self, state: &State) -> Position {
         let Some(EndPoint { mut programmed, work }) = state.last_end_point else { return state.programmed };
         let now = self.work_point(state);
@@ -74,7 +61,7 @@ impl ControlData {
         programmed
     }
 
-    /// Where the program stands after something other than a move changed its coordinates.
+    /// Recomputes the programmed position after something other than a move has changed its coordinates.
     pub(super) fn recompute_position(&self, state: &mut State) {
         let work = self.work_point(state);
         state.programmed = state.transform.backward(work);
@@ -85,20 +72,19 @@ impl ControlData {
         }
     }
 
-    /// A coordinate without the residues of adding: a hundredth of the increment carries both mm and inches exactly.
+    /// Returns a coordinate without the rounding errors of sums: a hundredth of the increment carries mm and inches exactly.
     #[inline]
     pub(super) fn remove_residue(&self, value: f64) -> f64 {
         let grid = self.settings.increment.per_unit() * 100.0;
         round(value * grid) / grid
     }
 
-    /// A work coordinate from 0 to 360 on an axis that rolls over.
+    /// Returns a work coordinate, from 0 to 360 on an axis that rolls over.
     pub(super) fn wrap_angle(&self, axis: AxisIndex, value: f64) -> f64 {
         if self.settings.rolls_over[axis] { self.remove_residue(value.rem_euclid(360.0)) } else { value }
     }
 
-    /// Where an axis ends that is sent to machine coordinates: one that rolls over goes there by the shorter way and
-    /// unwinds no turns.
+    /// Returns the end of an axis that goes to a machine coordinate: an axis that rolls over takes the shorter rotation.
     pub(super) fn rollover_target(&self, axis: AxisIndex, from: f64, to: f64) -> f64 {
         if self.settings.rolls_over[axis] {
             self.remove_residue(from + shortest_rotation(from, to))
@@ -107,7 +93,7 @@ impl ControlData {
         }
     }
 
-    /// What is stored of an offset that is written in the unit in force: mm, a multiple of the increment.
+    /// Converts an offset from the active unit to mm, a multiple of the increment, as it is stored.
     pub(super) fn to_stored(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
         let is_rotary = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
         let increment = self.settings.increment;
@@ -120,19 +106,19 @@ impl ControlData {
         }
     }
 
-    /// An offset has as many digits as a position.
+    /// Raises the alarm of an offset with more digits than a position.
     pub(super) fn check_offset_range(&self, value: f64) -> Result<f64, Alarm> {
         let is_in_range = value.abs() * self.settings.increment.per_unit() <= 999_999_999.0;
         if is_in_range { Ok(value) } else { Err(Alarm::OffsetValue { value }) }
     }
 
-    /// A length in mm as a program reads it: in the unit in force.
+    /// Converts a length in mm to the active unit, as a program reads it.
     pub(super) fn to_program_unit(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
         let is_rotary = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
         if state.modal.unit == Unit::Inch && !is_rotary { value / 25.4 } else { value }
     }
 
-    /// The length offset that the modal state asks for on its axis, Z.
+    /// Returns the length offset of the modal state, on Z.
     pub(super) fn length_offset(&self, state: &State) -> Result<Position, Alarm> {
         let mut offset = Position::default();
         let sign = match state.modal.length {
@@ -145,43 +131,78 @@ impl ControlData {
         Ok(offset)
     }
 
-    /// An axis of the control by its number from 0 on.
+    /// Returns an axis of the control by its number, counted from 0.
     pub(super) fn check_axis(&self, axis: u32) -> Result<AxisIndex, Alarm> {
         let known = Some(axis as usize).filter(|axis| *axis < self.settings.axes.len());
         known.ok_or(Alarm::AxisNumber { number: i64::from(axis) + 1 })
     }
 
-    /// The control has so many work coordinate systems; 6 are G54 to G59.
+    /// Raises the alarm of a work coordinate system that the control lacks.
     pub(super) fn check_system(&self, system: usize) -> Result<(), Alarm> {
-        if system > 6 + self.offsets.additional.len() {
+        if system >= self.offsets.work.len() {
             return Err(Alarm::OffsetNumber { number: system as i64 - 6 });
         }
         Ok(())
     }
 
-    pub(super) fn register(&self, register: Register) -> Register {
-        match (self.settings.series_15_offsets, register) {
-            (false, same) => same,
-            (true, Register::HGeometry) => Register::HWear,
-            (true, Register::HWear) => Register::HGeometry,
-            (true, Register::DGeometry) => Register::DWear,
-            (true, Register::DWear) => Register::DGeometry,
+    /// Stored stroke check 1 (parameters 1320 and 1321): raises the alarm of a move beyond the limits, if there are any.
+    pub(super) fn check_move(&self, kind: &EventKind) -> Result<(), Alarm> {
+        let (Some(stroke), Some(to)) = (&self.settings.stroke_limits, kind.end()) else { return Ok(()) };
+        self.check_point(stroke, to)?;
+        if let EventKind::Arc { arc, .. } = kind {
+            extremes(arc, to).iter().flatten().try_for_each(|point| self.check_point(stroke, point))?;
         }
+        Ok(())
     }
 
-    /// Geometry and wear of a D number, or half of them with ODI; `None` where it isn't in the table.
-    pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
-        let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
-        let sum = geometry + self.offsets.tool(Register::DWear, d).ok()?;
-        Some(if self.settings.offsets_are_diameters { sum / 2.0 } else { sum })
+    fn check_point(&self, stroke: &StrokeLimits, point: &Position) -> Result<(), Alarm> {
+        for (axis, letter) in self.settings.axes.iter() {
+            // An axis that rolls over has no end.
+            if self.settings.rolls_over[axis] {
+                continue;
+            }
+            let value = point[axis];
+            if let Some(limit) = stroke.max[axis].filter(|limit| value > *limit) {
+                return Err(Alarm::Overtravel { letter, is_plus: true, value, limit });
+            }
+            if let Some(limit) = stroke.min[axis].filter(|limit| value < *limit) {
+                return Err(Alarm::Overtravel { letter, is_plus: false, value, limit });
+            }
+        }
+        Ok(())
     }
+}
+
+/// Returns the points with the largest and smallest coordinates of a circle that an arc passes, the other axes at its end.
+fn extremes(arc: &PlanarArc, to: &Position) -> [Option<Position>; 4] {
+    let (x, y) = (to[arc.plane.0] - arc.centre.0, to[arc.plane.1] - arc.centre.1);
+    let radius = libm::hypot(x, y);
+    let end = Deg::atan2(y, x).0;
+    [(0.0, (1.0, 0.0)), (90.0, (0.0, 1.0)), (180.0, (-1.0, 0.0)), (270.0, (0.0, -1.0))].map(
+        |(angle, (cosine, sine))| {
+            // Angle from the point to the end, in the direction of the sweep.
+            let back = (end - angle).rem_euclid(360.0);
+            let passed = if arc.sweep.0 > 0.0 { back } else { (360.0 - back).rem_euclid(360.0) };
+            (passed < arc.sweep.0.abs()).then(|| {
+                let mut point = *to;
+                point[arc.plane.0] = arc.centre.0 + radius * cosine;
+                point[arc.plane.1] = arc.centre.1 + radius * sine;
+                point
+            })
+        },
+    )
+}
+
+/// Returns the rotation of an axis that rolls over: the shorter one, 180° in the plus direction.
+pub(super) fn shortest_rotation(from: f64, to: f64) -> f64 {
+    let rotation = (to - from).rem_euclid(360.0);
+    if rotation > 180.0 { rotation - 360.0 } else { rotation }
 }
 
 #[cfg(test)]
 mod tests {
-    use gcode_lang::control::Settings;
-
     use super::*;
+    use gcode_lang::control::Settings;
 
     fn at(x: f64, z: f64) -> Position {
         let mut position = Position::default();
@@ -207,5 +228,12 @@ mod tests {
         data.recompute_position(&mut state);
         assert_eq!(state.programmed, at(20.0, 0.0));
         assert_eq!(data.to_machine(&state, &state.programmed), state.machine);
+    }
+
+    #[test]
+    fn a_rotary_axis_takes_the_shorter_rotation() {
+        assert_eq!(shortest_rotation(0.0, -150.0), -150.0);
+        assert_eq!(shortest_rotation(210.0, 540.0), -30.0);
+        assert_eq!(shortest_rotation(0.0, 180.0), 180.0);
     }
 }

@@ -1,40 +1,26 @@
-//! A drilling block, checked: where its holes are, and its moves one by one, the steps of the cycle at every hole.
+//! Expands a checked drilling block: its holes, and the steps of the cycle at each of them.
 use super::data::ControlData;
-use super::pecks::for_each_peck;
-use super::state::{PolarPoint, State};
+use super::state::{CycleState, PeckSchedule, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::ReturnTo;
-use gcode_lang::units::{Deg, MmPerMin, Rpm, Seconds};
+use gcode_lang::units::{MmPerMin, Rpm, Seconds};
 
-/// A drilling block, checked: telling it can't fail.
+/// Checked drilling block; its expansion can't fail.
 #[derive(Clone, Debug)]
 pub(super) struct CyclePlan {
     pub(super) cycle: &'static Cycle,
-    /// Where the block begins; after it the plan's state stands where it ends.
+    /// State at the start of the block; that of the plan is at its end.
     pub(super) start_state: State,
-    /// The first hole, as programmed, and from hole to hole.
-    pub(super) first_hole: Position,
-    pub(super) hole_step: Position,
-    pub(super) polar_repeats: Option<PolarRepeats>,
-    pub(super) pattern: Option<BoltHolePattern>,
-    pub(super) repeats: u32,
+    /// Holes as programmed, at the initial level.
+    pub(super) holes: Vec<Position>,
     pub(super) axis: AxisIndex,
     pub(super) shift: (AxisIndex, f64),
     pub(super) rate: MmPerMin,
-    /// Seconds.
+    /// Dwell, seconds.
     pub(super) dwell: f64,
-    /// What G51 makes of a millimetre along the drilling axis; Q, 5114 and 5115 are not scaled.
+    /// Scale of G51 along the drilling axis; Q, 5114 and 5115 are not scaled.
     pub(super) stretch: f64,
-}
-
-/// Holes that K repeats in polar coordinates.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PolarRepeats {
-    pub(super) plane: (AxisIndex, AxisIndex),
-    pub(super) first: PolarPoint,
-    /// Degrees from hole to hole.
-    pub(super) angle_step: f64,
 }
 
 impl CyclePlan {
@@ -50,11 +36,9 @@ impl CyclePlan {
         };
         let cycle = &state.cycle;
         let (r, z) = (cycle.r_level(), cycle.z_level());
-        let mut hole = self.first_hole;
-        for repeat in 0..self.repeats {
-            self.move_to_hole(data, repeat, &mut hole);
+        for hole in &self.holes {
             let level = |value: f64| {
-                let mut point = hole;
+                let mut point = *hole;
                 point[self.axis] = value;
                 data.to_machine(state, &point)
             };
@@ -71,6 +55,7 @@ impl CyclePlan {
         }
     }
 
+    /// Emits one step of the cycle; `level` is the point of the hole at a height.
     fn drill_step<T: FnMut(EventKind, f64)>(
         &self,
         step: CycleStep,
@@ -82,7 +67,7 @@ impl CyclePlan {
         let state = &self.start_state;
         let initial = state.cycle.initial;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
-        let turning = |turning| EventKind::Spindle { direction: turning, speed: Rpm(state.codes.s) };
+        let spindle = |direction| EventKind::Spindle { direction, speed: Rpm(state.codes.s) };
         let goes_back = match step {
             CycleStep::RapidBack | CycleStep::RapidToInitial => to_initial,
             CycleStep::RapidToInitialAlways => true,
@@ -125,75 +110,26 @@ impl CyclePlan {
             CycleStep::RapidToInitial => {}
             CycleStep::RapidToInitialAlways => motion.rapid_along_axis(level(initial), self.axis),
             CycleStep::RapidToR => motion.rapid_along_axis(level(r), self.axis),
-            CycleStep::Shift => {
+            CycleStep::Shift | CycleStep::ShiftBack => {
+                let (axis, distance) = self.shift;
+                let distance = if step == CycleStep::Shift { distance } else { -distance };
                 let mut to = motion.at;
-                to[self.shift.0] = data.remove_residue(to[self.shift.0] + self.shift.1);
+                to[axis] = data.remove_residue(to[axis] + distance);
                 motion.rapid(to);
             }
-            CycleStep::ShiftBack => {
-                let mut to = motion.at;
-                to[self.shift.0] = data.remove_residue(to[self.shift.0] - self.shift.1);
-                motion.rapid(to);
-            }
-            CycleStep::SpindleStop => (motion.emit)(turning(SpindleDirection::Off), 0.0),
-            CycleStep::SpindleForward => (motion.emit)(turning(SpindleDirection::Clockwise), 0.0),
-            CycleStep::SpindleReverse => (motion.emit)(turning(SpindleDirection::Counterclockwise), 0.0),
+            CycleStep::SpindleStop => (motion.emit)(spindle(SpindleDirection::Off), 0.0),
+            CycleStep::SpindleForward => (motion.emit)(spindle(SpindleDirection::Clockwise), 0.0),
+            CycleStep::SpindleReverse => (motion.emit)(spindle(SpindleDirection::Counterclockwise), 0.0),
             CycleStep::ManualRetract => {
-                let stop = EventKind::Stop {
-                    kind: StopKind::M00,
-                    text: "retract by hand to R".into(),
-                    variables: Vec::new(),
-                };
-                (motion.emit)(stop, 0.0);
+                let (text, variables) = ("retract by hand to R".into(), Vec::new());
+                (motion.emit)(EventKind::Stop { kind: StopKind::M00, text, variables }, 0.0);
                 motion.rapid(level(r));
             }
         }
     }
-
-    /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
-    fn move_to_hole(&self, data: &ControlData, turn: u32, hole: &mut Position) {
-        if let Some(BoltHolePattern { radius, start, angle_step: angle, .. }) = self.pattern {
-            let angle = Deg(start + f64::from(turn) * angle);
-            hole[0] = data.remove_residue(self.first_hole[0] + radius * angle.cos());
-            hole[1] = data.remove_residue(self.first_hole[1] + radius * angle.sin());
-            return;
-        }
-        if turn == 0 {
-            return;
-        }
-        let from = *hole;
-        for (place, _) in data.settings.axes.iter() {
-            hole[place] =
-                data.remove_residue(self.first_hole[place] + f64::from(turn) * self.hole_step[place]);
-        }
-        if let Some(PolarRepeats { plane, first, angle_step: angle }) = self.polar_repeats {
-            (hole[plane.0], hole[plane.1]) = (from[plane.0], from[plane.1]);
-            let here = PolarPoint { angle: first.angle + f64::from(turn) * angle, ..first };
-            data.polar_point(&here, plane, hole);
-        }
-    }
-
-    /// The axes whose place on the part isn't known when it begins.
-    pub(super) fn unknown_axes(&self) -> u8 {
-        self.start_state.work_zero_unknown
-    }
-
-    /// The tool comes from here.
-    pub(super) fn set_start(&mut self, machine: Position) {
-        self.start_state.machine = machine;
-    }
-
-    /// Where the last hole is.
-    pub(super) fn last_hole(&self, data: &ControlData) -> Position {
-        let mut hole = self.first_hole;
-        for turn in 0..self.repeats {
-            self.move_to_hole(data, turn, &mut hole);
-        }
-        hole
-    }
 }
 
-/// The tool on its way through a cycle, in machine coordinates.
+/// Motion of the tool through a cycle, in machine coordinates.
 struct CycleMotion<'c, T> {
     data: &'c ControlData,
     at: Position,
@@ -203,9 +139,9 @@ struct CycleMotion<'c, T> {
 }
 
 impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
-    /// From the next move's end on the axis stands where its place on the part is known, or isn't.
-    fn set_work_zero(&mut self, axis: AxisIndex, unplaced: bool) {
-        let axes = self.unknown_axes & !(1 << axis) | u8::from(unplaced) << axis;
+    /// Sets whether the position of an axis on the part is unknown from the end of the next move on.
+    fn set_work_zero(&mut self, axis: AxisIndex, is_unknown: bool) {
+        let axes = self.unknown_axes & !(1 << axis) | u8::from(is_unknown) << axis;
         if axes != self.unknown_axes {
             self.unknown_axes = axes;
             (self.emit)(EventKind::WorkZeroUnknown { axes }, 0.0);
@@ -219,11 +155,11 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
         }
     }
 
-    /// Along the drilling axis only: the plane keeps its shift.
+    /// Moves along the drilling axis only; the plane keeps its shift.
     fn rapid_along_axis(&mut self, to: Position, axis: AxisIndex) {
-        let mut there = self.at;
-        there[axis] = to[axis];
-        self.rapid(there);
+        let mut point = self.at;
+        point[axis] = to[axis];
+        self.rapid(point);
     }
 
     fn feed(&mut self, to: Position) {
@@ -241,24 +177,62 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
     }
 }
 
-/// Holes round the point where the block stands.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BoltHolePattern {
-    pub(super) count: u32,
-    /// mm.
-    pub(super) radius: f64,
-    /// Degrees from X+ to the first hole, and from hole to hole.
-    pub(super) start: f64,
-    pub(super) angle_step: f64,
+/// Largest number of pecks in one block; a run must end.
+const MAX_PECKS: f64 = 1e6;
+
+/// Visits the pecks from R to Z with their start, end and whether they are the last; the last peck is the remainder.
+pub(super) fn for_each_peck((r, z): (f64, f64), data: &CycleState, mut emit: impl FnMut(f64, f64, bool)) {
+    let pecks = peck_count(r, z, data);
+    let mut last = r;
+    let mut count = 1.0;
+    while count <= pecks {
+        let is_last = count == pecks;
+        let next = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
+        emit(last, next, is_last);
+        last = next;
+        count += 1.0;
+    }
+}
+
+/// Returns the depth below R after a number of pecks.
+fn peck_depth(data: &CycleState, count: f64) -> f64 {
+    let Some(PeckSchedule { first, decrement, minimum }) = data.pecks else {
+        return count * data.q.unwrap_or(0.0).abs();
+    };
+    // Pecks longer than the shortest first, then the shortest ones.
+    let longer_count =
+        if decrement > 0.0 { ((first - minimum) / decrement + 1e-9).floor() + 1.0 } else { count };
+    let shrinking = count.min(longer_count);
+    shrinking * first - decrement * shrinking * (shrinking - 1.0) / 2.0 + (count - shrinking) * minimum
+}
+
+/// Returns the number of pecks of a hole from R to Z.
+fn peck_count(r: f64, z: f64, data: &CycleState) -> f64 {
+    let total_depth = (z - r).abs();
+    if data.pecks.is_none() {
+        return match data.q {
+            Some(q) if q != 0.0 => (total_depth / q.abs() - 1e-9).ceil().max(1.0),
+            _ => 1.0,
+        };
+    }
+    let mut count = 1.0;
+    while peck_depth(data, count) < total_depth - 1e-9 && count <= MAX_PECKS {
+        count += 1.0;
+    }
+    count
+}
+
+/// Returns true if a block with a number of holes has more than [`MAX_PECKS`] pecks.
+pub(super) fn has_too_many_pecks(data: &CycleState, holes: u32) -> bool {
+    peck_count(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > MAX_PECKS
 }
 
 #[cfg(test)]
 mod tests {
-    use gcode_lang::control::Settings;
-    use gcode_lang::program::cycles;
-
     use super::*;
     use crate::state::{CycleLevel, CycleState};
+    use gcode_lang::control::Settings;
+    use gcode_lang::program::cycles;
 
     fn at(x: f64, z: f64) -> Position {
         let mut position = Position::default();
@@ -283,11 +257,7 @@ mod tests {
         let plan = CyclePlan {
             cycle,
             start_state: from,
-            first_hole: at(10.0, 50.0),
-            hole_step: Position::default(),
-            polar_repeats: None,
-            pattern: None,
-            repeats: 1,
+            holes: vec![at(10.0, 50.0)],
             axis: 2,
             shift: (0, 0.0),
             rate: MmPerMin(100.0),

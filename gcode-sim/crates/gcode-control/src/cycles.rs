@@ -1,27 +1,37 @@
-//! Checks a drilling block: its axis, its words, its repeats, and where it ends.
-use super::checked::{ExecResult, locate};
-use super::cycle_expansion::{BoltHolePattern, CyclePlan, PolarRepeats};
+//! Checks a drilling block: its axis, words, repeats and end; G70 and G71 of a Haas repeat it round a centre.
+use super::cycle_expansion::{CyclePlan, has_too_many_pecks};
+use super::functions::ExecResult;
 use super::notes::Note;
-use super::pecks::has_too_many_pecks;
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::{CycleLevel, PeckSchedule, State};
-use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
+use gcode_lang::program::g_codes::HolePattern;
 use gcode_lang::program::modes::{Distance, Plane, Polar, ReturnTo};
-use gcode_lang::source::Span;
+use gcode_lang::units::Deg;
+
+/// Holes round the current position.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BoltHolePattern {
+    count: u32,
+    /// mm.
+    radius: f64,
+    /// Degrees from X+ to the first hole, and from hole to hole.
+    start: f64,
+    angle_step: f64,
+}
 
 impl Planner<'_> {
-    /// Whether a block drills: it names an axis or R.
-    pub(super) fn is_drilling_block(&self, block_words: &BlockWords) -> bool {
-        block_words.has(b'R') || self.data.names_axis(block_words)
+    /// Returns true if the block drills: it names an axis or R.
+    pub(super) fn is_drilling_block(&self) -> bool {
+        self.words.has(b'R') || self.names_axis()
     }
 
-    /// Z; with FXY 5101#0 the plane's normal or the axis beside it that the block names, which stays the same until
-    /// G80.
-    pub(super) fn drilling_axis(&self, block_words: &BlockWords, state: &State) -> Result<AxisIndex, Alarm> {
+    /// Returns the drilling axis: Z; with FXY 5101#0 the normal of the plane or the axis parallel to it that the block names,
+    /// the same until G80.
+    pub(super) fn drilling_axis(&self, state: &State) -> Result<AxisIndex, Alarm> {
         let find = |letter: u8| {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
             self.data.settings.axes.find(letter).ok_or(missing)
@@ -34,12 +44,12 @@ impl Planner<'_> {
             Plane::Zx => b"YV",
             Plane::Yz => b"XU",
         };
-        let mut named = letters.iter().filter(|letter| block_words.has(**letter));
+        let mut named = letters.iter().filter(|letter| self.words.has(**letter));
         match (state.cycle.axis, named.next(), named.next()) {
             (_, Some(_), Some(_)) => Err(Alarm::DrillingAxis),
             (None, named, None) => find(*named.unwrap_or(&letters[0])),
             (Some(axis), named, None) => {
-                let letter = self.data.settings.axes.letter(axis) as u8;
+                let letter = self.data.axis_letter(axis);
                 let same = letters.contains(&letter) && named.is_none_or(|named| *named == letter);
                 if same { Ok(axis) } else { Err(Alarm::DrillingAxis) }
             }
@@ -47,80 +57,58 @@ impl Planner<'_> {
         }
     }
 
-    /// Checks a drilling block and works out where it ends.
+    /// Checks a drilling block and computes its end.
     pub(super) fn plan_cycle(
         &self,
         plan: &mut BlockPlan,
-        block_words: &BlockWords,
         cycle: &'static Cycle,
         pattern: Option<BoltHolePattern>,
-        span: Span,
     ) -> ExecResult<()> {
-        let axis = locate(self.drilling_axis(block_words, &plan.state), span)?;
-        let stretch = locate(stretch_along(plan, cycle, axis), span)?;
-        let repeats = self.cycle_repeats(block_words, pattern)?;
+        let axis = self.locate(self.drilling_axis(&plan.state))?;
+        let stretch = self.locate(stretch_along(plan, cycle, axis))?;
+        let repeats = self.cycle_repeats(pattern)?;
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = *plan.state;
-        // The block's own depth words are not a move.
-        let mut endpoint = self.resolve_endpoint(block_words, &mut plan.state)?.programmed;
+        // The depth is no move.
+        let mut endpoint = self.resolve_endpoint(&mut plan.state)?.programmed;
         endpoint[axis] = from.programmed[axis];
         plan.state.set_work_zero_unknown(axis, from.work_zero_unknown >> axis & 1 == 1);
-        self.read_cycle_words(plan, block_words, axis, incremental)?;
+        self.read_cycle_words(plan, axis, incremental)?;
         let data = &plan.state.cycle;
         for (level, letter) in [(data.r, 'R'), (data.z, self.data.settings.axes.letter(axis))] {
             if !level.is_commanded {
-                plan.notes.push(Note::CycleLevelMissing { letter });
+                plan.notes.push(Note::CycleLevelMissing(letter));
             }
         }
         if !self.data.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
-            plan.notes.push(Note::DrillsAlongZ { code: plan.state.modal.plane.code() });
+            plan.notes.push(Note::DrillsAlongZ(plan.state.modal.plane.code()));
         }
         if cycle.needs_q {
-            self.check_peck_words(plan, block_words, pattern, span)?;
+            self.check_peck_words(plan, pattern)?;
         }
-        let (rate, _) = locate(self.data.path_time(&plan.state, 1.0, block_words.has(b'F')), span)?;
+        let (rate, _) = self.locate(self.data.path_time(&plan.state, 1.0, self.words.has(b'F')))?;
         plan.commands_axes = true;
         if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.unscaled(stretch), repeats) {
-            let what = "more than a million pecks in one block".into();
-            return Err(Alarm::NotSimulated { what }.located_at(span));
+            return Err(self.not_simulated("more than a million pecks in one block"));
         }
-        let is_rollover_word = |(axis, letter): (AxisIndex, char)| {
-            self.data.settings.rolls_over[axis] && block_words.has(letter as u8)
-        };
-        if incremental && self.data.settings.axes.iter().any(is_rollover_word) {
-            let what = "a drilling cycle with an incremental axis that rolls over".into();
-            return Err(Alarm::NotSimulated { what }.located_at(span));
+        if incremental && self.named_axes().any(|axis| self.data.settings.rolls_over[axis]) {
+            return Err(self.not_simulated("a drilling cycle with an incremental axis that rolls over"));
         }
         if repeats == 0 && !self.data.settings.undocumented.k0_positions {
             plan.notes.push(Note::CycleRepeatsZero);
             return Ok(());
         }
-        let mut step = Position::default();
-        if incremental {
-            for (place, _) in self.data.settings.axes.iter() {
-                step[place] = endpoint[place] - from.programmed[place];
-            }
-        }
         let first = self.data.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
+        let other = self.data.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default();
         let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
-        let polar_repeats = self.polar_repeats(plan, block_words, incremental, repeats)?;
-        let cycle_plan = CyclePlan {
-            cycle,
-            start_state: State { machine: from.machine, ..*plan.state },
-            first_hole: endpoint,
-            hole_step: step,
-            polar_repeats,
-            pattern,
-            repeats: repeats.max(1),
-            axis,
-            shift: (if first == axis { self.other_axis(axis) } else { first }, shift),
-            rate,
-            dwell: plan.state.cycle.p,
-            stretch,
+        let start_state = State { machine: from.machine, ..*plan.state };
+        let holes = match pattern {
+            Some(pattern) => self.pattern_holes(&endpoint, pattern),
+            None => self.repeated_holes(&mut plan.state, &from.programmed, endpoint, repeats.max(1))?,
         };
-        plan.state.programmed = cycle_plan.last_hole(self.data);
+        plan.state.programmed = holes.last().copied().unwrap_or(endpoint);
         if repeats == 0 {
-            // Positions only.
+            // K0 of some controls: a position only.
             let mut to = self.data.to_machine(&plan.state, &plan.state.programmed);
             to[axis] = from.machine[axis];
             plan.state.machine = from.machine;
@@ -128,95 +116,110 @@ impl Planner<'_> {
             return Ok(());
         }
         let data = &plan.state.cycle;
-        let (level, unplaced) = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
+        let (level, is_unknown) = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
             (data.r_level(), data.is_r_unknown())
         } else {
             (data.initial, data.is_initial_unknown)
         };
-        plan.state.set_work_zero_unknown(axis, unplaced);
+        plan.state.set_work_zero_unknown(axis, is_unknown);
         plan.state.programmed[axis] = level;
         plan.state.machine = self.data.to_machine(&plan.state, &plan.state.programmed);
-        plan.cycle_plan = Some(cycle_plan);
+        plan.cycle_plan = Some(CyclePlan {
+            cycle,
+            start_state,
+            holes,
+            axis,
+            shift: (if first == axis { other } else { first }, shift),
+            rate,
+            dwell: plan.state.cycle.p,
+            stretch,
+        });
         Ok(())
     }
 
-    fn cycle_repeats(&self, block_words: &BlockWords, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {
+    /// Returns the number of holes of the block.
+    fn cycle_repeats(&self, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {
         let letter = self.data.settings.cycle_repeat_letter;
         let repeats = match pattern {
             Some(pattern) => pattern.count,
-            None => block_words.count(letter)?.unwrap_or(1),
+            None => self.words.count(letter)?.unwrap_or(1),
         };
         if repeats > 9999 {
-            Err(Alarm::TooManyDigits.located_at(block_words.span(letter)))
-        } else {
-            Ok(repeats)
+            return Err(Alarm::TooManyDigits.located_at(self.words.span(letter)));
         }
+        Ok(repeats)
     }
 
-    /// A cycle with pecks needs their depth.
-    fn check_peck_words(
-        &self,
-        plan: &mut BlockPlan,
-        block_words: &BlockWords,
-        pattern: Option<BoltHolePattern>,
-        span: Span,
-    ) -> ExecResult<()> {
+    /// Raises the alarm of a cycle with pecks whose depth isn't commanded.
+    fn check_peck_words(&self, plan: &mut BlockPlan, pattern: Option<BoltHolePattern>) -> ExecResult<()> {
         if self.data.settings.has_shrinking_pecks && pattern.is_none() {
-            self.read_peck_schedule(plan, block_words, span)?;
+            self.read_peck_schedule(plan)?;
         }
         let data = &plan.state.cycle;
         let none = data.pecks.is_none() && data.q.is_none_or(|q| q == 0.0);
-        if none { Err(Alarm::NoPeckDepth.located_at(span)) } else { Ok(()) }
+        if none { Err(Alarm::NoPeckDepth.located_at(self.block)) } else { Ok(()) }
     }
 
-    /// How the holes of a block with K follow one another in polar coordinates; the next block's angle counts from the
-    /// last of them.
-    fn polar_repeats(
+    /// Returns the holes of a block that K repeats; the angle of the next block in G16 counts from the last hole.
+    fn repeated_holes(
         &self,
-        plan: &mut BlockPlan,
-        block_words: &BlockWords,
-        incremental: bool,
+        state: &mut State,
+        start: &Position,
+        first: Position,
         repeats: u32,
-    ) -> ExecResult<Option<PolarRepeats>> {
-        let state = &mut plan.state;
-        let Ok(plane) = self.data.plane_axes(state.modal.plane) else { return Ok(None) };
-        if state.modal.polar == Polar::Off || !incremental {
-            return Ok(None);
+    ) -> ExecResult<Vec<Position>> {
+        let mut holes = vec![first];
+        let is_incremental = state.modal.distance == Distance::Incremental;
+        let plane = self.data.plane_axes(state.modal.plane);
+        let polar_plane = plane.ok().filter(|_| state.modal.polar == Polar::On && is_incremental);
+        let angle_step = match polar_plane {
+            Some(plane) => self.angle(self.data.axis_letter(plane.1))?.unwrap_or(0.0),
+            None => 0.0,
+        };
+        let first_angle = state.polar.angle;
+        for repeat in (1..repeats).map(f64::from) {
+            let mut hole = first;
+            for axis in 0..self.data.settings.axes.len() {
+                let step = if is_incremental { first[axis] - start[axis] } else { 0.0 };
+                hole[axis] = self.data.remove_residue(first[axis] + repeat * step);
+            }
+            if let Some(plane) = polar_plane {
+                let last = holes[holes.len() - 1];
+                (hole[plane.0], hole[plane.1]) = (last[plane.0], last[plane.1]);
+                state.polar.angle = first_angle + repeat * angle_step;
+                self.data.polar_point(&state.polar, plane, &mut hole);
+            }
+            holes.push(hole);
         }
-        let angle_step =
-            self.data.angle(block_words, self.data.settings.axes.letter(plane.1) as u8)?.unwrap_or(0.0);
-        let first = state.polar;
-        state.polar.angle += f64::from(repeats.max(1) - 1) * angle_step;
-        Ok(Some(PolarRepeats { plane, first, angle_step }))
+        Ok(holes)
     }
 
-    fn other_axis(&self, axis: AxisIndex) -> AxisIndex {
-        self.data.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default()
+    /// Returns the holes of a pattern round the current position.
+    fn pattern_holes(&self, centre: &Position, pattern: BoltHolePattern) -> Vec<Position> {
+        let hole = |index: u32| {
+            let angle = Deg(pattern.start + f64::from(index) * pattern.angle_step);
+            let mut hole = *centre;
+            hole[0] = self.data.remove_residue(centre[0] + pattern.radius * angle.cos());
+            hole[1] = self.data.remove_residue(centre[1] + pattern.radius * angle.sin());
+            hole
+        };
+        (0..pattern.count).map(hole).collect()
     }
 
-    /// The depth, R, P and Q stay in force from hole to hole.
-    fn read_cycle_words(
-        &self,
-        plan: &mut BlockPlan,
-        block_words: &BlockWords,
-        axis: AxisIndex,
-        incremental: bool,
-    ) -> ExecResult<()> {
+    /// Reads the depth, R, P and Q, which stay in force from hole to hole.
+    fn read_cycle_words(&self, plan: &mut BlockPlan, axis: AxisIndex, incremental: bool) -> ExecResult<()> {
         let state = &plan.state;
         let mut data = state.cycle;
-        if let Some(value) = self.data.dimension(block_words, b'R', state)? {
+        if let Some(value) = self.dimension(b'R', state)? {
             data.r = CycleLevel { value, is_incremental: incremental, is_commanded: true };
         }
-        if let Some(value) =
-            self.data.dimension(block_words, self.data.settings.axes.letter(axis) as u8, state)?
-        {
+        if let Some(value) = self.dimension(self.data.axis_letter(axis), state)? {
             data.z = CycleLevel { value, is_incremental: incremental, is_commanded: true };
         }
-        if let Some(value) = self.data.dimension(block_words, b'Q', state)? {
-            // Its sign is ignored.
+        if let Some(value) = self.dimension(b'Q', state)? {
             data.q = Some(value.abs());
         }
-        if let Some(seconds) = self.data.dwell_seconds(block_words)? {
+        if let Some(seconds) = self.dwell_seconds()? {
             data.p = seconds;
         }
         plan.state.cycle = data;
@@ -224,12 +227,12 @@ impl Planner<'_> {
     }
 }
 
-/// What G51 makes of a millimetre along the drilling axis; an alarm for what isn't simulated.
+/// Returns the scale of G51 along the drilling axis; an alarm for a combination that isn't simulated.
 fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64, Alarm> {
     let transform = &plan.state.transform;
     let stretch = transform.scaling.map_or(1.0, |s| s.factor[axis]);
     let is_mirrored = stretch < 0.0 || transform.mirrored_axes >> axis & 1 == 1;
-    // Of cycles with a shift the manual says that G51 leaves them out, not how far.
+    // G51 excepts cycles with a shift; the manual doesn't say how far.
     let has_scaled_shift = stretch != 1.0 && cycle.steps.contains(&CycleStep::Shift);
     if transform.tilt.is_some() || is_mirrored || has_scaled_shift {
         let what = "a drilling cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
@@ -239,34 +242,56 @@ fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64
 }
 
 impl Planner<'_> {
-    /// G73 and G83 of a Haas: the first peck is I, each next one J less, none less than K.
-    pub(super) fn read_peck_schedule(
-        &self,
-        plan: &mut BlockPlan,
-        block_words: &BlockWords,
-        span: Span,
-    ) -> ExecResult<()> {
+    /// Reads the pecks of G73 and G83 of a Haas: the first is I, each next one J less, none less than K.
+    fn read_peck_schedule(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &plan.state;
-        let first = self.data.dimension(block_words, b'I', state)?;
-        let decrement = self.data.dimension(block_words, b'J', state)?;
-        let minimum = self.data.dimension(block_words, b'K', state)?;
+        let first = self.dimension(b'I', state)?;
+        let decrement = self.dimension(b'J', state)?;
+        let minimum = self.dimension(b'K', state)?;
         let pecks = match (first, decrement, minimum) {
             (None, None, None) => return Ok(()),
             (Some(first), None, None) => PeckSchedule { first, decrement: 0.0, minimum: first },
             (Some(first), Some(less), Some(least)) => PeckSchedule { first, decrement: less, minimum: least },
-            _ => {
-                let what = "I, J and K of G73 and G83 in part, or K with Q".into();
-                return Err(Alarm::NotSimulated { what }.located_at(span));
-            }
+            _ => return Err(self.not_simulated("I, J and K of G73 and G83 in part, or K with Q")),
         };
-        if block_words.has(b'Q') {
-            return Err(Alarm::NotSimulated { what: "G73 and G83 with I and Q".into() }.located_at(span));
+        if self.words.has(b'Q') {
+            return Err(self.not_simulated("G73 and G83 with I and Q"));
         }
         if pecks.first <= 0.0 || pecks.decrement < 0.0 || pecks.minimum <= 0.0 || pecks.minimum > pecks.first
         {
-            return Err(Alarm::NoPeckDepth.located_at(span));
+            return Err(Alarm::NoPeckDepth.located_at(self.block));
         }
         plan.state.cycle.pecks = Some(pecks);
         Ok(())
+    }
+
+    /// Plans the cycle in force at holes round a centre, which itself isn't drilled (Haas Mill Operator's Manual, G70 and
+    /// G71). I is the radius, J the angle of the first hole, L their number, K the angle between holes on an arc.
+    pub(super) fn plan_bolt_holes(&self, holes: HolePattern, plan: &mut BlockPlan) -> ExecResult<()> {
+        let code = match holes {
+            HolePattern::Circle => "G70",
+            HolePattern::Arc => "G71",
+        };
+        let Some(cycle) = plan.state.modal.cycle else {
+            return Err(Alarm::NoCycle { code }.located_at(self.block));
+        };
+        if plan.state.modal.plane != Plane::Xy {
+            return Err(self.not_simulated(format!("{code} outside plane G17")));
+        }
+        let missing = |letter| Alarm::MissingWord { code, letter }.located_at(self.block);
+        let radius = self.dimension(b'I', &plan.state)?.ok_or_else(|| missing('I'))?;
+        let start = self.angle(b'J')?.ok_or_else(|| missing('J'))?;
+        let count = self.words.count(b'L')?.filter(|count| *count > 0).ok_or_else(|| missing('L'))?;
+        let angle_step = match holes {
+            // A negative radius means clockwise.
+            HolePattern::Circle => (360.0 / f64::from(count)).copysign(radius),
+            HolePattern::Arc => self.angle(b'K')?.ok_or_else(|| missing('K'))?,
+        };
+        if radius == 0.0 || radius < 0.0 && holes == HolePattern::Arc {
+            let function = format!("I of {code}");
+            return Err(Alarm::OutOfRange { function, value: radius }.located_at(self.block));
+        }
+        let pattern = BoltHolePattern { count, radius: radius.abs(), start, angle_step };
+        self.plan_cycle(plan, cycle, Some(pattern))
     }
 }

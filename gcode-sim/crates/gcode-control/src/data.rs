@@ -1,12 +1,13 @@
-//! What the control's screens of settings, parameters and offsets hold, and what follows from these alone: quantities,
-//! coordinates, times and limits.
+//! Settings, parameters and offset tables of a control.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::checked::integer;
-use super::offsets::Offsets;
+use super::functions::integer;
+use super::state::State;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{ParameterError, ParameterId, Settings};
-use gcode_lang::motion::AxisIndex;
+use gcode_lang::motion::{AxisIndex, Position};
+use gcode_lang::program::Words;
+use gcode_lang::program::modes::WorkSystem;
 
 /// Settings, parameters and offset tables. They change between blocks only, by G10 and by system variables.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,30 +16,115 @@ pub(super) struct ControlData {
     /// Parameters that the program has written.
     pub(super) parameters: BTreeMap<ParameterId, f64>,
     pub(super) offsets: Offsets,
-    /// The work coordinate systems that G10 or a variable has set, counted as in [`Offsets::work`].
+    /// Indices of the work coordinate systems that G10 or a variable has set.
     pub(super) set_systems: BTreeSet<usize>,
+}
+
+/// Offset tables; lengths in mm, multiples of the increment.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Offsets {
+    /// Work offsets by [`system_index`].
+    pub(super) work: Vec<Position>,
+    /// Tool offset memory C by [`Register`]; row 0 is no offset.
+    pub(super) tools: [Vec<f64>; 4],
+}
+
+/// Table of tool offset memory C: H or D, geometry or wear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Register {
+    HGeometry,
+    HWear,
+    DGeometry,
+    DWear,
+}
+
+/// Number of the systems that every control has: the external offset and G54 to G59.
+pub(super) const STANDARD_SYSTEMS: usize = 7;
+
+/// Returns the index of a work coordinate system: 1 to 6 for G54 to G59, 7 and up for G54.1 P1…; 0 is the external
+/// offset.
+#[inline]
+pub(super) fn system_index(work: WorkSystem) -> usize {
+    match work {
+        WorkSystem::Standard(number) => usize::from(number),
+        WorkSystem::Additional(number) => STANDARD_SYSTEMS - 1 + usize::from(number),
+    }
+}
+
+impl Offsets {
+    /// Returns a tool offset; an alarm for a number that the table lacks.
+    pub(super) fn tool(&self, register: Register, number: u32) -> Result<f64, Alarm> {
+        let unknown = || Alarm::OffsetNumber { number: i64::from(number) };
+        self.tools[register as usize].get(number as usize).copied().ok_or_else(unknown)
+    }
+
+    /// Returns the tool length, geometry and wear, of an H number.
+    pub(super) fn length(&self, h: u32) -> Result<f64, Alarm> {
+        Ok(self.tool(Register::HGeometry, h)? + self.tool(Register::HWear, h)?)
+    }
 }
 
 impl ControlData {
     pub(super) fn new(settings: Settings) -> Self {
-        let offsets = Offsets::new(settings.tool_offsets, settings.work_systems);
+        let offsets = Offsets {
+            work: vec![Position::default(); STANDARD_SYSTEMS + settings.work_systems],
+            tools: std::array::from_fn(|_| vec![0.0; settings.tool_offsets + 1]),
+        };
         Self { settings, parameters: BTreeMap::new(), offsets, set_systems: BTreeSet::new() }
     }
 
-    /// Writes a work offset of one axis; system 0 is the external one, 1 to 6 are G54 to G59, 7 and up G54.1 P1….
+    /// Writes a work offset of one axis.
     pub(super) fn set_work_offset(&mut self, system: usize, axis: AxisIndex, value: f64) {
-        self.offsets.work_mut(system)[axis] = value;
+        self.offsets.work[system][axis] = value;
         self.set_systems.insert(system);
     }
-}
 
-impl ControlData {
-    /// Block skip: whether the switch is on.
+    /// Returns the zero of the active work coordinate system in machine coordinates.
+    pub(super) fn zero(&self, state: &State, axis: AxisIndex) -> f64 {
+        let Offsets { work, .. } = &self.offsets;
+        let system = system_index(state.modal.work);
+        work[0][axis] + work[system][axis] + state.local_offset[axis] + state.coordinate_shift[axis]
+    }
+
+    /// Returns the table that a register number or variable addresses: series 15 offsets swap geometry and wear.
+    pub(super) fn register(&self, register: Register) -> Register {
+        match (self.settings.series_15_offsets, register) {
+            (false, same) => same,
+            (true, Register::HGeometry) => Register::HWear,
+            (true, Register::HWear) => Register::HGeometry,
+            (true, Register::DGeometry) => Register::DWear,
+            (true, Register::DWear) => Register::DGeometry,
+        }
+    }
+
+    /// Returns the radius of a D number, geometry and wear, half of it with ODI; `None` if the table lacks the number.
+    pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
+        let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
+        let sum = geometry + self.offsets.tool(Register::DWear, d).ok()?;
+        Some(if self.settings.offsets_are_diameters { sum / 2.0 } else { sum })
+    }
+
+    /// Returns the letter of an axis.
+    pub(super) fn axis_letter(&self, axis: AxisIndex) -> u8 {
+        self.settings.axes.letter(axis) as u8
+    }
+
+    /// Returns true if a switch of block skip is on.
     pub(super) fn is_skip_on(&self, switch: u8) -> bool {
         self.settings.skip_switches.get(usize::from(switch.max(1)) - 1).copied().unwrap_or(false)
     }
 
-    /// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
+    /// Returns the words of a block without those that a block skip inside it excludes, and the switch of that block skip if it
+    /// is off.
+    pub(super) fn unskipped<'a>(&self, words: &'a Words) -> (&'a Words, Option<u8>) {
+        match words.skipped_form() {
+            Some((switch, short)) if self.is_skip_on(*switch) => (short, None),
+            Some((switch, _)) => (words, Some(*switch)),
+            None => (words, None),
+        }
+    }
+
+    /// Returns the value of `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]` or `PRM[n,bit]/[axis]`.
     pub(super) fn read_parameter(
         &self,
         number: f64,
@@ -50,7 +136,7 @@ impl ControlData {
         let unknown = || Alarm::NotSimulated { what: format!("PRM[{known}]") };
         let id = ParameterId {
             number: u16::try_from(known).map_err(|_| unknown())?,
-            bit: bit.map(|bit| self.parameter_bit(bit).ok_or_else(format)).transpose()?,
+            bit: bit.map(|bit| parameter_bit(bit).ok_or_else(format)).transpose()?,
             axis: axis.map(|axis| self.axis_of(axis).map_err(|_| format())).transpose()?,
         };
         if let Some(written) = self.parameters.get(&id) {
@@ -64,25 +150,24 @@ impl ControlData {
         })
     }
 
-    pub(super) fn parameter_bit(&self, bit: f64) -> Option<u8> {
-        (0.0..=7.0).contains(&bit.round()).then_some(bit.round() as u8)
-    }
-
-    /// An axis by its number from 1 on.
+    /// Returns an axis by its number, counted from 1.
     pub(super) fn axis_of(&self, number: f64) -> Result<AxisIndex, Alarm> {
         let number = integer(number)?;
         let axis = usize::try_from(number - 1).ok().filter(|axis| *axis < self.settings.axes.len());
         axis.ok_or(Alarm::AxisNumber { number })
     }
 
-    /// Carries out what [`Planner::plan_parameter`] has checked.
+    /// Writes a parameter that planning has checked on a copy of the settings.
     pub(super) fn set_parameter(&mut self, id: ParameterId, value: f64, has_no_effect: bool) {
         self.parameters.insert(id, value);
-        if has_no_effect {
-            return;
+        if !has_no_effect {
+            let set = self.settings.set_parameter(id, value);
+            debug_assert_eq!(set, Ok(()));
         }
-        // It was tried on a copy when the block was checked.
-        let set = self.settings.set_parameter(id, value);
-        debug_assert_eq!(set, Ok(()));
     }
+}
+
+/// Returns the bit 0 to 7 of a value.
+pub(super) fn parameter_bit(bit: f64) -> Option<u8> {
+    (0.0..=7.0).contains(&bit.round()).then_some(bit.round() as u8)
 }

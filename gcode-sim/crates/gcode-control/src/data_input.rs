@@ -1,141 +1,167 @@
-//! G10: offsets, parameters and variables that a program writes.
-use super::checked::{ExecResult, locate};
-use super::offsets::Register;
+//! G10: offsets, variables and parameters that a program writes.
+use super::data::{Register, STANDARD_SYSTEMS, parameter_bit};
+use super::functions::ExecResult;
+use super::notes::Note;
 use super::plan::{BlockPlan, TableWrite};
 use super::planner::Planner;
 use super::variables::{Value, VariableClass};
-use super::words::BlockWords;
-use gcode_lang::alarm::Alarm;
+use super::words::WordNumber;
+use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::control::{ParameterError, ParameterId, Settings, is_without_effect};
+use gcode_lang::program::Words;
+use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::Distance;
-use gcode_lang::source::Span;
 
 impl Planner<'_> {
-    /// G10: L2 and L20 work offsets, L10 to L13 tool offsets, L50 and L52 parameters, L85
-    /// variables.
-    pub(super) fn plan_data_input(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
-        let format = |what: &str| format(what).located_at(span);
-        let p = block_words.count(b'P')?;
-        let l = block_words.count(b'L')?.ok_or_else(|| format("L is missing"))?;
+    /// G10: L2 and L20 work offsets, L10 to L13 tool offsets, L50 and L52 parameters, L85 variables.
+    pub(super) fn plan_data_input(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let p = self.words.count(b'P')?;
+        let l = self.words.count(b'L')?.ok_or_else(|| self.format_alarm("L is missing"))?;
+        let missing_p = |what| move || self.format_alarm(what);
         match l {
             3 | 14 | 50 | 52 | 85 if !self.data.settings.allows_parameter_input => {
-                Err(format(&format!("L{l} is not available")))
+                Err(self.format_alarm(&format!("L{l} is not available")))
             }
-            2 | 20 => {
-                self.plan_work_offset(l, p.ok_or_else(|| format("P is missing"))?, block_words, plan, span)
-            }
-            1 | 10..=13 => {
-                self.plan_tool_offset(l, p.ok_or_else(|| format("P is missing"))?, block_words, plan, span)
-            }
+            2 | 20 => self.plan_work_offset(l, p.ok_or_else(missing_p("P is missing"))? as usize, plan),
+            1 | 10..=13 => self.plan_tool_offset(l, p.ok_or_else(missing_p("P is missing"))?, plan),
             50 | 52 => {
                 plan.state.is_in_parameter_input = true;
                 Ok(())
             }
-            85 => {
-                let number = p.ok_or_else(|| format("P, the variable, is missing"))?;
-                self.plan_punched_variable(number, block_words, plan, span)
-            }
-            3 => Err(Alarm::NotSimulated { what: "G10 L3 (tool life management)".into() }.located_at(span)),
-            14 => Err(Alarm::NotSimulated { what: "G10 L14 (tool geometry)".into() }.located_at(span)),
-            _ => Err(format(&format!("L{l} is not available"))),
+            85 => self.plan_punched_variable(p.ok_or_else(missing_p("P, the variable, is missing"))?, plan),
+            3 => Err(self.not_simulated("G10 L3 (tool life management)")),
+            14 => Err(self.not_simulated("G10 L14 (tool geometry)")),
+            _ => Err(self.format_alarm(&format!("L{l} is not available"))),
         }
     }
 
+    fn format_alarm(&self, what: &str) -> LocatedAlarm {
+        Alarm::G10Format { what: what.to_owned() }.located_at(self.block)
+    }
+
     /// L2 P0 to P6, L20 P1 and up: work offsets.
-    fn plan_work_offset(
-        &self,
-        l: u32,
-        p: u32,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
-        let p = p as usize;
-        let is_incremental = plan.state.modal.distance == Distance::Incremental;
-        let system = match l {
-            2 if p <= 6 => p,
-            20 if (1..=self.data.offsets.additional.len()).contains(&p) => 6 + p,
-            _ => return Err(Alarm::OffsetNumber { number: p as i64 }.located_at(span)),
-        };
-        for (axis, letter) in self.data.settings.axes.iter() {
-            let Some(value) = self.data.dimension(block_words, letter as u8, &plan.state)? else { continue };
-            let old = if is_incremental { self.data.offsets.work(system)[axis] } else { 0.0 };
-            plan.writes.push(TableWrite::Work {
-                system,
-                axis,
-                value: locate(self.data.check_offset_range(self.data.remove_residue(old + value)), span)?,
-            });
+    fn plan_work_offset(&self, l: u32, p: usize, plan: &mut BlockPlan) -> ExecResult<()> {
+        let offsets = &self.data.offsets.work;
+        let (first, number) = if l == 2 { (0, p + 1) } else { (STANDARD_SYSTEMS, p) };
+        let end = if l == 2 { STANDARD_SYSTEMS } else { offsets.len() };
+        if number == 0 || first + number > end {
+            return Err(Alarm::OffsetNumber { number: p as i64 }.located_at(self.block));
+        }
+        let system = first + number - 1;
+        for (axis, _) in self.data.settings.axes.iter() {
+            let Some(value) = self.axis_dimension(axis, &plan.state)? else { continue };
+            let value = self.table_value(plan, offsets[system][axis], value)?;
+            plan.writes.push(TableWrite::Work { system, axis, value });
         }
         Ok(())
     }
 
+    /// Returns the new value of an offset: G91 adds to the old one.
+    fn table_value(&self, plan: &BlockPlan, old: f64, value: f64) -> ExecResult<f64> {
+        let is_incremental = plan.state.modal.distance == Distance::Incremental;
+        let value = self.data.remove_residue(if is_incremental { old + value } else { value });
+        self.locate(self.data.check_offset_range(value))
+    }
+
     /// L1 and L10 to L13: tool offsets.
-    fn plan_tool_offset(
-        &self,
-        l: u32,
-        number: u32,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
+    fn plan_tool_offset(&self, l: u32, number: u32, plan: &mut BlockPlan) -> ExecResult<()> {
         let register = match l {
             10 => Register::HGeometry,
             12 => Register::DGeometry,
             13 => Register::DWear,
             _ => Register::HWear,
         };
-        let is_incremental = plan.state.modal.distance == Distance::Incremental;
-        let old = locate(self.data.offsets.tool(register, number), span)?;
+        let old = self.locate(self.data.offsets.tool(register, number))?;
         if number == 0 {
-            return Err(Alarm::OffsetNumber { number: 0 }.located_at(span));
+            return Err(Alarm::OffsetNumber { number: 0 }.located_at(self.block));
         }
-        let value = self
-            .data
-            .dimension(block_words, b'R', &plan.state)?
-            .ok_or_else(|| format("R is missing").located_at(span))?;
-        let value = locate(
-            self.data.check_offset_range(self.data.remove_residue(if is_incremental {
-                old + value
-            } else {
-                value
-            })),
-            span,
-        )?;
+        let value = self.dimension(b'R', &plan.state)?.ok_or_else(|| self.format_alarm("R is missing"))?;
+        let value = self.table_value(plan, old, value)?;
         plan.writes.push(TableWrite::Tool { register, number, value });
         Ok(())
     }
 
     /// L85: a variable, from the bits of its value.
-    fn plan_punched_variable(
-        &self,
-        number: u32,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
+    fn plan_punched_variable(&self, number: u32, plan: &mut BlockPlan) -> ExecResult<()> {
         if !matches!(self.registers.variables.classify(number), VariableClass::Common(_)) {
-            return Err(
-                Alarm::NoSuchVariable { number: i64::from(number) }.located_at(block_words.span(b'P'))
-            );
+            return Err(Alarm::NoSuchVariable { number: i64::from(number) }.located_at(self.words.span(b'P')));
         }
-        let bits = block_words
-            .punched_value
-            .ok_or_else(|| format("L85 needs sixteen digits in brackets").located_at(span))?;
+        let missing = || self.format_alarm("L85 needs sixteen digits in brackets");
+        let bits = self.words.punched_value.ok_or_else(missing)?;
         let value = match f64::from_bits(bits) {
             value if value.is_finite() => Value::Number(value),
             // All bits set are a vacant variable.
             _ if bits == u64::MAX => Value::Vacant,
-            _ => return Err(format("the digits are not a number").located_at(span)),
+            _ => return Err(self.format_alarm("the digits are not a number")),
         };
         plan.writes.push(TableWrite::Variable { number, value });
         Ok(())
     }
-}
 
-pub(super) fn format(what: &str) -> Alarm {
-    Alarm::G10Format { what: what.to_owned() }
+    /// Plans a block between G10 L52 and G11: `N_ R_`, with P for an axis and Q for a bit.
+    pub(super) fn plan_parameter(
+        &self,
+        words: &Words,
+        number: Option<u32>,
+        plan: &mut BlockPlan,
+    ) -> ExecResult<()> {
+        let format_alarm =
+            |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.located_at(self.block);
+        let mut codes = self.words.g_codes();
+        match (codes.next(), codes.next()) {
+            (None, _) => {}
+            (Some(code), None) if code.effect == Effect::OneShot(OneShot::DataInputEnd) => {
+                plan.state.is_in_parameter_input = false;
+                return match self.words.first_unread() {
+                    None if words.call().is_none() => Ok(()),
+                    _ => Err(format_alarm("words in a block with G11")),
+                };
+            }
+            _ => return Err(format_alarm("another G code before G11")),
+        }
+        if !self.words.m_codes.is_empty() || words.call().is_some() {
+            return Err(format_alarm("an M code before G11"));
+        }
+        let number = number.and_then(|number| u16::try_from(number).ok());
+        let number =
+            number.ok_or_else(|| format_alarm("N, the parameter's number, is missing or too large"))?;
+        let (raw, _) = self.words.get(b'R').ok_or_else(|| format_alarm("R is missing"))?;
+        let axis = self.words.count(b'P')?.map(|axis| self.data.axis_of(f64::from(axis)));
+        let axis = axis.transpose().map_err(|_| format_alarm("P is not an axis"))?;
+        let bit = self.words.count(b'Q')?.map(|bit| parameter_bit(f64::from(bit)));
+        let bit = bit.map(|bit| bit.ok_or_else(|| format_alarm("Q is not 0 to 7"))).transpose()?;
+        if self.words.first_unread().is_some() {
+            return Err(format_alarm("other words than N P Q R"));
+        }
+        let id = ParameterId { number, bit, axis };
+        if let WordNumber::Literal(literal) = raw
+            && literal.places.is_none()
+            && literal.digits != 0
+            && Settings::is_length_parameter(id)
+        {
+            let what = format!("R without a decimal point for parameter {number}, a length");
+            return Err(Alarm::NotSimulated { what }.located_at(self.words.span(b'R')));
+        }
+        let value = raw.value();
+        let result = self.data.settings.clone().set_parameter(id, value);
+        let has_no_effect = result == Err(ParameterError::Unknown) && is_without_effect(number);
+        if has_no_effect {
+            plan.notes.push(Note::ParameterWithoutEffect(number));
+        } else if let Err(error) = result {
+            return Err(match error {
+                ParameterError::MissingAxis => format_alarm("P, the axis, is missing"),
+                ParameterError::UnexpectedAxis => format_alarm("the parameter has no axis P"),
+                ParameterError::UnexpectedBit => format_alarm("the parameter has no bit Q"),
+                ParameterError::InvalidValue => format_alarm("the value is not allowed for this parameter"),
+                ParameterError::MissingBit => {
+                    self.not_simulated(format!("parameter {number} without Q, as a whole byte"))
+                }
+                ParameterError::Unknown | ParameterError::ReadOnly => {
+                    self.not_simulated(format!("a change of parameter {number}"))
+                }
+            });
+        }
+        plan.writes.push(TableWrite::Parameter { id, value, has_no_effect });
+        Ok(())
+    }
 }

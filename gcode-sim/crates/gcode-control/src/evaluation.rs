@@ -1,19 +1,23 @@
 //! Evaluates expressions and conditions.
-use super::checked::{ExecResult, integer, locate, variable_number};
-use super::functions::{angle, atan2, binary, compare, function_alarm, function_value, is_finite, power};
+use std::hint::cold_path;
+
+use super::functions::{
+    ExecResult, angle, atan2, binary, compare, compare_numbers, function_alarm, function_value, integer,
+    is_finite, locate, power, variable_number,
+};
 use super::notes::Note;
 use super::quantities::POWERS;
 use super::registers::Registers;
-use super::variables::{Accumulator, Value, VariableClass};
+use super::variables::{StoredValue, Value, VariableClass};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{
     AssignmentTarget, ComputedSource, Instruction, Operand, OperandSource, Operation, Slot, UncommonOp,
 };
 use gcode_lang::source::Span;
-use gcode_lang::syntax::ast::{BinaryOp, Function};
+use gcode_lang::syntax::ast::{BinaryOp, Function, Relation};
 use gcode_lang::units::{round, round_scaled};
 
-/// What ROUND in a word rounds to.
+/// Unit to which ROUND rounds.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum RoundingTarget {
     Increment,
@@ -30,28 +34,38 @@ impl Registers {
         }
     }
 
-    /// Whether a condition holds; most are one comparison.
+    /// Returns true if a condition is true; most conditions are one comparison.
     #[inline]
     pub(super) fn evaluate_condition(&self, condition: &[Instruction]) -> ExecResult<bool> {
         match self.evaluate_comparison(condition) {
-            Some(holds) => Ok(holds),
+            Some(is_true) => Ok(is_true),
             None => self.run_code(condition, RoundingTarget::Whole).map(is_true),
         }
     }
 
-    /// Whether a condition of one comparison holds; `None` of others.
+    /// Evaluates a condition of one comparison; `None` for any other.
     #[inline(never)]
     fn evaluate_comparison(&self, condition: &[Instruction]) -> Option<bool> {
         let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition else {
             return None;
         };
-        let left = self.fetch(left, Accumulator::VACANT);
-        Some(compare(*relation, left, self.fetch(right, Accumulator::VACANT)))
+        Some(self.compare(*relation, [left, right], StoredValue::VACANT))
     }
 
-    /// A value that an operator needs; `last` is what the instruction before has given.
+    /// Compares two values. Only = and ≠ distinguish vacant from 0.
     #[inline(always)]
-    pub(super) fn fetch(&self, source: &OperandSource, last: Accumulator) -> Value {
+    fn compare(&self, relation: Relation, [left, right]: [&OperandSource; 2], last: StoredValue) -> bool {
+        if matches!(relation, Relation::Eq | Relation::Ne) {
+            let left = self.fetch(left, last);
+            return compare(relation, left, self.fetch(right, last));
+        }
+        let left = self.fetch_number(left, last);
+        compare_numbers(relation, left, self.fetch_number(right, last))
+    }
+
+    /// Returns the value of an operand; `last` is the result of the preceding instruction.
+    #[inline(always)]
+    fn fetch(&self, source: &OperandSource, last: StoredValue) -> Value {
         match source {
             OperandSource::Number(number) => Value::Number(*number),
             OperandSource::Free(place) => self.variables.get_free(*place),
@@ -60,9 +74,9 @@ impl Registers {
         }
     }
 
-    /// As [`Registers::fetch`], where only the number is asked for.
+    /// Returns the number of an operand, 0 for a vacant value.
     #[inline(always)]
-    fn fetch_number(&self, source: &OperandSource, last: Accumulator) -> f64 {
+    fn fetch_number(&self, source: &OperandSource, last: StoredValue) -> f64 {
         match source {
             OperandSource::Free(place) => self.variables.free_number(*place),
             OperandSource::Number(number) => *number,
@@ -71,6 +85,7 @@ impl Registers {
         }
     }
 
+    /// Returns the value of a variable, or its alarm located.
     #[inline(always)]
     pub(super) fn load(&self, slot: Slot, span: &Span) -> ExecResult<Value> {
         match slot {
@@ -79,7 +94,7 @@ impl Registers {
         }
     }
 
-    /// The value of a variable of any kind.
+    /// Returns the value of a variable of any kind.
     pub(super) fn read_variable(&self, number: u32) -> Result<Value, Alarm> {
         match self.variables.classify(number) {
             VariableClass::Local(place) | VariableClass::Common(place) => Ok(self.variables.get(place)),
@@ -88,30 +103,31 @@ impl Registers {
         }
     }
 
-    /// What code gives; `rounds` is what ROUND in it rounds to: in a word to the increment of its address, in statements and
-    /// arguments to whole numbers.
+    /// Evaluates code; ROUND rounds to the increment of the address in a word, to whole numbers in statements and arguments.
     #[inline(never)]
     pub(super) fn run_code(&self, code: &[Instruction], rounds: RoundingTarget) -> ExecResult<Value> {
         self.evaluate(code, rounds).map(Value::from)
     }
 
-    /// As [`Registers::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
+    /// Evaluates as [`Registers::run_code`], inlined into the loop over the blocks: most expressions are assigned.
     #[inline(always)]
-    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundingTarget) -> ExecResult<Accumulator> {
-        let mut last = Accumulator::VACANT;
+    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundingTarget) -> ExecResult<StoredValue> {
+        let mut last = StoredValue::VACANT;
         for Instruction { operation, span } in code {
-            last = Accumulator::of(match operation {
+            last = StoredValue::of(match operation {
                 Operation::Add(values) => self.binary(BinaryOp::Add, values, last, span)?,
                 Operation::Subtract(values) => self.binary(BinaryOp::Sub, values, last, span)?,
                 Operation::Multiply(values) => self.binary(BinaryOp::Mul, values, last, span)?,
                 Operation::Divide(values) => self.binary(BinaryOp::Div, values, last, span)?,
                 Operation::Compare(relation, [left, right]) => {
-                    let left = self.fetch(left, last);
-                    truth(compare(*relation, left, self.fetch(right, last)))
+                    truth(self.compare(*relation, [left, right], last))
                 }
-                Operation::Function(name, argument) => {
-                    self.evaluate_function(*name, self.fetch_number(argument, last), span)?
-                }
+                Operation::Function(name, argument) => match (name, self.fetch_number(argument, last)) {
+                    // One instruction, without a call.
+                    (Function::Sqrt, argument) if argument >= 0.0 => argument.sqrt(),
+                    (Function::Tan, argument) => self.tangent(argument, span)?,
+                    (name, argument) => self.evaluate_function(*name, argument, span)?,
+                },
                 Operation::Atan2([y, x]) => {
                     let y = self.fetch_number(y, last);
                     self.atan(y, self.fetch_number(x, last), span)?
@@ -125,13 +141,13 @@ impl Registers {
         Ok(last)
     }
 
-    /// + − * /. Where there is no value, it is worked out why.
+    /// Computes + − * /; without a finite result it computes again for the alarm.
     #[inline(always)]
     fn binary(
         &self,
         op: BinaryOp,
         [left, right]: &[OperandSource; 2],
-        last: Accumulator,
+        last: StoredValue,
         span: &Span,
     ) -> ExecResult<f64> {
         let left = self.fetch_number(left, last);
@@ -148,40 +164,47 @@ impl Registers {
         Ok(value)
     }
 
+    /// Computes a function, or its alarm.
     #[inline(always)]
     fn evaluate_function(&self, name: Function, argument: f64, span: &Span) -> ExecResult<f64> {
         let value = function_value(name, argument, &self.data.settings);
         if !is_finite(value) {
             return Err(function_alarm(name, argument).located_at(*span));
         }
-        if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
+        Ok(value)
+    }
+
+    /// Computes TAN; that of 90° has a note or an alarm.
+    #[inline(never)]
+    fn tangent(&self, argument: f64, span: &Span) -> ExecResult<f64> {
+        let value = self.evaluate_function(Function::Tan, argument, span)?;
+        if (argument % 180.0).abs() == 90.0 {
             self.block_effects.record_note(Note::TangentOf90);
         }
         Ok(value)
     }
 
-    /// ATAN of two values.
+    /// Computes ATAN of two values; that of two zeros has a note or an alarm.
     #[inline(always)]
     fn atan(&self, y: f64, x: f64, span: &Span) -> ExecResult<f64> {
-        let value = angle(y, x, &self.data.settings);
-        if !is_finite(value) {
-            return locate(atan2(y, x, &self.data.settings), *span);
-        }
         if y == 0.0 && x == 0.0 {
+            cold_path();
+            let angle = locate(atan2(y, x, &self.data.settings), *span)?;
             self.block_effects.record_note(Note::AtanOf0);
+            return Ok(angle);
         }
-        Ok(value)
+        Ok(angle(y, x, &self.data.settings))
     }
 
-    /// What only some expressions contain. It stands apart so that the others needn't carry it.
+    /// Evaluates an instruction that few expressions have, out of line so that the others don't save registers for it.
     #[inline(never)]
     fn uncommon_op(
         &self,
         operation: &UncommonOp,
-        before: Accumulator,
+        before: StoredValue,
         rounds: RoundingTarget,
     ) -> Result<Value, Alarm> {
-        let (last, unsure) = (Value::from(before), &self.data.settings.undocumented);
+        let (last, undocumented) = (Value::from(before), &self.data.settings.undocumented);
         Ok(match *operation {
             UncommonOp::Load(ref source) => self.fetch(source, before),
             UncommonOp::Push => {
@@ -192,20 +215,17 @@ impl Registers {
             UncommonOp::Read(number) => self.read_variable(number)?,
             UncommonOp::LoadIndirect => self.read_variable(variable_number(last)?)?,
             UncommonOp::Negate => match last {
-                Value::Vacant if unsure.minus_keeps_vacancy => Value::Vacant,
+                Value::Vacant if undocumented.minus_keeps_vacancy => Value::Vacant,
                 value => Value::Number(-value.number()),
             },
-            UncommonOp::NegateWord => match last {
-                Value::Vacant => Value::Vacant,
-                Value::Number(number) => Value::Number(-number),
-            },
+            UncommonOp::NegateWord => last.as_number().map_or(Value::Vacant, |number| Value::Number(-number)),
             UncommonOp::Bracket => match last {
-                Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
+                Value::Vacant if !undocumented.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
             UncommonOp::Whole(op, [ref left, ref right]) => {
                 let left = self.fetch_number(left, before);
-                Value::Number(binary(op, left, self.fetch_number(right, before), unsure)?)
+                Value::Number(binary(op, left, self.fetch_number(right, before), undocumented)?)
             }
             UncommonOp::Power([ref base, ref exponent]) => {
                 let base = self.fetch_number(base, before);
@@ -215,12 +235,12 @@ impl Registers {
             UncommonOp::RoundTo(letter) => Value::Number(self.round_to_address(letter, last.number())),
             UncommonOp::Logic(op) => {
                 let (left, right) = (is_true(self.operand_stack.pop()), is_true(last));
-                let holds = match op {
+                let is_true = match op {
                     BinaryOp::And => left && right,
                     BinaryOp::Xor => left != right,
                     _ => left || right,
                 };
-                Value::Number(truth(holds))
+                Value::Number(truth(is_true))
             }
             UncommonOp::Parameter { bit, axis } => {
                 let mut part = last;
@@ -263,20 +283,20 @@ impl Registers {
     }
 }
 
-/// What a condition is to an instruction.
-fn truth(holds: bool) -> f64 {
-    f64::from(u8::from(holds))
+/// Returns the number of a condition, 1 or 0.
+fn truth(is_true: bool) -> f64 {
+    f64::from(u8::from(is_true))
 }
 
-/// Whether a condition holds that was evaluated.
+/// Returns true if an evaluated condition is true.
 #[inline]
-pub(super) fn is_true(condition: Value) -> bool {
+fn is_true(condition: Value) -> bool {
     condition.number() != 0.0
 }
 
 impl Registers {
-    /// ROUND inside an address.
-    pub(super) fn round_to_address(&self, letter: u8, value: f64) -> f64 {
+    /// Rounds to the increment of an address: ROUND in a word.
+    fn round_to_address(&self, letter: u8, value: f64) -> f64 {
         match letter {
             b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
                 let scale = POWERS[self.data.decimals(letter, self.state.modal.unit)];
@@ -287,6 +307,7 @@ impl Registers {
         }
     }
 
+    /// Returns the variable that an assignment writes.
     pub(super) fn resolve_target(&self, target: &AssignmentTarget) -> Result<Slot, Alarm> {
         match target {
             AssignmentTarget::Slot(slot) => Ok(*slot),

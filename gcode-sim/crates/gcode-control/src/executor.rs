@@ -1,12 +1,24 @@
-//! Everything of a control but its programs.
+//! Everything of a control but its programs; carries out the plan of a block and emits its events.
+use super::cycle_expansion::CyclePlan;
+use super::data::{ControlData, system_index};
 use super::flow::ProgramFlow;
+use super::functions::ExecResult;
+use super::lookahead::Lookahead;
+use super::outcome::{RunEnd, RunLog};
+use super::plan::{BlockPlan, TableWrite};
 use super::planner::Planner;
 use super::registers::Registers;
-use super::run_log::RunLog;
+use super::variables::VariableClass;
+use super::words::BlockWords;
+use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
+use gcode_lang::motion::{Event, EventKind, EventSink};
 use gcode_lang::program::ProgramId;
+use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::source::{Span, Spanned};
+use gcode_lang::units::Seconds;
 
-/// What a run changes: what programs read, where they are, and what is recorded of them.
+/// State that a run changes: registers, position in the programs, and the record.
 #[derive(Clone, Debug)]
 pub(super) struct Executor {
     pub(super) registers: Registers,
@@ -20,10 +32,202 @@ impl Executor {
         Self { registers: Registers::new(settings), flow, log: RunLog::default() }
     }
 
-    /// Plans blocks as the control stands now.
+    /// Returns the planner of a block with these words.
     #[inline(always)]
-    pub(super) fn planner(&self) -> Planner<'_> {
+    pub(super) fn planner<'a>(&'a self, words: &'a BlockWords) -> Planner<'a> {
         let Self { registers, flow, log: _ } = self;
-        Planner { registers, data: &registers.data, flow }
+        Planner { registers, data: &registers.data, flow, words, block: flow.block }
+    }
+
+    /// Carries out a plan in the order of its fields.
+    pub(super) fn commit<S: EventSink>(&mut self, plan: &mut BlockPlan, sink: &mut S) {
+        std::mem::swap(&mut self.registers.state, &mut plan.state);
+        self.record_work_use(plan.state.modal.work, plan.commands_axes);
+        let before = plan.state.work_zero_unknown;
+        // A cycle emits the changes along its axis itself.
+        let after = plan.cycle_plan.as_ref().map_or(&*self.registers.state, |cycle| &cycle.start_state);
+        let axes = before & after.work_zero_unknown;
+        if axes != before {
+            self.emit(&EventKind::WorkZeroUnknown { axes }, 0.0, sink);
+        }
+        if plan.uses_lookahead {
+            self.take_lookahead(&mut plan.lookahead, sink);
+        }
+        for (kind, seconds) in &plan.events {
+            self.emit(kind, *seconds, sink);
+        }
+        if let Some(cycle_plan) = plan.cycle_plan.take() {
+            self.emit_cycle(&cycle_plan, sink);
+        }
+        for (kind, seconds) in &plan.events_after_motion {
+            self.emit(kind, *seconds, sink);
+        }
+        let Registers { data, variables, .. } = &mut self.registers;
+        for write in &plan.writes {
+            match *write {
+                TableWrite::Work { system, axis, value } => data.set_work_offset(system, axis, value),
+                TableWrite::Tool { register, number, value } => {
+                    data.offsets.tools[register as usize][number as usize] = value;
+                }
+                TableWrite::Parameter { id, value, has_no_effect } => {
+                    data.set_parameter(id, value, has_no_effect)
+                }
+                TableWrite::Variable { number, value } => {
+                    if let VariableClass::Common(place) = variables.classify(number) {
+                        variables.set(place, value);
+                    }
+                }
+            }
+        }
+        if !plan.writes.is_empty() {
+            self.registers.update_after_offset_change();
+        }
+        for kind in &plan.stops {
+            let stop = EventKind::Stop { kind: *kind, text: String::new(), variables: Vec::new() };
+            self.emit(&stop, 0.0, sink);
+        }
+        for note in &plan.notes {
+            self.log.note(*note, self.flow.block);
+        }
+        for code in &plan.auxiliary_codes {
+            self.log.auxiliary_codes.entry(*code).or_insert(self.flow.block);
+        }
+        self.registers.update_is_plain();
+    }
+
+    fn emit_cycle<S: EventSink>(&mut self, cycle_plan: &CyclePlan, sink: &mut S) {
+        let (mut seconds, mut moves) = (0.0, 0);
+        let block = self.flow.block;
+        let calls = self.flow.frame.calls.clone();
+        cycle_plan.expand(&self.registers.data, &mut |kind, time| {
+            seconds += time;
+            moves += u64::from(kind.end().is_some());
+            sink.event(&Event { kind: &kind, seconds: Seconds(time), block, calls: &calls });
+        });
+        self.registers.clock.motion_seconds += seconds;
+        self.count_moves(moves);
+    }
+
+    /// Emits an event and counts it.
+    #[inline(always)]
+    pub(super) fn emit<S: EventSink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
+        self.count_event(kind, seconds);
+        let block = self.flow.block;
+        sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.flow.frame.calls });
+    }
+
+    /// Counts an event.
+    #[inline(always)]
+    fn count_event(&mut self, kind: &EventKind, seconds: f64) {
+        self.registers.clock.motion_seconds += seconds;
+        self.count_moves(u64::from(kind.end().is_some()));
+        if let EventKind::Stop { kind, text, variables } = kind {
+            self.log.record_stop(*kind, text, variables);
+        }
+    }
+
+    /// Counts a move without emitting it, for a sink that isn't active.
+    #[inline(always)]
+    pub(super) fn count_move(&mut self, seconds: f64) {
+        self.registers.clock.motion_seconds += seconds;
+        self.count_moves(1);
+    }
+
+    #[inline(always)]
+    fn count_moves(&mut self, moves: u64) {
+        self.log.moves += moves;
+        if self.log.moves > self.log.max_moves {
+            self.registers.block_effects.end_run(RunEnd::MoveLimit);
+        }
+    }
+
+    /// Replaces the lookahead by that of a plan, and emits the events that no longer wait.
+    fn take_lookahead<S: EventSink>(&mut self, lookahead: &mut Lookahead, sink: &mut S) {
+        std::mem::swap(&mut self.registers.lookahead, lookahead);
+        for (kind, seconds, place) in self.registers.lookahead.take_ready() {
+            self.count_event(&kind, seconds);
+            let (seconds, block) = (Seconds(seconds), place.block);
+            sink.event(&Event { kind: &kind, seconds, block, calls: &place.calls });
+        }
+        if self.registers.lookahead.is_idle() {
+            self.registers.lookahead = Lookahead::default();
+        }
+    }
+
+    /// Advances the lookahead without a plan, if a move waits; an alarm changes nothing.
+    fn advance_lookahead<S: EventSink>(
+        &mut self,
+        sink: &mut S,
+        advance: fn(&mut Lookahead, &ControlData, Span) -> ExecResult<()>,
+    ) -> ExecResult<()> {
+        if self.registers.lookahead.is_idle() {
+            return Ok(());
+        }
+        let mut lookahead = self.registers.lookahead.clone();
+        advance(&mut lookahead, &self.registers.data, self.flow.block)?;
+        lookahead.check_stroke(&self.registers.data)?;
+        self.take_lookahead(&mut lookahead, sink);
+        Ok(())
+    }
+
+    /// Executes a block that has only a sequence number.
+    pub(super) fn process_number_block<S: EventSink>(&mut self, sink: &mut S) -> ExecResult<()> {
+        self.advance_lookahead(sink, Lookahead::count_number)
+    }
+
+    /// Executes what waits at the end of a program without M30.
+    pub(super) fn finish_lookahead<S: EventSink>(&mut self, sink: &mut S) -> ExecResult<()> {
+        self.advance_lookahead(sink, Lookahead::finish)
+    }
+
+    /// Executes what waits before an alarm ends the run.
+    pub(super) fn finish_before_alarm<S: EventSink>(&mut self, alarm: &Spanned<Alarm>, sink: &mut S) {
+        if self.registers.lookahead.is_idle() {
+            return;
+        }
+        let refused = matches!(alarm.node, Alarm::Interference | Alarm::Overtravel { .. });
+        let refused = refused.then_some(alarm.span);
+        let mut lookahead = std::mem::take(&mut self.registers.lookahead);
+        lookahead.finish_before_alarm(&self.registers.data, refused);
+        self.take_lookahead(&mut lookahead, sink);
+    }
+
+    /// Records the use of the work coordinate system after a block. G54 counts as set: its zero is the part's if no system
+    /// is selected.
+    #[inline]
+    pub(super) fn record_work_use(&mut self, before: WorkSystem, has_moved: bool) {
+        let work = self.registers.state.modal.work;
+        if work != WorkSystem::default() {
+            self.record_other_work(work, before, has_moved);
+        }
+    }
+
+    #[inline(never)]
+    fn record_other_work(&mut self, work: WorkSystem, before: WorkSystem, has_moved: bool) {
+        if work != before {
+            self.log.work_selected = self.flow.backtrace();
+        }
+        let is_recorded = self.log.unset_systems.iter().any(|(other, _)| *other == work);
+        if has_moved && !is_recorded && !self.registers.data.set_systems.contains(&system_index(work)) {
+            self.log.unset_systems.push((work, self.log.work_selected.clone()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Control, Limits, Outcome};
+    use gcode_lang::program::{Memory, NoLibrary};
+
+    #[test]
+    fn setvn_gives_all_names_or_none() {
+        let mut memory = Memory::default();
+        memory.load("names.nc", *b"O1\nSETVN548[A,B]\nSETVN549[C,D]\nM30\n");
+        let mut control = Control::new(memory, gcode_lang::control::Settings::default());
+        let outcome = control.run(Limits::default(), &mut NoLibrary, &mut ());
+        assert!(matches!(outcome, Outcome::Alarm(_)), "550 has no name");
+        let named =
+            ["A", "B", "C"].map(|name| control.executor.registers.variables.named_variable(name).ok());
+        assert_eq!(named, [Some(548), Some(549), None]);
     }
 }

@@ -1,4 +1,4 @@
-//! The programs on the way to the block at hand: frames, nesting, returns.
+//! Position in the programs: the current block, its frame, and the call stack.
 use std::sync::Arc;
 
 use super::variables::Locals;
@@ -6,37 +6,32 @@ use gcode_lang::motion::{Backtrace, Call, CallChain};
 use gcode_lang::program::{OpIndex, ProgramId};
 use gcode_lang::source::Span;
 
-/// Where the program is: the block at work, the frame that it belongs to, and those that wait for it.
+/// Current block, its frame, and the frames of its callers.
 #[derive(Clone, Debug)]
 pub(super) struct ProgramFlow {
-    /// The block last begun.
+    /// Block that began last.
     pub(super) block: Span,
-    /// The program at work.
+    /// Frame of the current program.
     pub(super) frame: Frame,
-    /// The frames that wait for it, the main program's first.
+    /// Frames of its callers, the main program's first.
     pub(super) callers: Vec<Frame>,
     pub(super) modal_calls: Vec<ModalCall>,
-    /// M99 of the main program, counted.
+    /// Number of M99 executed in the main program.
     pub(super) main_passes: u32,
 }
 
 impl ProgramFlow {
     pub(super) fn new(main: ProgramId) -> Self {
-        Self {
-            block: Span::default(),
-            frame: Frame::main(main),
-            callers: Vec::new(),
-            modal_calls: Vec::new(),
-            main_passes: 0,
-        }
+        let frame = Frame::main(main);
+        Self { block: Span::default(), frame, callers: Vec::new(), modal_calls: Vec::new(), main_passes: 0 }
     }
 
-    /// The block last begun and the calls that led to it.
+    /// Returns the current block and the calls that led to it.
     pub(super) fn backtrace(&self) -> Backtrace {
         Backtrace { block: self.block, calls: self.frame.calls.clone() }
     }
 
-    /// Whether the same blocks follow; `counts_passes` where the number of passes of the main program ends the run.
+    /// Returns true if the same blocks follow; `counts_passes` if the number of main program passes ends the run.
     pub(super) fn continues_like(&self, other: &Self, counts_passes: bool) -> bool {
         let Self { block: _, frame, callers, modal_calls, main_passes } = self;
         frame.continues_like(&other.frame)
@@ -47,30 +42,30 @@ impl ProgramFlow {
     }
 }
 
-/// One program on the way to the block at hand.
+/// One program of the call stack.
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
     pub(super) program: ProgramId,
     pub(super) next: OpIndex,
     pub(super) kind: FrameKind,
-    /// Where a repetition starts.
+    /// Operation at which a repetition starts.
     pub(super) start: OpIndex,
-    /// Passes still to come after this one.
+    /// Passes after this one.
     pub(super) repeats: u32,
-    /// The arguments, for repetitions that set them anew.
+    /// Arguments, if every repetition sets them again.
     pub(super) arguments: Option<Box<Locals>>,
-    /// The calls that led here.
+    /// Calls that led here.
     pub(super) calls: CallChain,
-    /// DO1 to DO3 that are open: their first and last operation.
+    /// First and last operation of the open loops DO1 to DO3.
     pub(super) loops: [Option<(OpIndex, OpIndex)>; 3],
-    /// How many of the modal calls its moves can trigger.
+    /// Number of modal calls that its moves can trigger.
     pub(super) modal_call_count: usize,
     pub(super) origins: CallOrigins,
-    /// Called by M198, itself or one of its callers.
+    /// M198 has called it or one of its callers.
     pub(super) is_external: bool,
 }
 
-/// The kinds of codes that a program was called by, itself or one of its callers: inside it they are ordinary ones.
+/// Kinds of codes that have called a program or one of its callers: inside it they are ordinary codes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct CallOrigins {
     pub(super) has_g_code: bool,
@@ -86,7 +81,7 @@ impl CallOrigins {
         }
     }
 
-    /// Whether a code still calls: GMP 6008#6 lets G codes call where another kind has called, and the other way round.
+    /// Returns true if a code calls: GMP 6008#6 lets G codes call after another kind has called, and the other way round.
     pub(super) fn allows_call(self, is_g_code: bool, allows_nested_calls: bool) -> bool {
         match (allows_nested_calls, is_g_code) {
             (false, _) => self == Self::default(),
@@ -101,7 +96,7 @@ pub(super) enum FrameKind {
     Main,
     Subprogram,
     Macro,
-    /// Called by a modal call: its locals go back there when it returns.
+    /// Macro of the modal call with this index, which gets its locals back.
     Modal(usize),
 }
 
@@ -122,7 +117,7 @@ impl Frame {
         }
     }
 
-    /// Whether two frames lead to the same blocks from here on.
+    /// Returns true if the same blocks follow two frames.
     pub(super) fn continues_like(&self, other: &Self) -> bool {
         let Self {
             program,
@@ -133,18 +128,18 @@ impl Frame {
             arguments,
             calls: _,
             loops,
-            modal_call_count: modal,
-            origins: by_code,
-            is_external: external,
+            modal_call_count,
+            origins,
+            is_external,
         } = self;
         (*program, *next, *kind, *start, *repeats)
             == (other.program, other.next, other.kind, other.start, other.repeats)
-            && *arguments == other.arguments
-            && (*loops, *modal) == (other.loops, other.modal_call_count)
-            && (*by_code, *external) == (other.origins, other.is_external)
+            && (arguments, loops, modal_call_count)
+                == (&other.arguments, &other.loops, &other.modal_call_count)
+            && (*origins, *is_external) == (other.origins, other.is_external)
     }
 
-    /// Goes to an operation and leaves the loops that it is not in.
+    /// Jumps to an operation and closes the loops that don't contain it.
     pub(super) fn jump(&mut self, to: OpIndex) {
         self.next = to;
         for open in &mut self.loops {
@@ -156,48 +151,45 @@ impl Frame {
 }
 
 impl ProgramFlow {
+    /// Returns the frame of a program that the current block calls.
     pub(super) fn callee_frame(
         &self,
         program: ProgramId,
-        start: OpIndex,
         kind: FrameKind,
         repeats: u32,
-        by_code: CallOrigins,
-        block: Span,
+        origins: CallOrigins,
     ) -> Frame {
-        let calls = Some(Arc::new(Call { calling_block: block, outer_calls: self.frame.calls.clone() }));
-        let by_code = self.frame.origins.merged_with(by_code);
+        let calls = Call { calling_block: self.block, outer_calls: self.frame.calls.clone() };
         Frame {
-            next: start,
             kind,
-            start,
             repeats: repeats.saturating_sub(1),
-            calls,
-            origins: by_code,
+            calls: Some(Arc::new(calls)),
+            origins: self.frame.origins.merged_with(origins),
             ..Frame::main(program)
         }
     }
 
+    /// Pushes the current frame onto the call stack.
     pub(super) fn push(&mut self, frame: Frame) {
         self.callers.push(std::mem::replace(&mut self.frame, frame));
     }
 
-    /// The modal call that a block of this program can trigger.
+    /// Returns the index of the modal call that a block of this program triggers.
     #[inline]
     pub(super) fn triggered_call(&self) -> Option<usize> {
         self.frame.modal_call_count.min(self.modal_calls.len()).checked_sub(1)
     }
 }
 
-/// G66: waits for moves.
+/// Stored macro call of G66 or G66.1.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ModalCall {
     pub(super) program: ProgramId,
     pub(super) repeats: u32,
     pub(super) locals: Locals,
-    /// G66.1: every block calls, and its words are the arguments.
+    /// G66.1: every block calls, with its words as arguments.
     pub(super) is_every_block: bool,
-    /// The kind of code that stored it, where it is no G66 or G66.1.
+    /// Kind of code that has stored it, other than G66 and G66.1.
     pub(super) origins: CallOrigins,
 }
 
@@ -215,8 +207,8 @@ mod tests {
     fn a_call_keeps_the_block_it_came_from() {
         let mut flow = ProgramFlow::new(ProgramId(0));
         let from = Span { start: 3, end: 8, ..Span::default() };
-        let frame =
-            flow.callee_frame(ProgramId(1), 0, FrameKind::Subprogram, 2, CallOrigins::default(), from);
+        flow.block = from;
+        let frame = flow.callee_frame(ProgramId(1), FrameKind::Subprogram, 2, CallOrigins::default());
         assert_eq!(frame.repeats, 1, "passes after this one");
         flow.push(frame);
         assert_eq!((flow.callers.len(), flow.frame.program), (1, ProgramId(1)));

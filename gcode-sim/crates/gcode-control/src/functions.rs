@@ -1,21 +1,23 @@
-//! What operators, comparisons and functions compute, with their domains and alarms.
+//! Operators, comparisons and functions with their domains and alarms; whole numbers.
 use super::variables::Value;
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::{Settings, UndocumentedChoices};
+use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Function, Relation};
 use gcode_lang::units::{Deg, round};
 
-/// Whether an operator or a function has a value: else it is infinite or no number.
+/// Returns true for the result of an operator or function inside its domain; otherwise it is infinite or NaN.
 #[inline(always)]
 pub(super) fn is_finite(value: f64) -> bool {
     value.abs() <= f64::MAX
 }
 
-/// Results beyond what a double holds are PS0111.
+/// Raises PS0111 for a result that a double can't hold.
 fn check_finite(value: f64) -> Result<f64, Alarm> {
     if is_finite(value) { Ok(value) } else { Err(Alarm::FloatOverflow) }
 }
 
+/// Computes a binary operator.
 #[inline(never)]
 pub fn binary(op: BinaryOp, left: f64, right: f64, undocumented: &UndocumentedChoices) -> Result<f64, Alarm> {
     check_finite(match op {
@@ -30,7 +32,7 @@ pub fn binary(op: BinaryOp, left: f64, right: f64, undocumented: &UndocumentedCh
     })
 }
 
-/// The operators on whole numbers.
+/// Computes an operator on whole numbers.
 #[inline(never)]
 fn integer_operation(
     op: BinaryOp,
@@ -51,8 +53,8 @@ fn integer_operation(
     }))
 }
 
-/// AND, OR and XOR work on 32-bit integers.
-pub(super) fn bits(value: f64, undocumented: &UndocumentedChoices) -> Result<i32, Alarm> {
+/// Returns an operand of AND, OR and XOR as a 32-bit integer.
+fn bits(value: f64, undocumented: &UndocumentedChoices) -> Result<i32, Alarm> {
     let value = round(value);
     if value < 0.0 && undocumented.negative_bits_alarm {
         return Err(Alarm::OutOfRange { function: "AND, OR, XOR".into(), value });
@@ -66,26 +68,37 @@ pub(super) fn bits(value: f64, undocumented: &UndocumentedChoices) -> Result<i32
     }
 }
 
-/// Vacant equals vacant and differs from 0; larger and smaller take it for 0 (manual's comparison table).
+/// Compares two values. Vacant equals vacant and differs from 0; larger and smaller take it for 0 (manual's comparison
+/// table).
 #[inline]
 pub(super) fn compare(relation: Relation, left: Value, right: Value) -> bool {
-    let (l, r) = (left.number(), right.number());
     match relation {
         Relation::Eq => left == right,
         Relation::Ne => left != right,
-        Relation::Gt => l > r,
-        Relation::Ge => l >= r,
-        Relation::Lt => l < r,
-        Relation::Le => l <= r,
+        _ => compare_numbers(relation, left.number(), right.number()),
     }
 }
 
+/// Compares two values that aren't vacant.
+#[inline(always)]
+pub(super) fn compare_numbers(relation: Relation, left: f64, right: f64) -> bool {
+    match relation {
+        Relation::Eq => left == right,
+        Relation::Ne => left != right,
+        Relation::Gt => left > right,
+        Relation::Ge => left >= right,
+        Relation::Lt => left < right,
+        Relation::Le => left <= right,
+    }
+}
+
+/// Computes a function of one argument.
 pub fn function(name: Function, x: f64, settings: &Settings) -> Result<f64, Alarm> {
     let value = function_value(name, x, settings);
     if is_finite(value) { Ok(value) } else { Err(function_alarm(name, x)) }
 }
 
-/// What a function gives; no number, or infinite, where it alarms.
+/// Returns the value of a function; NaN or infinite where it raises an alarm.
 #[inline(never)]
 pub(super) fn function_value(name: Function, x: f64, settings: &Settings) -> f64 {
     let residue = |y: f64| if settings.zeroes_residues && y.abs() < 1e-8 { 0.0 } else { y };
@@ -109,12 +122,12 @@ pub(super) fn function_value(name: Function, x: f64, settings: &Settings) -> f64
         Function::Bcd => f64::from(to_bcd(round(x) as u32)),
         Function::Bin if !(0.0..=f64::from(u32::MAX)).contains(&round(x)) => f64::NAN,
         Function::Bin => from_bcd(round(x) as u32).map_or(f64::NAN, f64::from),
-        // They have two values, or a variable.
+        // These take two values, or a variable.
         Function::Adp | Function::Pow => f64::NAN,
     }
 }
 
-/// The alarm of a function that has no value.
+/// Returns the alarm of a function without a value.
 #[cold]
 pub(super) fn function_alarm(name: Function, x: f64) -> Alarm {
     match name {
@@ -124,26 +137,30 @@ pub(super) fn function_alarm(name: Function, x: f64) -> Alarm {
     }
 }
 
-/// NAT: negative angles as they are, or a turn added.
+/// Returns an angle from 0 to 360, or with its sign if NAT is set.
 fn apply_angle_range(degrees: f64, settings: &Settings) -> f64 {
     if degrees < 0.0 && !settings.returns_signed_angles { degrees + 360.0 } else { degrees }
 }
 
+/// Computes ATAN of two values, degrees; that of two zeros is 0 or an alarm.
 pub fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
-    let angle = angle(y, x, settings);
-    if is_finite(angle) { Ok(angle) } else { Err(Alarm::OutOfRange { function: "ATAN".into(), value: 0.0 }) }
+    if y != 0.0 || x != 0.0 {
+        return Ok(angle(y, x, settings));
+    }
+    match settings.undocumented.atan_of_zeros_alarms {
+        true => Err(Alarm::OutOfRange { function: "ATAN".into(), value: 0.0 }),
+        false => Ok(0.0),
+    }
 }
 
-/// ATAN of two values; no number where it alarms.
+/// Returns ATAN of two values of which at most one is 0.
 #[inline]
 pub(super) fn angle(y: f64, x: f64, settings: &Settings) -> f64 {
-    if y == 0.0 && x == 0.0 {
-        return if settings.undocumented.atan_of_zeros_alarms { f64::NAN } else { 0.0 };
-    }
-    // A negative zero must not turn 180° into −180°.
+    // A negative zero must not change 180° into −180°.
     apply_angle_range(Deg::atan2(y + 0.0, x).0, settings)
 }
 
+/// Computes POW.
 pub fn power(base: f64, exponent: f64) -> Result<f64, Alarm> {
     if base < 0.0 {
         return Err(Alarm::OutOfRange { function: "POW".into(), value: base });
@@ -165,6 +182,34 @@ fn from_bcd(code: u32) -> Option<u32> {
     })
 }
 
+/// Result of a step of execution, its alarm located.
+pub(super) type ExecResult<T> = Result<T, LocatedAlarm>;
+
+/// Returns the variable number of an expression: rounded, not negative; vacant is #0.
+pub(super) fn variable_number(value: Value) -> Result<u32, Alarm> {
+    let number = value.number();
+    let whole = number as u32;
+    if f64::from(whole) == number {
+        return Ok(whole);
+    }
+    let number = round(number);
+    if (0.0..=f64::from(u32::MAX)).contains(&number) {
+        return Ok(number as u32);
+    }
+    Err(Alarm::NoSuchVariable { number: number as i64 })
+}
+
+/// Returns the nearest integer, for an index, a code or a count.
+pub(super) fn integer(value: f64) -> Result<i64, Alarm> {
+    let rounded = round(value);
+    if rounded.abs() <= 999_999_999_999.0 { Ok(rounded as i64) } else { Err(Alarm::IntegerOverflow) }
+}
+
+/// Locates the alarm of a result.
+pub(super) fn locate<T>(result: Result<T, Alarm>, span: Span) -> ExecResult<T> {
+    result.map_err(|alarm| alarm.located_at(span))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_turn_full_circle_unless_nat_is_set() {
+    fn angles_are_positive_unless_nat_is_set() {
         let mut settings = Settings::default();
         assert_eq!(atan2(-1.0, -1.0, &settings), Ok(225.0));
         assert_eq!(atan2(-0.0, -1.0, &settings), Ok(180.0));
@@ -187,12 +232,12 @@ mod tests {
     }
 
     #[test]
-    fn decimal_digits_in_four_bits_each() {
+    fn bcd_has_a_decimal_digit_in_four_bits() {
         assert_eq!((to_bcd(1234), from_bcd(0x1234), from_bcd(0x1A)), (0x1234, Some(1234), None));
     }
 
     #[test]
-    fn fup_goes_away_from_zero() {
+    fn fup_rounds_away_from_zero() {
         let settings = Settings::default();
         assert_eq!(function(Function::Fup, -1.2, &settings), Ok(-2.0));
         assert_eq!(function(Function::Fup, 3.0, &settings), Ok(3.0));

@@ -1,21 +1,50 @@
-//! Operations to events: a control that can be stepped block by block, held and looked at.
+//! A control: executes programs block by block and emits what the machine does as events.
+//!
+//! **In:** programs in a [`Memory`](gcode_lang::program::Memory), the [`Settings`](gcode_lang::control::Settings) of the
+//! control, a [`Library`](gcode_lang::program::Library) for called programs that aren't in memory.
+//! **Out:** [events](gcode_lang::motion::EventKind) in machine coordinates to an
+//! [`EventSink`](gcode_lang::motion::EventSink), each with its block and its time; the [`Outcome`] of the run; and the
+//! [`Control`] itself, with variables, positions, modes, stops and notes as the run leaves them.
+//!
+//! ```
+//! use gcode_control::{Control, Limits, Outcome, Value};
+//! use gcode_lang::control::Settings;
+//! use gcode_lang::motion::{Event, EventKind, EventSink};
+//! use gcode_lang::program::{Memory, NoLibrary};
+//!
+//! struct Depths(Vec<f64>);
+//! impl EventSink for Depths {
+//!     fn event(&mut self, event: &Event<'_>) {
+//!         if let EventKind::Feed { to, .. } = event.kind {
+//!             self.0.push(to[2]);
+//!         }
+//!     }
+//! }
+//!
+//! let mut memory = Memory::default();
+//! memory.load("O1.nc", *b"O1\n#100=2*3\nG90 G83 X10. Z-#100 R1. Q3. F100\nM30\n");
+//! let mut control = Control::new(memory, Settings::default());
+//! let mut depths = Depths(Vec::new());
+//! let outcome = control.run(Limits::default(), &mut NoLibrary, &mut depths);
+//!
+//! assert!(matches!(outcome, Outcome::End));
+//! assert_eq!(depths.0, [-2.0, -5.0, -6.0]);
+//! assert_eq!(control.variable(100), Ok(Value::Number(6.0)));
+//! ```
 //!
 //! The modules stand in the order in which they use one another. At the top are values and the parts that own them:
-//! `data` (settings and tables), `registers` (what a program can read), `flow` (where the program is) and `run_log` (what
+//! `data` (settings and tables), `registers` (what a program can read), `flow` (the position in the programs) and `outcome` (what
 //! is recorded). A `planner` makes the plan of a block of words, an `executor` carries it out, and `control` adds the
-//! programs. What one block does reads from top to bottom in `block`.
+//! programs. One block reads from top to bottom in `block`; a canned cycle goes from there to `block_codes` (the cycle
+//! becomes modal), `cycles` (its words are checked) and `cycle_expansion` (its moves).
+#![warn(missing_docs)]
+
 mod contour;
 
-mod block_effects;
-mod checked;
 mod functions;
-mod modal_state;
 pub mod notes;
-mod offsets;
-mod operand_stack;
 mod outcome;
 mod state;
-mod transform;
 mod variables;
 mod words;
 
@@ -24,71 +53,43 @@ mod cycle_expansion;
 mod data;
 mod linear_motion;
 mod lookahead;
-mod pecks;
 mod quantities;
-mod stroke_limits;
 
-mod clock;
-mod flow;
-mod panel;
-mod plan;
-mod run_log;
-
-mod arguments;
 mod evaluation;
+mod flow;
+mod plan;
 mod registers;
 pub mod static_eval;
 mod system_variables;
 mod word_values;
 
-mod arcs;
+mod block_codes;
 mod calls;
-mod code_calls;
-mod code_words;
 mod cycles;
 mod data_input;
-mod endpoints;
 mod lookahead_request;
-mod m_codes;
-mod modal_codes;
 mod moves;
 mod one_shot_codes;
-mod parameters;
-mod patterns;
 mod planner;
-mod pockets;
 mod probing;
-mod reference;
-mod threading;
 mod transform_codes;
-mod transform_order;
-mod work_offset_use;
 
 mod executor;
 mod loop_detection;
 mod plain_move;
-mod plan_commit;
-mod print;
 mod statements;
 
-mod accessors;
 mod block;
-mod block_commands;
 mod call_execution;
 mod control;
-mod observer;
+mod next_block;
 mod residual_state;
-mod run;
-mod unsimulated;
 
-pub use self::block_commands::{BlockCommands, modal_code};
-pub use self::control::Control;
-pub use self::modal_state::Modal;
+pub use self::control::{Control, Observer};
+pub use self::next_block::{BlockCommands, UnsimulatedCodes, modal_code};
 pub use self::notes::Note;
-pub use self::observer::Observer;
 pub use self::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress};
-pub use self::print::printable;
 pub use self::residual_state::{ResidualKind, ResidualValue, mode_name};
-pub use self::state::{Codes, State};
-pub use self::unsimulated::UnsimulatedCodes;
+pub use self::state::{Codes, Modal, State};
+pub use self::statements::printable;
 pub use self::variables::{Value, Vars};

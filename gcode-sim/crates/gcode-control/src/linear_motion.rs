@@ -1,39 +1,38 @@
-//! Straight moves: where a block's axis words lead, and how long the way takes.
+//! Straight moves: end points of axis words, distances and times.
 use std::hint::cold_path;
 
-use super::checked::{ExecResult, locate};
+use super::coordinates::shortest_rotation;
 use super::data::ControlData;
 use super::quantities::Measure;
 use super::state::{PolarPoint, State};
-use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
-use gcode_lang::program::modes::{Distance, FeedMode, Plane, Polar, Unit};
+use gcode_lang::program::modes::{Distance, FeedMode, Plane, Unit};
 use gcode_lang::units::{Deg, MmPerMin};
 
-/// Where a move ends: as programmed, and in machine coordinates.
+/// End point of a move: as programmed, and in machine coordinates.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Endpoint {
     pub(super) programmed: Position,
     pub(super) machine: Position,
-    /// As [`State::work_zero_unknown`], there.
+    /// [`State::work_zero_unknown`] at the end point.
     pub(super) work_zero_unknown: u8,
 }
 
-/// What axis words count from and in, the same for all of a block.
+/// Origin and units of the axis words of a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CoordinateBasis {
     /// [`ControlData::zeros`].
     zero: Position,
-    /// The axes whose zero and tool length are none, as bits, axis 1 the lowest.
+    /// Axes whose zero and tool length are 0, as bits, axis 1 the lowest.
     unshifted_axes: u8,
-    is_incremental: bool,
+    pub(super) is_incremental: bool,
     pub(super) measure: Measure,
-    /// The largest coordinate: nine digits in increments, as a word has.
+    /// Largest coordinate: nine digits in increments, as in a word.
     pub(super) max_coordinate: f64,
 }
 
-/// How far axes move: the sums of the squares of those that slide, in mm, and of those that turn, in degrees.
+/// Distance of a move: sums of the squares of linear axes, mm, and of rotary axes, degrees.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SquaredTravel {
     linear: f64,
@@ -50,31 +49,14 @@ impl SquaredTravel {
         }
     }
 
-    /// Whether one of the axes moves; the increments are far too large for squares that vanish.
+    /// Returns true if an axis moves; increments are too large for their squares to underflow.
     pub(super) fn is_some(self) -> bool {
         self.linear + self.rotary > 0.0
     }
 }
 
-impl Endpoint {
-    /// Where the program stands.
-    #[inline]
-    pub(super) fn at_current_position(state: &State) -> Self {
-        Self {
-            programmed: state.programmed,
-            machine: state.machine,
-            work_zero_unknown: state.work_zero_unknown,
-        }
-    }
-}
-
 impl ControlData {
-    /// Whether a block names an axis.
-    pub(super) fn names_axis(&self, block_words: &BlockWords) -> bool {
-        block_words.has_letters(self.settings.axes.letter_bits())
-    }
-
-    /// The two axes of the plane, first axis first.
+    /// Returns the two axes of the plane in right-handed order.
     pub(super) fn plane_axes(&self, plane: Plane) -> Result<(AxisIndex, AxisIndex), Alarm> {
         let (first, second) = match plane {
             Plane::Xy => (b'X', b'Y'),
@@ -88,7 +70,7 @@ impl ControlData {
         Ok((find(first)?, find(second)?))
     }
 
-    /// What axis words count from where `state` stands.
+    /// Returns the origin and units of axis words in a state.
     pub(super) fn coordinate_basis(&self, state: &State) -> CoordinateBasis {
         let zero = self.zeros(state);
         let unshifted = |axis: &AxisIndex| zero[*axis] == 0.0 && state.length_offset[*axis] == 0.0;
@@ -101,34 +83,7 @@ impl ControlData {
         }
     }
 
-    /// Takes a goal to where the block's axis words lead, but for those of a plane in which G16 is on.
-    pub(super) fn resolve_axes(
-        &self,
-        block_words: &BlockWords,
-        state: &State,
-        basis: &CoordinateBasis,
-        endpoint: &mut Endpoint,
-    ) -> ExecResult<()> {
-        let is_polar = state.modal.polar == Polar::On;
-        for (axis, letter) in self.settings.axes.letters() {
-            if is_polar && self.in_plane(state, axis) {
-                continue;
-            }
-            let Some((raw, span)) = block_words.get(letter) else { continue };
-            let value = locate(self.dimension_of(&raw, letter, &basis.measure), span)?;
-            (endpoint.programmed[axis], endpoint.machine[axis]) = match self.settings.rolls_over[axis] {
-                true => self.rollover_axis_end(axis, value, state, basis),
-                false => self.axis_end(axis, value, state, basis),
-            };
-            if !basis.is_incremental {
-                endpoint.work_zero_unknown &= !(1 << axis);
-            }
-        }
-        Ok(())
-    }
-
-    /// Where the value of one axis word leads: as programmed, and on the machine. There that is right as long as the other
-    /// axes [stand where they should](Executor::is_placed).
+    /// Returns the end of one axis word, as programmed and on the machine; the latter is valid without a transform.
     #[inline(always)]
     pub(super) fn axis_end(
         &self,
@@ -138,13 +93,13 @@ impl ControlData {
         basis: &CoordinateBasis,
     ) -> (f64, f64) {
         let programmed = if basis.is_incremental {
-            // Else the compiler computes it in G90 too, for nothing.
+            // Keeps the compiler from computing it in G90 too.
             cold_path();
             self.remove_residue(state.programmed[axis] + value)
         } else {
             value
         };
-        // What is clean needn't be cleaned where nothing is added to it.
+        // A sum with 0 has no residue to remove.
         let machine = match basis.unshifted_axes >> axis & 1 == 1 {
             true => programmed + 0.0,
             false => self.on_machine(programmed, basis.zero[axis], state.length_offset[axis]),
@@ -152,8 +107,8 @@ impl ControlData {
         (programmed, machine)
     }
 
-    /// The same of an axis that rolls over.
-    fn rollover_axis_end(
+    /// Returns the end of one word of an axis that rolls over, as programmed and on the machine.
+    pub(super) fn rollover_axis_end(
         &self,
         axis: AxisIndex,
         value: f64,
@@ -165,44 +120,7 @@ impl ControlData {
         (self.wrap_angle(axis, from + travel), self.remove_residue(state.machine[axis] + travel))
     }
 
-    fn in_plane(&self, state: &State, axis: AxisIndex) -> bool {
-        self.plane_axes(state.modal.plane).is_ok_and(|(first, second)| axis == first || axis == second)
-    }
-
-    /// G16: the plane's first axis is the radius, the second the angle.
-    pub(super) fn resolve_polar(
-        &self,
-        block_words: &BlockWords,
-        state: &mut State,
-        point: &mut Position,
-    ) -> ExecResult<()> {
-        let Ok((first, second)) = self.plane_axes(state.modal.plane) else { return Ok(()) };
-        let letter = |axis| self.settings.axes.letter(axis) as u8;
-        let radius = self.dimension(block_words, letter(first), state)?;
-        let angle = self.angle(block_words, letter(second))?;
-        if radius.is_none() && angle.is_none() {
-            return Ok(());
-        }
-        let incremental = state.modal.distance == Distance::Incremental;
-        if !incremental {
-            state.work_zero_unknown &= !(1 << first | 1 << second);
-        }
-        // Radius and angle are each absolute or incremental, as the block that commands them has it.
-        if let Some(radius) = radius {
-            state.polar = PolarPoint { radius: Some(radius), is_incremental: incremental, ..state.polar };
-        }
-        if state.polar.radius.is_none() {
-            let what = "an angle in G16 before any radius (write both in its first block)".into();
-            return Err(Alarm::NotSimulated { what }.located_at(block_words.span(letter(second))));
-        }
-        if let Some(angle) = angle {
-            state.polar.angle = if incremental { state.polar.angle + angle } else { angle };
-        }
-        self.polar_point(&state.polar, (first, second), point);
-        Ok(())
-    }
-
-    /// Moves a point to where radius and angle lead.
+    /// Moves a point to the position of a radius and an angle.
     pub(super) fn polar_point(
         &self,
         polar: &PolarPoint,
@@ -215,12 +133,12 @@ impl ControlData {
         point[plane.1] = self.remove_residue(centre.1 + radius * Deg(polar.angle).sin());
     }
 
-    /// All axes start together at their own rapid rates; the slowest decides.
+    /// Returns the seconds of a rapid: all axes start together at their own rates, the slowest determines the time.
     pub(super) fn rapid_seconds(&self, from: &Position, to: &Position) -> f64 {
         self.rapid_seconds_of(0..self.settings.axes.len(), from, to)
     }
 
-    /// The same of those axes that may move.
+    /// Returns the seconds of a rapid of these axes.
     #[inline]
     pub(super) fn rapid_seconds_of(
         &self,
@@ -237,7 +155,7 @@ impl ControlData {
         minutes * 60.0
     }
 
-    /// The rate along the path and the time of a straight cut: the composite of all axes, mm and degrees as equal
+    /// Returns the rate along the path and the seconds of a straight cut: the composite of all axes, mm and degrees as equal
     /// numbers (operator's manual, feed rate in G94).
     #[inline]
     pub(super) fn feed_seconds(
@@ -251,7 +169,7 @@ impl ControlData {
         self.travel_time(state, state.codes.f, travel, f_in_block)
     }
 
-    /// How far some axes move.
+    /// Returns the distance of a move of these axes.
     #[inline]
     pub(super) fn squared_travel(
         &self,
@@ -264,20 +182,20 @@ impl ControlData {
         squared_travel
     }
 
-    /// As [`ControlData::feed_seconds`] of an F that may not be in force yet.
+    /// Returns rate and seconds as [`ControlData::feed_seconds`], of an F that may not be active yet.
     #[inline(always)]
     pub(super) fn travel_time(
         &self,
         state: &State,
         f: f64,
-        SquaredTravel { linear: sliding, rotary: turning }: SquaredTravel,
+        SquaredTravel { linear, rotary }: SquaredTravel,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let in_inches = || inch_length(sliding.sqrt(), turning);
-        self.path_feed_time(state, f, ((sliding + turning).sqrt(), in_inches), f_in_block)
+        let in_inches = || inch_length(linear.sqrt(), rotary);
+        self.path_feed_time(state, f, ((linear + rotary).sqrt(), in_inches), f_in_block)
     }
 
-    /// The rate and the time for a path of `length` mm on which nothing turns.
+    /// Returns the rate and the seconds of a path of `length` mm without rotary axes.
     #[inline]
     pub(super) fn path_time(
         &self,
@@ -323,25 +241,7 @@ impl ControlData {
     }
 }
 
-/// The composite of a way of `sliding` mm and of what turns, squared degrees, as it counts in inches: of inches and degrees.
-fn inch_length(sliding: f64, turning: f64) -> f64 {
-    (sliding / 25.4 * (sliding / 25.4) + turning).sqrt()
-}
-
-/// How an axis that rolls over gets from one angle to another: the shorter way, half a turn in the plus direction.
-pub(super) fn shortest_rotation(from: f64, to: f64) -> f64 {
-    let rotation = (to - from).rem_euclid(360.0);
-    if rotation > 180.0 { rotation - 360.0 } else { rotation }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::shortest_rotation;
-
-    #[test]
-    fn a_rotary_axis_takes_the_shorter_way() {
-        assert_eq!(shortest_rotation(0.0, -150.0), -150.0);
-        assert_eq!(shortest_rotation(210.0, 540.0), -30.0);
-        assert_eq!(shortest_rotation(0.0, 180.0), 180.0);
-    }
+/// Returns the composite of a path of `linear` mm and the squared degrees of rotary axes, in inches and degrees.
+fn inch_length(linear: f64, rotary: f64) -> f64 {
+    (linear / 25.4 * (linear / 25.4) + rotary).sqrt()
 }

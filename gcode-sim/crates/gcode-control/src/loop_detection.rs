@@ -1,18 +1,18 @@
-//! Finds out that a program will never end: the control is again where it was, and nothing has changed.
+//! Proof that a program never ends: the control is in a state that it has been in before.
 //!
-//! Brent's method of finding cycles: at each jump back what differs soonest (place, variables, position) is held against
-//! that of an earlier jump, which is kept for longer and longer. Where they agree the control itself is copied; when it equals
-//! its copy one turn later, all that follows repeats. Between such finds a jump costs a few instructions.
-use super::block_effects::RunEnd;
+//! Brent's algorithm for cycles: at each jump back a fingerprint (place, variables, position) is compared with that of an
+//! earlier jump, which is kept for longer and longer. If they match, the control is copied; if it equals its copy one
+//! iteration later, all that follows repeats. Between matches a jump costs a few instructions.
 use super::executor::Executor;
 use super::flow::{Frame, ProgramFlow};
+use super::outcome::RunEnd;
 use super::registers::Registers;
 use super::variables::Vars;
 use gcode_lang::motion::Position;
 use gcode_lang::program::{OpIndex, ProgramId};
 use gcode_lang::source::Span;
 
-/// What differs between almost any two moments of a run that ends.
+/// Values that differ between almost any two jumps of a run that ends.
 #[derive(Debug)]
 struct Fingerprint {
     program: ProgramId,
@@ -20,33 +20,25 @@ struct Fingerprint {
     callers: usize,
     machine: Position,
     vars: Vars,
-    /// The place of the variable that told the control from this moment the last time.
+    /// Place of the variable that differed last.
     differing_place: usize,
 }
 
-/// Everything that can decide what the program does next; the record of the run, which it only leaves behind, is not there.
+/// Everything that can decide what the program does next; the record of the run can't.
 #[derive(Debug)]
 struct ControlSnapshot {
     registers: Registers,
     flow: ProgramFlow,
 }
 
-/// The jump that the loop is told by: the one to the earliest block of the outermost program.
+/// Jump of a loop to its earliest block in the outermost program.
 #[derive(Clone, Copy, Debug)]
-struct BackJump {
+pub(super) struct BackJump {
     callers: usize,
-    to: OpIndex,
-    program: ProgramId,
-    from: Span,
-}
-
-/// A loop that was found to run for ever.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct EndlessLoop {
     pub(super) program: ProgramId,
-    /// The block it comes back to.
+    /// Block that the program jumps to.
     pub(super) to: OpIndex,
-    /// The block that jumps there.
+    /// Block that jumps.
     pub(super) from: Span,
 }
 
@@ -55,31 +47,22 @@ pub(super) struct LoopDetector {
     fingerprint: Option<Fingerprint>,
     snapshot: Option<Box<ControlSnapshot>>,
     outermost_jump: Option<BackJump>,
-    /// Jumps until another moment is kept.
+    /// Jumps until another fingerprint is kept.
     remaining_jumps: u64,
-    /// A clock was read since `seen` was kept.
+    /// The program has read a clock since the fingerprint was kept.
     has_read_clock: bool,
-    /// Nothing has happened since the program was found to wait for a clock.
+    /// The program waits for a clock and does nothing else.
     is_waiting: bool,
-    /// How long the motion had taken then.
+    /// Duration of the motion when the wait began.
     seconds: f64,
-    /// How many they were the last time.
+    /// Number of jumps for which the fingerprint is kept.
     iterations: u64,
-    endless_loop: Option<EndlessLoop>,
+    /// Loop that never ends, if one was found since the run began or continued.
+    pub(super) endless_loop: Option<BackJump>,
 }
 
 impl LoopDetector {
-    /// The loop that was found to run for ever.
-    pub(super) fn endless_loop(&self) -> Option<EndlessLoop> {
-        self.endless_loop
-    }
-
-    /// A run begins, or goes on.
-    pub(super) fn reset(&mut self) {
-        self.endless_loop = None;
-    }
-
-    /// Told of every jump back; ends the run where the program is now known never to leave the loop.
+    /// Records a jump back; ends the run if the program provably never leaves the loop.
     #[inline(always)]
     pub(super) fn record_jump(&mut self, executor: &mut Executor) {
         if self.is_waiting || executor.registers.clock.has_been_read.get() {
@@ -96,7 +79,7 @@ impl LoopDetector {
         }
     }
 
-    /// Looks closely whether the control has come back, and keeps this moment when it is time.
+    /// Compares the whole fingerprint, and keeps that of this jump if it is time.
     #[inline(never)]
     fn check(&mut self, executor: &mut Executor) {
         self.endless_loop = None;
@@ -113,7 +96,7 @@ impl LoopDetector {
         self.remaining_jumps -= 1;
     }
 
-    /// Keeps this moment instead of an earlier one, for longer.
+    /// Keeps the fingerprint of this jump, for twice as many jumps as the one before.
     #[cold]
     fn store_fingerprint(&mut self, executor: &Executor) {
         self.clear();
@@ -122,36 +105,32 @@ impl LoopDetector {
         self.remaining_jumps = self.iterations;
     }
 
-    /// The control has come to the moment that was kept.
+    /// Compares the control with its copy, or copies it at the first match of the fingerprint.
     #[cold]
     fn check_revisit(&mut self, executor: &Executor) {
         match &self.snapshot {
             None => self.snapshot = Some(Box::new(ControlSnapshot::of(executor))),
-            // It waits for the clock, which only motion has moved so far.
+            // The program waits for a clock, which only motion has advanced so far.
             Some(copy) if copy.equals(executor) && self.has_read_clock => {
                 (self.seconds, self.is_waiting) = (executor.registers.clock.motion_seconds, true);
                 self.clear();
             }
-            Some(copy) if copy.equals(executor) => {
-                let found =
-                    |jump: BackJump| EndlessLoop { program: jump.program, to: jump.to, from: jump.from };
-                self.endless_loop = self.outermost_jump.map(found);
-            }
+            Some(copy) if copy.equals(executor) => self.endless_loop = self.outermost_jump,
             Some(_) => self.clear(),
         }
     }
 
-    /// Takes note of a jump that leads further out, or further up, than those since the control was copied.
+    /// Keeps the jump if it goes further out, or further up, than those since the control was copied.
     #[cold]
     fn record_outer_jump(&mut self, executor: &Executor) {
         let Frame { program, next: to, .. } = executor.flow.frame;
         let callers = executor.flow.callers.len();
-        if self.outermost_jump.is_none_or(|w| (callers, to) < (w.callers, w.to)) {
-            self.outermost_jump = Some(BackJump { callers, to, program, from: executor.flow.block });
+        if self.outermost_jump.is_none_or(|jump| (callers, to) < (jump.callers, jump.to)) {
+            self.outermost_jump = Some(BackJump { callers, program, to, from: executor.flow.block });
         }
     }
 
-    /// A program that does nothing but wait for a clock is given a millisecond a jump, so that the wait ends.
+    /// Advances the clock by a millisecond per jump while the program only waits for it, so that the wait ends.
     #[cold]
     fn advance_clock(&mut self, executor: &mut Executor) {
         let read = executor.registers.clock.has_been_read.take();
@@ -172,17 +151,18 @@ impl LoopDetector {
 
 impl Fingerprint {
     fn of(executor: &Executor) -> Self {
+        let Executor { registers, flow, log: _ } = executor;
         Self {
-            program: executor.flow.frame.program,
-            next: executor.flow.frame.next,
-            callers: executor.flow.callers.len(),
-            machine: executor.registers.state.machine,
-            vars: executor.registers.variables.clone(),
+            program: flow.frame.program,
+            next: flow.frame.next,
+            callers: flow.callers.len(),
+            machine: registers.state.machine,
+            vars: registers.variables.clone(),
             differing_place: 0,
         }
     }
 
-    /// Whether nothing that is looked at first differs. What counts turns tells nearly all moments apart.
+    /// Returns false if one of the values that differ most often differs; a loop counter does in nearly all jumps.
     #[inline]
     fn may_match(&self, executor: &Executor) -> bool {
         self.machine[0].to_bits() == executor.registers.state.machine[0].to_bits()
@@ -190,21 +170,17 @@ impl Fingerprint {
             && !self.vars.differs_at(self.differing_place, &executor.registers.variables)
     }
 
-    /// Whether the control has come to this moment again.
+    /// Returns true if all values are equal.
     fn matches(&mut self, executor: &Executor) -> bool {
+        let Executor { registers, flow, log: _ } = executor;
         if !self.may_match(executor)
-            || self.program != executor.flow.frame.program
-            || self.callers != executor.flow.callers.len()
-            || self
-                .machine
-                .0
-                .iter()
-                .zip(executor.registers.state.machine.0)
-                .any(|(a, b)| a.to_bits() != b.to_bits())
+            || self.program != flow.frame.program
+            || self.callers != flow.callers.len()
+            || self.machine.0.map(f64::to_bits) != registers.state.machine.0.map(f64::to_bits)
         {
             return false;
         }
-        let difference = self.vars.difference(&executor.registers.variables);
+        let difference = self.vars.difference(&registers.variables);
         self.differing_place = difference.unwrap_or(self.differing_place);
         difference.is_none()
     }
@@ -218,7 +194,7 @@ impl ControlSnapshot {
 
     fn equals(&self, executor: &Executor) -> bool {
         let Executor { registers, flow, log: _ } = executor;
-        // M99 of the main program counts only where the count ends the run.
+        // The passes of the main program count only if their number ends the run.
         let counts_passes = registers.data.settings.main_program_cycles.is_some();
         self.flow.continues_like(flow, counts_passes) && self.registers.continues_like(registers)
     }

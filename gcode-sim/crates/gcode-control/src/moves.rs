@@ -1,50 +1,43 @@
-//! A move by the modal codes: the tool length that it takes in, a drilling cycle, or group 01.
-use super::checked::{ExecResult, locate};
+//! Moves by the modal codes: end points of axis words, the tool length, straight moves, threads and arcs.
+use super::functions::{ExecResult, locate};
+use super::linear_motion::Endpoint;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::words::{BlockWords, letters};
+use super::state::State;
+use super::words::WordNumber;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::EventKind;
+use gcode_lang::motion::{EventKind, MAX_AXES, PlanarArc, Position, SpindleDirection};
+use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
-use gcode_lang::program::modes::{CutterSide, Length, Motion};
-use gcode_lang::source::Span;
+use gcode_lang::program::modes::{CutterSide, Distance, Length, Motion, Plane, Polar, Unit};
+use gcode_lang::units::{Deg, MmPerMin};
 
 impl Planner<'_> {
-    /// 3. G43, G44, G49 and a new H; whether the offset changed.
+    /// 3. Plans G43, G44, G49 and a new H; returns true if the offset has changed.
     #[inline]
-    pub(super) fn plan_length(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<bool> {
-        let commanded = block_words.has(b'H')
-            || block_words.has_non_motion_code(|effect| matches!(effect, Effect::Length(_)));
+    pub(super) fn plan_length(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
+        let commanded = self.words.has(b'H')
+            || self.words.has_non_motion_code(|effect| matches!(effect, Effect::Length(_)));
         if !commanded
             || (plan.state.modal.length == Length::Off && self.registers.state.modal.length == Length::Off)
         {
             return Ok(false);
         }
-        self.plan_length_offset(block_words, plan, span)
+        self.plan_length_offset(plan)
     }
 
     #[inline(never)]
-    fn plan_length_offset(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<bool> {
+    fn plan_length_offset(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
         let is_compensation_on =
             |row: &&GCodeRow| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
-        if let Some(row) = block_words.g_codes().find(is_compensation_on)
+        if let Some(row) = self.words.g_codes().find(is_compensation_on)
             && plan.state.codes.h == 0
-            && !block_words.has(b'H')
+            && !self.words.has(b'H')
         {
-            plan.notes.push(Note::LengthOffsetZero { code: row.code });
+            plan.notes.push(Note::LengthOffsetZero(row.code));
         }
-        let offset = locate(self.data.length_offset(&plan.state), span)?;
+        let offset = self.locate(self.data.length_offset(&plan.state))?;
         let (changed, by) = (offset != plan.state.length_offset, plan.state.length_compensation());
         if changed || by != self.registers.state.length_compensation() {
             plan.push_event(EventKind::ToolLength { offset, compensation: by });
@@ -53,21 +46,15 @@ impl Planner<'_> {
         Ok(changed)
     }
 
-    /// 4. A move by the modal codes: a drilling cycle, or group 01.
-    pub(super) fn plan_motion(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        has_new_length: bool,
-        span: Span,
-    ) -> ExecResult<()> {
+    /// 4. Plans a move by the modal codes: a drilling cycle, or group 01.
+    pub(super) fn plan_motion(&self, plan: &mut BlockPlan, has_new_length: bool) -> ExecResult<()> {
         if let Some(cycle) = plan.state.modal.cycle {
-            if self.is_drilling_block(block_words) {
-                return self.plan_cycle(plan, block_words, cycle, None, span);
+            if self.is_drilling_block() {
+                return self.plan_cycle(plan, cycle, None);
             }
-            // P and Q are stored by blocks that drill only.
-            if block_words.has_any(b"PQ") {
-                block_words.mark_read(b"PQ");
+            // Only blocks that drill store P and Q.
+            if self.words.has_any(b"PQ") {
+                self.words.mark_read(Letters::of(b"PQ"));
                 plan.notes.push(Note::CycleDataLost);
             }
             if has_new_length {
@@ -77,53 +64,44 @@ impl Planner<'_> {
         }
         let motion = plan.state.modal.motion;
         let is_arc = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
-        let names_axis = self.data.names_axis(block_words);
-        // A code of group 01 behind that of a cycle: a plain move, the cycle's own words are nothing.
+        let names_axis = self.names_axis();
+        // A code of group 01 after that of a cycle: a plain move, the words of the cycle have no effect.
         let overrules_cycle =
-            block_words.has_non_motion_code(|effect| matches!(effect, Effect::Cycle(Some(_))));
+            self.words.has_non_motion_code(|effect| matches!(effect, Effect::Cycle(Some(_))));
         if overrules_cycle {
-            block_words.mark_read(b"KPQR");
+            self.words.mark_read(Letters::of(b"KPQR"));
         }
-        if !(names_axis || is_arc && block_words.has_any(b"IJKR")) {
-            return self.move_by_length_change(block_words, plan, has_new_length, span);
+        if !(names_axis || is_arc && self.words.has_any(b"IJKR")) {
+            return self.move_by_length_change(plan, has_new_length);
         }
         // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
-        let takes_vector =
-            block_words.has_non_motion_code(|effect| effect == Effect::Cutter(CutterSide::Off));
+        let takes_vector = self.words.has_non_motion_code(|effect| effect == Effect::Cutter(CutterSide::Off));
         if !(is_arc || takes_vector || overrules_cycle)
-            && let Some(letter) = block_words.first_letter_of(letters(b"IJKR"))
+            && let Some(letter) = self.words.first_letter_of(Letters::of(b"IJKR").bits())
         {
             let what = format!("{} in a block with a straight move", char::from(letter));
-            return Err(Alarm::NotSimulated { what }.located_at(block_words.span(letter)));
+            return Err(Alarm::NotSimulated { what }.located_at(self.words.span(letter)));
         }
-        let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
-        if motion == Motion::Thread && block_words.has_corner() {
-            return Err(Alarm::CornerInThread.located_at(span));
+        let endpoint = self.resolve_endpoint(&mut plan.state)?;
+        if motion == Motion::Thread && self.words.corner.is_some() {
+            return Err(Alarm::CornerInThread.located_at(self.block));
         }
-        if motion != Motion::Rapid && block_words.has_corner() {
-            plan.corner = self.data.corner_word(block_words, &plan.state)?;
+        if motion != Motion::Rapid && self.words.corner.is_some() {
+            plan.corner = self.corner_word(&plan.state)?;
         }
         match motion {
             Motion::Rapid => self.push_rapid(plan, &endpoint.machine),
-            Motion::Thread => self.plan_thread(plan, endpoint.machine, block_words, span)?,
-            Motion::Linear => locate(self.push_feed(plan, &endpoint.machine, block_words), span)?,
-            Motion::Clockwise | Motion::Counterclockwise => {
-                self.plan_arc(plan, block_words, &endpoint, span)?
-            }
+            Motion::Thread => self.plan_thread(plan, endpoint.machine)?,
+            Motion::Linear => self.locate(self.push_feed(plan, &endpoint.machine))?,
+            Motion::Clockwise | Motion::Counterclockwise => self.plan_arc(plan, &endpoint)?,
         }
         plan.state.programmed = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
     }
 
-    /// The tool length changed in a block without an axis: the axis moves by the offset at once, or keeps still.
-    fn move_by_length_change(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        has_new_length: bool,
-        span: Span,
-    ) -> ExecResult<()> {
+    /// Plans a new tool length in a block without an axis: the axis moves by the offset at once, or not at all.
+    fn move_by_length_change(&self, plan: &mut BlockPlan, has_new_length: bool) -> ExecResult<()> {
         if !has_new_length {
             return Ok(());
         }
@@ -136,6 +114,347 @@ impl Planner<'_> {
             self.push_rapid(plan, &to);
             return Ok(());
         }
-        locate(self.push_feed(plan, &to, block_words), span)
+        self.locate(self.push_feed(plan, &to))
+    }
+
+    /// Returns the end point of the block's axis words, from the position in `state`.
+    pub(super) fn resolve_endpoint(&self, state: &mut State) -> ExecResult<Endpoint> {
+        let State { programmed, machine, work_zero_unknown, .. } = *state;
+        let mut endpoint = Endpoint { programmed, machine, work_zero_unknown };
+        let basis = self.data.coordinate_basis(state);
+        self.resolve_axes(state, &basis, &mut endpoint)?;
+        state.work_zero_unknown = endpoint.work_zero_unknown;
+        if state.modal.polar == Polar::On {
+            self.resolve_polar(state, &mut endpoint.programmed)?;
+        }
+        if state.last_end_point.is_some() && state.modal.distance == Distance::Absolute {
+            self.note_axes_left_out(state);
+        }
+        let machine = self.data.to_machine(state, &endpoint.programmed);
+        let rolled_machine = std::mem::replace(&mut endpoint.machine, machine);
+        for axis in
+            self.data.settings.rollover_axes().filter(|axis| self.words.has(self.data.axis_letter(*axis)))
+        {
+            endpoint.machine[axis] = rolled_machine[axis];
+        }
+        if endpoint.machine.0.iter().any(|at| at.abs() > basis.max_coordinate) {
+            self.check_coordinate_range(&endpoint.machine, basis.max_coordinate)?;
+        }
+        Ok(endpoint)
+    }
+
+    /// Notes an axis that the block doesn't name, if a change of the transform has changed its coordinate.
+    #[cold]
+    fn note_axes_left_out(&self, state: &State) {
+        let end = self.data.move_end(state);
+        let is_left_out = |axis| !self.names(axis) && end[axis] != state.programmed[axis];
+        if (0..self.data.settings.axes.len()).any(is_left_out) {
+            self.registers.block_effects.record_note(Note::AxisLeftOut);
+        }
+    }
+
+    /// Raises the alarm of an axis beyond the largest coordinate; an axis that rolls over has none.
+    #[cold]
+    fn check_coordinate_range(&self, machine: &Position, most: f64) -> ExecResult<()> {
+        for (axis, letter) in self.data.settings.axes.iter() {
+            if machine[axis].abs() > most && !self.data.settings.rolls_over[axis] {
+                let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
+                let word = self.names(axis).then(|| self.words.span(letter as u8));
+                return Err(alarm.located_at(word.unwrap_or(self.block)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Emits a rapid to a point in machine coordinates, unless the tool is there.
+    pub(super) fn push_rapid(&self, plan: &mut BlockPlan, to: &Position) {
+        let from = &plan.state.machine;
+        if to != from {
+            plan.push_move(EventKind::Rapid { to: *to }, self.data.rapid_seconds(from, to));
+        }
+    }
+
+    /// Emits a straight cut; an alarm without a feed, even if the cut has no length.
+    pub(super) fn push_feed(&self, plan: &mut BlockPlan, to: &Position) -> Result<(), Alarm> {
+        let from = &plan.state.machine;
+        let (rate, seconds) = self.data.feed_seconds(&plan.state, from, to, self.words.has(b'F'))?;
+        if to != from {
+            plan.push_move(EventKind::Feed { to: *to, rate }, seconds);
+        }
+        Ok(())
+    }
+
+    /// G33: F is the lead along the axis with the longest path, in every feed mode; Q, the start angle, has no effect.
+    pub(super) fn plan_thread(&self, plan: &mut BlockPlan, to: Position) -> ExecResult<()> {
+        self.words.mark_read(Letters::of(b"Q"));
+        if let Some((WordNumber::Literal(lead), _)) = self.words.get(b'F')
+            && lead.places.is_none()
+        {
+            let what = "F without a decimal point (its unit differs between controls) in G33".into();
+            return Err(Alarm::NotSimulated { what }.located_at(self.words.span(b'F')));
+        }
+        let turning = plan.state.spindle != SpindleDirection::Off && plan.state.codes.s > 0.0;
+        if !turning {
+            return Err(self.not_simulated("G33 with the spindle stopped (a control waits for it)"));
+        }
+        let lead = plan.state.codes.f * if plan.state.modal.unit == Unit::Inch { 25.4 } else { 1.0 };
+        if lead <= 0.0 {
+            return Err(Alarm::FeedZero.located_at(self.block));
+        }
+        let from = plan.state.machine;
+        if to == from {
+            return Ok(());
+        }
+        let distance = |axis: usize| (to[axis] - from[axis]).abs();
+        let longest = (0..MAX_AXES).map(distance).fold(0.0, f64::max);
+        let length = (0..MAX_AXES).map(|axis| distance(axis) * distance(axis)).sum::<f64>().sqrt();
+        let minutes = longest / (lead * plan.state.codes.s);
+        let rate = MmPerMin(length / minutes);
+        plan.push_move(EventKind::Feed { to, rate }, minutes * 60.0);
+        Ok(())
+    }
+}
+
+impl Planner<'_> {
+    /// Plans an arc to an end point.
+    pub(super) fn plan_arc(&self, plan: &mut BlockPlan, endpoint: &Endpoint) -> ExecResult<()> {
+        let state = &plan.state;
+        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        let (first, second, stray) = match state.modal.plane {
+            Plane::Xy => (b'I', b'J', b'K'),
+            Plane::Zx => (b'K', b'I', b'J'),
+            Plane::Yz => (b'J', b'K', b'I'),
+        };
+        let start = (state.programmed[plane.0], state.programmed[plane.1]);
+        let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
+        let clockwise = state.modal.motion == Motion::Clockwise;
+        let centre = if let Some(radius) = self.dimension(b'R', state)? {
+            // R overrides I J K.
+            self.words.mark_read(Letters::of(b"IJK"));
+            if start == end {
+                // An arc by R that ends at its start has no length.
+                if endpoint.programmed != state.programmed {
+                    return Err(
+                        self.not_simulated("an arc by R that ends at its start while another axis moves")
+                    );
+                }
+                return Ok(());
+            }
+            locate(self.centre_by_radius(start, end, radius, clockwise), self.words.span(b'R'))?
+        } else {
+            if self.dimension(stray, state)?.unwrap_or(0.0) != 0.0 {
+                return Err(Alarm::PlaneSelect.located_at(self.words.span(stray)));
+            }
+            let i = self.dimension(first, state)?;
+            let j = self.dimension(second, state)?;
+            if i.is_none() && j.is_none() {
+                return Err(Alarm::NoRadiusOrCentre.located_at(self.block));
+            }
+            let (i, j) = (i.unwrap_or(0.0), j.unwrap_or(0.0));
+            if i == 0.0 && j == 0.0 {
+                return Err(Alarm::NoRadiusOrCentre.located_at(self.block));
+            }
+            (start.0 + i, start.1 + j)
+        };
+        let (radius, sweep) = self.radius_and_sweep(start, end, centre, clockwise)?;
+        self.push_programmed_arc(plan, endpoint, PlanarArc { plane, centre, sweep }, radius)
+    }
+
+    /// Returns the mean radius and the sweep of an arc; an alarm if its end is too far from the circle of its start.
+    fn radius_and_sweep(
+        &self,
+        start: (f64, f64),
+        end: (f64, f64),
+        centre: (f64, f64),
+        clockwise: bool,
+    ) -> ExecResult<(f64, Deg)> {
+        let radius = |p: (f64, f64)| libm::hypot(p.0 - centre.0, p.1 - centre.1);
+        let (from, to) = (radius(start), radius(end));
+        if (from - to).abs() > self.data.settings.arc_tolerance + 1e-9 {
+            let tolerance = self.data.settings.arc_tolerance;
+            return Err(Alarm::RadiusTolerance { start: from, end: to, tolerance }.located_at(self.block));
+        }
+        Ok(((from + to) / 2.0, Deg(sweep(start, end, centre, clockwise))))
+    }
+
+    /// Emits an arc of the programmed path on the machine, with its mirror image and scaling.
+    fn push_programmed_arc(
+        &self,
+        plan: &mut BlockPlan,
+        endpoint: &Endpoint,
+        PlanarArc { plane, centre, sweep }: PlanarArc,
+        radius: f64,
+    ) -> ExecResult<()> {
+        let state = &plan.state;
+        let (is_mirrored, is_round) = state.transform.arc_effect(plane);
+        if state.transform.tilt.is_some() {
+            return Err(self.not_simulated("an arc in a tilted plane"));
+        }
+        let mut centre_point = state.programmed;
+        (centre_point[plane.0], centre_point[plane.1]) = centre;
+        let middle = self.data.to_machine(state, &centre_point);
+        let centre = (middle[plane.0], middle[plane.1]);
+        let (radius, sweep) = if is_round {
+            let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());
+            (radius * factor, if is_mirrored { -sweep } else { sweep })
+        } else {
+            if self.words.has(b'R') {
+                return Err(self.not_simulated("an arc by R under unequal scaling"));
+            }
+            let (start, end) = (&state.machine, &endpoint.machine);
+            let (start, end) = ((start[plane.0], start[plane.1]), (end[plane.0], end[plane.1]));
+            self.radius_and_sweep(start, end, centre, (sweep.0 < 0.0) != is_mirrored)?
+        };
+        self.push_arc(plan, endpoint.machine, PlanarArc { plane, centre, sweep }, radius)
+    }
+
+    /// Emits an arc; F is along the arc, and all other axes follow (1403#5 HTG = 0).
+    fn push_arc(&self, plan: &mut BlockPlan, to: Position, arc: PlanarArc, radius: f64) -> ExecResult<()> {
+        let length = radius * arc.sweep.0.abs().to_radians();
+        let timed = self.data.path_time(&plan.state, length, self.words.has(b'F'));
+        let (rate, seconds) = self.locate(timed.map_err(|alarm| match alarm {
+            Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero,
+            other => other,
+        }))?;
+        plan.push_move(EventKind::Arc { to, arc, rate }, seconds);
+        Ok(())
+    }
+
+    /// Returns the centre of an arc by R: below 180° for a positive R, above for a negative one.
+    fn centre_by_radius(
+        &self,
+        start: (f64, f64),
+        end: (f64, f64),
+        radius: f64,
+        clockwise: bool,
+    ) -> Result<(f64, f64), Alarm> {
+        let (dx, dy) = (end.0 - start.0, end.1 - start.1);
+        let chord = libm::hypot(dx, dy);
+        let short = chord / 2.0 - radius.abs();
+        if radius == 0.0
+            || (short > self.data.settings.arc_tolerance
+                && self.data.settings.undocumented.small_radius_alarms)
+        {
+            return Err(Alarm::RadiusTooSmall { radius: radius.abs(), half_chord: chord / 2.0 });
+        }
+        let height = (radius * radius - chord * chord / 4.0).max(0.0).sqrt();
+        // The centre of a short counterclockwise arc lies to the left of the chord.
+        let left = if clockwise == (radius < 0.0) { height } else { -height };
+        let middle = (start.0 + dx / 2.0, start.1 + dy / 2.0);
+        Ok((middle.0 - left * dy / chord, middle.1 + left * dx / chord))
+    }
+}
+
+/// Returns the degrees from start to end round the centre, counterclockwise positive; 360 if they coincide.
+fn sweep(start: (f64, f64), end: (f64, f64), centre: (f64, f64), clockwise: bool) -> f64 {
+    if start == end {
+        return if clockwise { -360.0 } else { 360.0 };
+    }
+    let angle = |p: (f64, f64)| Deg::atan2(p.1 - centre.1, p.0 - centre.0).0;
+    let rotation = (angle(end) - angle(start)).rem_euclid(360.0);
+    match (clockwise, rotation) {
+        (true, 0.0) => -360.0,
+        (false, 0.0) => 360.0,
+        (true, rotation) => rotation - 360.0,
+        (false, rotation) => rotation,
+    }
+}
+
+/// Largest number of circles in one block; more are a typing error.
+const MAX_CIRCLES: f64 = 10_000.0;
+
+impl Planner<'_> {
+    /// G12 and G13: at the centre the tool feeds to Z, then mills a circle of radius I, and with K and Q larger ones up to
+    /// K; all of it L times, inside by the radius of D. The circles are those of the manual; the half circles out to X+ and
+    /// back are a choice of this simulator.
+    pub(super) fn plan_circle_pocket(&self, motion: Motion, plan: &mut BlockPlan) -> ExecResult<()> {
+        let clockwise = motion == Motion::Clockwise;
+        let code = if clockwise { "G12" } else { "G13" };
+        let modal = &plan.state.modal;
+        let is_allowed = modal.plane == Plane::Xy
+            && modal.cycle.is_none()
+            && modal.cutter == CutterSide::Off
+            && plan.state.transform.is_none();
+        if !is_allowed || self.words.has_any(b"XY") {
+            return Err(self.not_simulated(format!(
+                "{code} with X, Y, another plane, compensation, rotation or a drilling cycle"
+            )));
+        }
+        let radii = self.radii(code, plan)?;
+        let passes = self.words.count(b'L')?.unwrap_or(1);
+        if f64::from(passes) * radii.len() as f64 > MAX_CIRCLES {
+            return Err(self.not_simulated(format!("{code} with this number of circles")));
+        }
+        for _ in 0..passes {
+            let endpoint = self.resolve_endpoint(&mut plan.state)?;
+            self.locate(self.push_feed(plan, &endpoint.machine))?;
+            plan.state.programmed = endpoint.programmed;
+            for radius in &radii {
+                let start = plan.state.machine;
+                let (centre, half) = ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
+                let mut edge = start;
+                edge[0] = self.data.remove_residue(centre.0 + radius);
+                let arcs = [
+                    (edge, half, radius / 2.0, 180.0),
+                    (edge, centre, *radius, 360.0),
+                    (start, half, radius / 2.0, 180.0),
+                ];
+                for (to, centre, radius, degrees) in arcs {
+                    let sweep = Deg(if clockwise { -degrees } else { degrees });
+                    self.push_arc(plan, to, PlanarArc { plane: (0, 1), centre, sweep }, radius)?;
+                }
+            }
+        }
+        plan.commands_axes = true;
+        Ok(())
+    }
+
+    /// Returns the radii of the tool centre's circles, from the inside out.
+    fn radii(&self, code: &'static str, plan: &BlockPlan) -> ExecResult<Vec<f64>> {
+        let missing = |letter| Alarm::MissingWord { code, letter }.located_at(self.block);
+        let state = &plan.state;
+        let first = self.dimension(b'I', state)?.ok_or_else(|| missing('I'))?;
+        let (last, step) = match (self.dimension(b'K', state)?, self.dimension(b'Q', state)?) {
+            (None, None) => (first, 0.0),
+            (Some(last), Some(step)) => (last, step),
+            (Some(_), None) => return Err(missing('Q')),
+            (None, Some(_)) => return Err(missing('K')),
+        };
+        let number = state.codes.d;
+        let unknown = || Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block);
+        let tool = self.data.offset_radius(number).ok_or_else(unknown)?;
+        let out_of_range = |letter: char, value| {
+            Alarm::OutOfRange { function: format!("{letter} of {code}"), value }.located_at(self.block)
+        };
+        if first <= tool {
+            return Err(out_of_range('I', first));
+        }
+        if last < first {
+            return Err(out_of_range('K', last));
+        }
+        if last > first && (step <= 0.0 || (last - first) / step > MAX_CIRCLES) {
+            return Err(out_of_range('Q', step));
+        }
+        let mut radii = Vec::new();
+        let mut count = 0.0;
+        while first + count * step < last - 1e-9 {
+            radii.push(self.data.remove_residue(first + count * step - tool));
+            count += 1.0;
+        }
+        radii.push(self.data.remove_residue(last - tool));
+        Ok(radii)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_counterclockwise_and_three_quarters_clockwise() {
+        let (start, end, centre) = ((1.0, 0.0), (0.0, 1.0), (0.0, 0.0));
+        assert!((sweep(start, end, centre, false) - 90.0).abs() < 1e-12);
+        assert!((sweep(start, end, centre, true) + 270.0).abs() < 1e-12);
+        assert_eq!(sweep(start, start, centre, true), -360.0);
     }
 }

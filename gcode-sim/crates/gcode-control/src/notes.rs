@@ -1,4 +1,5 @@
-//! What a control does without a word and a programmer hardly means: told once for each kind, with its first block.
+//! Notes: things that a control does without an alarm and a programmer rarely means; one finding per kind, at its first
+//! block.
 use gcode_lang::diag::FindingKind;
 use gcode_lang::program::g_codes::spelled;
 
@@ -33,64 +34,79 @@ gcode_lang::finding_kinds! {
     WORDS_PASSED_ON = "words-passed-on", Warning, "a word beside an M code of the machine builder";
 }
 
-/// A thing worth telling that is no alarm on a control.
+/// Thing that a control does without an alarm and a programmer rarely means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Note {
     /// G53 in G91 is ignored, and with it the block's motion.
     MachineMoveIgnored,
-    /// A block had another M code after this one, and only the last counts.
-    MCodeLost { code: u32 },
+    /// A block has another M code after this one, and only the last counts.
+    MCodeLost(u32),
     /// P or Q in cycle mode, in a block that names no axis and no R: it drills nothing and stores nothing.
     CycleDataLost,
     /// M96 lets a signal call a macro, and no signal comes in a run.
     InterruptNotSimulated,
-    /// G31, and nothing gives a skip signal: no part to touch and no place where it comes.
+    /// G31 gets no skip signal: there is no part to touch and no setting for the signal.
     NoSkipSignal,
     /// A word beside an M code of the machine builder that nothing else in the block reads.
-    WordsPassedOn { code: u32, letter: char },
+    WordsPassedOn {
+        /// M code.
+        code: u32,
+        /// Letter of the word.
+        letter: char,
+    },
     /// `,R` or `,C` in a block that is no cutting move is ignored.
     CornerIgnored,
-    /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
-    /// gone to differs between controls.
+    /// A drilling block with K0 stores its data and drills nothing, as K0 should; whether it moves to its X and Y differs
+    /// between controls.
     CycleRepeatsZero,
     /// A call with L0 calls nothing.
     CallRepeatsZero,
-    /// A code that acts on axes, in a block that names none. G53 so only waits.
-    NoAxis { code: u32 },
-    /// G51 or G68 without axes: about the point where the program stands.
-    CentreDefaulted { code: u32 },
-    /// G68 without R: it turns by nothing, or by 5410 where that is set.
+    /// A code that acts on axes, × 10, in a block that names none. G53 then only waits.
+    NoAxis(u32),
+    /// G51 or G68, × 10, without axes: the programmed position is the centre.
+    CentreDefaulted(u32),
+    /// G68 without R rotates by 0, or by 5410 if that is set.
     NoAngle,
-    /// GOTO or M99 P found one of several blocks with this number.
-    DuplicateNumber { number: u32 },
-    /// A jump into a loop, whose END will have no DO.
-    JumpIntoLoop { number: u8 },
-    /// TAN of 90 degrees answers a large number.
+    /// GOTO or M99 P goes to one of several blocks with this number.
+    DuplicateNumber(u32),
+    /// A jump into the loop with this number, whose END will have no DO.
+    JumpIntoLoop(u8),
+    /// TAN of 90 degrees is a large number.
     TangentOf90,
-    /// ATAN of 0 and 0 answers 0.
+    /// ATAN of 0 and 0 is 0.
     AtanOf0,
-    /// G10 L52 has written a parameter that nothing here depends on.
-    ParameterWithoutEffect { number: u16 },
+    /// G10 L52 has written this parameter, which has no effect in the simulator.
+    ParameterWithoutEffect(u16),
     /// The program has letters in lower case, which some controls refuse.
     LowerCase,
-    /// An M code of more than four digits that is left to the machine builder: M981000 was M98 P1000.
-    LongMCode { code: u32 },
-    /// #5001… are read behind a switch of G51.1, G51 or G68, when the program's coordinates of the tool are others.
+    /// An M code of more than four digits for the machine builder; M981000 was M98 P1000 on older controls.
+    LongMCode(u32),
+    /// #5001… are read after a change of G51.1, G51 or G68, with which the coordinates of the tool have changed.
     EndPointBeforeTransform,
-    /// The first move behind such a switch leaves out an axis whose coordinate it has changed.
+    /// The first move after such a change omits an axis whose coordinate has changed.
     AxisLeftOut,
-    /// DPRNT has printed the lower digits of a number only.
+    /// DPRNT has printed only the lower digits of a number.
     DigitsLost,
-    /// A drilling cycle drills though its R or its depth was never commanded.
-    CycleLevelMissing { letter: char },
-    /// G43 or G44 with H0, which is no offset.
-    LengthOffsetZero { code: u32 },
-    /// A block, or the rest of one, behind `/`, which a switch of block skip leaves out.
-    BlockSkip { switch: u8, is_on: bool },
-    /// A drilling cycle goes along Z while G18 or G19 has another plane's normal, as FXY 5101#0 = 0 has it.
-    DrillsAlongZ { code: u32 },
-    /// `#3000=n` with a number beyond those that the manual names.
-    LargeAlarmNumber { number: u16, max: u16 },
+    /// A drilling cycle drills before this level, its R or its depth, is commanded.
+    CycleLevelMissing(char),
+    /// G43 or G44, × 10, with H0, which is no offset.
+    LengthOffsetZero(u32),
+    /// A block, or the rest of one, after `/`, which depends on a switch of block skip.
+    BlockSkip {
+        /// Number of the switch.
+        switch: u8,
+        /// Its position.
+        is_on: bool,
+    },
+    /// A drilling cycle drills along Z while G18 or G19, × 10, is active, as with FXY 5101#0 = 0.
+    DrillsAlongZ(u32),
+    /// `#3000=n` with a number beyond those of the manuals.
+    LargeAlarmNumber {
+        /// Number in the program.
+        number: u16,
+        /// Largest number in the manuals.
+        max: u16,
+    },
 }
 
 impl Note {
@@ -101,7 +117,7 @@ impl Note {
                 let message = "G53 in G91 is ignored: the axes of the block do not move".to_owned();
                 (&G53_IGNORED, message, "command G90 with G53")
             }
-            Self::MCodeLost { code } => {
+            Self::MCodeLost(code) => {
                 let message = format!("M{code} is lost: of several M codes in a block only the last counts");
                 (
                     &M_CODE_LOST,
@@ -140,11 +156,11 @@ impl Note {
             Self::CallRepeatsZero => {
                 (&NO_PASS, "L0: the program is not called".to_owned(), "omit L to call it once")
             }
-            Self::NoAxis { code } => {
+            Self::NoAxis(code) => {
                 let message = format!("G{} without an axis: nothing moves or is set", spelled(code));
                 (&NO_AXIS, message, "name the axes")
             }
-            Self::CentreDefaulted { code } => {
+            Self::CentreDefaulted(code) => {
                 let message =
                     format!("G{} without an axis: the programmed position is its centre", spelled(code));
                 (&CENTRE_HERE, message, "name the axes of the centre")
@@ -153,13 +169,13 @@ impl Note {
                 let message = "G68 without R rotates by 0; a control may have an angle in 5410".to_owned();
                 (&NO_ANGLE, message, "write R")
             }
-            Self::DuplicateNumber { number } => {
+            Self::DuplicateNumber(number) => {
                 let message = format!(
                     "N{number} is defined more than once: the control decides which one a jump takes"
                 );
                 (&DOUBLED_NUMBER, message, "give each block a number of its own")
             }
-            Self::JumpIntoLoop { number } => {
+            Self::JumpIntoLoop(number) => {
                 let message = format!("a jump into the loop DO{number}: its END raises PS1124");
                 (&INTO_LOOP, message, "jump to the block of its DO or WHILE")
             }
@@ -184,7 +200,7 @@ impl Note {
                     "test both values first; ATAN-0-ALARM=1 is for a control that raises the alarm",
                 )
             }
-            Self::ParameterWithoutEffect { number } => {
+            Self::ParameterWithoutEffect(number) => {
                 let message = format!("parameter {number} is stored for PRM and has no other effect here");
                 (&PARAMETER_WITHOUT_EFFECT, message, "see docs/control.md for what is not simulated")
             }
@@ -192,7 +208,7 @@ impl Note {
                 let message = "lower case is read as capitals; some controls refuse it".to_owned();
                 (&LOWER_CASE, message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
             }
-            Self::LongMCode { code } => {
+            Self::LongMCode(code) => {
                 let message =
                     format!("M{code} calls no program: it is one M code, left to the machine builder");
                 (&LONG_M_CODE, message, "write P before the program number: M98 P1000")
@@ -219,11 +235,11 @@ impl Note {
                     "give the format more places; PRINT-EXPANDS=1 is for a control that expands it",
                 )
             }
-            Self::CycleLevelMissing { letter } => {
+            Self::CycleLevelMissing(letter) => {
                 let message = format!("the cycle drills with {letter} at 0: no value was commanded");
                 (&LEVEL_MISSING, message, "write R and the depth in the block that begins the cycle")
             }
-            Self::LengthOffsetZero { code } => {
+            Self::LengthOffsetZero(code) => {
                 let message = format!("G{} with H0 applies no tool length compensation", spelled(code));
                 (&LENGTH_OF_NOTHING, message, "write H with the number of the tool's offset")
             }
@@ -235,7 +251,7 @@ impl Note {
                 );
                 (&BLOCK_SKIP, message, "use --control BDT=1 to switch block skip 1 on")
             }
-            Self::DrillsAlongZ { code } => {
+            Self::DrillsAlongZ(code) => {
                 let message = format!(
                     "the cycle drills along Z while G{} is in force: a control may drill along the normal \
                      of that plane",
@@ -243,8 +259,8 @@ impl Note {
                 );
                 (&DRILL_PLANE, message, "write G17, or set FXY=1 if the control drills along the normal")
             }
-            Self::LargeAlarmNumber { number, max: most } => {
-                let message = format!("#3000={number}: the manuals give numbers up to {most}");
+            Self::LargeAlarmNumber { number, max } => {
+                let message = format!("#3000={number}: the manuals give numbers up to {max}");
                 (&LARGE_ALARM_NUMBER, message, "use a smaller number")
             }
         }

@@ -1,73 +1,57 @@
-//! What a block does instead of moving by its modal codes, code by code: dwell, coordinate systems, G53, G60.
-use super::checked::ExecResult;
-use super::modal_codes::{AxisWordUse, not_simulated};
+//! Codes of group 00: dwell, coordinate systems, G53, G60, and the reference position of G27 to G30.
+use super::data::{STANDARD_SYSTEMS, system_index};
+use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::state::State;
-use super::words::BlockWords;
+use super::state::{AxisWordUse, State};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{EventKind, Position};
-use gcode_lang::program::code_facts::WithoutAxes;
+use gcode_lang::motion::{EventKind, LengthCompensation, Position};
+use gcode_lang::program::code_facts::{Letters, WithoutAxes};
 use gcode_lang::program::g_codes::{GCodeRow, OneShot};
-use gcode_lang::program::modes::{Distance, WorkSystem};
-use gcode_lang::source::Span;
+use gcode_lang::program::modes::{Distance, Length, WorkSystem};
 use gcode_lang::units::Seconds;
 
 impl Planner<'_> {
-    /// 4. What a block does instead of moving by its modal codes.
-    pub(super) fn execute_axis_use(
-        &self,
-        axis_use: AxisWordUse,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
-        if !self.data.names_axis(block_words) {
-            plan.notes.extend(block_words.g_codes().filter_map(|row| self.note_without_axis(row)));
+    /// 4. Plans what a block does instead of moving by its modal codes.
+    pub(super) fn execute_axis_use(&self, axis_use: AxisWordUse, plan: &mut BlockPlan) -> ExecResult<()> {
+        if !self.names_axis() {
+            plan.notes.extend(self.words.g_codes().filter_map(|row| self.note_without_axis(row)));
         }
         match axis_use {
-            AxisWordUse::OneShot(one) => self.execute_one_shot(one, block_words, plan, span),
+            AxisWordUse::OneShot(one) => self.execute_one_shot(one, plan),
             AxisWordUse::AdditionalWork => {
-                let number = block_words.count(b'P')?.unwrap_or(1);
-                if number == 0 || number as usize > self.data.offsets.additional.len() {
-                    return Err(Alarm::OffsetNumber { number: i64::from(number) }.located_at(span));
+                let number = self.words.count(b'P')?.unwrap_or(1);
+                if number == 0 || number as usize > self.data.offsets.work.len() - STANDARD_SYSTEMS {
+                    return Err(Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block));
                 }
                 plan.state.modal.work = WorkSystem::Additional(number as u16);
                 self.data.recompute_position(&mut plan.state);
-                self.plan_motion(block_words, plan, false, span)
+                self.plan_motion(plan, false)
             }
-            AxisWordUse::Scale => self.plan_scaling(block_words, plan, span),
-            AxisWordUse::Rotate => self.plan_rotation(block_words, plan, span),
-            AxisWordUse::Tilt => self.plan_tilt(block_words, plan, span),
-            AxisWordUse::MirrorOn | AxisWordUse::MirrorOff => {
-                self.plan_mirror(axis_use == AxisWordUse::MirrorOn, block_words, plan)
-            }
+            AxisWordUse::Scale => self.plan_scaling(plan),
+            AxisWordUse::Rotate => self.plan_rotation(plan),
+            AxisWordUse::Tilt => self.plan_tilt(plan),
+            AxisWordUse::Mirror { is_on } => self.plan_mirror(is_on, plan),
         }
     }
 
-    /// The note of a code in a block that names no axis.
+    /// Returns the note of a code in a block that names no axis.
     fn note_without_axis(&self, row: &GCodeRow) -> Option<Note> {
         let code = row.code;
         match row.facts.without_axes {
             WithoutAxes::Same => None,
             WithoutAxes::AllOrNothing if self.data.settings.homes_all_axes => None,
-            WithoutAxes::Nothing | WithoutAxes::AllOrNothing => Some(Note::NoAxis { code }),
-            WithoutAxes::CentreDefaulted => Some(Note::CentreDefaulted { code }),
+            WithoutAxes::Nothing | WithoutAxes::AllOrNothing => Some(Note::NoAxis(code)),
+            WithoutAxes::CentreDefaulted => Some(Note::CentreDefaulted(code)),
         }
     }
 
-    fn execute_one_shot(
-        &self,
-        one: OneShot,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
+    fn execute_one_shot(&self, one: OneShot, plan: &mut BlockPlan) -> ExecResult<()> {
         let cycle = plan.state.modal.cycle.is_some();
         match one {
-            OneShot::Dwell => self.plan_dwell(block_words, plan),
-            OneShot::DataInput => self.plan_data_input(block_words, plan, span),
+            OneShot::Dwell => self.plan_dwell(plan),
+            OneShot::DataInput => self.plan_data_input(plan),
             OneShot::DataInputEnd => Ok(()),
             OneShot::CheckReference
             | OneShot::Reference
@@ -75,95 +59,69 @@ impl Planner<'_> {
             | OneShot::SecondReference
                 if cycle =>
             {
-                Err(Alarm::ReferenceReturnInCycle.located_at(span))
+                Err(Alarm::ReferenceReturnInCycle.located_at(self.block))
             }
-            OneShot::CheckReference => self.plan_reference_check(block_words, plan, span),
-            OneShot::Reference if self.data.settings.homes_all_axes && !self.data.names_axis(block_words) => {
+            OneShot::CheckReference => self.plan_reference_check(plan),
+            OneShot::Reference if self.data.settings.homes_all_axes && !self.names_axis() => {
                 self.plan_home_all(plan);
                 Ok(())
             }
-            OneShot::Reference => self.plan_reference_return(block_words, plan, Position::default()),
-            OneShot::SecondReference => {
-                let p = block_words.count(b'P')?.unwrap_or(2);
-                match p {
-                    2..=4 => self.plan_reference_return(
-                        block_words,
-                        plan,
-                        self.data.settings.reference_positions[p as usize - 2],
-                    ),
-                    _ => Err(Alarm::ReferenceReturnP { p: i64::from(p) }.located_at(span)),
+            OneShot::Reference => self.plan_reference_return(plan, &Position::default()),
+            OneShot::SecondReference => match self.words.count(b'P')?.unwrap_or(2) {
+                p @ 2..=4 => {
+                    self.plan_reference_return(plan, &self.data.settings.reference_positions[p as usize - 2])
                 }
-            }
-            OneShot::FromReference => self.plan_return_from_reference(block_words, plan, span),
-            OneShot::Skip => self.plan_skip(block_words, plan, span),
+                p => Err(Alarm::ReferenceReturnP { p: i64::from(p) }.located_at(self.block)),
+            },
+            OneShot::FromReference => self.plan_return_from_reference(plan),
+            OneShot::Skip => self.plan_skip(plan),
             OneShot::LocalSystem => {
-                self.for_each_axis(block_words, plan, |_, state, axis, value| {
-                    state.local_offset[axis] = value
-                })?;
-                self.data.recompute_position(&mut plan.state);
-                Ok(())
+                self.shift_system(plan, |state, axis, value| state.local_offset[axis] = value)
             }
-            OneShot::SetSystem => {
-                // The point where the program stands gets these coordinates; the length offset stays out of it, and
-                // G52 ends on these axes.
-                self.for_each_axis(block_words, plan, |planner, state, axis, value| {
-                    let work = state.transform.forward(state.programmed)[axis];
-                    state.coordinate_shift[axis] = planner.data.remove_residue(
-                        state.coordinate_shift[axis] + state.local_offset[axis] + work - value,
-                    );
-                    state.local_offset[axis] = 0.0;
-                })?;
-                self.data.recompute_position(&mut plan.state);
-                Ok(())
-            }
-            OneShot::PresetSystem => {
-                self.for_each_axis(block_words, plan, |_, state, axis, _| {
-                    state.coordinate_shift[axis] = 0.0;
-                    state.local_offset[axis] = 0.0;
-                })?;
-                self.data.recompute_position(&mut plan.state);
-                Ok(())
-            }
-            OneShot::OneSide if cycle => Err(not_simulated(600, "in a drilling cycle").located_at(span)),
-            OneShot::OneSide => self.plan_one_side(block_words, plan),
-            OneShot::CirclePocket(turn) => self.plan_circle_pocket(turn, block_words, plan, span),
-            OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, block_words, plan, span),
-            OneShot::MachineSystem => self.plan_machine_move(block_words, plan),
-            OneShot::CornerArc if self.registers.lookahead.is_on() => Ok(()),
-            OneShot::CornerArc => {
-                Err(Alarm::NotSimulated { what: "G39 without cutter compensation".into() }.located_at(span))
-            }
+            // The programmed position gets these coordinates, without the length offset; G52 ends on these axes.
+            OneShot::SetSystem => self.shift_system(plan, |state, axis, value| {
+                let work = state.transform.forward(state.programmed)[axis];
+                let shift = state.coordinate_shift[axis] + state.local_offset[axis] + work - value;
+                state.coordinate_shift[axis] = self.data.remove_residue(shift);
+                state.local_offset[axis] = 0.0;
+            }),
+            OneShot::PresetSystem => self.shift_system(plan, |state, axis, _| {
+                (state.coordinate_shift[axis], state.local_offset[axis]) = (0.0, 0.0);
+            }),
+            OneShot::OneSide if cycle => Err(self.not_simulated("G60 (in a drilling cycle)")),
+            OneShot::OneSide => self.plan_one_side(plan),
+            OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
+            OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
+            OneShot::MachineSystem => self.plan_machine_move(plan),
+            OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),
+            OneShot::CornerArc => Err(self.not_simulated("G39 without cutter compensation")),
         }
     }
 
-    /// Every axis the block names, with its value.
-    fn for_each_axis(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        mut with: impl FnMut(&Self, &mut State, usize, f64),
-    ) -> ExecResult<()> {
-        for (axis, letter) in self.data.settings.axes.iter() {
-            if let Some(value) = self.data.dimension(block_words, letter as u8, &plan.state)? {
-                with(self, &mut plan.state, axis, value);
+    /// Applies the values of the named axes to the shifts of the coordinate system.
+    fn shift_system(&self, plan: &mut BlockPlan, shift: impl Fn(&mut State, usize, f64)) -> ExecResult<()> {
+        for axis in 0..self.data.settings.axes.len() {
+            if let Some(value) = self.axis_dimension(axis, &plan.state)? {
+                shift(&mut plan.state, axis, value);
             }
         }
+        self.data.recompute_position(&mut plan.state);
         Ok(())
     }
 
-    fn plan_dwell(&self, block_words: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
-        self.check_skip_signal_set(block_words, b'Q')?;
-        if block_words.has(b'Q') {
-            return Err(not_simulated(40, "dwell until a skip signal").located_at(block_words.span(b'Q')));
+    fn plan_dwell(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        self.check_skip_signal_set(b'Q')?;
+        if self.words.has(b'Q') {
+            let what = "G4 (dwell until a skip signal)".into();
+            return Err(Alarm::NotSimulated { what }.located_at(self.words.span(b'Q')));
         }
-        let seconds = if let Some(seconds) = self.data.dwell_seconds(block_words)? {
-            seconds
-        } else if self.data.settings.dwell_in_seconds {
-            0.0
-        } else {
-            let x = self.data.seconds(block_words, b'X')?;
-            let u = if x.is_none() { self.data.seconds(block_words, b'U')? } else { None };
-            x.or(u).unwrap_or(0.0)
+        let seconds = match self.dwell_seconds()? {
+            Some(seconds) => seconds,
+            None if self.data.settings.dwell_in_seconds => 0.0,
+            None => match self.seconds(b'X')? {
+                Some(seconds) => seconds,
+                None => self.seconds(b'U')?.unwrap_or(0.0),
+            },
         };
         if seconds > 0.0 {
             plan.events.push((EventKind::Dwell { time: Seconds(seconds) }, seconds));
@@ -172,45 +130,134 @@ impl Planner<'_> {
     }
 
     /// G60: by rapid to a point before the end by 5440, whose sign is the side, and on to the end.
-    fn plan_one_side(&self, block_words: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
-        let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
+    fn plan_one_side(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let endpoint = self.resolve_endpoint(&mut plan.state)?;
         let mut before = endpoint.machine;
-        for (axis, letter) in self.data.settings.axes.iter() {
-            if block_words.has(letter as u8) {
-                before[axis] =
-                    self.data.remove_residue(before[axis] - self.data.settings.one_side_overrun[axis]);
-            }
+        for axis in self.named_axes() {
+            before[axis] = self.data.remove_residue(before[axis] - self.data.settings.one_side_overrun[axis]);
         }
         self.push_rapid(plan, &before);
         self.push_rapid(plan, &endpoint.machine);
         plan.state.programmed = endpoint.programmed;
-        plan.commands_axes = self.data.names_axis(block_words);
+        plan.commands_axes = self.names_axis();
         Ok(())
     }
 
     /// G53: by rapid to machine coordinates, without the length offset.
-    fn plan_machine_move(&self, block_words: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+    fn plan_machine_move(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let mut to = plan.state.machine;
-        let incremental = plan.state.modal.distance == Distance::Incremental;
-        if incremental && !self.data.settings.undocumented.g53_moves_in_g91 {
-            block_words.mark_read(b"ABCUVWXYZ");
+        let is_incremental = plan.state.modal.distance == Distance::Incremental;
+        if is_incremental && !self.data.settings.undocumented.g53_moves_in_g91 {
+            self.words.mark_read(Letters::of(b"ABCUVWXYZ"));
             plan.notes.push(Note::MachineMoveIgnored);
             return Ok(());
         }
-        let mut named = 0;
-        for (axis, letter) in self.data.settings.axes.iter() {
-            if let Some(value) = self.data.dimension(block_words, letter as u8, &plan.state)? {
-                named |= u8::from(!incremental) << axis;
-                to[axis] = match incremental {
+        let mut positioned = 0;
+        for axis in 0..self.data.settings.axes.len() {
+            if let Some(value) = self.axis_dimension(axis, &plan.state)? {
+                positioned |= u8::from(!is_incremental) << axis;
+                to[axis] = match is_incremental {
                     true => self.data.remove_residue(to[axis] + value),
                     false => self.data.rollover_target(axis, to[axis], value),
                 };
             }
         }
-        self.note_unknown_work_zero(plan, named);
+        self.note_unknown_work_zero(plan, positioned);
         self.push_rapid(plan, &to);
         self.data.recompute_position(&mut plan.state);
         plan.commands_axes = true;
         Ok(())
     }
+
+    /// G27: by rapid to the end point, which must be the reference position.
+    fn plan_reference_check(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        self.rapid_to_endpoint(plan)?;
+        for axis in self.named_axes() {
+            if self.data.wrap_angle(axis, plan.state.machine[axis]) != 0.0 {
+                let letter = self.data.settings.axes.letter(axis);
+                return Err(Alarm::NotAtReference { letter }.located_at(self.block));
+            }
+        }
+        Ok(())
+    }
+
+    /// Plans a rapid to the end point of the axis words.
+    fn rapid_to_endpoint(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let endpoint = self.resolve_endpoint(&mut plan.state)?;
+        self.push_rapid(plan, &endpoint.machine);
+        plan.state.programmed = endpoint.programmed;
+        plan.commands_axes = true;
+        Ok(())
+    }
+
+    /// G28 and G30: by rapid over the intermediate point to the reference position, the named axes only.
+    fn plan_reference_return(&self, plan: &mut BlockPlan, reference: &Position) -> ExecResult<()> {
+        self.rapid_to_endpoint(plan)?;
+        let intermediate = plan.state.machine;
+        let (mut home, mut named) = (intermediate, 0);
+        for axis in self.named_axes() {
+            named |= 1 << axis;
+            plan.state.intermediate[axis] = intermediate[axis] - self.data.zero(&plan.state, axis);
+            plan.state.has_intermediate |= 1 << axis;
+            home[axis] = self.data.rollover_target(axis, home[axis], reference[axis]);
+        }
+        self.note_unknown_work_zero(plan, named);
+        self.push_rapid(plan, &home);
+        // The length offset is cancelled where its axis reaches the reference position.
+        let z = self.data.settings.axes.find(b'Z');
+        if z.is_some() && self.words.has(b'Z') && plan.state.modal.length != Length::Off {
+            cancel_length(plan);
+        }
+        self.data.recompute_position(&mut plan.state);
+        Ok(())
+    }
+
+    /// G28 of a Haas without an axis: all axes go straight home, and the length offset is cancelled.
+    fn plan_home_all(&self, plan: &mut BlockPlan) {
+        let mut home = plan.state.machine;
+        let count = self.data.settings.axes.len();
+        for axis in 0..count {
+            home[axis] = self.data.rollover_target(axis, home[axis], 0.0);
+        }
+        self.note_unknown_work_zero(plan, (0..count).fold(0, |axes, axis| axes | 1 << axis));
+        self.push_rapid(plan, &home);
+        cancel_length(plan);
+        self.data.recompute_position(&mut plan.state);
+        plan.commands_axes = true;
+    }
+
+    /// G29: by rapid over the intermediate point of the last G28 to the end point.
+    fn plan_return_from_reference(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let mut intermediate = plan.state.machine;
+        for axis in self.named_axes() {
+            if plan.state.has_intermediate >> axis & 1 == 0 {
+                return Err(Alarm::NoIntermediatePoint.located_at(self.block));
+            }
+            let point = plan.state.intermediate[axis] + self.data.zero(&plan.state, axis);
+            intermediate[axis] = self.data.remove_residue(point);
+            plan.state.work_zero_unknown &= !(1 << axis);
+        }
+        self.push_rapid(plan, &intermediate);
+        self.data.recompute_position(&mut plan.state);
+        self.rapid_to_endpoint(plan)
+    }
+
+    /// Plans that axes go to machine coordinates. Their position on the part is unknown if nothing has set the work offset.
+    fn note_unknown_work_zero(&self, plan: &mut BlockPlan, axes: u8) {
+        if axes == 0 || self.data.set_systems.contains(&system_index(plan.state.modal.work)) {
+            return;
+        }
+        plan.state.work_zero_unknown |= axes;
+        plan.push_event(EventKind::WorkZeroUnknown { axes: plan.state.work_zero_unknown });
+    }
+}
+
+/// Cancels the tool length offset and G43 or G44.
+fn cancel_length(plan: &mut BlockPlan) {
+    if plan.state.modal.length != Length::Off {
+        let (offset, compensation) = (Position::default(), LengthCompensation::Off);
+        plan.push_event(EventKind::ToolLength { offset, compensation });
+    }
+    plan.state.length_offset = Position::default();
+    plan.state.modal.length = Length::Off;
 }

@@ -1,14 +1,18 @@
-//! How long a run may take, and how it ends or stops.
+//! Limits, end and record of a run: no program can read any of it.
+use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
+use super::notes::Note;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{Backtrace, StopKind};
+use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::source::Span;
 
-/// How long a run may take.
+/// Limit of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Blocks executed, macro statements included.
+    /// Largest number of blocks executed, macro statements included.
     pub blocks: u64,
 }
 
@@ -18,40 +22,173 @@ impl Default for Limits {
     }
 }
 
-/// Between a run and who waits for it: how far it is, and whether it should end now.
+/// Progress of a run, shared with the thread that waits for it.
 #[derive(Debug, Default)]
 pub struct Progress {
-    /// Blocks executed, now and then.
+    /// Number of blocks executed, updated at intervals.
     pub blocks: AtomicU64,
-    /// Set from outside: the run ends as by its limit, and what is known so far stays.
+    /// Set by the waiting thread: the run ends with [`Outcome::Limit`] and keeps its results so far.
     pub cancel: AtomicBool,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Debug)]
 pub enum Outcome {
-    /// M02, M30, the M99 that ends the run, or the program's end.
+    /// M02, M30, the M99 that ends the run, or the end of the program.
     End,
+    /// An alarm has stopped the control.
     Alarm(AlarmStop),
-    /// The limit of blocks or of moves, [`Progress::cancel`], or a loop that provably never ends ([`Control::endless_loop`](super::Control::endless_loop)).
+    /// The limit of blocks or of moves, [`Progress::cancel`], or a loop that provably never ends:
+    /// [`Control::endless_loop`](super::Control::endless_loop).
     Limit,
 }
 
-/// Where and why the control stopped.
+/// Alarm that has stopped the control.
 #[derive(Clone, Debug)]
 pub struct AlarmStop {
+    /// Alarm.
     pub alarm: Alarm,
-    /// The part of the block it is about.
+    /// Part of the block that the alarm is about.
     pub span: Span,
-    /// The block, and the calls that led to it.
+    /// Block and the calls that led to it.
     pub backtrace: Backtrace,
 }
 
-/// An operator stop.
+/// Stop until the operator continues.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatorStop {
+    /// Cause.
     pub kind: StopKind,
+    /// Message text; empty without one.
     pub text: String,
-    /// The variables that the text names, with their values.
+    /// Variables that the text names, with their values.
     pub variables: Vec<(u32, f64)>,
+}
+
+/// Effects of a block on the run: a note, or the end. Most blocks have none.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BlockEffects {
+    /// Number of executed blocks at which the run pauses; 0 after an effect, so that one comparison tests both.
+    pause: Cell<u64>,
+    note: Cell<Option<Note>>,
+    run_end: Cell<Option<RunEnd>>,
+}
+
+impl BlockEffects {
+    /// Lets the run execute up to this number of blocks; must not be 0.
+    #[inline(always)]
+    pub(super) fn set_pause(&self, blocks: u64) {
+        self.pause.set(blocks);
+    }
+
+    /// Returns true if the run pauses after this number of blocks, because of their number or an effect.
+    #[inline(always)]
+    pub(super) fn is_pause(&self, blocks: u64) -> bool {
+        blocks >= self.pause.get()
+    }
+
+    /// Returns true if no block has had an effect since [`BlockEffects::set_pause`].
+    #[inline(always)]
+    pub(super) fn is_none(&self) -> bool {
+        self.pause.get() != 0
+    }
+
+    pub(super) fn record_note(&self, note: Note) {
+        self.note.set(Some(note));
+        self.pause.set(0);
+    }
+
+    pub(super) fn end_run(&self, run_end: RunEnd) {
+        self.run_end.set(Some(run_end));
+        self.pause.set(0);
+    }
+
+    /// Returns true if a block has ended the run.
+    pub(super) fn is_run_ended(&self) -> bool {
+        self.run_end.get().is_some()
+    }
+
+    /// Takes the effects; none is left.
+    pub(super) fn take(&self) -> (Option<Note>, Option<RunEnd>) {
+        (self.note.take(), self.run_end.take())
+    }
+
+    /// Runs a function and discards its effects.
+    pub(super) fn without_effects<T>(&self, inspect: impl FnOnce() -> T) -> T {
+        let before = (self.pause.get(), self.note.get(), self.run_end.get());
+        let result = inspect();
+        self.pause.set(before.0);
+        self.note.set(before.1);
+        self.run_end.set(before.2);
+        result
+    }
+}
+
+/// End of a run without an alarm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RunEnd {
+    ProgramEnd,
+    /// The program is in a loop that never ends.
+    EndlessLoop,
+    /// The run has exceeded its number of moves.
+    MoveLimit,
+}
+
+/// Largest number of operator stops kept; a program that loops over M00 must not fill the memory.
+const MAX_STOPS: usize = 10_000;
+
+/// Record of a run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RunLog {
+    pub(super) blocks: u64,
+    pub(super) moves: u64,
+    /// Number of moves beyond which the run ends.
+    pub(super) max_moves: u64,
+    pub(super) stops: Vec<OperatorStop>,
+    /// Printed lines without their ends.
+    pub(super) printed: Vec<Vec<u8>>,
+    /// Length of the printed lines with their ends.
+    pub(super) printed_bytes: usize,
+    /// M codes for the machine builder's logic, each with its first block.
+    pub(super) auxiliary_codes: BTreeMap<u32, Span>,
+    /// Notes, each with its first block.
+    pub(super) notes: BTreeMap<Note, Span>,
+    /// Block that selected the active work coordinate system.
+    pub(super) work_selected: Backtrace,
+    /// Systems that the run has moved in before anything set them, with the blocks that selected them.
+    pub(super) unset_systems: Vec<(WorkSystem, Backtrace)>,
+}
+
+impl RunLog {
+    /// Records a note with its first block.
+    pub(super) fn note(&mut self, note: Note, block: Span) {
+        self.notes.entry(note).or_insert(block);
+    }
+
+    /// Records an operator stop, up to [`MAX_STOPS`].
+    #[inline(never)]
+    pub(super) fn record_stop(&mut self, kind: StopKind, text: &str, variables: &[(u32, f64)]) {
+        if self.stops.len() < MAX_STOPS {
+            self.stops.push(OperatorStop { kind, text: text.to_owned(), variables: variables.to_vec() });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_lang::source::SourceId;
+
+    #[test]
+    fn a_note_keeps_its_first_block_and_the_number_of_stops_is_limited() {
+        let mut log = RunLog::default();
+        let block = |start| Span { source: SourceId(0), start, end: start + 1 };
+        log.note(Note::NoAngle, block(4));
+        log.note(Note::NoAngle, block(9));
+        assert_eq!(log.notes.get(&Note::NoAngle), Some(&block(4)));
+        for _ in 0..=MAX_STOPS {
+            log.record_stop(StopKind::M00, "", &[]);
+        }
+        assert_eq!(log.stops.len(), MAX_STOPS);
+    }
 }

@@ -1,5 +1,5 @@
-//! A plain move: a block of axis words, G00 or G01 and F while nothing is in force that makes more of them. Most steps
-//! of a block have nothing to do for it, and of the state it changes little.
+//! Plain moves: blocks of axis words, G00 or G01 and F while no mode makes more of them. Most steps of a block have no
+//! effect on them, and they change little of the state.
 use std::hint::cold_path;
 
 use super::executor::Executor;
@@ -13,21 +13,21 @@ use gcode_lang::program::modes::{CutterSide, Motion, Polar};
 use gcode_lang::program::{LoweredWord, Op, Slot, WordOperand, Words};
 use gcode_lang::units::MmPerMin;
 
-/// The axes that a block names.
+/// Axes that a block names.
 #[derive(Clone, Copy)]
 struct AxisSet {
-    /// As bits, axis 1 the lowest.
+    /// Axes as bits, axis 1 the lowest.
     axes: u8,
-    /// Behind the last of them.
+    /// Axis after the last of them.
     end: AxisIndex,
-    /// They stand in their order.
+    /// The words are in the order of the axes.
     is_ascending: bool,
 }
 
 impl AxisSet {
     const NONE: Self = Self { axes: 0, end: 0, is_ascending: true };
 
-    /// Notes an axis; `None` where it is named twice.
+    /// Adds an axis; `None` if it is named twice.
     #[inline(always)]
     fn add(&mut self, axis: AxisIndex) -> Option<()> {
         if axis < self.end {
@@ -48,16 +48,16 @@ impl AxisSet {
     }
 }
 
-/// What the words of a plain move say.
+/// Words of a plain move.
 struct PlainMove {
     motion: Motion,
-    /// F, where it is commanded.
+    /// F, if commanded.
     f: Option<f64>,
     named: AxisSet,
     travel: SquaredTravel,
 }
 
-/// Where they lead the axes that they name. It stands apart, so that the compiler keeps the rest in registers.
+/// End point of the named axes, apart from [`PlainMove`] so that the compiler keeps that in registers.
 #[derive(Default)]
 struct PlainEndpoint {
     programmed: Position,
@@ -65,8 +65,8 @@ struct PlainEndpoint {
 }
 
 impl Executor {
-    /// Does a block that is a plain move; `None` where it isn't one, and nothing has changed. A block that alarms is none:
-    /// the steps of a block know where and why.
+    /// Executes a plain move; `None` for any other block, and nothing has changed. A block that raises an alarm is none: the
+    /// steps of a block locate the alarm.
     #[inline(never)]
     pub(super) fn plain_move<S: EventSink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
         let basis = self.registers.plain_basis.as_ref()?;
@@ -83,7 +83,7 @@ impl Executor {
         };
         self.registers.resolve_plain(words, basis, &mut resolved_move, &mut endpoint)?;
         if !resolved_move.named.is_ascending {
-            // A sum depends on its order, a way must not on that of the words.
+            // Sums in the order of the axes have the same bits for any order of the words.
             resolved_move.travel = self.registers.data.squared_travel(
                 resolved_move.named.iter(),
                 &state.machine,
@@ -128,7 +128,7 @@ impl Executor {
 }
 
 impl Registers {
-    /// Goes where the words of a block lead; `None` where it isn't a plain move, or alarms.
+    /// Resolves the words of a block; `None` if it isn't a plain move, or raises an alarm.
     #[inline(always)]
     fn resolve_plain(
         &self,
@@ -179,13 +179,13 @@ impl Registers {
         (resolved_move.named.axes != 0).then_some(())
     }
 
-    /// What is behind the address of an axis that is neither a literal nor any control's variable; `None` where it alarms.
+    /// Returns the value of an axis word that is neither a literal nor a free variable; `None` for an alarm.
     #[inline(never)]
     fn evaluate_axis_value(&self, words: &Words, value: &WordOperand) -> Option<Value> {
         self.evaluate_operand(words, value).ok()
     }
 
-    /// F, if it isn't vacant; `None` where it alarms.
+    /// Returns F, `None` inside if it is vacant; `None` for an alarm.
     #[inline(never)]
     fn evaluate_feed(&self, words: &Words, word: &LoweredWord) -> Option<Option<f64>> {
         match self.evaluate_word(words, word).ok()? {
@@ -194,13 +194,12 @@ impl Registers {
         }
     }
 
-    /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
-    /// count from.
+    /// Updates [`Registers::plain_basis`] after everything that can change whether the next block can be a plain move.
     pub(super) fn update_is_plain(&mut self) {
         self.plain_basis = self.is_plain().then(|| self.data.coordinate_basis(&self.state));
     }
 
-    /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
+    /// Returns true if no mode makes more of axis words than a move of those axes.
     fn is_plain(&self) -> bool {
         let modal = &self.state.modal;
         modal.cycle.is_none()
@@ -215,8 +214,8 @@ impl Registers {
             && self.is_at_programmed_point()
     }
 
-    /// Whether every axis stands where the programmed point is on the machine, so that one which isn't named stays there.
-    pub(super) fn is_at_programmed_point(&self) -> bool {
+    /// Returns true if the machine is at the programmed position, so that an axis that isn't named stays there.
+    fn is_at_programmed_point(&self) -> bool {
         self.state.transform.is_none()
             && self.data.settings.rollover_axes().next().is_none()
             && self.data.to_machine(&self.state, &self.state.programmed).0.map(f64::to_bits)
@@ -234,10 +233,10 @@ mod tests {
     use gcode_lang::motion::{Event, EventSink, MAX_AXES};
     use gcode_lang::program::{Memory, NoLibrary};
 
-    /// All that the machine is told.
-    struct Told(Vec<String>);
+    /// Emitted events.
+    struct Events(Vec<String>);
 
-    impl EventSink for Told {
+    impl EventSink for Events {
         fn event(&mut self, event: &Event<'_>) {
             self.0.push(format!("{:?} {:?} {:?}", event.kind, event.seconds, event.block));
         }
@@ -247,13 +246,13 @@ mod tests {
         let mut memory = Memory::default();
         memory.load("O1.nc", text.as_bytes().to_vec());
         let mut control = Control::new(memory, settings);
-        let mut told = Told(Vec::new());
-        let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
-        told.0.push(format!(
+        let mut events = Events(Vec::new());
+        let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut events);
+        events.0.push(format!(
             "{outcome:?} {:?} {:?}",
             control.executor.registers.state, control.executor.log.notes
         ));
-        (told.0, control.executor.registers.plain_basis.is_some())
+        (events.0, control.executor.registers.plain_basis.is_some())
     }
 
     fn settings() -> Settings {
@@ -262,7 +261,7 @@ mod tests {
         settings
     }
 
-    /// A control that looks at strokes without an end, for which no move is plain.
+    /// Settings with stroke limits at infinity, with which no move is plain.
     fn never_plain() -> Settings {
         let no = [None; MAX_AXES];
         Settings { stroke_limits: Some(StrokeLimits { max: no, min: no }), ..settings() }
@@ -270,7 +269,7 @@ mod tests {
 
     fn block() -> impl Strategy<Value = String> {
         let number = "-?[0-9]{1,2}(\\.[0-9]{0,5})?|#[1-3]|#500[13]";
-        // Mostly in their order and once each.
+        // Mostly in order and once each.
         let axes = format!(
             "(X({number}))?(Y({number}))?(Z({number}))?(A({number}))?(B({number}))?([XYZAB]({number}))?"
         );
@@ -284,14 +283,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_plain_move_is_what_the_steps_of_a_block_make_of_it(blocks in vec(block(), 1..40)) {
+        fn a_plain_move_equals_the_steps_of_a_block(blocks in vec(block(), 1..40)) {
             let text = format!("O1\nG21 G90 G94 F100.\n{}\nM30\n", blocks.join("\n"));
             prop_assert_eq!(run(&text, settings()).0, run(&text, never_plain()).0, "{}", text);
         }
     }
 
     #[test]
-    fn what_makes_more_of_axis_words_than_a_move_is_seen() {
+    fn modes_that_make_more_of_axis_words_exclude_plain_moves() {
         let is_plain = |text: &str| run(text, settings()).1;
         assert!(is_plain("G90 G0 X1.\n"));
         for more in
@@ -299,7 +298,7 @@ mod tests {
         {
             assert!(!is_plain(&format!("G90 G0 X1.\n{more}\n")), "{more}");
         }
-        assert!(is_plain("G81 Z-1. R1. F50\nG80\n"), "over again");
+        assert!(is_plain("G81 Z-1. R1. F50\nG80\n"), "after G80");
         assert!(!run("G90 G0 X1.\n", never_plain()).1);
     }
 }

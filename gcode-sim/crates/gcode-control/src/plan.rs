@@ -1,9 +1,9 @@
-//! What a block is going to do: made without touching the control, carried out afterwards without failing.
+//! Plan of a block: made without a change of the control, carried out without an alarm.
 use super::cycle_expansion::CyclePlan;
+use super::data::Register;
 use super::flow::CallOrigins;
 use super::lookahead::Lookahead;
 use super::notes::Note;
-use super::offsets::Register;
 use super::state::State;
 use super::variables::{Locals, Value};
 use crate::contour::Blend;
@@ -13,25 +13,25 @@ use gcode_lang::program::{OpIndex, ProgramId};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
-/// Everything one block of words changes. Kept between blocks, so that none of them allocates.
+/// Everything that one block of words changes. It is kept between blocks, so that most blocks allocate nothing.
 #[derive(Debug, Default)]
 pub(super) struct BlockPlan {
     pub(super) state: Box<State>,
-    /// What the machine is told, with the seconds it takes.
+    /// Events with their seconds.
     pub(super) events: Vec<(EventKind, f64)>,
-    /// G31: its motion is planned to the end and may stop before.
+    /// G31: its move is planned to the end point and may stop earlier.
     pub(super) skip_plan: Option<SkipPlan>,
-    /// Told after the motion: spindle and coolant off.
+    /// Events after the motion: spindle and coolant off.
     pub(super) events_after_motion: Vec<(EventKind, f64)>,
-    /// A drilling cycle is expanded while it is told: its length has no bound.
+    /// Drilling cycle, expanded while it is emitted because its length has no bound.
     pub(super) cycle_plan: Option<CyclePlan>,
     pub(super) writes: Vec<TableWrite>,
     /// The word `,R` or `,C` of a cutting move.
     pub(super) corner: Option<Blend>,
-    /// The block goes by way of what is read ahead, which will be this.
+    /// True if `lookahead` replaces that of the control.
     pub(super) uses_lookahead: bool,
     pub(super) lookahead: Lookahead,
-    /// Axes were commanded: what a modal macro call waits for.
+    /// True if the block commands axes, which triggers a modal macro call.
     pub(super) commands_axes: bool,
     /// In the order of their M codes.
     pub(super) stops: Vec<StopKind>,
@@ -41,10 +41,9 @@ pub(super) struct BlockPlan {
     pub(super) flow: BlockFlow,
 }
 
-/// What G10 and codes that call write.
+/// Value that G10 or a calling code writes.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TableWrite {
-    /// System 0 is the external one, 1 to 6 are G54 to G59, 7 and up G54.1 P1….
     Work {
         system: usize,
         axis: usize,
@@ -55,23 +54,23 @@ pub(super) enum TableWrite {
         number: u32,
         value: f64,
     },
-    /// G10 L52; `kept` where it has no effect.
+    /// G10 L52.
     Parameter {
         id: ParameterId,
         value: f64,
         has_no_effect: bool,
     },
-    /// The number of a code that calls a subprogram, or G10 L85.
+    /// Number of a code that calls a subprogram, or G10 L85.
     Variable {
         number: u32,
         value: Value,
     },
 }
 
-/// A G31 that is planned.
+/// Planned G31.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SkipPlan {
-    /// Its place among the plan's events.
+    /// Index among the plan's events.
     pub(super) event: usize,
     pub(super) from: Position,
     pub(super) to: Position,
@@ -80,13 +79,13 @@ pub(super) struct SkipPlan {
     pub(super) span: Span,
 }
 
-/// Where the program goes after the block.
+/// Continuation of the program after the block.
 #[derive(Clone, Debug, Default)]
 pub(super) enum BlockFlow {
     #[default]
     Next,
     Call(Box<CallPlan>),
-    /// M99, with the number behind P and, once it is found, its place.
+    /// M99, with the sequence number of P and, once resolved, its operation.
     Return {
         number: Option<u32>,
         target: Option<OpIndex>,
@@ -96,18 +95,18 @@ pub(super) enum BlockFlow {
     End,
 }
 
-/// A call with everything it needs.
+/// Planned call.
 #[derive(Clone, Debug)]
 pub(super) struct CallPlan {
     pub(super) kind: CallKind,
     pub(super) target: ProgramRef,
     pub(super) repeats: u32,
-    /// `M98 P Q`: the sequence number to start at.
+    /// Sequence number to start at: Q of M98.
     pub(super) start: Option<u32>,
     pub(super) locals: Locals,
-    /// G66.1: its own words are arguments at once. Other calls always are.
+    /// False for a G66.1 that only stores its macro.
     pub(super) is_immediate: bool,
-    /// The kind of code that calls, where it is no G65, G66 or M98.
+    /// Kind of code that calls, other than G65, G66 and M98.
     pub(super) origins: CallOrigins,
     /// M198.
     pub(super) is_external: bool,
@@ -118,9 +117,9 @@ pub(super) struct CallPlan {
 pub(super) enum CallKind {
     Macro,
     Subprogram,
-    /// G66: stored, not called.
+    /// G66: stored, called after moves.
     Modal,
-    /// G66.1: stored, and called by its own words.
+    /// G66.1: stored, called by every block.
     EveryBlock,
 }
 
@@ -128,42 +127,49 @@ pub(super) enum CallKind {
 pub(super) enum ProgramRef {
     Number(u32),
     Name(String),
-    /// Found in memory.
+    /// Program in memory and the operation to start at.
     Resolved(ProgramId, OpIndex),
 }
 
 impl BlockPlan {
-    pub(super) fn reset(&mut self, state: &State) {
+    /// Empties the plan and starts at a state; allocations are kept.
+    pub(super) fn reset(&mut self, start: &State) {
         let Self {
-            state: own,
+            state,
             events,
-            skip_plan: probing,
-            events_after_motion: after,
-            cycle_plan: drill,
+            skip_plan,
+            events_after_motion,
+            cycle_plan,
             writes,
             corner,
-            uses_lookahead: reads_ahead,
-            // Taken from the control where it is read.
+            uses_lookahead,
+            // Valid with `uses_lookahead` only.
             lookahead: _,
-            commands_axes: moved,
+            commands_axes,
             stops,
-            auxiliary_codes: passed_on,
+            auxiliary_codes,
             notes,
             flow,
         } = self;
-        **own = *state;
+        **state = *start;
+        (*skip_plan, *cycle_plan, *corner, *flow) = (None, None, None, BlockFlow::Next);
+        (*uses_lookahead, *commands_axes) = (false, false);
         events.clear();
-        (*probing, *drill, *corner) = (None, None, None);
-        after.clear();
+        events_after_motion.clear();
         writes.clear();
-        (*reads_ahead, *moved) = (false, false);
         stops.clear();
-        passed_on.clear();
+        auxiliary_codes.clear();
         notes.clear();
-        *flow = BlockFlow::Next;
     }
 
+    /// Adds an event that takes no time.
     pub(super) fn push_event(&mut self, kind: EventKind) {
         self.events.push((kind, 0.0));
+    }
+
+    /// Adds a move; the machine then stands at its end.
+    pub(super) fn push_move(&mut self, kind: EventKind, seconds: f64) {
+        self.state.machine = kind.end().copied().unwrap_or(self.state.machine);
+        self.events.push((kind, seconds));
     }
 }

@@ -1,110 +1,90 @@
-//! What a run leaves behind for the next program: variables, modes, offsets, parameters, outputs and counters.
+//! State that a run leaves for the next program: variables, modes, offsets, parameters, outputs and counters.
 use super::control::Control;
-use super::data::ControlData;
-use super::offsets::{Offsets, Register};
+use super::data::{STANDARD_SYSTEMS, system_index};
 use gcode_lang::control::ParameterId;
-use gcode_lang::motion::Position;
+use gcode_lang::program::modes::WorkSystem;
 
-/// Something that is no longer as it is when the control is switched on.
+/// Value that is no longer as it is when the control is switched on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResidualValue {
+    /// Kind of the value.
     pub kind: ResidualKind,
-    /// As the program or the screen calls it: `#500`, `G54 X`, `H5 geometry`.
+    /// Name that the program or the screen has for it: `#500`, `G54 X`, `H5 geometry`.
     pub name: String,
-    /// Lengths in mm, angles in degrees.
+    /// Value; lengths in mm, angles in degrees.
     pub value: f64,
 }
 
+/// Kind of a [`ResidualValue`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResidualKind {
-    /// A common variable.
+    /// Common variable.
     Variable,
+    /// G code in effect in a modal group.
     Mode,
+    /// Work offset, or the offset of G52 or G92.
     WorkOffset,
+    /// Tool offset.
     ToolOffset,
-    /// Written by G10.
+    /// Parameter that G10 has written.
     Parameter,
     /// Output signals.
     Output,
-    /// Parts made and wanted.
+    /// Parts made and parts required.
     Counter,
 }
 
-/// What a [`ResidualValue`] of the kind [`ResidualKind::Mode`] is called.
+/// Returns the name of a [`ResidualValue`] of the kind [`ResidualKind::Mode`].
 pub fn mode_name(group: u32) -> String {
     format!("the mode of group {group:02}")
 }
 
 impl Control {
-    /// All that isn't vacant or 0; modes always.
+    /// Returns all values that aren't vacant or 0, and all modes.
     pub fn residual_values(&self) -> Vec<ResidualValue> {
-        let executor = &self.executor;
+        let registers = &self.executor.registers;
+        let (data, state) = (&registers.data, &registers.state);
+        let axes = &data.settings.axes;
         let mut all = Vec::new();
         let mut push = |kind, name: String, value: f64| all.push(ResidualValue { kind, name, value });
         for (number, value) in self.variables().filter(|(number, _)| *number >= 100) {
             push(ResidualKind::Variable, format!("#{number}"), value);
         }
         for group in 1..=22 {
-            if let Ok(value) = executor.registers.read_variable(4000 + group) {
+            if let Ok(value) = registers.read_variable(4000 + group) {
                 push(ResidualKind::Mode, mode_name(group), value.number());
             }
         }
-        let shifts = [
-            ("G52".to_owned(), &executor.registers.state.local_offset),
-            ("G92".to_owned(), &executor.registers.state.coordinate_shift),
-        ];
-        for (system, values) in executor.registers.data.offsets.systems().chain(shifts) {
-            for (axis, letter) in
-                executor.registers.data.settings.axes.iter().filter(|(axis, _)| values[*axis] != 0.0)
-            {
+        let system_name = |index| match index {
+            0 => "the external work offset".to_owned(),
+            _ if index < STANDARD_SYSTEMS => format!("G{}", 53 + index),
+            _ => format!("G54.1 P{}", index - system_index(WorkSystem::Additional(0))),
+        };
+        let systems =
+            data.offsets.work.iter().enumerate().map(|(index, values)| (system_name(index), values));
+        let shifts = [("G52".to_owned(), &state.local_offset), ("G92".to_owned(), &state.coordinate_shift)];
+        for (system, values) in systems.chain(shifts) {
+            for (axis, letter) in axes.iter().filter(|(axis, _)| values[*axis] != 0.0) {
                 push(ResidualKind::WorkOffset, format!("{system} {letter}"), values[axis]);
             }
         }
-        for (name, values) in executor.registers.data.offsets.tools() {
+        let tables = [("H", "geometry"), ("H", "wear"), ("D", "geometry"), ("D", "wear")];
+        for ((letter, table), values) in tables.iter().zip(&data.offsets.tools) {
             for (number, value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-                push(ResidualKind::ToolOffset, name(number), *value);
+                push(ResidualKind::ToolOffset, format!("{letter}{number} {table}"), *value);
             }
         }
-        for (place, value) in &executor.registers.data.parameters {
-            push(ResidualKind::Parameter, executor.registers.data.parameter_name(*place), *value);
+        for (ParameterId { number, bit, axis }, value) in &data.parameters {
+            let bit = bit.map(|bit| format!("#{bit}")).unwrap_or_default();
+            let axis = axis.map(|axis| format!(" {}", axes.letter(axis))).unwrap_or_default();
+            push(ResidualKind::Parameter, format!("parameter {number}{bit}{axis}"), *value);
         }
-        if executor.registers.panel.outputs != 0 {
-            push(ResidualKind::Output, "#1132".to_owned(), f64::from(executor.registers.panel.outputs));
+        if registers.panel.outputs != 0 {
+            push(ResidualKind::Output, "#1132".to_owned(), f64::from(registers.panel.outputs));
         }
-        for (number, value) in [3901, 3902].into_iter().zip(executor.registers.panel.part_counters) {
+        for (number, value) in [3901, 3902].into_iter().zip(registers.panel.part_counters) {
             push(ResidualKind::Counter, format!("#{number}"), value);
         }
         all
-    }
-}
-
-impl ControlData {
-    /// `parameter 3401#0`, `parameter 1320 X`.
-    fn parameter_name(&self, place: ParameterId) -> String {
-        let bit = place.bit.map(|bit| format!("#{bit}")).unwrap_or_default();
-        let axis = place.axis.map(|axis| format!(" {}", self.settings.axes.letter(axis))).unwrap_or_default();
-        format!("parameter {}{bit}{axis}", place.number)
-    }
-}
-
-type ToolName = fn(usize) -> String;
-
-impl Offsets {
-    /// Every work coordinate system by its name.
-    fn systems(&self) -> impl Iterator<Item = (String, &Position)> {
-        let external = std::iter::once(("the external work offset".to_owned(), self.external()));
-        let standard = self.standard().iter().enumerate().map(|(n, values)| (format!("G{}", 54 + n), values));
-        let additional = self.additional.iter().enumerate();
-        external.chain(standard).chain(additional.map(|(n, values)| (format!("G54.1 P{}", n + 1), values)))
-    }
-
-    /// Every table of tool offsets, and how one of its rows is called.
-    fn tools(&self) -> [(ToolName, &[f64]); 4] {
-        [
-            (|n| format!("H{n} geometry"), self.table(Register::HGeometry)),
-            (|n| format!("H{n} wear"), self.table(Register::HWear)),
-            (|n| format!("D{n} geometry"), self.table(Register::DGeometry)),
-            (|n| format!("D{n} wear"), self.table(Register::DWear)),
-        ]
     }
 }

@@ -1,56 +1,63 @@
-//! What one block can change besides variables and offset tables: small enough to copy, so that a block that alarms
-//! leaves no trace.
-use super::modal_state::Modal;
-use super::transform::Transform;
-use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirection};
-use gcode_lang::program::modes::{Length, Motion};
+//! State that one block can change besides variables and offset tables: modes, positions, codes with a number, the transform
+//! of coordinates. It is small enough to copy, so that a block that raises an alarm leaves no trace.
+use gcode_lang::motion::{AxisIndex, LengthCompensation, MAX_AXES, Position, SpindleDirection};
+use gcode_lang::program::cycles::Cycle;
+use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::program::modes::{
+    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, Motion, Plane, Polar, ReturnTo,
+    Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
+};
+use gcode_lang::units::Deg;
 
-/// The control between two blocks. Lengths in mm, whatever G20 says.
+/// Control between two blocks; lengths in mm even with G20.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
+    /// Modal codes.
     pub modal: Modal,
-    /// Where the program stands in its work coordinate system, before mirror, scaling and rotation, without the
-    /// tool length.
-    pub programmed: Position,
-    /// Until the next move after G51.1, G51, G68 or their end: what #5001… show.
-    pub last_end_point: Option<EndPoint>,
-    /// The same in machine coordinates, tool length included.
-    pub machine: Position,
-    /// G52.
-    pub local_offset: Position,
-    /// G92.
-    pub coordinate_shift: Position,
-    /// The tool length offset in effect on each axis.
-    pub length_offset: Position,
-    /// G28: the intermediate point for G29, from the work coordinate system's zero, tool length included; and the axes
-    /// that have one.
-    pub intermediate: Position,
-    pub has_intermediate: u8,
-    /// The axes that stand where machine coordinates have sent them while nothing had set the work offset in effect.
-    pub work_zero_unknown: u8,
-    /// #5061…: where the last G31 ended, in machine coordinates.
-    pub skip_position: Position,
-    /// The radius of cutter compensation, as D or G41, G42 have found it; negative where it swaps sides.
-    pub cutter_radius: f64,
-    pub transform: Transform,
+    /// Programmed position in the work coordinate system, before mirror, scaling and rotation, without the tool length.
+    pub(super) programmed: Position,
+    /// Position that #5001… show until the first move after G51.1, G51, G68 or their end.
+    pub(super) last_end_point: Option<EndPoint>,
+    /// Position in machine coordinates, tool length included.
+    pub(super) machine: Position,
+    /// Shift of G52.
+    pub(super) local_offset: Position,
+    /// Shift of G92.
+    pub(super) coordinate_shift: Position,
+    /// Active tool length offset of each axis.
+    pub(super) length_offset: Position,
+    /// Intermediate point of G28 for G29, from the work zero, tool length included.
+    pub(super) intermediate: Position,
+    /// Axes with an intermediate point, as bits.
+    pub(super) has_intermediate: u8,
+    /// Axes at positions commanded in machine coordinates while nothing has set the active work offset, as bits.
+    pub(super) work_zero_unknown: u8,
+    /// End of the last G31 in machine coordinates, #5061….
+    pub(super) skip_position: Position,
+    /// Radius of cutter compensation, read by D or G41, G42; negative if it swaps sides.
+    pub(super) cutter_radius: f64,
+    pub(super) transform: Transform,
+    /// Modal data of the drilling cycle.
     pub cycle: CycleState,
+    /// Codes with a number.
     pub codes: Codes,
-    pub polar: PolarPoint,
+    pub(super) polar: PolarPoint,
+    /// Spindle.
     pub spindle: SpindleDirection,
-    pub is_coolant_on: bool,
+    pub(super) is_coolant_on: bool,
     /// Between G10 L52 and G11.
-    pub is_in_parameter_input: bool,
-    /// The tool in the spindle.
+    pub(super) is_in_parameter_input: bool,
+    /// Number of the tool in the spindle.
     pub tool: u32,
 }
 
 impl State {
-    /// Notes whether the place of an axis on the part is known.
+    /// Sets whether the position of an axis on the part is unknown.
     pub(super) fn set_work_zero_unknown(&mut self, axis: AxisIndex, is_unknown: bool) {
         self.work_zero_unknown = self.work_zero_unknown & !(1 << axis) | u8::from(is_unknown) << axis;
     }
 
-    /// Puts a code of group 01 in force, which ends a drilling cycle (operator's manual, canned cycle for drilling).
+    /// Applies a code of group 01, which ends a drilling cycle (operator's manual, canned cycle for drilling).
     #[inline]
     pub(super) fn set_motion_mode(&mut self, motion: Motion) {
         self.modal.motion = motion;
@@ -59,8 +66,8 @@ impl State {
         }
     }
 
-    /// What the tool length offset comes of.
-    pub fn length_compensation(&self) -> LengthCompensation {
+    /// Returns the source of the tool length offset.
+    pub(super) fn length_compensation(&self) -> LengthCompensation {
         match self.modal.length {
             Length::Off => LengthCompensation::Off,
             Length::Plus => LengthCompensation::Plus(self.codes.h),
@@ -69,77 +76,85 @@ impl State {
     }
 }
 
-/// Where the last move ended, as it was programmed, while the program stands elsewhere in its coordinates because a
-/// transform was switched.
+/// Programmed end of the last move, after a change of the transform has changed the programmed position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EndPoint {
-    pub programmed: Position,
-    /// The tool in the work coordinate system when the transform was switched: an offset that changes later moves both.
-    pub work: Position,
+pub(super) struct EndPoint {
+    pub(super) programmed: Position,
+    /// Tool position in the work coordinate system at the change; later changes of an offset move both.
+    pub(super) work: Position,
 }
 
-/// What G16 keeps from block to block.
+/// Polar coordinates that G16 keeps from block to block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PolarPoint {
-    /// mm; `None` before one was commanded.
-    pub radius: Option<f64>,
+pub(super) struct PolarPoint {
+    /// mm; `None` until one is commanded.
+    pub(super) radius: Option<f64>,
     /// Degrees.
-    pub angle: f64,
-    /// The radius was commanded in G91: it is measured from where the tool stands, not from the work zero.
-    pub is_incremental: bool,
+    pub(super) angle: f64,
+    /// The radius was commanded in G91: it counts from the current position, not from the work zero.
+    pub(super) is_incremental: bool,
 }
 
-/// Codes with a number that stays: #4107…#4130.
+/// Codes with a number that stays in effect: #4107…#4130.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Codes {
-    /// In the unit and mode it was commanded in.
+    /// Feed, in the unit and mode in which it was commanded.
     pub f: f64,
+    /// Spindle speed.
     pub s: f64,
+    /// B code.
     pub b: f64,
+    /// Number of the cutter radius offset.
     pub d: u32,
+    /// Number of the tool length offset.
     pub h: u32,
+    /// M code.
     pub m: u32,
+    /// T code.
     pub t: u32,
+    /// Sequence number.
     pub n: u32,
+    /// Program number.
     pub o: u32,
 }
 
-/// The modal data of a drilling cycle; G80 and group 01 clear it.
+/// Modal data of a drilling cycle; G80 and group 01 clear it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CycleState {
-    /// The axis that the cycle drills along, from its first block on.
-    pub axis: Option<AxisIndex>,
-    /// Where that axis stood when the cycle began.
-    pub initial: f64,
-    /// There it stood in machine coordinates, as in [`State::work_zero_unknown`].
-    pub is_initial_unknown: bool,
-    pub r: CycleLevel,
-    pub z: CycleLevel,
-    pub p: f64,
+    /// Drilling axis, from the first block of the cycle on.
+    pub(super) axis: Option<AxisIndex>,
+    /// Position of that axis when the cycle began.
+    pub(super) initial: f64,
+    /// That position on the part is unknown, as in [`State::work_zero_unknown`].
+    pub(super) is_initial_unknown: bool,
+    pub(super) r: CycleLevel,
+    pub(super) z: CycleLevel,
+    pub(super) p: f64,
+    /// Depth of a peck, or shift.
     pub q: Option<f64>,
     /// I, J and K of a Haas.
-    pub pecks: Option<PeckSchedule>,
+    pub(super) pecks: Option<PeckSchedule>,
 }
 
 /// Pecks that become shorter, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PeckSchedule {
-    pub first: f64,
-    pub decrement: f64,
-    pub minimum: f64,
+pub(super) struct PeckSchedule {
+    pub(super) first: f64,
+    pub(super) decrement: f64,
+    pub(super) minimum: f64,
 }
 
-/// A level as commanded: G91 counts R from the initial level and Z from R.
+/// Level as commanded: G91 counts R from the initial level and Z from R.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CycleLevel {
-    pub value: f64,
-    pub is_incremental: bool,
-    /// It was, in this cycle.
-    pub is_commanded: bool,
+pub(super) struct CycleLevel {
+    pub(super) value: f64,
+    pub(super) is_incremental: bool,
+    /// The level was commanded in this cycle.
+    pub(super) is_commanded: bool,
 }
 
 impl CycleState {
-    /// With pecks that come out as written where G51 makes `stretch` of each millimetre of the levels.
+    /// Returns the cycle with pecks that have their commanded length after the scaling of the levels by `stretch`.
     pub(super) fn unscaled(self, stretch: f64) -> Self {
         let pecks = self.pecks.map(|pecks| PeckSchedule {
             first: pecks.first / stretch,
@@ -159,5 +174,291 @@ impl CycleState {
 
     pub(super) fn z_level(&self) -> f64 {
         if self.z.is_incremental { self.r_level() + self.z.value } else { self.z.value }
+    }
+}
+
+/// Use of the axis words of a block by a code instead of a move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum AxisWordUse {
+    OneShot(OneShot),
+    AdditionalWork,
+    Scale,
+    Mirror { is_on: bool },
+    Rotate,
+    Tilt,
+}
+
+/// Modal codes: one typed field per group, so that they can't contradict one another; `Default` is power-on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Modal {
+    pub(super) motion: Motion,
+    pub(super) plane: Plane,
+    pub(super) distance: Distance,
+    pub(super) stroke_check: StrokeCheck,
+    pub(super) feed_mode: FeedMode,
+    pub(super) unit: Unit,
+    pub(super) cutter: CutterSide,
+    pub(super) length: Length,
+    /// Group 09: drilling cycle; `None` is G80.
+    pub cycle: Option<&'static Cycle>,
+    pub(super) return_to: ReturnTo,
+    pub(super) scaling: Scaling,
+    pub(super) call: ModalCall,
+    pub(super) spindle_mode: SpindleMode,
+    /// Group 14: work coordinate system.
+    pub work: WorkSystem,
+    pub(super) cutting: CuttingMode,
+    pub(super) rotation: Rotation,
+    pub(super) polar: Polar,
+    pub(super) mirror: Mirror,
+}
+
+impl Modal {
+    /// Applies a G code and returns the use that it makes of the axis words of its block, if any. Codes of group 01 are
+    /// applied by [`State::set_motion_mode`].
+    pub(super) fn apply(&mut self, effect: Effect) -> Option<AxisWordUse> {
+        match effect {
+            Effect::Plane(plane) => self.plane = plane,
+            Effect::Distance(distance) => self.distance = distance,
+            Effect::StrokeCheck(check) => self.stroke_check = check,
+            Effect::FeedMode(mode) => self.feed_mode = mode,
+            Effect::Unit(unit) => self.unit = unit,
+            Effect::Cutter(side) => self.cutter = side,
+            Effect::Length(length) => self.length = length,
+            Effect::Cycle(cycle) => self.cycle = cycle,
+            Effect::ReturnTo(to) => self.return_to = to,
+            Effect::SpindleMode(mode) => self.spindle_mode = mode,
+            Effect::Work(number) => self.work = WorkSystem::Standard(number),
+            Effect::NumberedWork(number) => self.work = WorkSystem::Additional(number),
+            Effect::Cutting(mode) => self.cutting = mode,
+            Effect::Polar(polar) => self.polar = polar,
+            Effect::Scaling(scaling) => {
+                self.scaling = scaling;
+                return (scaling == Scaling::On).then_some(AxisWordUse::Scale);
+            }
+            Effect::Rotation(rotation) => {
+                self.rotation = rotation;
+                return match rotation {
+                    Rotation::Off => None,
+                    Rotation::On => Some(AxisWordUse::Rotate),
+                    Rotation::Tilted => Some(AxisWordUse::Tilt),
+                };
+            }
+            Effect::Mirror(mirror) => {
+                self.mirror = mirror;
+                return Some(AxisWordUse::Mirror { is_on: mirror == Mirror::On });
+            }
+            Effect::AdditionalWork => return Some(AxisWordUse::AdditionalWork),
+            Effect::OneShot(one) => return Some(AxisWordUse::OneShot(one)),
+            Effect::Motion(_)
+            | Effect::NoEffect
+            | Effect::LookAhead
+            | Effect::Smoothness
+            | Effect::Call
+            | Effect::NotSimulated => {}
+        }
+        None
+    }
+
+    /// Returns the active G code × 10 of a group, as #4001….
+    pub fn code(&self, group: u32) -> Option<u32> {
+        Some(match group {
+            1 => self.motion.code(),
+            2 => self.plane.code(),
+            3 => self.distance.code(),
+            4 => self.stroke_check.code(),
+            5 => self.feed_mode.code(),
+            6 => self.unit.code(),
+            7 => self.cutter.code(),
+            8 => self.length.code(),
+            9 => self.cycle.map_or(800, |cycle| cycle.code),
+            10 => self.return_to.code(),
+            11 => self.scaling.code(),
+            12 => self.call.code(),
+            13 => self.spindle_mode.code(),
+            14 => self.work.code(),
+            15 => self.cutting.code(),
+            16 => self.rotation.code(),
+            17 => self.polar.code(),
+            18 | 19 => 401,
+            // In-feed control and polar interpolation are always off.
+            20 => 1600,
+            21 => 131,
+            22 => self.mirror.code(),
+            _ => return None,
+        })
+    }
+}
+
+/// Transform from programmed to work coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Transform {
+    /// Mirrored axes, as bits.
+    pub(super) mirrored_axes: u8,
+    pub(super) mirror_position: Position,
+    pub(super) scaling: Option<Scale>,
+    pub(super) rotation: Option<PlaneRotation>,
+    pub(super) tilt: Option<Tilt>,
+}
+
+/// G68.2: p = o + Rz(I)·Rx(J)·Rz(K)·q in the coordinates of X, Y and Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tilt {
+    axes: [AxisIndex; 3],
+    origin: [f64; 3],
+    rows: [[f64; 3]; 3],
+}
+
+impl Tilt {
+    pub(super) fn new(axes: [AxisIndex; 3], origin: [f64; 3], angles: [f64; 3]) -> Self {
+        let [(si, ci), (sj, cj), (sk, ck)] = angles.map(sine_cosine);
+        let rows = [
+            [ci * ck - si * cj * sk, -ci * sk - si * cj * ck, si * sj],
+            [si * ck + ci * cj * sk, -si * sk + ci * cj * ck, -ci * sj],
+            [sj * sk, sj * ck, cj],
+        ];
+        Self { axes, origin, rows }
+    }
+
+    fn forward(&self, point: &mut Position) {
+        let feature = self.axes.map(|axis| point[axis]);
+        for (i, axis) in self.axes.into_iter().enumerate() {
+            let rotated: f64 = (0..3).map(|k| self.rows[i][k] * feature[k]).sum();
+            point[axis] = self.origin[i] + rotated;
+        }
+    }
+
+    fn backward(&self, point: &mut Position) {
+        let from = [0, 1, 2].map(|i| point[self.axes[i]] - self.origin[i]);
+        for (i, axis) in self.axes.into_iter().enumerate() {
+            point[axis] = (0..3).map(|k| self.rows[k][i] * from[k]).sum();
+        }
+    }
+}
+
+/// Returns sine and cosine; exact for multiples of 90°, as on a control.
+fn sine_cosine(angle: f64) -> (f64, f64) {
+    match angle.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => (Deg(angle).sin(), Deg(angle).cos()),
+    }
+}
+
+/// Scaling of G51.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Scale {
+    pub(super) centre: Position,
+    pub(super) factor: Position,
+}
+
+/// Rotation of G68 in the plane of two axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PlaneRotation {
+    pub(super) plane: (AxisIndex, AxisIndex),
+    pub(super) centre: (f64, f64),
+    pub(super) angle: f64,
+    sine: f64,
+    cosine: f64,
+}
+
+impl PlaneRotation {
+    pub(super) fn new(plane: (AxisIndex, AxisIndex), centre: (f64, f64), angle: f64) -> Self {
+        let (sine, cosine) = sine_cosine(angle);
+        Self { plane, centre, angle, sine, cosine }
+    }
+
+    fn apply(&self, point: &mut Position, sine: f64) {
+        let (a, b) = (point[self.plane.0] - self.centre.0, point[self.plane.1] - self.centre.1);
+        point[self.plane.0] = self.centre.0 + a * self.cosine - b * sine;
+        point[self.plane.1] = self.centre.1 + a * sine + b * self.cosine;
+    }
+}
+
+impl Transform {
+    #[inline]
+    pub(super) fn is_none(&self) -> bool {
+        self.mirrored_axes == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
+    }
+
+    pub(super) fn forward(&self, mut point: Position) -> Position {
+        if self.is_none() {
+            return point;
+        }
+        self.reflect(&mut point);
+        if let Some(scale) = &self.scaling {
+            for axis in 0..MAX_AXES {
+                point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) * scale.factor[axis];
+            }
+        }
+        if let Some(rotation) = &self.rotation {
+            rotation.apply(&mut point, rotation.sine);
+        }
+        if let Some(tilt) = &self.tilt {
+            tilt.forward(&mut point);
+        }
+        point
+    }
+
+    pub(super) fn backward(&self, mut point: Position) -> Position {
+        if self.is_none() {
+            return point;
+        }
+        if let Some(tilt) = &self.tilt {
+            tilt.backward(&mut point);
+        }
+        if let Some(rotation) = &self.rotation {
+            rotation.apply(&mut point, -rotation.sine);
+        }
+        if let Some(scale) = &self.scaling {
+            for axis in 0..MAX_AXES {
+                point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) / scale.factor[axis];
+            }
+        }
+        self.reflect(&mut point);
+        point
+    }
+
+    fn reflect(&self, point: &mut Position) {
+        for axis in (0..MAX_AXES).filter(|axis| self.mirrored_axes >> axis & 1 == 1) {
+            point[axis] = 2.0 * self.mirror_position[axis] - point[axis];
+        }
+    }
+
+    /// Returns whether arcs in a plane change their direction, and whether they stay circles.
+    pub(super) fn arc_effect(&self, plane: (AxisIndex, AxisIndex)) -> (bool, bool) {
+        let bit = |axis: AxisIndex| self.mirrored_axes >> axis & 1 == 1;
+        let factor = |axis: AxisIndex| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
+        let (a, b) = (factor(plane.0), factor(plane.1));
+        let is_reversed = bit(plane.0) ^ bit(plane.1) ^ (a < 0.0) ^ (b < 0.0);
+        (is_reversed, a.abs() == b.abs())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn power_on_codes_are_those_of_the_manuals() {
+        let modal = Modal::default();
+        let codes: Vec<_> = (1..=17).filter_map(|group| modal.code(group)).collect();
+        assert_eq!(
+            codes,
+            [0, 170, 900, 220, 940, 210, 400, 490, 800, 980, 500, 670, 970, 540, 640, 690, 150]
+        );
+    }
+
+    #[test]
+    fn a_rotation_by_90_degrees_takes_x_to_y() {
+        let rotation = PlaneRotation::new((0, 1), (0.0, 0.0), 90.0);
+        let transform = Transform { rotation: Some(rotation), ..Transform::default() };
+        let mut point = Position::default();
+        point[0] = 10.0;
+        let rotated = transform.forward(point);
+        assert_eq!((rotated[0], rotated[1]), (0.0, 10.0));
+        assert_eq!(transform.backward(rotated), point);
     }
 }

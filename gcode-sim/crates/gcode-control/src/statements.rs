@@ -1,37 +1,38 @@
-//! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
-use super::checked::{ExecResult, integer, locate, variable_number};
+//! Macro statements: assignments, branches, loops and prints. Only #3000 and #3006 emit an event.
 use super::evaluation::RoundingTarget;
 use super::executor::Executor;
+use super::functions::{ExecResult, integer, locate, variable_number};
 use super::loop_detection::LoopDetector;
 use super::notes::Note;
-use super::print::{MAX_PRINTED_BYTES, binary, decimal};
 use super::variables::{Value, VariableClass};
 use gcode_lang::alarm::Alarm;
+use gcode_lang::control::Settings;
 use gcode_lang::motion::{EventKind, EventSink, StopKind};
 use gcode_lang::program::{Assign, OpIndex, Operand, PrintPart, Program, Slot, Statement};
 use gcode_lang::source::{Span, Spanned};
 use gcode_lang::syntax::ast::PrintKind;
+use gcode_lang::units::round_scaled;
 
-/// No control has numbers beyond this for alarms of its programs.
+/// Largest alarm number of a program on any control.
 const MAX_ALARM_NUMBER: u16 = 4095;
 
 impl Executor {
-    /// An assignment of what code gives, in the loop over the blocks itself.
+    /// Assigns the result of code; inlined into the loop over the blocks.
     #[inline(always)]
-    pub(super) fn assign(&mut self, Assign { variable: place, code }: &Assign) -> ExecResult<()> {
+    pub(super) fn assign(&mut self, Assign { variable, code }: &Assign) -> ExecResult<()> {
         let value = self.registers.evaluate(code, RoundingTarget::Increment)?;
-        self.registers.variables.set_free(*place, value);
+        self.registers.variables.set_free(*variable, value);
         Ok(())
     }
 
-    /// As [`Executor::assign`], elsewhere.
+    /// Assigns as [`Executor::assign`], out of line.
     #[inline(never)]
-    pub(super) fn assign_out_of_line(&mut self, compute: &Assign) -> ExecResult<()> {
-        self.assign(compute)
+    pub(super) fn assign_out_of_line(&mut self, assign: &Assign) -> ExecResult<()> {
+        self.assign(assign)
     }
 
-    /// Does one statement. The frame already stands at the next block; jumps change that. What the turns of most loops
-    /// consist of is done in the loop over the blocks itself.
+    /// Executes one statement. The frame already points to the next block; jumps change that. The statements of most loops
+    /// are inlined into the loop over the blocks.
     #[inline(always)]
     pub(super) fn statement<S: EventSink>(
         &mut self,
@@ -54,7 +55,7 @@ impl Executor {
         Ok(())
     }
 
-    /// As [`Executor::statement`], away from the loop over the blocks.
+    /// Executes a statement as [`Executor::statement`], out of line.
     #[inline(never)]
     pub(super) fn any_statement<S: EventSink>(
         &mut self,
@@ -65,7 +66,7 @@ impl Executor {
     ) -> ExecResult<()> {
         let next = self.flow.frame.next;
         match statement {
-            Statement::AssignFree(compute) => self.assign_out_of_line(compute)?,
+            Statement::AssignFree(assign) => self.assign_out_of_line(assign)?,
             Statement::Assign { target, target_span, value, text } => {
                 let slot = locate(self.registers.resolve_target(target), *target_span)?;
                 let value = self.registers.operand(value)?;
@@ -84,7 +85,7 @@ impl Executor {
             }
             Statement::IfThen { condition, then } => {
                 if self.registers.evaluate_condition(condition)? {
-                    // An assignment or a GOTO: lowering lets nothing else stand here.
+                    // An assignment or a GOTO: lowering accepts nothing else.
                     return self.any_statement(program, then, loop_detector, sink);
                 }
             }
@@ -95,9 +96,9 @@ impl Executor {
             Statement::Do { number, end } => self.begin_iteration(*number, *end, true),
             Statement::End { number, start } => self.end_iteration(*number, *start)?,
             Statement::SetNames { first, names } => self.name_variables(first, names)?,
-            Statement::Print { kind, parts } => self.print(*kind, parts, self.flow.block)?,
-            Statement::OpenOutput => self.set_output_open(true),
-            Statement::CloseOutput => self.set_output_open(false),
+            Statement::Print { kind, parts } => self.print(*kind, parts)?,
+            Statement::OpenOutput => self.registers.panel.is_output_open = true,
+            Statement::CloseOutput => self.registers.panel.is_output_open = false,
             Statement::Alarm(alarm) => return Err(alarm.clone()),
         }
         if self.flow.frame.next < next {
@@ -106,7 +107,7 @@ impl Executor {
         Ok(())
     }
 
-    /// The DO or WHILE of a loop, `end` the operation of its END.
+    /// Executes the DO or WHILE of a loop; `end` is the operation of its END.
     #[inline]
     fn begin_iteration(&mut self, number: u8, end: OpIndex, is_true: bool) {
         let frame = &mut self.flow.frame;
@@ -119,7 +120,7 @@ impl Executor {
         }
     }
 
-    /// The END of a loop, `start` the operation of its DO or WHILE.
+    /// Executes the END of a loop; `start` is the operation of its DO or WHILE.
     #[inline]
     fn end_iteration(&mut self, number: u8, start: OpIndex) -> ExecResult<()> {
         let open = self.flow.frame.loops[usize::from(number) - 1];
@@ -138,12 +139,16 @@ impl Executor {
 
     #[inline(never)]
     fn goto(&mut self, program: &Program, to: &Spanned<Operand>) -> ExecResult<()> {
-        let value = self.registers.operand(&to.node)?.number();
-        let number = integer(value).map_err(|alarm| alarm.located_at(to.span))?;
-        if self.registers.data.settings.undocumented.minus_searches_up && (-99_999_999..0).contains(&number) {
-            let target = program.find_number_above(number.unsigned_abs() as u32, self.flow.frame.next);
-            let missing = || self.missing_target(number.unsigned_abs() as u32).located_at(to.span);
-            let target = target.ok_or_else(missing)?;
+        let number = locate(integer(self.registers.operand(&to.node)?.number()), to.span)?;
+        let undocumented = &self.registers.data.settings.undocumented;
+        let next = self.flow.frame.next;
+        let missing = |number| match undocumented.missing_target_is_78 {
+            true => Alarm::SequenceNumberNotFound { number }.located_at(to.span),
+            false => Alarm::JumpTargetNotFound { number }.located_at(to.span),
+        };
+        if undocumented.minus_searches_up && (-99_999_999..0).contains(&number) {
+            let number = number.unsigned_abs() as u32;
+            let target = program.find_number_above(number, next).ok_or_else(|| missing(number))?;
             self.flow.frame.jump(target);
             return Ok(());
         }
@@ -151,34 +156,21 @@ impl Executor {
             return Err(Alarm::SequenceNumberRange { number }.located_at(to.span));
         }
         let number = number as u32;
-        let from = if self.registers.data.settings.undocumented.goto_takes_first_number {
-            0
-        } else {
-            self.flow.frame.next
-        };
-        let Some(target) = program.find_number(number, from) else {
-            return Err(self.missing_target(number).located_at(to.span));
-        };
+        let from = if undocumented.goto_takes_first_number { 0 } else { next };
+        let target = program.find_number(number, from).ok_or_else(|| missing(number))?;
         self.note_ambiguous_jump(program, number, target);
         self.flow.frame.jump(target);
         Ok(())
     }
 
-    /// A jump that a control may take elsewhere, or that leads into a loop.
+    /// Notes a jump whose target differs between controls, or that goes into a loop.
     pub(super) fn note_ambiguous_jump(&mut self, program: &Program, number: u32, target: OpIndex) {
         if program.is_duplicate_number(number) {
-            self.log.note(Note::DuplicateNumber { number }, self.flow.block);
+            self.log.note(Note::DuplicateNumber(number), self.flow.block);
         }
         let open = self.flow.frame.loops;
         if let Some(number) = program.loop_entered(target, &open) {
-            self.log.note(Note::JumpIntoLoop { number }, self.flow.block);
-        }
-    }
-
-    fn missing_target(&self, number: u32) -> Alarm {
-        match self.registers.data.settings.undocumented.missing_target_is_78 {
-            true => Alarm::SequenceNumberNotFound { number },
-            false => Alarm::JumpTargetNotFound { number },
+            self.log.note(Note::JumpIntoLoop(number), self.flow.block);
         }
     }
 
@@ -198,7 +190,7 @@ impl Executor {
         Ok(())
     }
 
-    /// Writes a variable that is neither local nor common on every control.
+    /// Writes a variable that isn't local or common on every control.
     #[inline(never)]
     fn write_other<S: EventSink>(
         &mut self,
@@ -224,25 +216,24 @@ impl Executor {
         Ok(())
     }
 
-    /// `#3000=n(TEXT)`. A number beyond those that the manual names is shown as it is, or alarms by itself.
+    /// Returns the alarm of `#3000=n(TEXT)`; a number beyond those of the manual is displayed as it is or out of range.
     fn user_alarm(&mut self, value: f64, text: String) -> Alarm {
         let out_of_range = Alarm::OutOfRange { function: "#3000".into(), value };
-        let (base, most) =
-            (self.registers.data.settings.macro_alarm_base, self.registers.data.settings.macro_alarm_max);
+        let settings = &self.registers.data.settings;
+        let (base, max) = (settings.macro_alarm_base, settings.macro_alarm_max);
         let number = integer(value).ok().and_then(|number| u16::try_from(number).ok());
         let Some(number) = number.filter(|number| *number <= MAX_ALARM_NUMBER) else { return out_of_range };
-        if number > most {
-            if !self.registers.data.settings.undocumented.shows_large_alarm_numbers {
+        if number > max {
+            if !settings.undocumented.shows_large_alarm_numbers {
                 return out_of_range;
             }
-            self.log.note(Note::LargeAlarmNumber { number, max: most }, self.flow.block);
+            self.log.note(Note::LargeAlarmNumber { number, max }, self.flow.block);
         }
         let has_no_base = base != 3000;
         Alarm::UserAlarm { number: if has_no_base { number + base } else { number }, text, has_no_base }
     }
 
-    /// `#3006=1(TEXT)`: the program waits, and the operator reads the text and the variables it names; a vacant
-    /// one shows nothing.
+    /// Stops at `#3006=1(TEXT)` with the text and the variables it names, vacant ones excepted.
     fn stop_with_message<S: EventSink>(&mut self, text: &str, sink: &mut S) {
         let mut variables = Vec::new();
         for part in text.split('#').skip(1) {
@@ -263,18 +254,15 @@ impl Executor {
     }
 }
 
-/// A comment's bytes as a text for people.
+/// Returns the text of a comment.
 fn comment_text(text: Option<&[u8]>) -> String {
     text.map_or_else(String::new, |bytes| String::from_utf8_lossy(bytes).trim().to_owned())
 }
 
 impl Executor {
-    pub(super) fn set_output_open(&mut self, is_open: bool) {
-        self.registers.panel.is_output_open = is_open;
-    }
-
-    /// DPRNT and BPRNT: one line.
-    pub(super) fn print(&mut self, kind: PrintKind, parts: &[PrintPart], span: Span) -> ExecResult<()> {
+    /// Prints one line of DPRNT or BPRNT.
+    fn print(&mut self, kind: PrintKind, parts: &[PrintPart]) -> ExecResult<()> {
+        let span = self.flow.block;
         if self.registers.data.settings.print_needs_open && !self.registers.panel.is_output_open {
             let what = "DPRNT without POPEN before it".into();
             return Err(Alarm::MacroFormat { what }.located_at(span));
@@ -282,7 +270,7 @@ impl Executor {
         let mut line = Vec::new();
         for part in parts {
             match part {
-                // An asterisk stands for a space: the statement's own spaces are lost when it is read.
+                // An asterisk stands for a space: reading the statement drops its own spaces.
                 PrintPart::Text(text) => {
                     line.extend(text.bytes().map(|b| if b == b'*' { b' ' } else { b }));
                 }
@@ -294,17 +282,116 @@ impl Executor {
                         }
                         PrintKind::Binary => binary(number, *decimals, &mut line).map(|()| true),
                     };
-                    if !printed.map_err(|alarm| alarm.located_at(span))? {
+                    if !locate(printed, span)? {
                         self.registers.block_effects.record_note(Note::DigitsLost);
                     }
                 }
             }
         }
-        self.log.printed.bytes += line.len() + 1;
-        if self.log.printed.bytes > MAX_PRINTED_BYTES {
+        self.log.printed_bytes += line.len() + 1;
+        if self.log.printed_bytes > MAX_PRINTED_BYTES {
             return Err(Alarm::NotSimulated { what: "more than 64 MB of output".into() }.located_at(span));
         }
-        self.log.printed.lines.push(line);
+        self.log.printed.push(line);
         Ok(())
+    }
+}
+
+/// Largest output of a run; a loop that prints must not fill the memory.
+const MAX_PRINTED_BYTES: usize = 64 << 20;
+
+/// Prints `#n[ab]`: a sign or a blank, a digits before the point and b after it; PRT (6001#1) omits blanks.
+///
+/// A control prints only the lower digits of a number with more than a before its point; returns true if all are printed.
+fn decimal(
+    number: f64,
+    whole: u8,
+    decimals: u8,
+    settings: &Settings,
+    line: &mut Vec<u8>,
+) -> Result<bool, Alarm> {
+    if !(1..=settings.print_digits).contains(&usize::from(whole + decimals)) {
+        return Err(Alarm::PrintFormat);
+    }
+    let scale = 10_f64.powi(i32::from(decimals));
+    let scaled = round_scaled(number.abs(), scale);
+    if scaled > 1e15 {
+        return Err(Alarm::IntegerOverflow);
+    }
+    let unit = 10_u64.pow(u32::from(decimals));
+    let scaled = scaled as u64;
+    let width = usize::from(whole);
+    let mut whole_digits = (scaled / unit).to_string();
+    let mut is_complete = true;
+    if whole_digits.len() > width && !settings.print_expands {
+        is_complete = whole_digits.drain(..whole_digits.len() - width).all(|digit| digit == '0');
+    }
+    let negative = number < 0.0 && scaled > 0;
+    if negative {
+        line.push(b'-');
+    } else if !settings.omits_print_blanks {
+        line.push(b' ');
+    }
+    if !settings.omits_print_blanks {
+        line.extend(std::iter::repeat_n(b' ', width.saturating_sub(whole_digits.len())));
+    }
+    line.extend(whole_digits.bytes());
+    if decimals > 0 {
+        let fraction = scaled % unit;
+        line.push(b'.');
+        line.extend(format!("{fraction:0width$}", width = usize::from(decimals)).bytes());
+    }
+    Ok(is_complete)
+}
+
+/// Prints `#n[d]`: the value × 10^d as two words, the highest byte first.
+fn binary(number: f64, decimals: u8, line: &mut Vec<u8>) -> Result<(), Alarm> {
+    let scaled = round_scaled(number, 10_f64.powi(i32::from(decimals)));
+    if !(-2_147_483_648.0..=2_147_483_647.0).contains(&scaled) {
+        return Err(Alarm::IntegerOverflow);
+    }
+    line.extend((scaled as i32).to_be_bytes());
+    Ok(())
+}
+
+/// Returns a printed line as text, with the bytes of BPRNT in hexadecimal.
+pub fn printable(line: &[u8]) -> String {
+    line.iter()
+        .map(|byte| match byte {
+            b' '..=b'~' => char::from(*byte).to_string(),
+            byte => format!("\\x{byte:02X}"),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printed(number: f64, whole: u8, decimals: u8, settings: &Settings) -> String {
+        let mut line = Vec::new();
+        decimal(number, whole, decimals, settings, &mut line).unwrap();
+        String::from_utf8(line).unwrap()
+    }
+
+    #[test]
+    fn dprnt_prints_as_the_manual_shows() {
+        // Operator's manual, DPRNT: #2 = 128.47398 as [53], #5 = -91.2 as [53], #30 = 123.456 as [20].
+        let mut settings = Settings::default();
+        assert_eq!(printed(128.47398, 5, 3, &settings), "   128.474");
+        assert_eq!(printed(-91.2, 5, 3, &settings), "-   91.200");
+        assert_eq!(printed(123.456, 2, 0, &settings), " 23");
+        settings.omits_print_blanks = true;
+        assert_eq!(printed(128.47398, 5, 3, &settings), "128.474");
+        assert_eq!(printed(-91.2, 5, 3, &settings), "-91.200");
+    }
+
+    #[test]
+    fn bprnt_prints_two_words_with_the_highest_byte_first() {
+        // Operator's manual, BPRNT: #100 = 0.40956 as [3] is 410, #101 = -1638.4 as [3] is -1638400.
+        let mut line = Vec::new();
+        binary(0.40956, 3, &mut line).unwrap();
+        binary(-1638.4, 3, &mut line).unwrap();
+        assert_eq!(line, [0x00, 0x00, 0x01, 0x9A, 0xFF, 0xE7, 0x00, 0x00]);
     }
 }

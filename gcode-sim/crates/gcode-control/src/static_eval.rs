@@ -1,4 +1,4 @@
-//! What a run would say whatever has gone before: the arithmetic of numbers, and which variables there are.
+//! Evaluation without a run: arithmetic of numbers, and the variables that a control has.
 use super::system_variables;
 use super::variables::{VariableClass, Vars};
 use gcode_lang::alarm::Alarm;
@@ -6,7 +6,7 @@ use gcode_lang::control::Settings;
 
 pub use super::functions::{atan2, binary, function, power};
 
-/// Which variables a control has.
+/// Variables that a control has.
 #[derive(Debug)]
 pub struct VariableTable<'a> {
     settings: &'a Settings,
@@ -14,11 +14,12 @@ pub struct VariableTable<'a> {
 }
 
 impl<'a> VariableTable<'a> {
+    /// Returns the variables of a control with these settings.
     pub fn new(settings: &'a Settings) -> Self {
         Self { settings, vars: Vars::new(settings.extra_commons, settings.aliases_commons) }
     }
 
-    /// The alarm of reading a variable, whatever it holds.
+    /// Raises the alarm of reading a variable, whatever its value.
     pub fn read(&self, number: u32) -> Result<(), Alarm> {
         match self.vars.classify(number) {
             VariableClass::System if number != 3100 => {
@@ -28,7 +29,7 @@ impl<'a> VariableTable<'a> {
         }
     }
 
-    /// The alarm of writing a variable, whatever is written; #3000 and #3006 stop, which is what they are for.
+    /// Raises the alarm of writing a variable, whatever the value; #3000 and #3006 stop, as they should.
     pub fn write(&self, number: u32) -> Result<(), Alarm> {
         match self.vars.classify(number) {
             VariableClass::Vacant => Err(Alarm::WriteProtected { number }),

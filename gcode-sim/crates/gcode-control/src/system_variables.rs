@@ -1,24 +1,22 @@
-//! The system variables: one row per range, how it is read and how it is written.
+//! System variables: one row per range, with its functions to read and write.
+use super::data::Register;
 use super::notes::Note;
-use super::offsets::Register;
-use super::panel::check_signal_word;
-use super::registers::Registers;
+use super::registers::{Registers, check_signal_word};
 use super::variables::Value;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::OffsetVariables;
-use gcode_lang::motion::AxisIndex;
-use gcode_lang::program::g_codes;
-use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::control::{Dialect, OffsetVariables};
+use gcode_lang::motion::{AxisIndex, Position};
+use gcode_lang::program::modes::{Unit, WorkSystem};
 
 type ReadVariable = fn(&Registers, u32) -> Result<f64, Alarm>;
 
 type WriteVariable = fn(&mut Registers, u32, f64) -> Result<(), Alarm>;
 
-/// A range of variables; reading and writing take the place in the range, counted from 0.
+/// Range of variables; reading and writing take the index in the range.
 struct VariableRow {
-    pub(super) from: u32,
-    pub(super) to: u32,
-    pub(super) read: Option<ReadVariable>,
+    from: u32,
+    to: u32,
+    read: Option<ReadVariable>,
     write: Option<WriteVariable>,
 }
 
@@ -48,7 +46,7 @@ const ROWS: &[VariableRow] = &[
     row(3002, 3002, Some(|c, _| Ok(c.clock.hours())), Some(|c, _, v| { c.clock.set_hours(v); Ok(()) })),
     row(3003, 3004, Some(|c, n| Ok(c.panel.control_switches[n as usize])), Some(|c, n, v| c.panel.set_switch(n, v))),
     // Setting data: of its bits only INI (2), inch input, has an effect here.
-    row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == gcode_lang::program::modes::Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
+    row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
     row(3006, 3006, None, None),
     // Mirror image by setting or signal: there is none; G51.1 is none of them.
     row(3007, 3007, Some(|_, _| Ok(0.0)), None),
@@ -79,14 +77,14 @@ const ROWS: &[VariableRow] = &[
     row(14001, 20000, Some(|c, n| c.work_offset((7 + n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((7 + n / 20) as usize, n % 20, v))),
 ];
 
-/// What a control may have and this one has not: better than to say that there is no such variable.
+/// Ranges that a control may have and the simulator lacks.
 const NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (4401, 4530, "the codes of a block that a macro interrupted"),
     (8000, 8999, "tool management"),
     (100_001, 100_200, "positions of more than 20 axes"),
 ];
 
-/// What a Haas has elsewhere: its tool offsets, whose diameters are radii here, and the offset of G52.
+/// Ranges that differ on a Haas: tool offsets, whose diameters are radii here, and the offset of G52.
 #[rustfmt::skip]
 const HAAS: &[VariableRow] = &[
     row(2001, 2200, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
@@ -96,7 +94,7 @@ const HAAS: &[VariableRow] = &[
     row(5201, 5220, Some(|c, n| c.position(n, |c, axis| c.state.local_offset[axis])), Some(|c, n, v| c.set_local(n, v))),
 ];
 
-/// What a Haas has and this one has not, where a Fanuc has something else or nothing.
+/// Ranges that a Haas has and the simulator lacks; on a Fanuc they have another meaning or none.
 const HAAS_NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (1032, 1099, "inputs and loads of a Haas"),
     (1132, 1299, "outputs and loads of a Haas"),
@@ -111,11 +109,13 @@ const HAAS_NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (50_001, 59_999, "tools of a Haas"),
 ];
 
-pub(super) fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
+/// Returns the alarm of a number in one of these ranges.
+fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
     let (.., what) = of.iter().find(|(from, to, _)| (*from..=*to).contains(&number))?;
     Some(Alarm::NotSimulated { what: format!("#{number} ({what})") })
 }
 
+/// Returns the row of a number on a control with these offsets.
 fn find(number: u32, offsets: OffsetVariables) -> Result<&'static VariableRow, Alarm> {
     let unknown = Alarm::NoSuchVariable { number: i64::from(number) };
     if offsets == OffsetVariables::Haas {
@@ -134,17 +134,17 @@ fn find(number: u32, offsets: OffsetVariables) -> Result<&'static VariableRow, A
     found.ok_or_else(|| not_simulated(number, NOT_SIMULATED).unwrap_or(unknown))
 }
 
-/// The alarm of reading a number on any control with these offsets.
+/// Raises the alarm of reading a number on any control with these offsets.
 pub(super) fn check_readable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
     find(number, offsets)?.read.map(|_| ()).ok_or(Alarm::ReadProtected { number })
 }
 
-/// The alarm of writing a number on any control with these offsets.
+/// Raises the alarm of writing a number on any control with these offsets.
 pub(super) fn check_writable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
     find(number, offsets)?.write.map(|_| ()).ok_or(Alarm::WriteProtected { number })
 }
 
-/// An axis that the control doesn't have has no variables.
+/// Returns the alarm of a variable: an axis that the control lacks has none.
 fn variable_alarm(alarm: Alarm, number: u32) -> Alarm {
     match alarm {
         Alarm::AxisNumber { .. } => Alarm::NoSuchVariable { number: i64::from(number) },
@@ -171,7 +171,7 @@ impl Registers {
         write(self, number - row.from, value).map_err(|alarm| variable_alarm(alarm, number))
     }
 
-    /// #3012 as hhmmss: the setting's time and what the run has taken since.
+    /// Returns #3012 as hhmmss: the time of the settings plus the duration of the run.
     fn time_of_day(&self) -> f64 {
         let start = self.data.settings.time;
         let seconds =
@@ -180,6 +180,7 @@ impl Registers {
         f64::from(seconds / 3600 * 10_000 + seconds / 60 % 60 * 100 + seconds % 60)
     }
 
+    /// Returns #4001… and #4201… by their last three digits.
     fn modal_information(&self, item: u32) -> Result<f64, Alarm> {
         let codes = &self.state.codes;
         Ok(match item {
@@ -197,7 +198,7 @@ impl Registers {
                 WorkSystem::Additional(p) => f64::from(p),
                 WorkSystem::Standard(_) => 0.0,
             },
-            14 if g_codes::find(541).row_for(self.data.settings.codes).is_none()
+            14 if self.data.settings.codes == Dialect::HaasNgc
                 && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
             {
                 return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
@@ -209,8 +210,8 @@ impl Registers {
         })
     }
 
-    /// Where the last block ended: as programmed, or after mirror, scaling and rotation.
-    fn end_point(&self) -> gcode_lang::motion::Position {
+    /// Returns the end of the last block: as programmed, or after mirror, scaling and rotation.
+    fn end_point(&self) -> Position {
         match self.data.settings.undocumented.shows_transformed {
             true => self.state.transform.forward(self.state.programmed),
             false => {
@@ -222,18 +223,18 @@ impl Registers {
         }
     }
 
-    /// A position of an axis, in the unit of the program.
-    pub(super) fn position(&self, axis: u32, of: impl Fn(&Self, AxisIndex) -> f64) -> Result<f64, Alarm> {
+    /// Returns a position of an axis in the active unit.
+    fn position(&self, axis: u32, of: impl Fn(&Self, AxisIndex) -> f64) -> Result<f64, Alarm> {
         let axis = self.data.check_axis(axis)?;
         Ok(self.data.to_program_unit(&self.state, Some(axis), of(self, axis)))
     }
 
-    /// A machine position in the work coordinate system, tool length included.
+    /// Returns a machine position in the work coordinate system, tool length included.
     fn work_coordinate(&self, axis: AxisIndex, machine: f64) -> f64 {
         self.data.wrap_angle(axis, self.data.remove_residue(machine - self.data.zero(&self.state, axis)))
     }
 
-    /// The offset of G52.
+    /// Sets the offset of G52.
     fn set_local(&mut self, axis: u32, value: f64) -> Result<(), Alarm> {
         let axis = self.data.check_axis(axis)?;
         self.state.local_offset[axis] =
@@ -244,7 +245,7 @@ impl Registers {
 
     fn work_offset(&self, system: usize, axis: u32) -> Result<f64, Alarm> {
         self.data.check_system(system)?;
-        self.position(axis, |registers, axis| registers.data.offsets.work(system)[axis])
+        self.position(axis, |registers, axis| registers.data.offsets.work[system][axis])
     }
 
     fn set_work_offset(&mut self, system: usize, axis: u32, value: f64) -> Result<(), Alarm> {
@@ -256,11 +257,9 @@ impl Registers {
         Ok(())
     }
 
-    /// The active system's zero has moved, the machine hasn't.
+    /// Recomputes the programmed position after a change of the work zero.
     pub(super) fn update_after_offset_change(&mut self) {
-        let mut state = *self.state;
-        self.data.recompute_position(&mut state);
-        *self.state = state;
+        self.data.recompute_position(&mut self.state);
         self.update_is_plain();
     }
 
@@ -273,14 +272,14 @@ impl Registers {
         let register = self.data.register(register);
         self.data.offsets.tool(register, place + 1)?;
         let value = self.data.check_offset_range(self.data.to_stored(&self.state, None, value))?;
-        self.data.offsets.register(register)[place as usize + 1] = value;
+        self.data.offsets.tools[register as usize][place as usize + 1] = value;
         Ok(())
     }
 
-    /// Where the tool's centre stands, in machine coordinates; a move that waits for the next counts as done, as if
-    /// nothing followed.
+    /// Returns the tool centre in machine coordinates; a move that waits for the next one counts as executed, as if nothing
+    /// followed.
     pub(super) fn tool_centre(&self, axis: AxisIndex) -> f64 {
-        self.state.machine[axis] + self.lookahead.offset(axis)
+        self.state.machine[axis] + self.lookahead.offset[axis]
     }
 }
 

@@ -1,63 +1,49 @@
-//! G68, G68.2, G51 and G51.1: their words to a [`super::transform::Transform`].
-use super::checked::{ExecResult, locate};
-use super::modal_codes::not_simulated;
+//! G68, G68.2, G51 and G51.1: their words to a [`Transform`], and the codes that manuals rule out beside them.
+use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::transform::{Rotation, Scale, Tilt, Transform};
-use super::words::BlockWords;
+use super::state::{Modal, PlaneRotation, Scale, State, Tilt, Transform};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{MAX_AXES, Position};
-use gcode_lang::program::modes::Mirror;
-use gcode_lang::source::Span;
+use gcode_lang::program::code_facts::CoordinateUse;
+use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
+use gcode_lang::program::modes::{Mirror, Rotation, Scaling};
 
 impl Planner<'_> {
-    /// G68: the plane turns about a point.
-    pub(super) fn plan_rotation(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
+    /// G68: rotates the plane about a point.
+    pub(super) fn plan_rotation(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &mut plan.state;
-        let plane = locate(self.data.plane_axes(state.modal.plane), span)?;
-        let letter = |axis| self.data.settings.axes.letter(axis) as u8;
-        let first =
-            self.data.dimension(block_words, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
-        let second =
-            self.data.dimension(block_words, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
-        let angle = self.data.angle(block_words, b'R')?;
+        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        let first = self.axis_dimension(plane.0, state)?.unwrap_or(state.programmed[plane.0]);
+        let second = self.axis_dimension(plane.1, state)?.unwrap_or(state.programmed[plane.1]);
+        let angle = self.angle(b'R')?;
         if angle.is_none() {
             plan.notes.push(Note::NoAngle);
         }
         let angle = angle.unwrap_or(0.0);
-        // Mirror and scaling act before the rotation, on its centre too; a mirror image turns the other way round.
+        // Mirror and scaling act before the rotation, on its centre too; a mirror image rotates in the other direction.
         let mut centre = state.programmed;
         (centre[plane.0], centre[plane.1]) = (first, second);
         let centre = Transform { rotation: None, tilt: None, ..state.transform }.forward(centre);
         let (mirrored, _) = state.transform.arc_effect(plane);
         let angle = if mirrored { -angle } else { angle };
-        state.transform.rotation = Some(Rotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
+        state.transform.rotation = Some(PlaneRotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
         self.data.apply_transform_change(state);
         Ok(())
     }
 
-    /// G68.2 by Euler angles; its other forms have a P.
-    pub(super) fn plan_tilt(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
-        if block_words.has_any(b"PQR") {
-            return Err(not_simulated(682, "tilted plane other than by Euler angles").located_at(span));
+    /// G68.2 with Euler angles; its other forms have a P.
+    pub(super) fn plan_tilt(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        if self.words.has_any(b"PQR") {
+            return Err(self.not_simulated("G68.2 (tilted plane other than by Euler angles)"));
         }
         let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
         for (place, (letter, angle)) in [(b'X', b'I'), (b'Y', b'J'), (b'Z', b'K')].into_iter().enumerate() {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            axes[place] = locate(self.data.settings.axes.find(letter).ok_or(missing), span)?;
-            origin[place] = self.data.dimension(block_words, letter, &plan.state)?.unwrap_or(0.0);
-            angles[place] = self.data.angle(block_words, angle)?.unwrap_or(0.0);
+            axes[place] = self.locate(self.data.settings.axes.find(letter).ok_or(missing))?;
+            origin[place] = self.dimension(letter, &plan.state)?.unwrap_or(0.0);
+            angles[place] = self.angle(angle)?.unwrap_or(0.0);
         }
         plan.state.transform.tilt = Some(Tilt::new(axes, origin, angles));
         self.data.apply_transform_change(&mut plan.state);
@@ -65,30 +51,24 @@ impl Planner<'_> {
     }
 
     /// G51: by P, or by I J K for X Y Z, in 0.001 or 0.00001.
-    pub(super) fn plan_scaling(
-        &self,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-        span: Span,
-    ) -> ExecResult<()> {
+    pub(super) fn plan_scaling(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let unit = if self.data.settings.has_coarse_scaling { 1000.0 } else { 100_000.0 };
         let mut scale = Scale { centre: plan.state.programmed, factor: Position([1.0; MAX_AXES]) };
         for (axis, letter) in self.data.settings.axes.iter() {
-            if let Some(value) = self.data.dimension(block_words, letter as u8, &plan.state)? {
+            if let Some(value) = self.axis_dimension(axis, &plan.state)? {
                 scale.centre[axis] = value;
             }
             let own = match letter {
-                'X' => self.data.factor(block_words, b'I')?,
-                'Y' => self.data.factor(block_words, b'J')?,
-                'Z' => self.data.factor(block_words, b'K')?,
+                'X' => self.factor(b'I')?,
+                'Y' => self.factor(b'J')?,
+                'Z' => self.factor(b'K')?,
                 _ => continue,
             };
-            let common = block_words.count(b'P')?.map(f64::from);
-            let factor = own.or(common).ok_or_else(|| {
-                Alarm::NotSimulated { what: "G51 without P (parameter 5411)".into() }.located_at(span)
-            })?;
+            let common = self.words.count(b'P')?.map(f64::from);
+            let factor =
+                own.or(common).ok_or_else(|| self.not_simulated("G51 without P (parameter 5411)"))?;
             if factor == 0.0 || factor.abs() > 999_999_999.0 {
-                return Err(Alarm::ScaleRate { value: factor }.located_at(span));
+                return Err(Alarm::ScaleRate { value: factor }.located_at(self.block));
             }
             scale.factor[axis] = factor / unit;
         }
@@ -97,19 +77,14 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// G51.1 mirrors the named axes, G50.1 no longer; G50.1 alone ends all of it.
-    pub(super) fn plan_mirror(
-        &self,
-        is_on: bool,
-        block_words: &BlockWords,
-        plan: &mut BlockPlan,
-    ) -> ExecResult<()> {
+    /// G51.1 mirrors the named axes, G50.1 ends that; G50.1 alone ends it for all axes.
+    pub(super) fn plan_mirror(&self, is_on: bool, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &mut plan.state;
-        if !is_on && !self.data.names_axis(block_words) {
+        if !is_on && !self.names_axis() {
             state.transform.mirrored_axes = 0;
         }
-        for (axis, letter) in self.data.settings.axes.iter() {
-            let Some(value) = self.data.dimension(block_words, letter as u8, state)? else { continue };
+        for axis in 0..self.data.settings.axes.len() {
+            let Some(value) = self.axis_dimension(axis, state)? else { continue };
             state.transform.mirrored_axes &= !(1 << axis);
             if is_on {
                 state.transform.mirrored_axes |= 1 << axis;
@@ -118,6 +93,47 @@ impl Planner<'_> {
         }
         state.modal.mirror = if state.transform.mirrored_axes == 0 { Mirror::Off } else { Mirror::On };
         self.data.apply_transform_change(state);
+        Ok(())
+    }
+
+    /// Raises the alarm of a code that manuals rule out while mirror, scaling or rotation is active: reference returns, other
+    /// coordinate systems, and a change out of order. The order is mirror, scale, rotate, and back the other way.
+    ///
+    /// `before` is the modal state before the block; `state` has the modal codes of the block, not yet its transform.
+    pub(super) fn check_transform_order(&self, before: &Modal, state: &State) -> ExecResult<()> {
+        let modal = &state.modal;
+        let is_rotated = before.rotation == Rotation::On && modal.rotation == Rotation::On;
+        let is_mirrored = before.mirror == Mirror::On;
+        let was_scaled = before.scaling == Scaling::On;
+        let is_scaled = was_scaled && modal.scaling == Scaling::On;
+        for row in self.words.g_codes() {
+            // G53 without an axis only waits.
+            if row.effect == Effect::OneShot(OneShot::MachineSystem) && !self.names_axis() {
+                continue;
+            }
+            let is_bound = row.facts.coordinates == CoordinateUse::NotTransformed;
+            let is_mirror = |mirror| row.effect == Effect::Mirror(mirror);
+            let is_scaling = |scaling| row.effect == Effect::Scaling(scaling);
+            let (active, cancel) = if is_rotated
+                && (is_bound
+                    || is_mirror(Mirror::On)
+                    || is_scaling(Scaling::On)
+                    || is_mirror(Mirror::Off) && is_mirrored
+                    || is_scaling(Scaling::Off) && was_scaled)
+            {
+                ("G68", "G69")
+            } else if is_bound && is_mirrored {
+                ("G51.1", "G50.1")
+            } else if is_scaled && (is_mirror(Mirror::On) || is_mirror(Mirror::Off) && is_mirrored) {
+                ("G51", "G50")
+            } else {
+                continue;
+            };
+            let code = spelled(row.code);
+            return Err(
+                self.not_simulated(format!("G{code} while {active} is on (command {cancel} before it)"))
+            );
+        }
         Ok(())
     }
 }

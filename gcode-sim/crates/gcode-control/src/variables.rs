@@ -1,19 +1,22 @@
-//! Local and common variables. Vacant is a state of its own: it is neither 0 nor a number.
+//! Local and common variables, and the operands that wait in an expression. Vacant is neither 0 nor a number.
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::Slot;
+use gcode_lang::program::{STACK, Slot};
 
-/// What a variable holds.
+/// Value of a variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Value {
+    /// No value.
     #[default]
     Vacant,
+    /// Number.
     Number(f64),
 }
 
 impl Value {
-    /// Arithmetic takes a vacant variable for 0.
+    /// Returns the number, 0 for vacant, as arithmetic takes it.
     pub fn number(self) -> f64 {
         match self {
             Self::Vacant => 0.0,
@@ -21,11 +24,12 @@ impl Value {
         }
     }
 
+    /// Returns true for vacant.
     pub fn is_vacant(self) -> bool {
         self == Self::Vacant
     }
 
-    /// The number, or `None` where the word that carries it is not there.
+    /// Returns the number; `None` for vacant, as a word with a vacant value counts as absent.
     pub fn as_number(self) -> Option<f64> {
         match self {
             Self::Vacant => None,
@@ -34,49 +38,25 @@ impl Value {
     }
 }
 
-/// What code has given last: the number is 0 where it is vacant, so that arithmetic needn't ask.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Accumulator {
+/// Value in a variable, and the result of an instruction. The number of a vacant value is 0, so that arithmetic doesn't test
+/// for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct StoredValue {
     pub(super) number: f64,
     is_vacant: bool,
-}
-
-impl Accumulator {
-    pub(super) const VACANT: Self = Self { number: 0.0, is_vacant: true };
-
-    #[inline(always)]
-    pub(super) fn of(number: f64) -> Self {
-        Self { number, is_vacant: false }
-    }
-}
-
-impl From<Value> for Accumulator {
-    #[inline]
-    fn from(value: Value) -> Self {
-        Self { number: value.number(), is_vacant: value.is_vacant() }
-    }
-}
-
-impl From<Accumulator> for Value {
-    #[inline]
-    fn from(last: Accumulator) -> Self {
-        if last.is_vacant { Self::Vacant } else { Self::Number(last.number) }
-    }
-}
-
-/// A value as it is kept, in the same way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct StoredValue {
-    number: f64,
-    is_vacant: bool,
-    /// The decimals of an argument that was written without a point and counts increments; 0 for all others.
+    /// Decimals of an argument that was written without a point and counts increments; 0 for any other value.
     decimals: u8,
 }
 
 impl StoredValue {
-    const VACANT: Self = Self { number: 0.0, is_vacant: true, decimals: 0 };
+    pub(super) const VACANT: Self = Self { number: 0.0, is_vacant: true, decimals: 0 };
 
-    /// What tells 0 from −0, too.
+    #[inline(always)]
+    pub(super) fn of(number: f64) -> Self {
+        Self { number, is_vacant: false, decimals: 0 }
+    }
+
+    /// Returns bits that also distinguish 0 from −0.
     fn bits(self) -> (u64, bool) {
         (self.number.to_bits(), self.is_vacant)
     }
@@ -91,39 +71,40 @@ impl From<Value> for StoredValue {
 
 impl From<StoredValue> for Value {
     #[inline]
-    fn from(held: StoredValue) -> Self {
-        if held.is_vacant { Self::Vacant } else { Self::Number(held.number) }
+    fn from(stored: StoredValue) -> Self {
+        if stored.is_vacant { Self::Vacant } else { Self::Number(stored.number) }
     }
 }
 
-/// #0, which stays vacant, and #1 to #33.
+/// Number of locals: #0, which stays vacant, and #1 to #33.
 const LOCALS: usize = 34;
 
-/// The numbers up to the last common of every control.
+/// Number of the variables up to the last common of every control.
 const DIRECT_COUNT: usize = 1000;
 
-/// Places for them, so many that the low bits of any number are one: nothing needs to ask whether it is there.
+/// Number of their places, a power of two: the low bits of any number are a place, without a range check.
 const PLACES: usize = DIRECT_COUNT.next_power_of_two();
 
-/// #1 to #33 of one macro level, by number; #0 stays vacant.
+/// Locals #1 to #33 of one macro level, by number; #0 stays vacant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Locals([StoredValue; LOCALS]);
 
-/// A level that nothing has been written to.
+/// Locals of a new level.
 pub(super) const VACANT: Locals = Locals([StoredValue::VACANT; LOCALS]);
 
 impl Locals {
+    /// Returns the value of a local.
     pub fn get(&self, local: usize) -> Value {
         self.0[local].into()
     }
 
-    /// Sets an argument; `decimals` where it was written without a point and counts increments.
+    /// Sets an argument; `decimals` if it was written without a point and counts increments.
     pub(super) fn set(&mut self, local: usize, value: Value, decimals: u8) {
         self.0[local] = StoredValue { decimals, ..value.into() };
     }
 }
 
-/// Where a number belongs; a local's and a common's place among the values of [`Vars`].
+/// Class of a variable number; locals and commons with their place in [`Vars`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VariableClass {
     Vacant,
@@ -132,37 +113,37 @@ pub(super) enum VariableClass {
     System,
 }
 
-/// All variables that a program may use freely.
+/// Local and common variables.
 #[derive(Clone, Debug)]
 pub struct Vars {
-    /// By number the locals of the current level and the commons. What has no number of these is never written.
+    /// Locals of the current level and commons, by number; other places are never written.
     direct_values: Box<[StoredValue; PLACES]>,
     extra_values: Vec<StoredValue>,
-    /// The locals of the levels that wait for the current one, the main program's first.
+    /// Locals of the callers' levels, the main program's first.
     outer_locals: Vec<Locals>,
-    /// The numbers of further commons.
+    /// Numbers of further commons.
     extra_range: (u32, u32),
     /// `#10100` is `#100`.
     aliases_commons: bool,
-    /// Names given by SETVN.
+    /// Names from SETVN.
     names: BTreeMap<String, u32>,
 }
 
 impl Vars {
-    /// `more` are the numbers of commons beyond #999; with `aliased` #10100 is #100, and so on.
-    pub(super) fn new(more: Option<(u32, u32)>, aliased: bool) -> Self {
-        let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
+    /// Returns vacant variables; `extra_range` are the numbers of commons beyond #999, with `aliases_commons` #10100 is #100.
+    pub(super) fn new(extra_range: Option<(u32, u32)>, aliases_commons: bool) -> Self {
+        let count = extra_range.map_or(0, |(from, to)| (to - from + 1) as usize);
         Self {
             direct_values: Box::new([StoredValue::VACANT; PLACES]),
             extra_values: vec![StoredValue::VACANT; count],
             outer_locals: Vec::new(),
-            extra_range: more.unwrap_or((1, 0)),
-            aliases_commons: aliased,
+            extra_range: extra_range.unwrap_or((1, 0)),
+            aliases_commons,
             names: BTreeMap::new(),
         }
     }
 
-    /// SETVN: names for variables from `first` on.
+    /// SETVN: names the variables from `first` on, all or none.
     pub(super) fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {
         let numbered = || {
             let number = |place: usize| first.saturating_add(place as u32);
@@ -172,20 +153,20 @@ impl Vars {
             return Err(Alarm::NoSuchVariable { number: i64::from(number) });
         }
         for (number, name) in numbered() {
-            // A variable has one name: the last.
+            // The last name of a variable replaces the earlier one.
             self.names.retain(|_, named| *named != number);
             self.names.insert(name.clone(), number);
         }
         Ok(())
     }
 
-    /// The variable of a name given by SETVN.
+    /// Returns the variable with a name from SETVN.
     pub(super) fn named_variable(&self, name: &str) -> Result<u32, Alarm> {
         let unknown = || Alarm::NoVariableName { name: name.to_owned() };
         self.names.get(name).copied().ok_or_else(unknown)
     }
 
-    /// What kind of variable `number` is.
+    /// Returns the class of a variable number.
     #[inline]
     pub(super) fn classify(&self, number: u32) -> VariableClass {
         match Slot::of(number) {
@@ -195,7 +176,7 @@ impl Vars {
         }
     }
 
-    /// What kind of variable one is that settings of the control decide about.
+    /// Returns the class of a variable number that depends on settings of the control.
     fn classify_other(&self, number: u32) -> VariableClass {
         match number {
             0 => VariableClass::Vacant,
@@ -209,31 +190,30 @@ impl Vars {
         }
     }
 
-    /// The value of a variable of [`Slot::Free`].
+    /// Returns the value of a variable of [`Slot::Free`].
     #[inline(always)]
     pub(super) fn get_free(&self, number: u16) -> Value {
         self.direct_values[usize::from(number) % PLACES].into()
     }
 
-    /// Its number; 0 where it is vacant.
+    /// Returns the number of a variable of [`Slot::Free`]; 0 if it is vacant.
     #[inline(always)]
     pub(super) fn free_number(&self, number: u16) -> f64 {
         self.direct_values[usize::from(number) % PLACES].number
     }
 
-    /// Writes such a variable.
+    /// Writes a variable of [`Slot::Free`].
     #[inline(always)]
-    pub(super) fn set_free(&mut self, number: u16, value: Accumulator) {
-        let held = &mut self.direct_values[usize::from(number) % PLACES];
-        (held.number, held.is_vacant, held.decimals) = (value.number, value.is_vacant, 0);
+    pub(super) fn set_free(&mut self, number: u16, value: StoredValue) {
+        self.direct_values[usize::from(number) % PLACES] = value;
     }
 
-    /// The value at a place that [`Vars::classify`] tells.
+    /// Returns the value at a place from [`Vars::classify`].
     pub(super) fn get(&self, place: usize) -> Value {
         self.stored_value(place).into()
     }
 
-    /// Writes a value at such a place.
+    /// Writes the value at a place from [`Vars::classify`].
     pub(super) fn set(&mut self, place: usize, value: Value) {
         match place.checked_sub(DIRECT_COUNT) {
             None => self.direct_values[place] = value.into(),
@@ -249,18 +229,18 @@ impl Vars {
         }
     }
 
-    /// How many places there are.
+    /// Returns the number of places.
     fn places(&self) -> usize {
         DIRECT_COUNT + self.extra_values.len()
     }
 
-    /// ADP: a local's value as if it had been passed with a point.
+    /// ADP: returns the value of a local as if the argument had been written with a point.
     pub(super) fn value_with_point(&self, local: usize) -> f64 {
         let StoredValue { number, decimals, .. } = self.direct_values[local];
         number * 10_f64.powi(i32::from(decimals))
     }
 
-    /// The locals of the current level.
+    /// Returns the locals of the current level.
     pub fn locals(&self) -> Locals {
         Locals(std::array::from_fn(|local| self.direct_values[local]))
     }
@@ -269,24 +249,25 @@ impl Vars {
         self.direct_values[..LOCALS].copy_from_slice(&locals.0);
     }
 
+    /// Returns the number of macro levels above the main program.
     pub fn level(&self) -> usize {
         self.outer_locals.len()
     }
 
-    /// A macro call: a new level with these locals.
+    /// Begins a macro level with these locals.
     pub(super) fn push_level(&mut self, locals: &Locals) {
         self.outer_locals.push(self.locals());
         self.set_locals(locals);
     }
 
-    /// Back to the caller's locals.
+    /// Restores the caller's locals.
     pub(super) fn pop_level(&mut self) {
         if let Some(callers) = self.outer_locals.pop() {
             self.set_locals(&callers);
         }
     }
 
-    /// Whether all values in force are the same.
+    /// Returns true if all values are equal.
     pub(super) fn has_same_values(&self, other: &Self) -> bool {
         let Self {
             direct_values,
@@ -303,13 +284,13 @@ impl Vars {
             && *names == other.names
     }
 
-    /// Whether the values at a place differ, be it in one bit.
+    /// Returns true if the values at a place differ in any bit.
     #[inline]
     pub(super) fn differs_at(&self, place: usize, other: &Self) -> bool {
         self.stored_value(place).bits() != other.stored_value(place).bits()
     }
 
-    /// A place where the values differ; that of #0 where only callers' locals do.
+    /// Returns a place where the values differ; that of #0 if only callers' locals do.
     pub(super) fn difference(&self, other: &Self) -> Option<usize> {
         let found = (0..self.places()).find(|place| self.differs_at(*place, other));
         found.or_else(|| self.outer_bits().ne(other.outer_bits()).then_some(0))
@@ -319,8 +300,8 @@ impl Vars {
         self.outer_locals.iter().flat_map(|level| level.0.map(StoredValue::bits))
     }
 
-    /// The variables that aren't vacant, by number: the locals of the main program and the commons.
-    pub fn nonvacant(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+    /// Iterates over the variables that aren't vacant, by number: the locals of the main program and the commons.
+    pub(super) fn nonvacant(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let local =
             |local| self.outer_locals.first().map_or_else(|| self.get(local), |level| level.get(local));
         let locals = (0..LOCALS).map(move |place| (place, local(place)));
@@ -333,12 +314,41 @@ impl Vars {
     }
 }
 
+/// Operands that wait for their operators, in [`STACK`] places. The stack is part of the control, so that an evaluation has
+/// nothing to clear; its depth wraps, which needs no range check and tolerates operands that an alarm has left.
+#[derive(Clone, Debug)]
+pub(super) struct OperandStack {
+    pub(super) values: [Cell<Value>; STACK],
+    depth: Cell<usize>,
+}
+
+impl Default for OperandStack {
+    fn default() -> Self {
+        Self { values: [const { Cell::new(Value::Vacant) }; STACK], depth: Cell::new(0) }
+    }
+}
+
+impl OperandStack {
+    pub(super) fn push(&self, value: Value) {
+        let used = self.depth.get();
+        self.values[used % STACK].set(value);
+        self.depth.set(used.wrapping_add(1));
+    }
+
+    #[inline]
+    pub(super) fn pop(&self) -> Value {
+        let used = self.depth.get().wrapping_sub(1);
+        self.depth.set(used);
+        self.values[used % STACK].get()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_call_hides_the_callers_locals_and_a_return_brings_them_back() {
+    fn a_call_hides_the_callers_locals_and_a_return_restores_them() {
         let mut vars = Vars::new(None, false);
         vars.set(1, Value::Number(7.0));
         vars.push_level(&VACANT);
@@ -373,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_has_its_number() {
+    fn variables_that_are_not_vacant_have_their_numbers() {
         let mut vars = Vars::new(Some((98_000, 98_499)), false);
         for place in [33, 100, 999, DIRECT_COUNT, DIRECT_COUNT + 499] {
             vars.set(place, Value::Number(1.0));

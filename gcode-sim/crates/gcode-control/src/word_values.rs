@@ -1,20 +1,25 @@
-//! The values of the words of a block.
-use super::checked::{ExecResult, locate};
+//! Values of the words of a block, and of the words of a macro call as arguments.
 use super::evaluation::RoundingTarget;
+use super::functions::{ExecResult, locate};
+use super::quantities::POWERS;
 use super::registers::Registers;
-use super::variables::Value;
+use super::variables::{Locals, VACANT, Value};
 use super::words::{BlockWords, CallingWord, WordNumber, computed_row, count};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::{LoweredWord, WordOperand, Words, g_codes};
+use gcode_lang::control::ArgumentScale;
+use gcode_lang::program::{ArgumentLocals, LoweredWord, WordOperand, Words, g_codes};
 use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::Decimal;
 
 impl Registers {
-    pub(super) fn count_of_word(&self, words: &Words, word: &LoweredWord) -> ExecResult<Option<u32>> {
+    /// Returns the count of a word; `None` without the word or with a vacant value.
+    pub(super) fn count_of_word(&self, words: &Words, word: Option<&LoweredWord>) -> ExecResult<Option<u32>> {
+        let Some(word) = word else { return Ok(None) };
         let Some(raw) = self.evaluate_word(words, word)? else { return Ok(None) };
         locate(count(raw, word.letter), word.span).map(Some)
     }
 
-    /// Evaluates every word of a block into `given`, but for those that belong to a call.
+    /// Evaluates every word of a block except those of a call.
     pub(super) fn evaluate_words(
         &self,
         words: &Words,
@@ -23,17 +28,15 @@ impl Registers {
     ) -> ExecResult<()> {
         block_words.clear();
         block_words.punched_value = words.punched_value();
-        match calling {
-            None => words.list.iter().try_for_each(|word| self.evaluate_into(words, word, block_words)),
-            Some(calling) => {
-                let mut others =
-                    words.list.iter().enumerate().filter(|(place, word)| !calling.contains(*place, word));
-                others.try_for_each(|(_, word)| self.evaluate_into(words, word, block_words))
+        for (index, word) in words.list.iter().enumerate() {
+            if !calling.is_some_and(|calling| calling.contains(index, word)) {
+                self.evaluate_into(words, word, block_words)?;
             }
         }
+        Ok(())
     }
 
-    /// Evaluates a word and puts it to those of its block.
+    /// Evaluates a word and adds it to those of its block.
     #[inline(always)]
     fn evaluate_into(
         &self,
@@ -60,7 +63,7 @@ impl Registers {
         self.put_value(word.letter, word.span, raw, block_words)
     }
 
-    /// Puts a word that is more than a value at an address to those of its block.
+    /// Adds a word that isn't a simple value at an address to those of its block.
     #[inline(never)]
     fn put(
         &self,
@@ -108,7 +111,7 @@ impl Registers {
         Ok(())
     }
 
-    /// The value of a word, or `None` where it is vacant and the word therefore not there.
+    /// Returns the number of a word; `None` for a vacant value, with which the word counts as absent.
     #[inline]
     pub(super) fn evaluate_word(&self, words: &Words, word: &LoweredWord) -> ExecResult<Option<WordNumber>> {
         match &word.value {
@@ -117,7 +120,7 @@ impl Registers {
         }
     }
 
-    /// What a value behind an address is that is more than a literal.
+    /// Evaluates the value of a word.
     #[inline(always)]
     pub(super) fn evaluate_operand(&self, words: &Words, value: &WordOperand) -> ExecResult<Value> {
         match value {
@@ -126,6 +129,71 @@ impl Registers {
             WordOperand::Number(number) => Ok(Value::Number(*number)),
             WordOperand::G(code, _) => Ok(Value::Number(f64::from(*code) / 10.0)),
             WordOperand::Literal(number) => Ok(Value::Number(number.value())),
+        }
+    }
+
+    /// Returns the locals that words set as arguments, in the order written; a vacant value leaves its local vacant. G66.1
+    /// (`is_every_block`) also takes G, L, N and P.
+    pub(super) fn evaluate_arguments(
+        &self,
+        words: &Words,
+        list: &[LoweredWord],
+        is_every_block: bool,
+    ) -> ExecResult<Locals> {
+        let mut locals = VACANT;
+        let mut letters = ArgumentLocals::new(self.data.settings.reads_ijk_plainly, is_every_block);
+        for word in list {
+            if word.comma {
+                return Err(Alarm::ImproperAddress { letter: char::from(word.letter) }.located_at(word.span));
+            }
+            let local = letters.next(word.letter).map_err(|alarm| alarm.located_at(word.span))?;
+            let Some(local) = local else { continue };
+            if let Some(raw) = self.raw_argument(words, word)? {
+                let decimals = self.argument_decimals(raw, word.letter);
+                locals.set(local, Value::Number(self.argument_value(raw, word.letter)), decimals);
+            }
+        }
+        Ok(locals)
+    }
+
+    /// Returns the number of a word as an argument of a macro.
+    fn raw_argument(&self, words: &Words, word: &LoweredWord) -> ExecResult<Option<WordNumber>> {
+        match word.value {
+            WordOperand::Code(place) => {
+                let value = self.run_code(words.code(place), RoundingTarget::Whole)?;
+                Ok(value.as_number().map(WordNumber::Computed))
+            }
+            _ => self.evaluate_word(words, word),
+        }
+    }
+
+    /// Returns the value of an argument: without a point a literal counts increments of its address (6007#4 CVA = 0).
+    pub(super) fn argument_value(&self, raw: WordNumber, letter: u8) -> f64 {
+        match raw {
+            WordNumber::Computed(value) => value,
+            WordNumber::Literal(number) => number.value() / POWERS[self.counted_decimals(raw, letter)],
+        }
+    }
+
+    /// Returns the decimals that ADP restores: none with CVA (6007#4).
+    fn argument_decimals(&self, raw: WordNumber, letter: u8) -> u8 {
+        if self.data.settings.converts_arguments { 0 } else { self.counted_decimals(raw, letter) as u8 }
+    }
+
+    /// Returns the number of decimals of an argument without a point that counts the increments of its address.
+    fn counted_decimals(&self, raw: WordNumber, letter: u8) -> usize {
+        let WordNumber::Literal(Decimal { places: None, .. }) = raw else { return 0 };
+        let scale = match letter {
+            b'D' | b'G' | b'H' | b'L' | b'M' | b'N' | b'P' | b'S' | b'T' => ArgumentScale::Whole,
+            b'E' => self.data.settings.undocumented.argument_e,
+            b'F' => self.data.settings.undocumented.argument_f,
+            _ => ArgumentScale::Increments,
+        };
+        match scale {
+            ArgumentScale::Whole => 0,
+            ArgumentScale::Feed => self.data.feed_decimals(&self.state),
+            ArgumentScale::Increments if self.data.settings.uses_calculator_input => 0,
+            ArgumentScale::Increments => self.data.decimals(letter, self.state.modal.unit),
         }
     }
 }

@@ -1,10 +1,10 @@
-//! The words of the block at hand, evaluated: what is vacant is not there, and numbers become something only where
-//! the block asks for them.
+//! Evaluated words of the current block. Words with vacant values are absent; increments and units are applied when a word
+//! is read.
 use std::cell::Cell;
 
-use super::checked::{ExecResult, integer, locate};
+use super::functions::{ExecResult, integer, locate};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::{CodeSet, Settings};
+use gcode_lang::control::{Dialect, Settings};
 use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::Motion;
@@ -13,15 +13,21 @@ use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::Decimal;
 use gcode_lang::units::round;
 
-/// The value of a word before anything is made of it.
+/// Number of a word before its increment and unit are applied.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum WordNumber {
     Literal(Decimal),
     Computed(f64),
 }
 
+impl Default for WordNumber {
+    fn default() -> Self {
+        Self::Computed(0.0)
+    }
+}
+
 impl WordNumber {
-    /// The number that stands there, whatever it is at its address.
+    /// Returns the number as written or computed.
     pub(super) fn value(self) -> f64 {
         match self {
             Self::Literal(number) => number.value(),
@@ -30,77 +36,43 @@ impl WordNumber {
     }
 }
 
-/// Letters as bits, A the lowest.
-pub(super) const fn letters(some: &[u8]) -> u32 {
-    let (mut bits, mut place) = (0, 0);
-    while place < some.len() {
-        bits |= 1 << (some[place] - b'A');
-        place += 1;
-    }
-    bits
-}
-
+/// Largest number of G codes in a block.
 pub(super) const G_CODES: usize = 12;
 
-const M_CODES: usize = 3;
-
-/// The words of a block by letter. Kept between blocks and cleared by its mask, so that it costs nothing.
-#[derive(Clone, Debug)]
+/// Words of a block by letter. They are kept between blocks, and the mask of letters is all that is cleared of the values.
+#[derive(Clone, Debug, Default)]
 pub(super) struct BlockWords {
     pub(super) present_letters: u32,
-    /// The letters whose value somebody has asked for.
+    /// Letters whose value has been read.
     read_letters: Cell<u32>,
     pub(super) values: [(WordNumber, Span); 26],
-    g_rows: [Option<&'static GCodeRow>; G_CODES],
-    g_count: usize,
-    /// The last code of group 01.
+    g_rows: Vec<&'static GCodeRow>,
+    /// Last code of group 01.
     pub(super) motion: Option<Motion>,
-    /// A G code stands in the block that is not of group 01.
-    has_other_g_codes: bool,
-    pub(super) m_codes: [Option<(u32, Span)>; M_CODES],
-    pub(super) m_code_count: usize,
+    /// The block has a G code outside group 01.
+    pub(super) has_other_g_codes: bool,
+    pub(super) m_codes: Vec<(u32, Span)>,
     /// `,R` or `,C`.
     pub(super) corner: Option<(u8, WordNumber, Span)>,
     /// M codes that a later one of the block has replaced.
     pub(super) replaced_m_codes: Vec<u32>,
-    /// The value in the comment of `G10 L85`.
+    /// Value in the comment of `G10 L85`.
     pub(super) punched_value: Option<u64>,
 }
 
-impl Default for BlockWords {
-    fn default() -> Self {
-        Self {
-            present_letters: 0,
-            read_letters: Cell::new(0),
-            values: [(WordNumber::Computed(0.0), Span::default()); 26],
-            g_rows: [None; G_CODES],
-            g_count: 0,
-            motion: None,
-            has_other_g_codes: false,
-            m_codes: [None; M_CODES],
-            m_code_count: 0,
-            corner: None,
-            replaced_m_codes: Vec::new(),
-            punched_value: None,
-        }
-    }
-}
-
 impl BlockWords {
-    /// As before the first block.
+    /// Removes all words.
     pub(super) fn clear(&mut self) {
         self.present_letters = 0;
         self.read_letters.set(0);
-        self.g_count = 0;
-        self.motion = None;
-        self.has_other_g_codes = false;
-        self.m_code_count = 0;
-        self.corner = None;
+        self.g_rows.clear();
+        self.m_codes.clear();
         self.replaced_m_codes.clear();
-        self.punched_value = None;
+        (self.motion, self.corner, self.punched_value) = (None, None, None);
+        self.has_other_g_codes = false;
     }
 
-    /// `,R` or `,C`.
+    /// Adds `,R` or `,C`.
     pub(super) fn put_corner(&mut self, word: &LoweredWord, raw: WordNumber) -> Result<(), Alarm> {
         if word.letter == b'A' {
             return Err(Alarm::NotSimulated { what: "direct drawing dimensions (,A)".into() });
@@ -112,12 +84,12 @@ impl BlockWords {
         Ok(())
     }
 
+    /// Adds a G code.
     pub(super) fn put_g(&mut self, row: &'static GCodeRow) -> Result<(), Alarm> {
-        if self.g_count == G_CODES {
+        if self.g_rows.len() == G_CODES {
             return Err(Alarm::MacroFormat { what: "too many G codes in one block".into() });
         }
-        self.g_rows[self.g_count] = Some(row);
-        self.g_count += 1;
+        self.g_rows.push(row);
         match row.effect {
             Effect::Motion(motion) => self.motion = Some(motion),
             _ => self.has_other_g_codes = true,
@@ -125,67 +97,54 @@ impl BlockWords {
         Ok(())
     }
 
-    /// Without M3B the last M code of a block counts; a stop or an end isn't lost in silence.
+    /// Adds an M code. Without M3B it replaces the one before; a stop or an end raises an alarm instead.
     pub(super) fn put_m(&mut self, code: u32, span: Span, settings: &Settings) -> Result<(), Alarm> {
-        let max = if settings.allows_three_m_codes { M_CODES } else { 1 };
-        let place = self.m_code_count.min(max - 1);
-        if self.m_code_count == max
-            && let Some((first, _)) = self.m_codes[place]
+        let max = if settings.allows_three_m_codes { 3 } else { 1 };
+        if self.m_codes.len() == max
+            && let Some((first, _)) = self.m_codes.pop()
         {
             if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
                 return Err(Alarm::PluralM { first, second: code });
             }
             self.replaced_m_codes.push(first);
         }
-        self.m_codes[place] = Some((code, span));
-        self.m_code_count = place + 1;
+        self.m_codes.push((code, span));
         Ok(())
     }
 
+    /// Returns true if the block has a letter.
     pub(super) fn has(&self, letter: u8) -> bool {
         self.present_letters >> (letter - b'A') & 1 == 1
     }
 
-    /// Whether it has one of some [`letters`].
+    /// Returns true if the block has one of some letters, as bits.
     pub(super) fn has_letters(&self, letters: u32) -> bool {
         self.present_letters & letters != 0
     }
 
     #[inline]
     pub(super) fn has_any(&self, some: &[u8]) -> bool {
-        self.has_letters(letters(some))
+        self.has_letters(Letters::of(some).bits())
     }
 
-    /// The first of some [`letters`], in the order of the alphabet, that it has.
+    /// Returns the first of some letters, as bits, in the order of the alphabet, that the block has.
     pub(super) fn first_letter_of(&self, letters: u32) -> Option<u8> {
         let some = self.present_letters & letters;
         (some != 0).then(|| b'A' + some.trailing_zeros() as u8)
     }
 
-    /// Whether a G code stands in it that is not of group 01.
-    pub(super) fn has_non_motion_words(&self) -> bool {
-        self.has_other_g_codes
-    }
-
-    /// The value of a word, which is asked for with this.
+    /// Returns the value of a word and marks it as read.
     pub(super) fn get(&self, letter: u8) -> Option<(WordNumber, Span)> {
         self.read_letters.set(self.read_letters.get() | 1 << (letter - b'A'));
         self.has(letter).then(|| self.values[usize::from(letter - b'A')])
     }
 
-    /// Words that the block may have and that change nothing here.
-    pub(super) fn mark_read(&self, letters: &[u8]) {
-        for letter in letters {
-            self.get(*letter);
-        }
-    }
-
-    /// As [`BlockWords::mark_read`].
-    pub(super) fn mark_letters_read(&self, letters: Letters) {
+    /// Marks words without effect as read.
+    pub(super) fn mark_read(&self, letters: Letters) {
         self.read_letters.set(self.read_letters.get() | letters.bits());
     }
 
-    /// The letters that are refused without one of its codes, as bits.
+    /// Returns the letters that only the codes of the block allow, as bits.
     pub(super) fn letters_of_codes(&self) -> u32 {
         if !self.has_other_g_codes {
             return 0;
@@ -193,15 +152,10 @@ impl BlockWords {
         self.g_codes().fold(0, |letters, row| letters | row.facts.words.own.bits())
     }
 
-    /// The first word, by its letter, that nothing in the block had a use for.
+    /// Returns the first word, by its letter, that has not been read.
     pub(super) fn first_unread(&self) -> Option<(char, Span)> {
         let letter = self.first_letter_of(!self.read_letters.get())?;
         Some((char::from(letter), self.span(letter)))
-    }
-
-    /// Whether it has `,R` or `,C`.
-    pub(super) fn has_corner(&self) -> bool {
-        self.corner.is_some()
     }
 
     pub(super) fn span(&self, letter: u8) -> Span {
@@ -209,23 +163,23 @@ impl BlockWords {
     }
 
     pub(super) fn g_codes(&self) -> impl Iterator<Item = &'static GCodeRow> + '_ {
-        self.g_rows[..self.g_count].iter().flatten().copied()
+        self.g_rows.iter().copied()
     }
 
-    /// Whether the block has a G code of an effect; those of group 01 are not asked.
+    /// Returns true if a G code outside group 01 has an effect that satisfies a predicate.
     #[inline(always)]
     pub(super) fn has_non_motion_code(&self, predicate: impl Fn(Effect) -> bool) -> bool {
         self.has_other_g_codes && self.g_codes().any(|row| predicate(row.effect))
     }
 
-    /// A count or a number: no point, no minus; a computed value is rounded.
+    /// Returns the value of a word that is a count, see [`count`].
     pub(super) fn count(&self, letter: u8) -> ExecResult<Option<u32>> {
         let Some((raw, span)) = self.get(letter) else { return Ok(None) };
         locate(count(raw, letter), span).map(Some)
     }
 }
 
-/// A value where only a whole number may stand.
+/// Returns a value as a count: no point, no minus; a computed value is rounded.
 pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
     let letter = char::from(letter);
     let number = match raw {
@@ -246,35 +200,35 @@ pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
     if number > max { Err(Alarm::TooManyDigits) } else { Ok(number as u32) }
 }
 
-/// The row of a G code that is computed.
-pub(super) fn computed_row(raw: WordNumber, set: CodeSet) -> Result<&'static GCodeRow, Alarm> {
+/// Returns the row of a computed G code.
+pub(super) fn computed_row(raw: WordNumber, dialect: Dialect) -> Result<&'static GCodeRow, Alarm> {
     let value = match raw {
         WordNumber::Computed(value) => value,
         WordNumber::Literal(number) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
     };
-    // A computed code keeps one decimal.
+    // A computed code is rounded to one decimal.
     let tenths = round(value * 10.0);
     if !(0.0..=9999.0).contains(&tenths) {
         return Err(Alarm::ImproperGCode { code: value.to_string() });
     }
     let code = tenths as u32;
-    g_codes::find(code).row_for(set).ok_or_else(|| Alarm::ImproperGCode { code: g_codes::spelled(code) })
+    g_codes::find(code).row_for(dialect).ok_or_else(|| Alarm::ImproperGCode { code: g_codes::spelled(code) })
 }
 
-/// A word that calls a subprogram, taken out of its block.
+/// Word that calls a subprogram.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CallingWord {
-    /// Its place in the block.
+    /// Index in the block.
     pub(super) index: usize,
-    /// Behind an M code L repeats the call.
+    /// L repeats the call, as with an M code.
     pub(super) takes_repeats: bool,
     pub(super) program: u32,
-    /// The common variable that gets the word's number.
+    /// Common variable that gets the word's number.
     pub(super) value: Option<(u32, f64)>,
 }
 
 impl CallingWord {
-    /// Whether a word of the block belongs to the call and not to what acts first.
+    /// Returns true if a word of the block belongs to the call.
     pub(super) fn contains(&self, place: usize, word: &LoweredWord) -> bool {
         place == self.index || self.takes_repeats && word.letter == b'L'
     }

@@ -1,8 +1,8 @@
 //! Charts: graphs above one another over a common abscissa, with ticks, tolerance bands and markers.
-use super::ink::{Align, Dash, DrawCommand, Px, Rect, Rgb, px};
+use super::ink::{DrawCommand, Ink, Px, Rect, px};
 use super::obstacle::Obstacle;
 use super::palette;
-use super::role::{HoleStatus, Pen, Point};
+use super::scene::{Align, HoleStatus, Pen, Point};
 use super::symbol;
 use super::ticks::Ticks;
 use super::words::Words;
@@ -83,11 +83,11 @@ impl Chart {
             graph.draw_band(&place, words);
             let grid = palette::pen(Pen::Grid, text);
             for at in across.all().map(x) {
-                words.commands.push(stroke(vec![px(at, frame.bottom), px(at, frame.top)], grid));
+                words.sheet.commands.push(upright(&frame, at, grid));
             }
             for (at, name) in &self.guides {
                 let pen = palette::pen(Pen::Construction, text);
-                words.commands.push(stroke(vec![px(x(*at), frame.bottom), px(x(*at), frame.top)], pen));
+                words.sheet.commands.push(upright(&frame, x(*at), pen));
                 if index == 0 {
                     words.write_if_free(px(x(*at), frame.top - 0.5 * text), Align::Centre, text, soft, name);
                 }
@@ -104,22 +104,17 @@ impl Chart {
         let middle = px((west + east) / 2.0, bottom + foot);
         words.write(middle, Align::Centre, text, soft, &self.x_label, area.width());
     }
-}
 
-impl Chart {
     /// Draws two vertical lines for each gap and a thick line at zero between them.
     fn draw_gaps(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
         let (text, frame) = (words.text_size, place.frame);
         let color = palette::status_colour(HoleStatus::Bad);
-        let dash = Dash::Pattern([0.25 * text, 0.35 * text]);
+        let edge = Ink::dashed(0.1 * text, color, [0.25 * text, 0.35 * text]);
+        let level = place.px([0.0, 0.0]).y.clamp(frame.top, frame.bottom);
         for [from, to] in self.gaps.iter().map(|gap| gap.map(place.x)) {
-            for x in [from, to] {
-                let upright = vec![px(x, frame.bottom), px(x, frame.top)];
-                words.commands.push(stroke(upright, (color, 0.1 * text, dash)));
-            }
-            let level = place.px([0.0, 0.0]).y.clamp(frame.top, frame.bottom);
-            let along = vec![px(from, level), px(to, level)];
-            words.commands.push(stroke(along, (color, 0.4 * text, Dash::Solid)));
+            words.sheet.commands.extend([from, to].map(|x| upright(&frame, x, edge)));
+            let along = Ink::solid(0.4 * text, color);
+            words.sheet.commands.push(DrawCommand::line(px(from, level), px(to, level), along));
         }
     }
 }
@@ -138,9 +133,9 @@ impl ChartArea<'_> {
     }
 
     /// Returns a horizontal line across the frame.
-    fn level(&self, at: f64, pen: (Rgb, f64, Dash)) -> DrawCommand {
+    fn level(&self, at: f64, ink: Ink) -> DrawCommand {
         let y = self.px([0.0, at]).y;
-        stroke(vec![px(self.frame.left, y), px(self.frame.right, y)], pen)
+        DrawCommand::line(px(self.frame.left, y), px(self.frame.right, y), ink)
     }
 }
 
@@ -150,33 +145,33 @@ impl Graph {
         if 1 < self.band.len() {
             let (low, high): (Vec<Px>, Vec<Px>) = (edge(1).collect(), edge(2).collect());
             let points = low.iter().chain(high.iter().rev()).copied().collect();
-            words.commands.push(DrawCommand::Area { points, color: palette::BAND });
+            words.sheet.commands.push(DrawCommand::Area { points, color: palette::BAND });
             let pen = palette::pen(Pen::Limit, words.text_size);
-            words.commands.extend([low, high].map(|points| stroke(points, pen)));
+            words.sheet.commands.extend([low, high].map(|points| DrawCommand::path(points, pen)));
         }
     }
 
     fn draw(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
         let (text, ticks) = (words.text_size, &place.range.ticks);
         for at in ticks.all() {
-            words.commands.push(place.level(at, palette::pen(Pen::Grid, text)));
+            words.sheet.commands.push(place.level(at, palette::pen(Pen::Grid, text)));
             let beside = px(place.frame.left - 0.5 * text, place.px([0.0, at]).y + 0.36 * text);
             let room = place.frame.left;
             words.write(beside, Align::Right, text, palette::SOFT_TEXT, &ticks.name(at), room);
         }
         if self.has_zero_line {
-            words.commands.push(place.level(0.0, (palette::TEXT, 0.08 * text, Dash::Solid)));
+            words.sheet.commands.push(place.level(0.0, Ink::solid(0.08 * text, palette::TEXT)));
         }
         for curve in &self.curves {
             let Range { low, high, .. } = *place.range;
             for piece in between(&curve.points, low, high) {
                 let points = piece.into_iter().map(|point| place.px(point)).collect();
-                words.commands.push(stroke(points, palette::pen(curve.pen, text)));
+                words.sheet.commands.push(DrawCommand::path(points, palette::pen(curve.pen, text)));
             }
         }
         for sign in &self.markers {
             let at = place.px(sign.position);
-            words.commands.extend(symbol::status_sign(sign.status, at, 0.55 * text));
+            words.sheet.commands.extend(symbol::status_sign(sign.status, at, 0.55 * text));
             self.name(sign, at, place, words);
         }
     }
@@ -200,8 +195,9 @@ impl Graph {
     }
 }
 
-fn stroke(points: Vec<Px>, (color, width, dash): (Rgb, f64, Dash)) -> DrawCommand {
-    DrawCommand::Line { points, closed: false, width: width.max(1.0), dash, color }
+/// Draws a vertical line across a frame.
+fn upright(frame: &Rect, x: f64, ink: Ink) -> DrawCommand {
+    DrawCommand::line(px(x, frame.bottom), px(x, frame.top), ink)
 }
 
 /// Returns the pieces of a curve between the ordinates `low` and `high`.

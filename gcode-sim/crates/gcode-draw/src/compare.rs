@@ -1,8 +1,9 @@
 //! Compares two pictures and marks the differences in a third.
-use image::{ImageFormat, Rgb, RgbImage};
+use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 use super::PictureError;
-use super::raster;
+use super::ink::Rgb;
+use super::{palette, raster};
 
 /// Differences between two pictures.
 #[derive(Clone, Debug)]
@@ -18,7 +19,7 @@ pub struct Difference {
     pub sizes: [(u32, u32); 2],
     /// The first picture, faded. A differing pixel is blue if it is darker in the first picture and vermilion
     /// if it is darker in the second; a frame encloses the differences.
-    pub(super) picture: RgbImage,
+    pub(super) picture: Pixmap,
 }
 
 impl Difference {
@@ -32,14 +33,11 @@ impl Difference {
     /// # Errors
     /// [`PictureError::Encode`] if the PNG encoder fails.
     pub fn png(&self) -> Result<Vec<u8>, PictureError> {
-        raster::encode(self.picture.as_raw(), self.picture.width(), self.picture.height())
+        raster::png(&self.picture)
     }
 }
 
-/// Colours of Okabe and Ito's palette.
-const ONLY_FIRST: Rgb<u8> = Rgb([0, 114, 178]);
-const ONLY_SECOND: Rgb<u8> = Rgb([213, 94, 0]);
-const FRAME: Rgb<u8> = Rgb([204, 121, 167]);
+const FRAME: Rgb = Rgb(204, 121, 167);
 
 /// Compares two PNG files pixel by pixel; channels that differ by at most `tolerance` are equal.
 ///
@@ -48,13 +46,14 @@ const FRAME: Rgb<u8> = Rgb([204, 121, 167]);
 pub fn compare(first: &[u8], second: &[u8], tolerance: u8) -> Result<Difference, PictureError> {
     let (a, b) = (decode("the first file", first)?, decode("the second file", second)?);
     let (width, height) = (a.width().max(b.width()), a.height().max(b.height()));
-    let mut picture = RgbImage::from_pixel(width, height, Rgb([255, 255, 255]));
+    let mut picture = Pixmap::new(width, height).expect("a decoded picture is neither empty nor too large");
+    picture.fill(tiny_skia::Color::WHITE);
     let (mut pixels, mut largest, mut bounds) = (0, 0, None::<[u32; 4]>);
     for y in 0..height {
         for x in 0..width {
-            let (in_a, in_b) = (a.get_pixel_checked(x, y), b.get_pixel_checked(x, y));
+            let (in_a, in_b) = (channels(&a, x, y), channels(&b, x, y));
             let off = match (in_a, in_b) {
-                (Some(a), Some(b)) => (0..3).map(|i| a.0[i].abs_diff(b.0[i])).max().unwrap_or(0),
+                (Some(a), Some(b)) => (0..3).map(|i| a[i].abs_diff(b[i])).max().unwrap_or(0),
                 _ => u8::MAX,
             };
             largest = largest.max(off);
@@ -62,13 +61,14 @@ pub fn compare(first: &[u8], second: &[u8], tolerance: u8) -> Result<Difference,
                 pixels += 1;
                 let [left, top, right, bottom] = bounds.unwrap_or([x, y, x, y]);
                 bounds = Some([left.min(x), top.min(y), right.max(x), bottom.max(y)]);
-                picture.put_pixel(
+                put(
+                    &mut picture,
                     x,
                     y,
-                    if darkness(in_a) < darkness(in_b) { ONLY_SECOND } else { ONLY_FIRST },
+                    if darkness(in_a) < darkness(in_b) { palette::VERMILION } else { palette::BLUE },
                 );
-            } else if let Some(pixel) = in_a {
-                picture.put_pixel(x, y, Rgb(pixel.0.map(|v| 170 + v / 3)));
+            } else if let Some([r, g, b]) = in_a.map(|pixel| pixel.map(|v| 170 + v / 3)) {
+                put(&mut picture, x, y, Rgb(r, g, b));
             }
         }
     }
@@ -80,18 +80,35 @@ pub fn compare(first: &[u8], second: &[u8], tolerance: u8) -> Result<Difference,
 }
 
 /// Returns the darkness of a pixel; a pixel outside the picture counts as paper.
-fn darkness(pixel: Option<&Rgb<u8>>) -> u32 {
-    pixel.map_or(0, |p| p.0.iter().map(|v| u32::from(u8::MAX - v)).sum())
+fn darkness(pixel: Option<[u8; 3]>) -> u32 {
+    pixel.map_or(0, |channels| channels.iter().map(|v| u32::from(u8::MAX - v)).sum())
 }
 
-fn decode(which: &str, bytes: &[u8]) -> Result<RgbImage, PictureError> {
-    image::load_from_memory_with_format(bytes, ImageFormat::Png)
-        .map(|picture| picture.to_rgb8())
-        .map_err(|error| PictureError::Decode { which: which.to_owned(), reason: error.to_string() })
+fn decode(which: &str, bytes: &[u8]) -> Result<Pixmap, PictureError> {
+    let decode_error = |error: png::DecodingError| PictureError::Decode {
+        which: which.to_owned(),
+        reason: error.to_string(),
+    };
+    Pixmap::decode_png(bytes).map_err(decode_error)
+}
+
+/// Returns red, green and blue of a pixel; `None` outside the picture.
+fn channels(picture: &Pixmap, x: u32, y: u32) -> Option<[u8; 3]> {
+    let pixel = picture.pixel(x, y).filter(|_| x < picture.width())?;
+    Some([pixel.red(), pixel.green(), pixel.blue()])
+}
+
+/// Colours a pixel; nothing outside the picture.
+fn put(picture: &mut Pixmap, x: u32, y: u32, Rgb(r, g, b): Rgb) {
+    let index = (y * picture.width() + x) as usize;
+    let is_inside = x < picture.width();
+    if let Some(pixel) = picture.pixels_mut().get_mut(index).filter(|_| is_inside) {
+        *pixel = PremultipliedColorU8::from_rgba(r, g, b, u8::MAX).expect("an opaque colour");
+    }
 }
 
 /// Draws a frame of two pixels, three pixels outside the differing area, clipped to the picture.
-fn frame(picture: &mut RgbImage, [left, top, right, bottom]: [u32; 4]) {
+fn frame(picture: &mut Pixmap, [left, top, right, bottom]: [u32; 4]) {
     for off in [3, 4] {
         let (l, t, r, b) = (left.checked_sub(off), top.checked_sub(off), right + off, bottom + off);
         let columns = l.unwrap_or(0)..=r.min(picture.width() - 1);
@@ -99,9 +116,7 @@ fn frame(picture: &mut RgbImage, [left, top, right, bottom]: [u32; 4]) {
         let level = columns.flat_map(|x| [t, Some(b)].into_iter().flatten().map(move |y| (x, y)));
         let upright = rows.flat_map(|y| [l, Some(r)].into_iter().flatten().map(move |x| (x, y)));
         for (x, y) in level.chain(upright) {
-            if let Some(pixel) = picture.get_pixel_mut_checked(x, y) {
-                *pixel = FRAME;
-            }
+            put(picture, x, y, FRAME);
         }
     }
 }
@@ -111,11 +126,12 @@ mod tests {
     use super::*;
 
     fn png(width: u32, height: u32, dots: &[(u32, u32, u8)]) -> Vec<u8> {
-        let mut picture = RgbImage::from_pixel(width, height, Rgb([200, 200, 200]));
+        let mut picture = Pixmap::new(width, height).unwrap();
+        picture.fill(tiny_skia::Color::from_rgba8(200, 200, 200, 255));
         for (x, y, grey) in dots {
-            picture.put_pixel(*x, *y, Rgb([*grey; 3]));
+            put(&mut picture, *x, *y, Rgb(*grey, *grey, *grey));
         }
-        raster::encode(picture.as_raw(), width, height).unwrap()
+        raster::png(&picture).unwrap()
     }
 
     #[test]
@@ -132,9 +148,11 @@ mod tests {
         assert_eq!(difference.pixels, 2);
         assert_eq!(difference.largest, 200);
         assert_eq!(difference.bounds, Some([12, 8, 15, 10]));
-        assert_eq!(difference.picture.get_pixel(12, 10), &ONLY_SECOND);
-        assert_eq!(compare(&b, &a, 1).unwrap().picture.get_pixel(12, 10), &ONLY_FIRST);
-        assert_eq!(difference.picture.get_pixel(9, 9), &FRAME);
+        let of =
+            |difference: &Difference, x, y| channels(&difference.picture, x, y).map(|[r, g, b]| Rgb(r, g, b));
+        assert_eq!(of(&difference, 12, 10), Some(palette::VERMILION));
+        assert_eq!(of(&compare(&b, &a, 1).unwrap(), 12, 10), Some(palette::BLUE));
+        assert_eq!(of(&difference, 9, 9), Some(FRAME));
         assert_eq!(compare(&a, &b, 0).unwrap().pixels, 3);
     }
 

@@ -1,11 +1,9 @@
 //! Level of detail per hole: which holes have a dial with their deviation, its size and its magnification.
 use nalgebra::Point3;
 
-use super::frame::{Frame, LABEL_LIMIT};
 use super::ink::Px;
-use super::measure::magnification;
-use super::role::HoleStatus;
-use super::scene::{Mark, Scene};
+use super::measure::{Frame, LABEL_LIMIT, magnification};
+use super::scene::{HoleStatus, Mark, Scene};
 use gcode_part::PointTree;
 
 /// Distance in text heights below which two symbols overlap; the symbol of an extra hole then moves aside.
@@ -141,15 +139,7 @@ mod tests {
 
     fn mark(at: [f64; 2], standing: HoleStatus) -> Mark {
         let deviation = Some(ZoneDeviation { entry: [0.01, 0.0], bottom: [0.01, 0.0] });
-        Mark {
-            position: at,
-            radius: 3.0,
-            status: standing,
-            label: Vec::new(),
-            direction: None,
-            deviation,
-            actual: None,
-        }
+        Mark { radius: 3.0, deviation, ..Mark::new(at, standing) }
     }
 
     /// 1 px per mm, text of 10 px.

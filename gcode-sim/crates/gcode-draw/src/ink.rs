@@ -1,4 +1,5 @@
 //! Drawing commands in pixels from the picture's top left corner.
+use super::scene::Align;
 
 /// A point of the sheet, pixels to the right and down.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +40,31 @@ pub struct Rect {
 impl Rect {
     pub(super) fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
         Self { left, top, right: left + width, bottom: top + height }
+    }
+
+    /// Returns the rectangle of this size round a middle.
+    pub(super) fn around(middle: Px, (width, height): (f64, f64)) -> Self {
+        Self::new(middle.x - width / 2.0, middle.y - height / 2.0, width, height)
+    }
+
+    /// Returns the least rectangle that contains a point and all others.
+    pub(super) fn enclosing(first: Px, others: &[Px]) -> Self {
+        others.iter().fold(Self::new(first.x, first.y, 0.0, 0.0), |all, p| Self {
+            left: all.left.min(p.x),
+            top: all.top.min(p.y),
+            right: all.right.max(p.x),
+            bottom: all.bottom.max(p.y),
+        })
+    }
+
+    /// Returns the corners in order round the rectangle.
+    pub(super) fn corners(&self) -> Vec<Px> {
+        vec![
+            px(self.left, self.top),
+            px(self.right, self.top),
+            px(self.right, self.bottom),
+            px(self.left, self.bottom),
+        ]
     }
 
     pub(super) fn width(&self) -> f64 {
@@ -89,22 +115,23 @@ impl Rect {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Rgb(pub(super) u8, pub(super) u8, pub(super) u8);
 
-/// Dash pattern of a line.
+/// Colour, width in pixels and dash pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Dash {
-    Solid,
-    /// Dash and gap, pixels.
-    Pattern([f64; 2]),
-    /// Centre line: long dash, gap, short dash, gap, in multiples of this length.
-    Chain(f64),
+pub(super) struct Ink {
+    pub(super) color: Rgb,
+    pub(super) width: f64,
+    /// Dash, gap, dash, gap, pixels; `None` for a solid line.
+    pub(super) dash: Option<[f64; 4]>,
 }
 
-/// Horizontal alignment of a text to its reference point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Align {
-    Left,
-    Centre,
-    Right,
+impl Ink {
+    pub(super) const fn solid(width: f64, color: Rgb) -> Self {
+        Self { color, width, dash: None }
+    }
+
+    pub(super) const fn dashed(width: f64, color: Rgb, [dash, gap]: [f64; 2]) -> Self {
+        Self { color, width, dash: Some([dash, gap, dash, gap]) }
+    }
 }
 
 /// One drawing command; later ones cover earlier ones.
@@ -113,9 +140,7 @@ pub(super) enum DrawCommand {
     Line {
         points: Vec<Px>,
         closed: bool,
-        width: f64,
-        dash: Dash,
-        color: Rgb,
+        ink: Ink,
     },
     Area {
         points: Vec<Px>,
@@ -124,9 +149,7 @@ pub(super) enum DrawCommand {
     Ring {
         centre: Px,
         radius: f64,
-        width: f64,
-        dash: Dash,
-        color: Rgb,
+        ink: Ink,
     },
     Disc {
         centre: Px,
@@ -144,18 +167,16 @@ pub(super) enum DrawCommand {
 }
 
 impl DrawCommand {
-    pub(super) fn line(from: Px, to: Px, width: f64, color: Rgb) -> Self {
-        Self::Line { points: vec![from, to], closed: false, width, dash: Dash::Solid, color }
+    pub(super) fn line(from: Px, to: Px, ink: Ink) -> Self {
+        Self::path(vec![from, to], ink)
     }
 
-    pub(super) fn area(rect: Rect, color: Rgb) -> Self {
-        let points = vec![
-            px(rect.left, rect.top),
-            px(rect.right, rect.top),
-            px(rect.right, rect.bottom),
-            px(rect.left, rect.bottom),
-        ];
-        Self::Area { points, color }
+    pub(super) fn path(points: Vec<Px>, ink: Ink) -> Self {
+        Self::Line { points, closed: false, ink }
+    }
+
+    pub(super) fn outline(points: Vec<Px>, ink: Ink) -> Self {
+        Self::Line { points, closed: true, ink }
     }
 
     pub(super) fn text(at: Px, size: f64, text: impl Into<String>, color: Rgb) -> Self {

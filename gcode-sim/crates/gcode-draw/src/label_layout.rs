@@ -1,14 +1,12 @@
 //! Labels of holes and lines: as many lines of each label as fit, and notes on omitted ones.
 use super::font::{ASCENT, DESCENT};
-use super::frame::{Frame, LABEL_LIMIT};
-use super::ink::{Align, DrawCommand, Px, Rect, px};
+use super::ink::{DrawCommand, Px, Rect, px};
 use super::labels::{LabelArea, LabelPlacement, LeaderRule, Symbol};
-use super::lines::is_path;
 use super::marks::DrawnMark;
+use super::measure::{Frame, LABEL_LIMIT};
 use super::obstacle::Obstacle;
 use super::palette;
-use super::role::Pen;
-use super::scene::{Mark, Scene, Shape, Stroke};
+use super::scene::{Align, Mark, Pen, Scene, Shape, Stroke};
 use super::symbol;
 use gcode_lang::units::Deg;
 
@@ -65,21 +63,17 @@ impl LabelLayout {
         for i in order {
             let (mark, hole) = (&scene.marks[*i], &drawn[*i]);
             let full = if mark.status.is_good() { good } else { bad }.min(mark.label.len());
-            let way = if hole.is_crowded { LeaderRule::OutOfCrowd } else { LeaderRule::Clear };
-            let found = trial.place(
-                mark,
-                full,
-                Symbol { position: hole.centre, clearance: hole.label_clearance, leader_rule: way },
-                frame,
-            );
-            // A bad hole must be identifiable: its number may be far off, on a leader over other holes.
-            let far = Symbol {
+            let symbol = |leader_rule: LeaderRule| Symbol {
                 position: hole.centre,
                 clearance: hole.label_clearance,
-                leader_rule: LeaderRule::ThroughAll,
+                leader_rule,
             };
-            let found = match found {
-                None if !mark.status.is_good() => trial.place(mark, full, far, frame),
+            let near = if hole.is_crowded { LeaderRule::OutOfCrowd } else { LeaderRule::Clear };
+            // A bad hole must be identifiable: its number may be far off, on a leader over other holes.
+            let found = match trial.place(mark, full, symbol(near), frame) {
+                None if !mark.status.is_good() => {
+                    trial.place(mark, full, symbol(LeaderRule::ThroughAll), frame)
+                }
                 found => found,
             };
             trial.labels.extend(found.map(|(lines, spot)| Label { mark: *i, placement: spot, lines }));
@@ -111,9 +105,8 @@ impl LabelLayout {
         frame: &Frame,
         inks: &mut Vec<DrawCommand>,
     ) -> Vec<(Rect, Vec<String>)> {
-        let thin = (0.05 * frame.text_size).max(1.0);
         let leaders = self.labels.iter().filter_map(|l| l.placement.leader);
-        inks.extend(leaders.map(|(from, to)| DrawCommand::line(from, to, thin, palette::THIN)));
+        inks.extend(leaders.map(|(from, to)| DrawCommand::line(from, to, palette::leader(frame.text_size))));
         let mut labels = Vec::new();
         for label in &self.labels {
             let lines = scene.marks[label.mark].label[..label.lines].to_vec();
@@ -163,12 +156,13 @@ pub(super) fn caption_strokes(
                 let angles = (0..48).map(|i| Deg(f64::from(i) * 7.5 + 225.0));
                 angles.map(|angle| centre.toward(symbol::direction(angle), radius)).collect()
             }
+            Shape::Arrow(_) | Shape::Zero(_) | Shape::Text { .. } => Vec::new(),
             // The number of one path must not cover another path, to which a reader would assign it.
-            Shape::Line(_) if is_path(stroke.pen) => {
+            Shape::Line(_) if stroke.pen.is_path() => {
                 let own = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke));
                 let mut places = own.into_iter().flat_map(|path| path.points.iter().copied());
                 let apart = |place: &Px| {
-                    let rect = around(*place, size).grown(0.1 * frame.text_size);
+                    let rect = Rect::around(*place, size).grown(0.1 * frame.text_size);
                     let mut others = paths.iter().filter(|path| !std::ptr::eq(path.stroke, stroke));
                     field.is_free(&rect) && !others.any(|path| path.runs_through(&rect))
                 };
@@ -189,20 +183,14 @@ pub(super) fn caption_strokes(
         let spot = field.place_on(places, size).or_else(|| {
             let path = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke))?;
             let at = path.points[path.points.len() / 2];
-            field.place(
-                Symbol { position: at, clearance: 0.0, leader_rule: LeaderRule::ThroughAll },
-                size,
-                frame.text_size * LEADING,
-            )
+            let symbol = Symbol { position: at, clearance: 0.0, leader_rule: LeaderRule::ThroughAll };
+            field.place(symbol, size, frame.text_size * LEADING)
         });
         if let Some(spot) = spot {
             if let Some((from, to)) = spot.leader {
-                inks.push(DrawCommand::line(from, to, (0.05 * frame.text_size).max(1.0), palette::THIN));
-                inks.push(DrawCommand::Disc {
-                    centre: from,
-                    radius: 0.17 * frame.text_size,
-                    color: palette::TEXT,
-                });
+                let (radius, color) = (0.17 * frame.text_size, palette::TEXT);
+                inks.push(DrawCommand::line(from, to, palette::leader(frame.text_size)));
+                inks.push(DrawCommand::Disc { centre: from, radius, color });
             }
             write(&lines, &spot, frame, inks);
             labels.push((spot.rect, lines));
@@ -231,18 +219,12 @@ const POINTS: usize = 120;
 impl<'s> Path<'s> {
     fn of(stroke: &'s Stroke, frame: &Frame) -> Option<Self> {
         let Shape::Line(points) = &stroke.shape else { return None };
-        if !is_path(stroke.pen) || stroke.caption.is_none() {
+        if !stroke.pen.is_path() || stroke.caption.is_none() {
             return None;
         }
         let step = (points.len() / POINTS).max(1);
         let points: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
-        let first = Obstacle::Segment(*points.first()?, *points.first()?).bounds();
-        let bounds = points.iter().fold(first, |all, p| Rect {
-            left: all.left.min(p.x),
-            top: all.top.min(p.y),
-            right: all.right.max(p.x),
-            bottom: all.bottom.max(p.y),
-        });
+        let bounds = Rect::enclosing(*points.first()?, &points);
         Some(Self { stroke, points, bounds })
     }
 
@@ -250,10 +232,6 @@ impl<'s> Path<'s> {
         self.bounds.overlaps(rect)
             && self.points.windows(2).any(|pair| Obstacle::Segment(pair[0], pair[1]).hits(rect))
     }
-}
-
-fn around(middle: Px, (width, height): (f64, f64)) -> Rect {
-    Rect::new(middle.x - width / 2.0, middle.y - height / 2.0, width, height)
 }
 
 fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
@@ -265,7 +243,7 @@ fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
 /// Writes the lines in a box that interrupts the lines below it, as a dimension interrupts its line.
 fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<DrawCommand>) {
     let (rect, size, align) = (spot.rect, frame.text_size, spot.align);
-    inks.push(DrawCommand::area(rect, palette::PAPER));
+    inks.push(DrawCommand::Area { points: rect.corners(), color: palette::PAPER });
     let x = match align {
         Align::Left => rect.left + 0.15 * size,
         Align::Centre => rect.centre().x,
@@ -280,20 +258,22 @@ fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<
 
 #[cfg(test)]
 mod tests {
-    use super::super::role::Point;
-    use super::super::sheet::{Sheet, lay_out};
-    use super::super::size::Size;
     use super::*;
+    use crate::layout::lay_out;
+    use crate::picture::Picture;
+    use crate::scene::Point;
+    use crate::sheet::Sheet;
+    use crate::size::Size;
 
     fn sheet(lines: Vec<(Vec<Point>, Pen, &str)>) -> Sheet {
         let outline = vec![[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [0.0, 60.0], [0.0, 0.0]];
         let stroke = |(points, pen, caption): (Vec<Point>, Pen, &str)| Stroke {
-            shape: Shape::Line(points),
-            pen,
             caption: (!caption.is_empty()).then(|| caption.to_owned()),
+            ..Stroke::new(pen, Shape::Line(points))
         };
         let strokes = lines.into_iter().chain([(outline, Pen::Outline, "")]).map(stroke).collect();
-        lay_out(&Scene { strokes, ..Scene::default() }, Size::new(480, 360).unwrap()).unwrap()
+        let scene = Scene { strokes, ..Scene::default() };
+        lay_out(&Picture { scene, ..Picture::default() }, Size::new(480, 360).unwrap()).unwrap()
     }
 
     fn place(sheet: &Sheet, words: &str) -> Rect {

@@ -2,8 +2,9 @@
 //!
 //! The search is greedy and deterministic: the most important label first, each at its cheapest free
 //! position. A label never covers anything in the area, so two labels never overlap.
-use super::ink::{Align, Px, Rect, px};
+use super::ink::{Px, Rect, px};
 use super::obstacle::Obstacle;
+use super::scene::Align;
 use gcode_lang::units::Deg;
 
 /// The symbol that a label belongs to.
@@ -37,14 +38,10 @@ impl Symbol {
     }
 
     fn leader(&self, rect: &Rect) -> (Px, Px) {
-        let end = rect.nearest(self.position);
-        let length = self.position.distance(end).max(1e-9);
+        let (at, end) = (self.position, rect.nearest(self.position));
+        let length = at.distance(end).max(1e-9);
         let start = if self.leader_rule == LeaderRule::OutOfCrowd { 0.0 } else { self.clearance };
-        (
-            self.position
-                .toward([(end.x - self.position.x) / length, (end.y - self.position.y) / length], start),
-            end,
-        )
+        (at.toward([(end.x - at.x) / length, (end.y - at.y) / length], start), end)
     }
 }
 
@@ -129,22 +126,19 @@ impl LabelArea {
                     at.x + direction[0] * far + lean[0] * width / 2.0,
                     at.y + direction[1] * far + lean[1] * height / 2.0,
                 );
-                let rect = Rect::new(middle.x - width / 2.0, middle.y - height / 2.0, width, height);
+                let rect = Rect::around(middle, (width, height));
                 if !self.is_free(&rect) {
                     continue;
                 }
-                let leader = (symbol.leader_rule != LeaderRule::Clear
-                    || 0 < step
-                    || self.is_nearer_to_another(&rect, symbol))
-                .then(|| symbol.leader(&rect));
+                let is_doubtful = self.is_nearer_to_another(&rect, symbol);
+                let leader = (symbol.leader_rule != LeaderRule::Clear || 0 < step || is_doubtful)
+                    .then(|| symbol.leader(&rect));
                 if leader.is_some_and(|leader| self.is_crossed(leader, symbol)) {
                     continue;
                 }
-                let doubtful =
-                    if leader.is_some() && self.is_nearer_to_another(&rect, symbol) { 3.0 } else { 0.0 };
-                let cost = cost
-                    + doubtful
-                    + 2.0 * self.soft_obstacles.iter().filter(|o| o.hits(&rect)).count() as f64;
+                let doubt = if is_doubtful { 3.0 } else { 0.0 };
+                let covered = self.soft_obstacles.iter().filter(|o| o.hits(&rect)).count();
+                let cost = cost + doubt + 2.0 * covered as f64;
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, LabelPlacement { rect, leader, align: symbol.align(&rect) }));
                 }
@@ -162,10 +156,9 @@ impl LabelArea {
     pub(super) fn place_on(
         &mut self,
         middles: impl IntoIterator<Item = Px>,
-        (width, height): (f64, f64),
+        size: (f64, f64),
     ) -> Option<LabelPlacement> {
-        let rects =
-            middles.into_iter().map(|m| Rect::new(m.x - width / 2.0, m.y - height / 2.0, width, height));
+        let rects = middles.into_iter().map(|middle| Rect::around(middle, size));
         let rect = rects.into_iter().find(|rect| self.is_free(rect))?;
         self.block(Obstacle::Box(rect));
         Some(LabelPlacement { rect, leader: None, align: Align::Centre })
@@ -204,11 +197,8 @@ impl LabelArea {
     fn touched_cells(&self, rect: &Rect) -> Vec<usize> {
         let rows = self.cells.len() / self.columns;
         let clamp = |v: f64, most: usize| ((v / self.cell).max(0.0) as usize).min(most - 1);
-        let (left, right) = (
-            clamp(rect.left - self.area.left, self.columns),
-            clamp(rect.right - self.area.left, self.columns),
-        );
-        let (top, bottom) = (clamp(rect.top - self.area.top, rows), clamp(rect.bottom - self.area.top, rows));
+        let [left, right] = [rect.left, rect.right].map(|x| clamp(x - self.area.left, self.columns));
+        let [top, bottom] = [rect.top, rect.bottom].map(|y| clamp(y - self.area.top, rows));
         (top..=bottom).flat_map(|row| (left..=right).map(move |column| row * self.columns + column)).collect()
     }
 }

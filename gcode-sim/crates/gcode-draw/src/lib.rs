@@ -1,16 +1,33 @@
-//! Draws holes, tool paths, flutes and charts as PNG, and compares pictures.
+//! Draws holes, tool paths, flutes and charts as PNG and SVG, and compares pictures.
 //!
-//! **In:** the contents of a view in mm ([`TopView`], [`FluteView`]) or of a chart ([`Bars`], [`Plot`]), and a
-//! [`Size`] in pixels. **Out:** the bytes of a PNG file, the same bytes for the same contents.
+//! **In:** a [`Scene`]: lines, circles, texts and marks in mm, each with its meaning, on the part (3 dimensions)
+//! or on a sheet (2). **Out:** the bytes of a PNG file, the text of an SVG element, or the scene itself as JSON
+//! for a viewer; the same bytes for the same scene.
 //!
-//! A view turns its contents into a [`Scene`] in mm, without pixels or colours: [`main_view`], [`top_view`],
-//! [`development`], [`side_view`], [`tip_view`], [`helix_graph`]. [`lay_out`] places a scene on a [`Sheet`], where
-//! every symbol and label has its position in pixels and no label covers another. [`paint`] paints the sheet, and
-//! [`png`] encodes it; [`draw`] does all three. [`compare()`] compares two PNG files pixel by pixel. A new view is a
-//! new file in `views`; a new file format is a new painter of sheets.
+//! A [`Sheet`] has every symbol and text at its position on the paper. [`Sheet::to_scale`] draws a scene as it
+//! is; [`lay_out`] chooses scale and detail of a [`Picture`], a scene with title block and legend, so that no
+//! label covers another. Sheets are written by [`paint`] and [`png`], or by [`svg`]; a new file format is a new
+//! writer of sheets.
 //!
 //! ```
-//! use gcode_draw::{DrawnHole, HoleStatus, Size, TopView, draw, main_view};
+//! use gcode_draw::{Pen, Scene, Shape, Sheet, Side, Stroke, svg};
+//!
+//! let path = Shape::Line(vec![[0.0, 0.0, 5.0], [40.0, 0.0, 5.0], [40.0, 20.0, 5.0]]);
+//! let part = Scene { strokes: vec![Stroke::new(Pen::Feed, path)], ..Scene::default() };
+//! let seen = part.seen_from(Side::Z);
+//! assert_eq!(seen.strokes[0].shape, Shape::Line(vec![[0.0, 0.0], [40.0, 0.0], [40.0, 20.0]]));
+//!
+//! // 2 units of paper a millimetre; the zero point is 10 units from the left and 60 from the top.
+//! let sheet = Sheet::to_scale(&seen, [100.0, 70.0], [10.0, 60.0], 2.0, 12.0);
+//! assert!(svg(&sheet, "Tool path").contains("<polyline points=\"10,60 90,60 90,20\""));
+//! ```
+//!
+//! The pictures of holes and flutes are made from their contents, [`TopView`] and [`FluteView`], by [`main_view`],
+//! [`top_view`], [`development`], [`side_view`], [`tip_view`] and [`helix_graph`]; a new one is a new file in
+//! `views`. [`draw`] lays out, paints and encodes; [`Plot`] is a chart alone.
+//!
+//! ```
+//! use gcode_draw::{DrawnHole, HoleStatus, Size, TopView, compare, draw, main_view};
 //! use gcode_part::Hole;
 //!
 //! let nominal =
@@ -22,94 +39,79 @@
 //!     actual: Some(actual),
 //!     status: HoleStatus::Good,
 //!     position_deviation: Some(0.0447),
-//!     rotary_angle: None,
-//!     remarks: Vec::new(),
+//!     ..DrawnHole::default()
 //! };
-//! let view =
-//!     TopView { name: "O8100.nc".to_owned(), tolerance: Some(0.1), holes: vec![hole], ..TopView::default() };
+//! let (name, tolerance) = ("O8100.nc".to_owned(), Some(0.1));
+//! let view = TopView { name, tolerance, holes: vec![hole], ..TopView::default() };
 //! let png = draw(&main_view(&view), Size::new(800, 600)?)?;
 //! assert!(png.starts_with(b"\x89PNG"));
+//!
+//! let again = draw(&main_view(&view), Size::new(800, 600)?)?;
+//! assert!(compare(&png, &again, 0)?.is_none());
 //! # Ok::<(), gcode_draw::PictureError>(())
 //! ```
 #![warn(missing_docs)]
-mod bars;
 mod chart;
 mod compare;
 mod deviation_dials;
 mod font;
-mod frame;
 mod ink;
 mod label_layout;
 mod labels;
+mod layout;
 mod lines;
 mod marks;
 mod measure;
 mod obstacle;
 mod palette;
 mod panel;
+mod picture;
 mod plot;
 mod raster;
-mod role;
 mod scene;
 mod sheet;
+mod side;
 mod size;
+mod svg;
 mod symbol;
 mod ticks;
 mod views;
 mod words;
 
-pub use bars::{Bar, Bars};
 pub use chart::{Chart, ChartMarker, Curve, Graph};
 pub use compare::{Difference, compare};
 pub use ink::Rect;
-pub use plot::Plot;
+pub use layout::lay_out;
+pub use picture::Picture;
+pub use plot::{Bar, Plot, PlotBody};
 pub use raster::{paint, png};
-pub use role::{HoleStatus, Pen, Point};
-pub use scene::Scene;
-pub use sheet::{Sheet, lay_out};
+pub use scene::{Align, Axis, HoleStatus, Mark, Pen, Point, Scene, Shape, Stroke, ZoneDeviation, arc};
+pub use sheet::Sheet;
+pub use side::Side;
 pub use size::Size;
+pub use svg::svg;
 pub use views::development::development;
 pub use views::flute_view::{Fault, FlutePoint, FluteView, HelixCourses, HelixPoint};
 pub use views::flutes::{side_view, tip_view};
 pub use views::helix::helix_graph;
 pub use views::purpose::PicturePurpose;
-pub use views::side::Side;
-pub use views::top::{Cylinder, DrawnHole, PathKind, PathPiece, TopView, top_view};
+pub use views::top::{Cylinder, DrawnHole, TopView, top_view};
 
 /// An error in making or comparing pictures.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// The size is below the limit of legibility.
-    #[error("a picture of {width}x{height} pixels is too small to read: the minimum is {least}")]
-    TooSmall {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-        /// The smallest size.
-        least: &'static str,
-    },
-    /// The size is above the limit of memory.
-    #[error("a picture of {width}x{height} pixels is too large: at most {most} pixels a side")]
-    TooLarge {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-        /// The largest number of pixels a side.
-        most: u32,
-    },
+    /// The size is below the limit of legibility; width and height in pixels.
+    #[error("a picture of {0}x{1} pixels is too small to read: the minimum is 480x360")]
+    TooSmall(u32, u32),
+    /// The size is above the limit of memory; width and height in pixels.
+    #[error("a picture of {0}x{1} pixels is too large: at most 8192 pixels a side")]
+    TooLarge(u32, u32),
     /// A text is not a size.
     #[error("`{0}` is not a picture size: write width x height in pixels, such as 1600x1200")]
     NoSize(String),
-    /// A coordinate of the scene cannot be drawn.
-    #[error("{what} has a coordinate that is not a number or lies beyond {limit} mm")]
-    OffTheSheet {
-        /// The hole or line with the coordinate.
-        what: String,
-        /// The largest coordinate, mm.
-        limit: f64,
-    },
+    /// A coordinate of the scene cannot be drawn; the hole or line that has it.
+    #[error("{0} has a coordinate that is not a number or lies beyond 1000000 mm")]
+    OffTheSheet(String),
     /// The PNG encoder fails.
     #[error("the picture cannot be written as PNG: {0}")]
     Encode(String),
@@ -123,15 +125,15 @@ pub enum PictureError {
     },
 }
 
-/// Builds the scene that shows all holes at once: the development of a cylinder, else the top view.
-pub fn main_view(view: &TopView) -> Scene {
+/// Builds the picture that shows all holes at once: the development of a cylinder, else the top view.
+pub fn main_view(view: &TopView) -> Picture {
     development(view).unwrap_or_else(|| top_view(view))
 }
 
-/// Draws a scene as a PNG file of exactly this size.
+/// Draws a picture as a PNG file of exactly this size.
 ///
 /// # Errors
 /// [`PictureError::OffTheSheet`] if a coordinate cannot be drawn, see [`lay_out`].
-pub fn draw(scene: &Scene, size: Size) -> Result<Vec<u8>, PictureError> {
-    png(&paint(&lay_out(scene, size)?))
+pub fn draw(picture: &Picture, size: Size) -> Result<Vec<u8>, PictureError> {
+    png(&paint(&lay_out(picture, size)?))
 }

@@ -1,53 +1,55 @@
 //! Lines of the drawing: edges, circles, axes through the origin, and the scale bar.
-use super::frame::Frame;
-use super::ink::{Align, Dash, DrawCommand, Px, Rect, px};
+use super::ink::{DrawCommand, Ink, Px, Rect, px};
 use super::labels::LabelArea;
-use super::measure::{bar_length, plain};
+use super::measure::{Frame, Scale, bar_length, plain};
 use super::obstacle::Obstacle;
 use super::palette;
-use super::role::{Pen, Point};
-use super::scene::{Scene, Shape, Stroke};
+use super::scene::{Pen, Point, Scene, Shape, Stroke};
 use super::symbol;
 
-/// Returns true for pens of the tool path, which labels may cover.
-pub(super) fn is_path(pen: Pen) -> bool {
-    matches!(pen, Pen::Feed | Pen::Faulty | Pen::Hidden | Pen::Rapid | Pen::Unchanged | Pen::New | Pen::Old)
-}
-
-pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> DrawCommand {
-    let (color, width, dash) = palette::pen(stroke.pen, frame.text_size);
-    let width = width.max(1.0);
-    match &stroke.shape {
-        Shape::Line(points) => DrawCommand::Line {
-            points: points.iter().map(|p| frame.scale.px(*p)).collect(),
-            closed: false,
-            width,
-            dash,
-            color,
-        },
+/// Draws a shape of a scene.
+pub(super) fn shape_commands(stroke: &Stroke, scale: &Scale, text: f64) -> Vec<DrawCommand> {
+    let ink = palette::pen(stroke.pen, text);
+    vec![match &stroke.shape {
+        Shape::Line(points) => DrawCommand::path(points.iter().map(|p| scale.px(*p)).collect(), ink),
         Shape::Circle { centre, radius } => {
-            let (centre, radius) = (frame.scale.px(*centre), radius * frame.scale.factor);
-            DrawCommand::Ring { centre, radius, width, dash, color }
+            DrawCommand::Ring { centre: scale.px(*centre), radius: radius * scale.factor, ink }
         }
-    }
+        Shape::Arrow([from, to]) => return symbol::arrow(scale.px(*from), scale.px(*to), ink, 0.75 * text),
+        Shape::Zero(at) => return symbol::zero(scale.px(*at), text / 1.5, palette::pen(Pen::Edge, text)),
+        Shape::Text { at, align, text: words } => {
+            let (at, align, text_color) = (scale.px(*at), *align, palette::TEXT);
+            DrawCommand::Text { at, align, size: text, text: words.clone(), color: text_color }
+        }
+    }]
 }
 
 /// Adds a stroke to the label area: labels never cover edges and avoid other lines.
 pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame) {
     let hard = stroke.pen == Pen::Outline;
+    let segments = |points: &[Point], step: usize| -> Vec<Obstacle> {
+        let ends: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
+        ends.windows(2).map(|w| Obstacle::Segment(w[0], w[1])).collect()
+    };
     let obstacles: Vec<Obstacle> = match &stroke.shape {
         // A captioned path must stay recognisable, so labels avoid it. A few segments suffice.
-        Shape::Line(points) if is_path(stroke.pen) && stroke.caption.is_some() => {
-            let step = (points.len() / 40).max(1);
-            let ends: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
-            ends.windows(2).map(|w| Obstacle::Segment(w[0], w[1])).collect()
+        Shape::Line(points) if stroke.pen.is_path() && stroke.caption.is_some() => {
+            segments(points, (points.len() / 40).max(1))
         }
-        _ if is_path(stroke.pen) => Vec::new(),
-        Shape::Line(points) => {
-            points.windows(2).map(|w| Obstacle::Segment(frame.scale.px(w[0]), frame.scale.px(w[1]))).collect()
-        }
+        _ if stroke.pen.is_path() => Vec::new(),
+        Shape::Line(points) => segments(points, 1),
+        Shape::Arrow(ends) => segments(ends, 1),
         Shape::Circle { centre, radius } => {
             vec![Obstacle::Ring { centre: frame.scale.px(*centre), radius: radius * frame.scale.factor }]
+        }
+        Shape::Zero(at) => {
+            vec![Obstacle::Disc { centre: frame.scale.px(*at), radius: frame.text_size / 1.5 }]
+        }
+        Shape::Text { at, align, text } => {
+            let wide = frame.font.width(text, frame.text_size);
+            let at = frame.scale.px(*at);
+            let (left, top) = (at.x - align.part() * wide, at.y - frame.text_size);
+            vec![Obstacle::Box(Rect::new(left, top, wide, 1.2 * frame.text_size))]
         }
     };
     for obstacle in obstacles {
@@ -72,16 +74,9 @@ pub(super) fn axes(
         let along = [axis.direction[0], -axis.direction[1]];
         let tip = leave(origin, along, part.grown(frame.axis_reach));
         let tail = leave(origin, [-along[0], -along[1]], part.grown(0.9 * text));
-        let width = (0.06 * text).max(1.0);
-        let dash = Dash::Chain(0.55 * text);
-        inks.push(DrawCommand::Line {
-            points: vec![tail, tip],
-            closed: false,
-            width,
-            dash,
-            color: palette::THIN,
-        });
-        inks.extend(symbol::arrow(tip.toward(along, -1.1 * text), tip, width, 0.7 * text, palette::TEXT));
+        let head = palette::thin(text, palette::TEXT);
+        inks.push(DrawCommand::line(tail, tip, palette::pen(Pen::Centre, text)));
+        inks.extend(symbol::arrow(tip.toward(along, -1.1 * text), tip, head, 0.7 * text));
         field.discourage(Obstacle::Segment(tail, tip));
 
         let size = 1.15 * text;
@@ -89,14 +84,9 @@ pub(super) fn axes(
         // The name lies beside the arrow: above a horizontal one, to the right of a vertical one.
         let beside = [-along[1].abs() * -1.0, -along[0].abs()];
         let middle = tip.toward(along, -0.3 * text).toward(beside, 0.45 * size + wide / 2.0);
-        let name = Rect::new(middle.x - wide / 2.0, middle.y - size * 0.4, wide, size * 0.8);
-        let name = inside(name, drawing);
-        inks.push(DrawCommand::text(
-            px(name.left, name.top + size * 0.62),
-            size,
-            axis.name.clone(),
-            palette::TEXT,
-        ));
+        let name = inside(Rect::around(middle, (wide, size * 0.8)), drawing);
+        let at = px(name.left, name.top + size * 0.62);
+        inks.push(DrawCommand::text(at, size, axis.name.clone(), palette::TEXT));
         field.block(Obstacle::Box(name.grown(2.0)));
         field.block(Obstacle::Segment(tip.toward(along, -1.1 * text), tip));
     }
@@ -152,14 +142,12 @@ pub(super) fn scale_bar(frame: &Frame, area: Rect) -> Vec<DrawCommand> {
     let length = bar_length(0.3 * area.width() / frame.scale.factor);
     let (left, wide) = (area.left + 0.8 * text, length * frame.scale.factor);
     let y = area.bottom - 0.9 * text;
-    let width = (0.1 * text).max(1.0);
+    let ink = Ink::solid(0.1 * text, palette::TEXT);
     let tick = 0.4 * text;
-    let mut inks = vec![DrawCommand::line(px(left, y), px(left + wide, y), width, palette::TEXT)];
-    for x in [left, left + wide / 2.0, left + wide] {
-        inks.push(DrawCommand::line(px(x, y - tick), px(x, y + tick), width, palette::TEXT));
-    }
-    let caption = format!("{} mm", plain(length));
+    let mut inks = vec![DrawCommand::line(px(left, y), px(left + wide, y), ink)];
+    let ticks = [left, left + wide / 2.0, left + wide];
+    inks.extend(ticks.map(|x| DrawCommand::line(px(x, y - tick), px(x, y + tick), ink)));
     let at = px(left + wide + 0.7 * text, y + 0.36 * text);
-    inks.push(DrawCommand::Text { at, align: Align::Left, size: text, text: caption, color: palette::TEXT });
+    inks.push(DrawCommand::text(at, text, format!("{} mm", plain(length)), palette::TEXT));
     inks
 }

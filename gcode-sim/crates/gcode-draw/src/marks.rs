@@ -1,12 +1,11 @@
 //! Holes on the sheet: symbol, axis direction, and the dial that shows the deviation enlarged.
 use super::deviation_dials::{Detail, DeviationDials, MIN_SIGN_DISTANCE};
-use super::frame::Frame;
-use super::ink::{Dash, DrawCommand, Px, Rgb};
+use super::ink::{DrawCommand, Ink, Px};
 use super::labels::LabelArea;
+use super::measure::Frame;
 use super::obstacle::Obstacle;
 use super::palette;
-use super::role::HoleStatus;
-use super::scene::{Mark, Scene, ZoneDeviation};
+use super::scene::{HoleStatus, Mark, Scene, ZoneDeviation};
 use super::symbol;
 use gcode_lang::units::Deg;
 
@@ -62,12 +61,11 @@ fn draw_dial(
 ) -> DrawnMark {
     let text = frame.text_size;
     let centre = frame.scale.px(mark.position);
-    let thin = thin_width(text);
     let hole = (mark.radius * frame.scale.factor).max(0.28 * text);
     let mut inks = vec![
         DrawCommand::Disc { centre, radius: zone, color: palette::PAPER },
-        ring(centre, zone, thin, palette::THIN),
-        ring(centre, hole, thin, palette::TEXT),
+        DrawCommand::Ring { centre, radius: zone, ink: palette::thin(text, palette::THIN) },
+        DrawCommand::Ring { centre, radius: hole, ink: palette::thin(text, palette::TEXT) },
     ];
     let (mut cut, mut strayed) = (false, false);
     match mark.actual.map(|found| frame.scale.px(found)) {
@@ -114,43 +112,46 @@ fn displacement_line(centre: Px, found: Px, hole: f64, text: f64, field: &mut La
     let radius = hole.max(0.3 * text);
     field.block(Obstacle::Disc { centre: found, radius: radius + 0.1 * text });
     field.block(Obstacle::Segment(centre, found));
-    let dash = Dash::Pattern([0.15 * text, 0.2 * text]);
-    let (width, color) = (thin_width(text), palette::TEXT);
-    let line = DrawCommand::Line { points: vec![centre, found], closed: false, width, dash, color };
-    [line, ring(found, radius, width, color)]
+    displacement_commands(centre, found, radius, text)
+}
+
+/// Draws a dotted line and a circle at its end.
+pub(super) fn displacement_commands(from: Px, to: Px, radius: f64, text: f64) -> [DrawCommand; 2] {
+    let ink = palette::thin(text, palette::TEXT);
+    let dotted = Ink::dashed(ink.width, ink.color, [0.15 * text, 0.2 * text]);
+    [DrawCommand::line(from, to, dotted), DrawCommand::Ring { centre: to, radius, ink }]
 }
 
 /// Draws lines from the centre to the deviation at the entry and on to that at the bottom: a tilted hole
 /// shows as a line across its dial. A deviation longer than drawn ends in an arrow, whose tip is returned.
 fn deviation_commands(
-    standing: HoleStatus,
+    status: HoleStatus,
     deviation: ZoneDeviation,
     enlarge: f64,
     centre: Px,
     zone: f64,
     text: f64,
 ) -> (Vec<DrawCommand>, Option<Px>) {
-    let color = palette::status_colour(standing);
-    let width = (0.12 * text).max(1.4);
+    let ink = Ink::solid((0.12 * text).max(1.4), palette::status_colour(status));
     let mut inks = Vec::new();
     let mut beyond = None;
     let ends = [deviation.entry, deviation.bottom].map(|[right, up]| {
         let (x, y) = (right * enlarge, -up * enlarge);
         let length = libm::hypot(x, y);
-        let short =
-            if MAX_DEVIATION_RADII * zone < length { MAX_DEVIATION_RADII * zone / length } else { 1.0 };
-        let end = centre.toward([x * short, y * short], 1.0);
+        let short = (MAX_DEVIATION_RADII * zone / length).min(1.0);
+        let end = centre.toward([x, y], short);
         if short < 1.0 {
-            inks.extend(symbol::arrow(centre, end, width, 0.6 * text, color));
+            inks.extend(symbol::arrow(centre, end, ink, 0.6 * text));
             beyond = Some(end);
         } else {
-            inks.push(DrawCommand::line(centre, end, width, color));
+            inks.push(DrawCommand::line(centre, end, ink));
         }
         end
     });
-    inks.push(DrawCommand::line(ends[0], ends[1], width, color));
+    inks.push(DrawCommand::line(ends[0], ends[1], ink));
     if beyond.is_none() {
-        inks.push(DrawCommand::Disc { centre: ends[0], radius: (0.14 * text).max(1.6), color });
+        let (radius, color) = ((0.14 * text).max(1.6), ink.color);
+        inks.push(DrawCommand::Disc { centre: ends[0], radius, color });
     }
     (inks, beyond)
 }
@@ -186,12 +187,13 @@ fn draw_sign(
         let mut around =
             (0..8).map(|i| other.centre.toward(symbol::direction(Deg(200.0 + 45.0 * f64::from(i))), step));
         if let Some(beside) = around.find(free) {
-            inks.push(DrawCommand::line(place, beside, thin_width(text), palette::TEXT));
+            inks.push(DrawCommand::line(place, beside, palette::thin(text, palette::TEXT)));
             centre = beside;
         }
     }
     if radius < true_radius {
-        inks.push(ring(place, true_radius, thin_width(text), palette::TEXT));
+        let ink = palette::thin(text, palette::TEXT);
+        inks.push(DrawCommand::Ring { centre: place, radius: true_radius, ink });
     }
     let far = mark.actual.map(|found| frame.scale.px(found)).filter(|found| text < place.distance(*found));
     let strayed = far.is_some();
@@ -210,11 +212,10 @@ fn draw_sign(
     if let Some((along, projected)) = direction {
         inks.extend(axis_arrow(centre, along, projected, radius * 1.15, text, field));
     }
-    let crowded = dials.is_crowded(index, text);
     DrawnMark {
         centre,
         label_clearance: radius * 1.2 + 0.15 * text,
-        is_crowded: crowded,
+        is_crowded: dials.is_crowded(index, text),
         commands: inks,
         is_truncated: false,
         has_displacement_line: strayed,
@@ -241,7 +242,7 @@ fn axis_arrow(
     let start = centre.toward(along, from);
     let end = centre.toward(along, from + text * (0.55 + 1.3 * projected));
     field.block(Obstacle::Segment(start, end));
-    symbol::arrow(start, end, (0.08 * text).max(1.0), 0.5 * text, palette::TEXT)
+    symbol::arrow(start, end, Ink::solid(0.08 * text, palette::TEXT), 0.5 * text)
 }
 
 /// Chooses an angle on the dial's rim clear of arrow and deviation: upper right if possible.
@@ -254,14 +255,6 @@ fn badge_angle(taken: &[Deg]) -> Deg {
     let choices = [45.0, 135.0, -45.0, -135.0, 0.0, 180.0, 90.0, -90.0];
     // Equally free angles: the first wins.
     Deg(choices.into_iter().fold(45.0, |best, angle| if free(best) < free(angle) { angle } else { best }))
-}
-
-fn ring(centre: Px, radius: f64, width: f64, color: Rgb) -> DrawCommand {
-    DrawCommand::Ring { centre, radius, width, dash: Dash::Solid, color }
-}
-
-fn thin_width(text: f64) -> f64 {
-    (0.06 * text).max(1.0)
 }
 
 #[cfg(test)]

@@ -1,13 +1,30 @@
 //! Round numbers and scales: the scale bar, the magnification of deviations, and mm to pixels.
+use super::font::Font;
 use super::ink::{Px, Rect, px};
-use super::role::Point;
+use super::scene::Point;
+
+/// Largest number of labelled holes: more labels could not be told apart, and the most important ones are
+/// kept.
+pub(super) const LABEL_LIMIT: usize = 400;
+
+/// Values shared by all layout steps.
+pub(super) struct Frame {
+    pub(super) font: Font,
+    /// Size of ordinary text, pixels.
+    pub(super) text_size: f64,
+    pub(super) scale: Scale,
+    /// Radius in pixels beyond which a dial would hide the part.
+    pub(super) largest_dial: f64,
+    /// Distance by which the axis arrows exceed the part, pixels.
+    pub(super) axis_reach: f64,
+}
 
 /// Maps the drawing's mm to pixels, with the same scale in both directions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
     /// Pixels per mm.
     pub(super) factor: f64,
-    origin: Px,
+    pub(super) origin: Px,
 }
 
 impl Scale {

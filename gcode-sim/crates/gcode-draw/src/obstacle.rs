@@ -22,11 +22,9 @@ impl Obstacle {
         match *self {
             Self::Box(rect) => rect,
             Self::Disc { centre, radius } | Self::Ring { centre, radius } => {
-                Rect::new(centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius)
+                Rect::around(centre, (2.0 * radius, 2.0 * radius))
             }
-            Self::Segment(a, b) => {
-                Rect { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
-            }
+            Self::Segment(a, b) => Rect::enclosing(a, &[b]),
         }
     }
 

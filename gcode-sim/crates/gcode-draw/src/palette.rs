@@ -3,47 +3,69 @@
 //!
 //! Colour never carries meaning alone: every status has its own shape and mark (`symbol`), every pen its own
 //! width or dash pattern.
-use super::ink::{Dash, Rgb};
-use super::role::{HoleStatus, Pen};
+use super::ink::{Ink, Rgb};
+use super::scene::{HoleStatus, Pen};
 
 pub(super) const PAPER: Rgb = Rgb(255, 255, 255);
 pub(super) const TEXT: Rgb = Rgb(0, 0, 0);
 pub(super) const SOFT_TEXT: Rgb = Rgb(70, 70, 70);
-pub(super) const RULE: Rgb = Rgb(150, 150, 150);
 /// Leaders, direction arrows, the circle of the tolerance zone.
 pub(super) const THIN: Rgb = Rgb(90, 90, 90);
-
 /// Tolerance band of a graph.
 pub(super) const BAND: Rgb = Rgb(238, 238, 238);
+/// Frames and rules between the parts of a sheet.
+pub(super) const RULE: Ink = Ink::solid(1.0, Rgb(150, 150, 150));
 
-pub(super) fn status_colour(standing: HoleStatus) -> Rgb {
-    match standing {
-        HoleStatus::Good => Rgb(0, 114, 178),
-        HoleStatus::Bad => Rgb(213, 94, 0),
-        HoleStatus::Missing => Rgb(0, 0, 0),
+pub(super) const BLUE: Rgb = Rgb(0, 114, 178);
+pub(super) const VERMILION: Rgb = Rgb(213, 94, 0);
+
+pub(super) fn status_colour(status: HoleStatus) -> Rgb {
+    match status {
+        HoleStatus::Good => BLUE,
+        HoleStatus::Bad => VERMILION,
+        HoleStatus::Missing => TEXT,
         HoleStatus::Extra => Rgb(230, 159, 0),
-        HoleStatus::Unjudged => Rgb(90, 90, 90),
+        HoleStatus::Unjudged => THIN,
     }
 }
 
-/// Returns colour, width and dash pattern of a pen at a text height of `text` pixels.
-pub(super) fn pen(pen: Pen, text: f64) -> (Rgb, f64, Dash) {
-    match pen {
-        Pen::Outline => (Rgb(0, 0, 0), 0.13 * text, Dash::Solid),
-        Pen::Construction => (Rgb(120, 120, 120), 0.06 * text, Dash::Pattern([0.55 * text, 0.4 * text])),
-        Pen::Scale => (Rgb(120, 120, 120), 0.06 * text, Dash::Solid),
-        Pen::Feed => (Rgb(0, 158, 115), 0.1 * text, Dash::Solid),
-        Pen::Faulty => (Rgb(213, 94, 0), 0.24 * text, Dash::Solid),
-        Pen::Hidden => (Rgb(213, 94, 0), 0.08 * text, Dash::Pattern([0.4 * text, 0.3 * text])),
-        Pen::Rapid => (Rgb(86, 180, 233), 0.07 * text, Dash::Pattern([0.25 * text, 0.25 * text])),
-        Pen::Unchanged => (Rgb(150, 150, 150), 0.07 * text, Dash::Solid),
-        Pen::New => (Rgb(213, 94, 0), 0.24 * text, Dash::Solid),
-        Pen::Old => (Rgb(0, 0, 0), 0.09 * text, Dash::Pattern([0.4 * text, 0.3 * text])),
-        Pen::Grid => (Rgb(205, 205, 205), 0.05 * text, Dash::Solid),
-        Pen::First => (Rgb(0, 0, 0), 0.12 * text, Dash::Pattern([0.8 * text, 0.5 * text])),
-        Pen::Measured => (Rgb(0, 114, 178), 0.14 * text, Dash::Solid),
-        Pen::Others => (Rgb(150, 150, 150), 0.05 * text, Dash::Solid),
-        Pen::Limit => (Rgb(213, 94, 0), 0.12 * text, Dash::Pattern([0.8 * text, 0.5 * text])),
-        Pen::Second => (Rgb(204, 121, 167), 0.14 * text, Dash::Pattern([0.22 * text, 0.3 * text])),
-    }
+/// Returns a thin solid line at a text height of `text` pixels.
+pub(super) fn thin(text: f64, color: Rgb) -> Ink {
+    Ink::solid(0.06 * text, color)
+}
+
+/// Returns the line of a leader from a label at a text height of `text` pixels.
+pub(super) fn leader(text: f64) -> Ink {
+    Ink::solid(0.05 * text, THIN)
+}
+
+/// Returns the line style of a pen at a text height of `text` pixels.
+pub(super) fn pen(pen: Pen, text: f64) -> Ink {
+    // Long dash, gap, short dash, gap.
+    let chain = [1.32, 0.22, 0.165, 0.22];
+    let dashed = |dash: f64, gap: f64| Some([dash, gap, dash, gap]);
+    // Widths and lengths in text heights.
+    let (color, width, dash) = match pen {
+        Pen::Outline => (TEXT, 0.13, None),
+        Pen::Edge => (TEXT, 0.1, None),
+        Pen::Dimension => (THIN, 0.05, None),
+        Pen::Centre => (THIN, 0.06, Some(chain)),
+        Pen::Tool => (BLUE, 0.1, None),
+        Pen::Construction => (Rgb(120, 120, 120), 0.06, dashed(0.55, 0.4)),
+        Pen::Scale => (Rgb(120, 120, 120), 0.06, None),
+        Pen::Feed => (Rgb(0, 158, 115), 0.1, None),
+        Pen::Faulty | Pen::New => (VERMILION, 0.24, None),
+        Pen::Hidden => (VERMILION, 0.08, dashed(0.4, 0.3)),
+        Pen::Rapid => (Rgb(86, 180, 233), 0.07, dashed(0.25, 0.25)),
+        Pen::Probe => (Rgb(204, 121, 167), 0.1, dashed(0.15, 0.2)),
+        Pen::Unchanged => (Rgb(150, 150, 150), 0.07, None),
+        Pen::Old => (TEXT, 0.09, dashed(0.4, 0.3)),
+        Pen::Grid => (Rgb(205, 205, 205), 0.05, None),
+        Pen::First => (TEXT, 0.12, dashed(0.8, 0.5)),
+        Pen::Measured => (BLUE, 0.14, None),
+        Pen::Others => (Rgb(150, 150, 150), 0.05, None),
+        Pen::Limit => (VERMILION, 0.12, dashed(0.8, 0.5)),
+        Pen::Second => (Rgb(204, 121, 167), 0.14, dashed(0.22, 0.3)),
+    };
+    Ink { color, width: width * text, dash: dash.map(|lengths| lengths.map(|length| length * text)) }
 }

@@ -1,11 +1,11 @@
 //! Title block, legend and notes beside the drawing.
 use super::font::{ASCENT, Font};
-use super::frame::{Frame, LegendUse};
-use super::ink::{Dash, DrawCommand, Px, Rect, Rgb, px};
-use super::measure::plain;
+use super::ink::{DrawCommand, Ink, Px, Rect, Rgb, px};
+use super::marks::displacement_commands;
+use super::measure::{Frame, plain};
 use super::palette;
-use super::role::HoleStatus;
-use super::scene::{LegendItem, Sample, Scene};
+use super::picture::{LegendItem, LegendUse, Picture, Sample};
+use super::scene::HoleStatus;
 use super::symbol;
 
 /// The areas of drawing, title block and legend on the page.
@@ -55,20 +55,17 @@ impl PanelRow {
 
 /// Largest number of lines of a row; longer texts are cut short.
 const MOST_LINES: usize = 3;
+/// Line spacing in parts of the text size.
+const LEADING: f64 = 1.28;
 
 impl Panel {
     /// Places the columns beside the drawing on a wide page, below it on a tall one.
-    pub(super) fn beside(page: Rect, scene: &Scene, font: &Font, text: f64) -> Self {
+    pub(super) fn beside(page: Rect, picture: &Picture, font: &Font, text: f64) -> Self {
         let space = 0.6 * text;
         if page.height() <= page.width() {
             let width = (0.29 * page.width()).max(14.5 * text).min(0.4 * page.width());
             let left = (page.right - width).round();
-            let title = Rect {
-                left: left + space,
-                top: page.top + space,
-                right: page.right - space,
-                bottom: page.bottom - space,
-            };
+            let title = Rect { left, ..page }.grown(-space);
             return Self { drawing: Rect { right: left, ..page }, page, title, legend: None };
         }
         let middle = page.centre().x;
@@ -79,11 +76,10 @@ impl Panel {
             magnification: Some(1000.0),
             directions: true,
             displacements: true,
-            has_plain_good: false,
-            has_plain_rest: false,
+            ..LegendUse::default()
         };
-        let (_, title) = flow(&title_rows(scene, text), column, font, text);
-        let (_, legend) = flow(&legend_rows(scene, all, &notes, text), column, font, text);
+        let (_, title) = flow(&title_rows(picture, text), column, font, text);
+        let (_, legend) = flow(&legend_rows(picture, all, &notes, text), column, font, text);
         let height = title.max(legend) + 2.0 * space;
         let top = (page.bottom - height).max(page.top + 0.55 * page.height()).round();
         let column = |left: f64, right: f64| Rect {
@@ -100,44 +96,30 @@ impl Panel {
         }
     }
 
-    pub(super) fn inks(
+    pub(super) fn commands(
         &self,
-        scene: &Scene,
+        picture: &Picture,
         frame: &Frame,
         shown: LegendUse,
         notes: &[String],
     ) -> Vec<DrawCommand> {
-        let rule = |from: Px, to: Px| DrawCommand::line(from, to, 1.0, palette::RULE);
-        let page = self.page;
-        let corners = [
-            px(page.left, page.top),
-            px(page.right, page.top),
-            px(page.right, page.bottom),
-            px(page.left, page.bottom),
-        ];
-        let mut inks = vec![DrawCommand::Line {
-            points: corners.to_vec(),
-            closed: true,
-            width: 1.0,
-            dash: Dash::Solid,
-            color: palette::RULE,
-        }];
-        let drawing = self.drawing;
-        if let Some(legend) = self.legend {
-            inks.push(rule(px(drawing.left, drawing.bottom), px(drawing.right, drawing.bottom)));
-            inks.push(rule(px(page.centre().x, drawing.bottom), px(page.centre().x, page.bottom)));
-            inks.extend(fitted(self.title, frame, |text| title_rows(scene, text)));
-            inks.extend(fitted(legend, frame, |text| legend_rows(scene, shown, notes, text)));
+        let rule = |from: Px, to: Px| DrawCommand::line(from, to, palette::RULE);
+        let (page, drawing) = (self.page, self.drawing);
+        let mut commands = vec![DrawCommand::outline(page.corners(), palette::RULE)];
+        let title = |text: f64| title_rows(picture, text);
+        let legend = |text: f64| legend_rows(picture, shown, notes, text);
+        if let Some(column) = self.legend {
+            commands.push(rule(px(drawing.left, drawing.bottom), px(drawing.right, drawing.bottom)));
+            commands.push(rule(px(page.centre().x, drawing.bottom), px(page.centre().x, page.bottom)));
+            commands.extend(fitted(self.title, frame, title));
+            commands.extend(fitted(column, frame, legend));
         } else {
-            inks.push(rule(px(drawing.right, drawing.top), px(drawing.right, drawing.bottom)));
-            inks.extend(fitted(self.title, frame, |text| {
-                let mut rows = title_rows(scene, text);
-                rows.push(PanelRow::Rule);
-                rows.extend(legend_rows(scene, shown, notes, text));
-                rows
-            }));
+            commands.push(rule(px(drawing.right, drawing.top), px(drawing.right, drawing.bottom)));
+            let both =
+                |text: f64| title(text).into_iter().chain([PanelRow::Rule]).chain(legend(text)).collect();
+            commands.extend(fitted(self.title, frame, both));
         }
-        inks
+        commands
     }
 }
 
@@ -163,8 +145,8 @@ fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<PanelRow>) -> V
     inks
 }
 
-fn title_rows(scene: &Scene, text: f64) -> Vec<PanelRow> {
-    let title = &scene.title;
+fn title_rows(picture: &Picture, text: f64) -> Vec<PanelRow> {
+    let title = &picture.title;
     let line = |words: &str, size: f64, color: Rgb, important: bool| PanelRow::Text {
         text: words.to_owned(),
         size,
@@ -176,9 +158,7 @@ fn title_rows(scene: &Scene, text: f64) -> Vec<PanelRow> {
         line(&title.view, text, palette::SOFT_TEXT, true),
         PanelRow::Gap,
     ];
-    if let Some((standing, words)) = &title.verdict {
-        rows.push(PanelRow::Verdict(*standing, words.clone()));
-    }
+    rows.extend(title.verdict.clone().map(|(status, words)| PanelRow::Verdict(status, words)));
     rows.extend(title.position.map(PanelRow::Zone));
     rows.extend(title.lines.iter().enumerate().map(|(n, words)| line(words, text, palette::TEXT, n == 0)));
     if !title.caution.is_empty() {
@@ -187,168 +167,110 @@ fn title_rows(scene: &Scene, text: f64) -> Vec<PanelRow> {
     rows
 }
 
-fn legend_rows(scene: &Scene, shown: LegendUse, notes: &[String], text: f64) -> Vec<PanelRow> {
+fn legend_rows(picture: &Picture, shown: LegendUse, notes: &[String], text: f64) -> Vec<PanelRow> {
     let item = |item: &LegendItem| {
-        let words = match item.sample {
-            Sample::Deviation => format!("{} ×{}", item.text, plain(shown.magnification?)),
+        let sample = match item.sample {
             Sample::Direction if !shown.directions => return None,
             Sample::Displacement if !shown.displacements => return None,
-            Sample::Direction
-            | Sample::Displacement
-            | Sample::Pen(_)
-            | Sample::Status(_)
-            | Sample::Plain(_) => item.text.clone(),
-        };
-        let sample = match item.sample {
-            Sample::Status(standing) if shown.has_plain_good && standing.is_good() => Sample::Plain(standing),
-            Sample::Status(standing) if shown.has_plain_rest && !standing.is_good() => {
-                Sample::Plain(standing)
+            Sample::Deviation => {
+                let words = format!("{} ×{}", item.text, plain(shown.magnification?));
+                return Some(PanelRow::Sample(Sample::Deviation, words));
             }
+            Sample::Status(status) if shown.has_plain_good && status.is_good() => Sample::Plain(status),
+            Sample::Status(status) if shown.has_plain_rest && !status.is_good() => Sample::Plain(status),
             sample => sample,
         };
-        Some(PanelRow::Sample(sample, words))
+        Some(PanelRow::Sample(sample, item.text.clone()))
     };
-    let mut rows: Vec<PanelRow> = scene.legend.iter().filter_map(item).collect();
+    let mut rows: Vec<PanelRow> = picture.legend.iter().filter_map(item).collect();
     if !notes.is_empty() {
         rows.push(PanelRow::Rule);
     }
-    let note = |n: &String| PanelRow::Text {
-        text: n.clone(),
-        size: text,
-        color: palette::SOFT_TEXT,
-        important: true,
-    };
-    rows.extend(notes.iter().map(note));
+    let (size, color) = (text, palette::SOFT_TEXT);
+    rows.extend(notes.iter().map(|note| PanelRow::Text { text: note.clone(), size, color, important: true }));
     rows
 }
 
 /// Sets the rows below each other; returns the commands and the height.
 fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCommand>, f64) {
-    let mut inks = Vec::new();
+    let mut commands = Vec::new();
     let mut y = column.top;
-    let leading = 1.28;
-    let indent = 2.1 * text;
+    let write = |words: &str, at: Px, size: f64, color: Rgb, commands: &mut Vec<DrawCommand>| {
+        let lines = font.wrapped(words, size, column.right - at.x, MOST_LINES);
+        let count = lines.len();
+        for (n, line) in lines.into_iter().enumerate() {
+            let base = px(at.x, at.y + size * (ASCENT + LEADING * n as f64));
+            commands.push(DrawCommand::text(base, size, line, color));
+        }
+        LEADING * size * count as f64
+    };
     for row in rows {
+        let sign = px(column.left + 0.8 * text, y + 0.5 * text);
+        let left = px(column.left, y);
         match row {
             PanelRow::Gap => y += 0.5 * text,
             PanelRow::Rule => {
-                y += 0.45 * text;
-                inks.push(DrawCommand::line(
-                    px(column.left, y.round() + 0.5),
-                    px(column.right, y.round() + 0.5),
-                    1.0,
+                let level = (y + 0.45 * text).round() + 0.5;
+                commands.push(DrawCommand::line(
+                    px(column.left, level),
+                    px(column.right, level),
                     palette::RULE,
                 ));
-                y += 0.55 * text;
+                y += text;
             }
-            PanelRow::Dots => {
-                inks.push(DrawCommand::text(px(column.left, y + ASCENT * text), text, "…", palette::TEXT));
-                y += leading * text;
-            }
+            PanelRow::Dots => y += write("…", left, text, palette::TEXT, &mut commands),
             PanelRow::Text { text: words, size, color, .. } => {
-                for line in font.wrapped(words, *size, column.width(), MOST_LINES) {
-                    inks.push(DrawCommand::text(px(column.left, y + ASCENT * size), *size, line, *color));
-                    y += leading * size;
-                }
+                y += write(words, left, *size, *color, &mut commands);
             }
-            PanelRow::Zone(zone) => y += zone_frame(*zone, px(column.left, y), font, text, &mut inks),
-            PanelRow::Verdict(standing, words) => {
-                inks.extend(symbol::status_sign(
-                    *standing,
-                    px(column.left + 0.8 * text, y + 0.5 * text),
-                    0.62 * text,
-                ));
-                y += indented(words, px(column.left + indent, y), column.right, font, text, &mut inks);
-            }
-            PanelRow::Sample(sample, words) => {
-                inks.extend(sample_inks(*sample, px(column.left + 0.8 * text, y + 0.5 * text), text));
-                y += indented(words, px(column.left + indent, y), column.right, font, text, &mut inks);
+            PanelRow::Zone(zone) => y += zone_frame(*zone, left, font, text, &mut commands),
+            PanelRow::Verdict(_, words) | PanelRow::Sample(_, words) => {
+                commands.extend(match row {
+                    PanelRow::Verdict(status, _) => symbol::status_sign(*status, sign, 0.62 * text),
+                    PanelRow::Sample(sample, _) => sample_commands(*sample, sign, text),
+                    _ => Vec::new(),
+                });
+                let indented = px(column.left + 2.1 * text, y);
+                let height = write(words, indented, text, palette::TEXT, &mut commands);
+                y += height.max(LEADING * text);
             }
         }
     }
-    (inks, y - column.top)
+    (commands, y - column.top)
 }
 
-fn indented(words: &str, at: Px, right: f64, font: &Font, text: f64, inks: &mut Vec<DrawCommand>) -> f64 {
-    let lines = font.wrapped(words, text, right - at.x, MOST_LINES);
-    let height = 1.28 * text * lines.len().max(1) as f64;
-    for (n, line) in lines.into_iter().enumerate() {
-        inks.push(DrawCommand::text(
-            px(at.x, at.y + text * (ASCENT + 1.28 * n as f64)),
-            text,
-            line,
-            palette::TEXT,
-        ));
-    }
-    height
-}
-
-fn zone_frame(zone: f64, at: Px, font: &Font, text: f64, inks: &mut Vec<DrawCommand>) -> f64 {
+/// Draws the feature control frame; returns its height.
+fn zone_frame(zone: f64, at: Px, font: &Font, text: f64, commands: &mut Vec<DrawCommand>) -> f64 {
     let words = format!("Φ{}", plain(zone));
     let high = 1.7 * text;
-    let (first, second) = (1.9 * text, font.width(&words, text) + 0.8 * text);
-    let top = (at.y + 0.1 * text).round() + 0.5;
-    let left = at.x.round() + 0.5;
-    for (x, wide) in [(left, first), (left + first.round(), second)] {
-        let (right, bottom) = (x + wide.round(), top + high.round());
-        let points = vec![px(x, top), px(right, top), px(right, bottom), px(x, bottom)];
-        inks.push(DrawCommand::Line {
-            points,
-            closed: true,
-            width: 1.0,
-            dash: Dash::Solid,
-            color: palette::TEXT,
-        });
+    let (first, second) = ((1.9 * text).round(), (font.width(&words, text) + 0.8 * text).round());
+    let (left, top) = (at.x.round() + 0.5, (at.y + 0.1 * text).round() + 0.5);
+    for (x, wide) in [(left, first), (left + first, second)] {
+        let cell = Rect::new(x, top, wide, high.round());
+        commands.push(DrawCommand::outline(cell.corners(), Ink::solid(1.0, palette::TEXT)));
     }
-    let middle = px(left + first / 2.0, top + high / 2.0);
-    inks.extend(symbol::position(middle, 0.62 * text, (0.08 * text).max(1.0), palette::TEXT));
-    inks.push(DrawCommand::text(
-        px(left + first.round() + 0.4 * text, top + 1.18 * text),
-        text,
-        words,
-        palette::TEXT,
-    ));
+    let middle = px(left + 0.95 * text, top + high / 2.0);
+    commands.extend(symbol::position(middle, 0.62 * text, Ink::solid(0.08 * text, palette::TEXT)));
+    let base = px(left + first + 0.4 * text, top + 1.18 * text);
+    commands.push(DrawCommand::text(base, text, words, palette::TEXT));
     high + 0.45 * text
 }
 
-fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
+fn sample_commands(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
     let half = 0.8 * text;
     let (left, right) = (px(middle.x - half, middle.y), px(middle.x + half, middle.y));
     match sample {
-        Sample::Status(standing) => symbol::status_sign(standing, middle, 0.5 * text),
-        Sample::Plain(standing) => symbol::hole(standing, middle, 0.4 * text, [0.0, 1.0], 1.0),
-        Sample::Pen(pen) => {
-            let (color, width, dash) = palette::pen(pen, text);
-            vec![DrawCommand::Line {
-                points: vec![left, right],
-                closed: false,
-                width: width.max(1.0),
-                dash,
-                color,
-            }]
-        }
-        Sample::Direction => symbol::arrow(left, right, (0.08 * text).max(1.0), 0.5 * text, palette::TEXT),
-        Sample::Displacement => {
-            let (width, dash) = ((0.06 * text).max(1.0), Dash::Pattern([0.15 * text, 0.2 * text]));
-            let color = palette::TEXT;
-            vec![
-                DrawCommand::Line { points: vec![left, right], closed: false, width, dash, color },
-                DrawCommand::Ring { centre: right, radius: 0.3 * text, width, dash: Dash::Solid, color },
-            ]
-        }
+        Sample::Status(status) => symbol::status_sign(status, middle, 0.5 * text),
+        Sample::Plain(status) => symbol::hole(status, middle, 0.4 * text, [0.0, 1.0], 1.0),
+        Sample::Pen(pen) => vec![DrawCommand::line(left, right, palette::pen(pen, text))],
+        Sample::Direction => symbol::arrow(left, right, Ink::solid(0.08 * text, palette::TEXT), 0.5 * text),
+        Sample::Displacement => displacement_commands(left, right, 0.3 * text, text).into(),
         Sample::Deviation => {
-            let thin = (0.06 * text).max(1.0);
             let end = px(middle.x + 0.3 * text, middle.y - 0.2 * text);
             let color = palette::status_colour(HoleStatus::Good);
+            let circle = palette::thin(text, palette::THIN);
             vec![
-                DrawCommand::Ring {
-                    centre: middle,
-                    radius: 0.62 * text,
-                    width: thin,
-                    dash: Dash::Solid,
-                    color: palette::THIN,
-                },
-                DrawCommand::line(middle, end, (0.13 * text).max(1.5), color),
+                DrawCommand::Ring { centre: middle, radius: 0.62 * text, ink: circle },
+                DrawCommand::line(middle, end, Ink::solid((0.13 * text).max(1.5), color)),
                 DrawCommand::Disc { centre: end, radius: (0.17 * text).max(1.8), color },
             ]
         }

@@ -1,65 +1,53 @@
-//! Paints a sheet to pixels with tiny-skia and encodes pixels as PNG; makes no layout decision.
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder as _};
+//! Paints a sheet to pixels with tiny-skia, and writes and reads PNG; makes no layout decision.
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,
 };
 
 use super::PictureError;
 use super::font::Font;
-use super::ink::{Align, Dash, DrawCommand, Px, Rgb};
+use super::ink::{DrawCommand, Ink, Px, Rgb};
 use super::palette;
 use super::sheet::Sheet;
 
 /// Paints a sheet: an opaque picture of exactly its size.
 pub fn paint(sheet: &Sheet) -> Pixmap {
-    let (width, height) = (sheet.size.width(), sheet.size.height());
-    let mut pixmap = Pixmap::new(width, height).expect("a Size is neither empty nor too large");
+    let (width, height) = (sheet.page.width().ceil() as u32, sheet.page.height().ceil() as u32);
+    let mut pixmap = Pixmap::new(width, height).expect("a sheet is neither empty nor too large");
     let Rgb(r, g, b) = palette::PAPER;
     pixmap.fill(tiny_skia::Color::from_rgba8(r, g, b, 255));
     let font = Font::embedded();
-    for ink in &sheet.commands {
-        put(&mut pixmap, &font, ink);
+    for command in &sheet.commands {
+        put(&mut pixmap, &font, command);
     }
     pixmap
 }
 
-/// Encodes a PNG file: 8-bit RGB, no time stamp, the same bytes for the same pixels.
+/// Encodes a PNG file: 8-bit RGB, no time stamp, the same bytes for the same pixels. Line drawings compress
+/// best without a filter.
 ///
 /// # Errors
 /// [`PictureError::Encode`] if the PNG encoder fails.
 pub fn png(pixmap: &Pixmap) -> Result<Vec<u8>, PictureError> {
     let rgb: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|p| p[..3].iter().copied()).collect();
-    encode(&rgb, pixmap.width(), pixmap.height())
-}
-
-/// Encodes rows of 8-bit RGB as a PNG file. Line drawings compress best without a filter.
-pub(super) fn encode(rgb: &[u8], width: u32, height: u32) -> Result<Vec<u8>, PictureError> {
     let mut bytes = Vec::new();
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::NoFilter)
-        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
-        .map_err(|error| PictureError::Encode(error.to_string()))?;
+    let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
+    encoder.set_filter(png::Filter::NoFilter);
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&rgb));
+    written.map_err(|error| PictureError::Encode(error.to_string()))?;
     Ok(bytes)
 }
 
-fn put(pixmap: &mut Pixmap, font: &Font, ink: &DrawCommand) {
-    match ink {
-        DrawCommand::Line { points, closed, width, dash, color } => {
-            stroke(pixmap, polygon(points, *closed), *width, *dash, *color);
-        }
+fn put(pixmap: &mut Pixmap, font: &Font, command: &DrawCommand) {
+    match command {
+        DrawCommand::Line { points, closed, ink } => stroke(pixmap, polygon(points, *closed), *ink),
         DrawCommand::Area { points, color } => fill(pixmap, polygon(points, true), *color),
-        DrawCommand::Ring { centre, radius, width, dash, color } => {
-            stroke(pixmap, circle(*centre, *radius), *width, *dash, *color);
-        }
+        DrawCommand::Ring { centre, radius, ink } => stroke(pixmap, circle(*centre, *radius), *ink),
         DrawCommand::Disc { centre, radius, color } => fill(pixmap, circle(*centre, *radius), *color),
         DrawCommand::Text { at, align, size, text, color } => {
-            let left = match align {
-                Align::Left => at.x,
-                Align::Centre => at.x - font.width(text, *size) / 2.0,
-                Align::Right => at.x - font.width(text, *size),
-            };
             // A base line on whole pixels keeps small text sharp.
-            let at = Px { x: left, y: at.y.round() };
+            let at = Px { x: at.x - align.part() * font.width(text, *size), y: at.y.round() };
             font.cover(text, *size, at, |x, y, coverage| blend(pixmap, x, y, coverage, *color));
         }
     }
@@ -84,30 +72,23 @@ fn circle(centre: Px, radius: f64) -> Option<Path> {
 
 fn fill(pixmap: &mut Pixmap, path: Option<Path>, color: Rgb) {
     let Some(path) = path else { return };
-    pixmap.fill_path(&path, &ink(color), FillRule::Winding, Transform::identity(), None);
+    pixmap.fill_path(&path, &paint_of(color), FillRule::Winding, Transform::identity(), None);
 }
 
-fn stroke(pixmap: &mut Pixmap, path: Option<Path>, width: f64, dash: Dash, color: Rgb) {
+/// Strokes a path; a line thinner than a pixel would fade.
+fn stroke(pixmap: &mut Pixmap, path: Option<Path>, Ink { color, width, dash }: Ink) {
     let Some(path) = path else { return };
-    let pattern = match dash {
-        Dash::Solid => None,
-        Dash::Pattern([on, off]) => Some(vec![on as f32, off as f32]),
-        Dash::Chain(unit) => {
-            Some([2.4 * unit, 0.4 * unit, 0.3 * unit, 0.4 * unit].map(|v| v as f32).to_vec())
-        }
-    };
-    let cap = if pattern.is_none() { LineCap::Round } else { LineCap::Butt };
     let stroke = Stroke {
-        width: width as f32,
-        line_cap: cap,
+        width: width.max(1.0) as f32,
+        line_cap: if dash.is_none() { LineCap::Round } else { LineCap::Butt },
         line_join: LineJoin::Round,
-        dash: pattern.and_then(|array| StrokeDash::new(array, 0.0)),
+        dash: dash.and_then(|pattern| StrokeDash::new(pattern.map(|length| length as f32).to_vec(), 0.0)),
         ..Stroke::default()
     };
-    pixmap.stroke_path(&path, &ink(color), &stroke, Transform::identity(), None);
+    pixmap.stroke_path(&path, &paint_of(color), &stroke, Transform::identity(), None);
 }
 
-fn ink(Rgb(r, g, b): Rgb) -> Paint<'static> {
+fn paint_of(Rgb(r, g, b): Rgb) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color_rgba8(r, g, b, 255);
     paint

@@ -2,6 +2,7 @@
 use std::str::FromStr;
 
 use super::PictureError;
+use super::ink::Rect;
 
 /// Width and height of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,22 +23,17 @@ impl Size {
     /// [`PictureError::TooSmall`] below 480x360 (or 360x480), [`PictureError::TooLarge`] beyond 8192 a side.
     pub fn new(width: u32, height: u32) -> Result<Self, PictureError> {
         if width.max(height) < MIN_SIZE.0 || width.min(height) < MIN_SIZE.1 {
-            return Err(PictureError::TooSmall { width, height, least: "480x360" });
+            return Err(PictureError::TooSmall(width, height));
         }
         if width.max(height) > MAX_SIDE {
-            return Err(PictureError::TooLarge { width, height, most: MAX_SIDE });
+            return Err(PictureError::TooLarge(width, height));
         }
         Ok(Self { width, height })
     }
 
-    /// Returns the width in pixels.
-    pub(super) fn width(self) -> u32 {
-        self.width
-    }
-
-    /// Returns the height in pixels.
-    pub(super) fn height(self) -> u32 {
-        self.height
+    /// Returns the rectangle of the page, pixels.
+    pub(super) fn page(self) -> Rect {
+        Rect::new(0.0, 0.0, f64::from(self.width), f64::from(self.height))
     }
 
     /// Returns the height of ordinary text in pixels: it grows with the picture and stays legible.
@@ -70,8 +66,7 @@ mod tests {
 
     #[test]
     fn a_size_is_width_by_height() {
-        let size: Size = "800x600".parse().unwrap();
-        assert_eq!((size.width(), size.height()), (800, 600));
+        assert_eq!("800x600".parse::<Size>().unwrap(), Size { width: 800, height: 600 });
         assert_eq!("1600x1200".parse::<Size>().unwrap(), Size::default());
     }
 
@@ -80,9 +75,9 @@ mod tests {
         for text in ["800", "800x", "x600", "-1x5", "800x600x3", "8e2x600", ""] {
             assert!(matches!(text.parse::<Size>(), Err(PictureError::NoSize(_))), "{text}");
         }
-        assert!(matches!("479x360".parse::<Size>(), Err(PictureError::TooSmall { .. })));
-        assert!(matches!("480x359".parse::<Size>(), Err(PictureError::TooSmall { .. })));
+        assert!(matches!("479x360".parse::<Size>(), Err(PictureError::TooSmall(..))));
+        assert!(matches!("480x359".parse::<Size>(), Err(PictureError::TooSmall(..))));
         assert!("360x480".parse::<Size>().is_ok());
-        assert!(matches!("9000x600".parse::<Size>(), Err(PictureError::TooLarge { .. })));
+        assert!(matches!("9000x600".parse::<Size>(), Err(PictureError::TooLarge(..))));
     }
 }

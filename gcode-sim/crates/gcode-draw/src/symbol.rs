@@ -1,70 +1,49 @@
 //! Symbols as paths: status symbols that are distinct without colour, arrows, the position symbol.
-use super::ink::{Dash, DrawCommand, Px, Rgb, px};
+use super::ink::{DrawCommand, Ink, Px, Rgb, px};
 use super::palette;
-use super::role::HoleStatus;
+use super::scene::HoleStatus;
 use gcode_lang::units::Deg;
 
 /// Draws the symbol of a status, `radius` pixels large. Each differs from the others in outline and mark: ✓
 /// in a disc, ✗ in a square, an empty dashed ring, + in a triangle, a dot in a ring.
-pub(super) fn status_sign(standing: HoleStatus, at: Px, radius: f64) -> Vec<DrawCommand> {
-    let color = palette::status_colour(standing);
-    let stroke = (radius * 0.3).max(1.2);
-    match standing {
-        _ if radius < DOT => hole(standing, at, radius, [0.0, 1.0], 1.0),
-        HoleStatus::Good => vec![
-            DrawCommand::Disc { centre: at, radius, color },
-            path(at, radius, &[[-0.5, 0.02], [-0.14, 0.42], [0.52, -0.4]], stroke, palette::PAPER),
-        ],
-        HoleStatus::Bad => {
-            let s = radius * 0.95;
-            let corners = [[-s, -s], [s, -s], [s, s], [-s, s]].map(|[x, y]| px(at.x + x, at.y + y));
-            vec![
-                DrawCommand::Area { points: corners.to_vec(), color },
-                path(at, radius, &[[-0.45, -0.45], [0.45, 0.45]], stroke, palette::PAPER),
-                path(at, radius, &[[-0.45, 0.45], [0.45, -0.45]], stroke, palette::PAPER),
-            ]
+pub(super) fn status_sign(status: HoleStatus, at: Px, radius: f64) -> Vec<DrawCommand> {
+    let color = palette::status_colour(status);
+    let disc = |radius: f64, color: Rgb| DrawCommand::Disc { centre: at, radius, color };
+    let path = |points: &[[f64; 2]], ink: Ink| path(at, radius, points, ink);
+    let cut = Ink::solid((radius * 0.3).max(1.2), palette::PAPER);
+    match status {
+        _ if radius < DOT => hole(status, at, radius, [0.0, 1.0], 1.0),
+        HoleStatus::Good => {
+            vec![disc(radius, color), path(&[[-0.5, 0.02], [-0.14, 0.42], [0.52, -0.4]], cut)]
         }
+        HoleStatus::Bad => vec![
+            area(at, radius, &[[-0.95, -0.95], [0.95, -0.95], [0.95, 0.95], [-0.95, 0.95]], color),
+            path(&[[-0.45, -0.45], [0.45, 0.45]], cut),
+            path(&[[-0.45, 0.45], [0.45, -0.45]], cut),
+        ],
         HoleStatus::Missing => {
             let width = (radius * 0.3).max(1.5);
             let inner = radius * 1.1 - width / 2.0;
             let eighth = inner * std::f64::consts::TAU / 8.0;
-            let dash = Dash::Pattern([eighth * 0.62, eighth * 0.38]);
-            vec![
-                DrawCommand::Disc { centre: at, radius, color: palette::PAPER },
-                DrawCommand::Ring { centre: at, radius: inner, width, dash, color },
-            ]
+            let ink = Ink::dashed(width, color, [eighth * 0.62, eighth * 0.38]);
+            vec![disc(radius, palette::PAPER), DrawCommand::Ring { centre: at, radius: inner, ink }]
         }
         HoleStatus::Extra => {
             let corners = [[0.0, -1.15], [1.1, 0.8], [-1.1, 0.8]];
-            let points: Vec<_> =
-                corners.iter().map(|[x, y]| px(at.x + x * radius, at.y + y * radius)).collect();
-            let width = (radius * 0.18).max(1.0);
-            let edge = DrawCommand::Line {
-                points: points.clone(),
-                closed: true,
-                width,
-                dash: Dash::Solid,
-                color: palette::TEXT,
-            };
+            let ink = Ink::solid(radius * 0.18, palette::TEXT);
             vec![
-                DrawCommand::Area { points, color },
-                edge,
-                path(at, radius, &[[-0.4, 0.2], [0.4, 0.2]], width, palette::TEXT),
-                path(at, radius, &[[0.0, -0.2], [0.0, 0.6]], width, palette::TEXT),
+                area(at, radius, &corners, color),
+                DrawCommand::outline(points(at, radius, &corners), ink),
+                path(&[[-0.4, 0.2], [0.4, 0.2]], ink),
+                path(&[[0.0, -0.2], [0.0, 0.6]], ink),
             ]
         }
         HoleStatus::Unjudged => {
-            let width = (radius * 0.22).max(1.2);
+            let ink = Ink::solid((radius * 0.22).max(1.2), color);
             vec![
-                DrawCommand::Disc { centre: at, radius, color: palette::PAPER },
-                DrawCommand::Ring {
-                    centre: at,
-                    radius: radius - width / 2.0,
-                    width,
-                    dash: Dash::Solid,
-                    color,
-                },
-                DrawCommand::Disc { centre: at, radius: radius * 0.25, color },
+                disc(radius, palette::PAPER),
+                DrawCommand::Ring { centre: at, radius: radius - ink.width / 2.0, ink },
+                disc(radius * 0.25, color),
             ]
         }
     }
@@ -78,50 +57,53 @@ pub(super) const LEAST_HOLE: f64 = 1.2;
 
 /// Draws a hole to scale without a mark: a disc, a square, a ring, a triangle. `flat` is the ratio of its
 /// height along `along` to its width, below 1 for a tilted hole.
-pub(super) fn hole(
-    standing: HoleStatus,
-    at: Px,
-    radius: f64,
-    along: [f64; 2],
-    flat: f64,
-) -> Vec<DrawCommand> {
+pub(super) fn hole(status: HoleStatus, at: Px, radius: f64, along: [f64; 2], flat: f64) -> Vec<DrawCommand> {
     let low = (flat * radius).max(0.4 * LEAST_HOLE);
     let seen = |[x, y]: [f64; 2]| at.toward(along, low * y).toward([along[1], -along[0]], radius * x);
-    let round = || (0..24u8).map(|n| Deg(15.0 * f64::from(n))).map(|turn| [turn.cos(), turn.sin()]).map(seen);
-    let color = palette::status_colour(standing);
-    match standing {
-        HoleStatus::Good => vec![DrawCommand::Area { points: round().collect(), color }],
-        HoleStatus::Bad => {
-            let corners = [[-0.95, -0.95], [0.95, -0.95], [0.95, 0.95], [-0.95, 0.95]];
-            vec![DrawCommand::Area { points: corners.map(seen).to_vec(), color }]
-        }
-        HoleStatus::Extra => {
-            let corners = [[0.0, -1.4], [1.3, 0.9], [-1.3, 0.9]];
-            vec![DrawCommand::Area { points: corners.map(seen).to_vec(), color }]
-        }
-        HoleStatus::Missing | HoleStatus::Unjudged => {
-            let points = round().collect();
-            vec![DrawCommand::Line { points, closed: true, width: 1.0, dash: Dash::Solid, color }]
-        }
-    }
+    let round = || (0..24u8).map(|n| Deg(15.0 * f64::from(n))).map(|turn| [turn.cos(), turn.sin()]).collect();
+    let corners: Vec<[f64; 2]> = match status {
+        HoleStatus::Good | HoleStatus::Missing | HoleStatus::Unjudged => round(),
+        HoleStatus::Bad => vec![[-0.95, -0.95], [0.95, -0.95], [0.95, 0.95], [-0.95, 0.95]],
+        HoleStatus::Extra => vec![[0.0, -1.4], [1.3, 0.9], [-1.3, 0.9]],
+    };
+    let (points, color) = (corners.into_iter().map(seen).collect(), palette::status_colour(status));
+    vec![match status {
+        HoleStatus::Missing | HoleStatus::Unjudged => DrawCommand::outline(points, Ink::solid(1.0, color)),
+        HoleStatus::Good | HoleStatus::Bad | HoleStatus::Extra => DrawCommand::Area { points, color },
+    }]
 }
 
 /// Draws a line with a head at its end.
-pub(super) fn arrow(from: Px, to: Px, width: f64, head: f64, color: Rgb) -> Vec<DrawCommand> {
+pub(super) fn arrow(from: Px, to: Px, ink: Ink, head: f64) -> Vec<DrawCommand> {
     let length = from.distance(to).max(1e-9);
     let along = [(to.x - from.x) / length, (to.y - from.y) / length];
     let across = [-along[1], along[0]];
     let neck = to.toward(along, -head);
     let points = vec![to, neck.toward(across, head * 0.36), neck.toward(across, -head * 0.36)];
-    vec![DrawCommand::line(from, neck, width, color), DrawCommand::Area { points, color }]
+    vec![DrawCommand::line(from, neck, ink), DrawCommand::Area { points, color: ink.color }]
 }
 
 /// Draws ⌖ of ISO 1101: a circle with crosshairs that reach beyond it.
-pub(super) fn position(at: Px, radius: f64, width: f64, color: Rgb) -> Vec<DrawCommand> {
+pub(super) fn position(at: Px, radius: f64, ink: Ink) -> Vec<DrawCommand> {
     vec![
-        DrawCommand::Ring { centre: at, radius: radius * 0.62, width, dash: Dash::Solid, color },
-        path(at, radius, &[[-1.0, 0.0], [1.0, 0.0]], width, color),
-        path(at, radius, &[[0.0, -1.0], [0.0, 1.0]], width, color),
+        DrawCommand::Ring { centre: at, radius: radius * 0.62, ink },
+        path(at, radius, &[[-1.0, 0.0], [1.0, 0.0]], ink),
+        path(at, radius, &[[0.0, -1.0], [0.0, 1.0]], ink),
+    ]
+}
+
+/// Draws the symbol of a zero point: a circle whose upper right and lower left quarters are black.
+pub(super) fn zero(at: Px, radius: f64, ink: Ink) -> Vec<DrawCommand> {
+    let quarter = |from: f64| {
+        let rim = (0..=12).map(|n| direction(Deg(from + 7.5 * f64::from(n))));
+        let points = std::iter::once(at).chain(rim.map(|out| at.toward(out, radius))).collect();
+        DrawCommand::Area { points, color: ink.color }
+    };
+    vec![
+        DrawCommand::Disc { centre: at, radius, color: palette::PAPER },
+        DrawCommand::Ring { centre: at, radius, ink },
+        quarter(0.0),
+        quarter(180.0),
     ]
 }
 
@@ -130,9 +112,17 @@ pub(super) fn direction(angle: Deg) -> [f64; 2] {
     [angle.cos(), -angle.sin()]
 }
 
-fn path(at: Px, radius: f64, points: &[[f64; 2]], width: f64, color: Rgb) -> DrawCommand {
-    let points = points.iter().map(|[x, y]| px(at.x + x * radius, at.y + y * radius)).collect();
-    DrawCommand::Line { points, closed: false, width, dash: Dash::Solid, color }
+/// Returns points given in parts of a symbol's radius.
+fn points(at: Px, radius: f64, points: &[[f64; 2]]) -> Vec<Px> {
+    points.iter().map(|[x, y]| px(at.x + x * radius, at.y + y * radius)).collect()
+}
+
+fn path(at: Px, radius: f64, corners: &[[f64; 2]], ink: Ink) -> DrawCommand {
+    DrawCommand::path(points(at, radius, corners), ink)
+}
+
+fn area(at: Px, radius: f64, corners: &[[f64; 2]], color: Rgb) -> DrawCommand {
+    DrawCommand::Area { points: points(at, radius, corners), color }
 }
 
 #[cfg(test)]
@@ -140,12 +130,12 @@ mod tests {
     use super::*;
 
     /// Describes a symbol without colours, as in a photocopy: kinds of command and number of points.
-    fn shape(of: HoleStatus) -> Vec<String> {
-        let inks = status_sign(of, px(0.0, 0.0), 10.0);
-        let kinds = inks.iter().map(|ink| match ink {
-            DrawCommand::Line { points, dash, .. } => format!("line {} {dash:?}", points.len()),
+    fn shape(of: HoleStatus, radius: f64) -> Vec<String> {
+        let commands = status_sign(of, px(0.0, 0.0), radius);
+        let kinds = commands.iter().map(|command| match command {
+            DrawCommand::Line { points, ink, .. } => format!("line {} {:?}", points.len(), ink.dash),
             DrawCommand::Area { points, .. } => format!("area {}", points.len()),
-            DrawCommand::Ring { dash, .. } => format!("ring {dash:?}"),
+            DrawCommand::Ring { ink, .. } => format!("ring {:?}", ink.dash),
             DrawCommand::Disc { radius, .. } => format!("disc {radius}"),
             DrawCommand::Text { text, .. } => format!("text {text}"),
         });
@@ -153,23 +143,15 @@ mod tests {
     }
 
     #[test]
-    fn dots_differ_by_more_than_colour_too() {
-        let dots = [HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra];
-        let kinds = dots.map(|of| {
-            format!("{:?}", status_sign(of, px(0.0, 0.0), 2.0)).split("color").next().map(str::to_owned)
-        });
-        for (i, a) in kinds.iter().enumerate() {
-            assert!(kinds[i + 1..].iter().all(|b| a != b), "{a:?}");
-        }
-    }
-
-    #[test]
-    fn verdicts_differ_by_more_than_colour() {
-        let all =
-            [HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra, HoleStatus::Unjudged];
-        for (i, a) in all.iter().enumerate() {
-            for b in &all[i + 1..] {
-                assert_ne!(shape(*a), shape(*b), "{a:?} {b:?}");
+    fn statuses_differ_by_more_than_colour_as_symbols_and_as_dots() {
+        use HoleStatus::{Bad, Extra, Good, Missing, Unjudged};
+        for (all, radius) in
+            [(&[Good, Bad, Missing, Extra, Unjudged][..], 10.0), (&[Good, Bad, Missing, Extra], 2.0)]
+        {
+            for (i, a) in all.iter().enumerate() {
+                for b in &all[i + 1..] {
+                    assert_ne!(shape(*a, radius), shape(*b, radius), "{a:?} {b:?}");
+                }
             }
         }
     }

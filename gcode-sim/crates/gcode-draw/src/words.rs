@@ -1,19 +1,21 @@
 //! Texts of a chart, each with its box: title, notes, names and numbers.
 use super::font::Font;
-use super::ink::{Align, DrawCommand, Px, Rect, Rgb, px};
+use super::ink::{DrawCommand, Px, Rect, Rgb, px};
 use super::palette;
+use super::scene::Align;
+use super::sheet::Sheet;
+use super::size::Size;
 
 pub(super) struct Words<'f> {
     pub(super) font: &'f Font,
     /// Height of ordinary text, pixels.
     pub(super) text_size: f64,
-    pub(super) commands: Vec<DrawCommand>,
-    pub(super) labels: Vec<(Rect, Vec<String>)>,
+    pub(super) sheet: Sheet,
 }
 
 impl<'f> Words<'f> {
-    pub(super) fn new(font: &'f Font, text: f64) -> Self {
-        Self { font, text_size: text, commands: Vec::new(), labels: Vec::new() }
+    pub(super) fn new(font: &'f Font, text_size: f64, size: Size) -> Self {
+        Self { font, text_size, sheet: Sheet::empty(size.page()) }
     }
 
     /// Writes a larger title and a line for each note from the page's top; returns the last base line.
@@ -31,7 +33,7 @@ impl<'f> Words<'f> {
     /// Writes a text on the base line through `at` unless it would cover another.
     pub(super) fn write_if_free(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str) {
         let place = self.place(at, align, size, words);
-        if self.labels.iter().all(|(other, _)| !other.overlaps(&place)) {
+        if self.sheet.labels.iter().all(|(other, _)| !other.overlaps(&place)) {
             self.write(at, align, size, color, words, f64::INFINITY);
         }
     }
@@ -40,18 +42,13 @@ impl<'f> Words<'f> {
     pub(super) fn write(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str, width: f64) {
         let words = self.font.fitted(words, size, width);
         let place = self.place(at, align, size, &words);
-        self.labels.push((place, vec![words.clone()]));
-        self.commands.push(DrawCommand::Text { at, align, size, text: words, color });
+        self.sheet.labels.push((place, vec![words.clone()]));
+        self.sheet.commands.push(DrawCommand::Text { at, align, size, text: words, color });
     }
 
     /// Returns the box of a text on the base line through `at`.
     pub(super) fn place(&self, at: Px, align: Align, size: f64, words: &str) -> Rect {
         let wide = self.font.width(words, size);
-        let part = match align {
-            Align::Left => 0.0,
-            Align::Centre => 0.5,
-            Align::Right => 1.0,
-        };
-        Rect::new(at.x - part * wide, at.y - size, wide, 1.2 * size)
+        Rect::new(at.x - align.part() * wide, at.y - size, wide, 1.2 * size)
     }
 }

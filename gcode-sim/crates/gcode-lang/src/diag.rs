@@ -207,6 +207,20 @@ impl Diagnostic {
         self
     }
 
+    /// Sets the exact part of the block.
+    #[must_use]
+    pub fn with_span(mut self, span: Span) -> Self {
+        self.span = Some(span);
+        self
+    }
+
+    /// Appends a secondary place with its caption.
+    #[must_use]
+    pub fn label(mut self, span: Span, caption: impl Into<String>) -> Self {
+        self.labels.push((span, caption.into()));
+        self
+    }
+
     /// Appends points on the part.
     #[must_use]
     pub fn with_sites(mut self, sites: impl IntoIterator<Item = Site>) -> Self {

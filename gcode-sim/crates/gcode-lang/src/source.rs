@@ -227,18 +227,14 @@ impl Sources {
 mod tests {
     use super::*;
 
-    fn starts(text: &[u8]) -> Vec<u32> {
-        line_starts(text)
-    }
-
     #[test]
     fn every_kind_of_line_end_counts_once() {
-        assert_eq!(starts(b"a\nb\nc"), [0, 2, 4]);
-        assert_eq!(starts(b"a\r\nb\r\nc"), [0, 3, 6]);
-        assert_eq!(starts(b"a\rb\rc"), [0, 2, 4]);
-        assert_eq!(starts(b"a\n\r\rb\n\r\rc"), [0, 4, 8]);
-        assert_eq!(starts(b"a\r\n\r\nb"), [0, 3, 5], "an empty line between CR LF pairs is a line");
-        assert_eq!(starts(b"a\r\rb"), [0, 2, 3], "CRs without a LF end a line each");
+        assert_eq!(line_starts(b"a\nb\nc"), [0, 2, 4]);
+        assert_eq!(line_starts(b"a\r\nb\r\nc"), [0, 3, 6]);
+        assert_eq!(line_starts(b"a\rb\rc"), [0, 2, 4]);
+        assert_eq!(line_starts(b"a\n\r\rb\n\r\rc"), [0, 4, 8]);
+        assert_eq!(line_starts(b"a\r\n\r\nb"), [0, 3, 5], "an empty line between CR LF pairs is a line");
+        assert_eq!(line_starts(b"a\r\rb"), [0, 2, 3], "CRs without a LF end a line each");
     }
 
     #[test]

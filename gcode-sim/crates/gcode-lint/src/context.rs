@@ -1,12 +1,13 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
+use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
-use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
+use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::Backtrace;
-use gcode_lang::program::{CallCode, Memory, Op, OpIndex, OpKind, Program, ProgramId};
-use gcode_lang::source::{SourceId, Span};
-use gcode_lang::syntax::{self, ast};
+use gcode_lang::program::{CallCode, Memory, Op, OpIndex, OpKind, Program, ProgramId, Statement, Words};
+use gcode_lang::source::Spanned;
+use gcode_lang::syntax::ast;
 
 use super::calls::{self, CallSite};
 use super::control_flow::ControlFlowGraph;
@@ -58,27 +59,11 @@ impl<'a> CheckContext<'a> {
         programs: &[ProgramId],
         rules: Vec<&'static str>,
     ) -> Self {
-        let places = programs.iter().enumerate().map(|(unit, id)| (*id, unit)).collect();
-        let mut trees = trees(memory, programs);
-        let units = programs
-            .iter()
-            .map(|id| {
-                let program = memory.get(*id);
-                ProgramUnit {
-                    blocks: trees.remove(id).unwrap_or_default(),
-                    flow: ControlFlowGraph::new(program),
-                    calls: calls::call_sites(program, settings),
-                    callers: Vec::new(),
-                    entry_blocks: vec![0],
-                    is_reached: Vec::new(),
-                    role: Role::Main,
-                    program,
-                }
-            })
-            .collect();
-        let mut subject = Self { memory, settings, units, rules, unit_indices: places };
-        subject.link_calls();
-        subject
+        let unit_indices = programs.iter().enumerate().map(|(unit, id)| (*id, unit)).collect();
+        let units = programs.iter().map(|id| ProgramUnit::new(memory.get(*id), settings)).collect();
+        let mut context = Self { memory, settings, units, rules, unit_indices };
+        context.link_calls();
+        context
     }
 
     /// Links callers and called programs, adds the return targets of calls and computes reachability.
@@ -88,35 +73,65 @@ impl<'a> CheckContext<'a> {
                 let call = &self.units[caller].calls[site];
                 let block = call.block;
                 // M98 Q alone starts in the same program.
-                let own = call.target == calls::CalledProgramName::Missing && call.start.is_some();
-                let Some(called) = self.called_unit(call).or(own.then_some(caller)) else {
-                    self.units[caller].flow.add_return_anywhere(block);
+                let is_own = call.target == calls::CalledProgramName::Missing && call.start.is_some();
+                let Some(called) = self.called_unit(call).or(is_own.then_some(caller)) else {
+                    self.units[caller].flow.block_successors[block].jumps_anywhere = true;
                     continue;
                 };
-                if let Some(number) = call.start {
-                    let start = self.units[called].program.find_number(number, 0);
-                    self.units[called].entry_blocks.extend(start);
+                let (program, start) = (self.units[caller].program, call.start);
+                let unit = &mut self.units[called];
+                unit.entry_blocks.extend(start.and_then(|number| unit.program.find_number(number, 0)));
+                if !is_own {
+                    unit.callers.push((caller, site));
                 }
-                let returns = &self.units[called].flow;
-                let anywhere =
-                    returns.block_successors.iter().any(|ways| ways.is_exit && ways.jumps_anywhere);
-                let numbers: Vec<u32> =
-                    returns.jumps.iter().filter(|jump| jump.is_return).map(|jump| jump.number).collect();
-                let to: Vec<_> =
-                    numbers.iter().filter_map(|n| self.units[caller].program.find_number(*n, 0)).collect();
-                if !own {
-                    self.units[called].callers.push((caller, site));
-                }
-                self.units[caller].flow.add_return_targets(block, to);
-                if anywhere {
-                    self.units[caller].flow.add_return_anywhere(block);
-                }
+                let exits_anywhere =
+                    unit.flow.block_successors.iter().any(|found| found.is_exit && found.jumps_anywhere);
+                let returns = unit.flow.jumps.iter().filter(|jump| jump.is_return);
+                let targets: Vec<_> =
+                    returns.filter_map(|jump| program.find_number(jump.number, 0)).collect();
+                let successors = &mut self.units[caller].flow.block_successors[block];
+                successors.jumps.extend(targets);
+                successors.jumps_anywhere |= exits_anywhere;
             }
         }
         for unit in &mut self.units {
             unit.role = unit.determine_role();
             unit.is_reached = unit.flow.reachable(unit.entry_blocks.iter().copied());
         }
+    }
+
+    /// Returns the findings for the alarms that a rule selects among those of reading.
+    ///
+    /// The reachable blocks raise them as they are read: for unreadable text, and for syntax that this control
+    /// refuses.
+    pub(crate) fn reading_findings(
+        &self,
+        unit: &ProgramUnit<'_>,
+        kind: &'static FindingKind,
+        selects: impl Fn(&Alarm) -> bool,
+    ) -> Vec<Diagnostic> {
+        let written =
+            unit.reached_ops().filter_map(|(block, op)| Some((block, written_alarm(op.kind())?.clone())));
+        let refused = unit.reached_ops().filter_map(|(block, op)| {
+            let form = op.dialect_syntax().iter().find(|form| !form.node.is_accepted(self.settings))?;
+            Some((block, form.node.alarm().located_at(form.span)))
+        });
+        let selected = written.chain(refused).filter(|(_, alarm)| selects(&alarm.node));
+        selected.map(|(block, alarm)| self.alarm_finding(unit, kind, block, &alarm)).collect()
+    }
+
+    /// Converts an alarm to a finding with its number, sentence and remedy.
+    pub(crate) fn alarm_finding(
+        &self,
+        unit: &ProgramUnit<'_>,
+        kind: &'static FindingKind,
+        block: OpIndex,
+        alarm: &Spanned<Alarm>,
+    ) -> Diagnostic {
+        let row = alarm.node.row();
+        let help = remedy(&alarm.node, alarm.span, self.memory.sources());
+        let finding = unit.finding(kind, block, format!("{}: {}", row.code, row.message));
+        Diagnostic { help, ..finding.with_span(alarm.span) }
     }
 
     /// Returns the index of the called program if it is under check.
@@ -126,35 +141,43 @@ impl<'a> CheckContext<'a> {
     }
 }
 
-/// Returns the trees of programs, read again from their texts, because lowering does not keep them.
-fn trees(memory: &Memory, programs: &[ProgramId]) -> BTreeMap<ProgramId, Vec<ast::Block>> {
-    let programs: BTreeSet<_> = programs.iter().collect();
-    let mut ids: BTreeMap<SourceId, Vec<ProgramId>> = BTreeMap::new();
-    for id in memory.ids() {
-        ids.entry(memory.get(id).span.source).or_default().push(id);
+/// Returns the alarm of a block that cannot run.
+fn written_alarm(kind: &OpKind) -> Option<&LocatedAlarm> {
+    match kind {
+        OpKind::Alarm(alarm) => Some(alarm),
+        OpKind::Statement(Statement::IfThen { then, .. }) => match &**then {
+            Statement::Alarm(alarm) => Some(alarm),
+            _ => None,
+        },
+        _ => None,
     }
-    let mut found = BTreeMap::new();
-    for (source, ids) in ids {
-        let read = syntax::parse(source, &memory.sources().get(source).bytes);
-        let wanted = ids.into_iter().zip(read).filter(|(id, _)| programs.contains(id));
-        found.extend(wanted.map(|(id, tree)| (id, tree.blocks)));
-    }
-    found
 }
 
-impl ProgramUnit<'_> {
+impl<'a> ProgramUnit<'a> {
+    fn new(program: &'a Program, settings: &Settings) -> Self {
+        Self {
+            blocks: program.trees().collect(),
+            flow: ControlFlowGraph::new(program),
+            calls: calls::call_sites(program, settings),
+            callers: Vec::new(),
+            entry_blocks: vec![0],
+            is_reached: Vec::new(),
+            role: Role::Main,
+            program,
+        }
+    }
+
     fn determine_role(&self) -> Role {
         if !self.callers.is_empty() {
             return Role::Called;
         }
-        let returns = self.program.ops().iter().any(|op| match op.kind() {
-            OpKind::Words(words) => words.call().is_some_and(|call| call.kind == CallCode::Return),
-            _ => false,
-        });
-        let ends = self.flow.block_successors.iter().zip(self.program.ops()).any(|(ways, op)| {
-            let returns = matches!(op.kind(), OpKind::Words(words) if words.call().is_some());
-            ways.is_exit && matches!(op.kind(), OpKind::Words(_)) && !returns
-        });
+        let words = |(block, op): (usize, &'a Op)| match op.kind() {
+            OpKind::Words(words) => Some((words.call().map(|call| call.kind), block)),
+            _ => None,
+        };
+        let mut blocks = self.program.ops().iter().enumerate().filter_map(words);
+        let returns = blocks.clone().any(|(call, _)| call == Some(CallCode::Return));
+        let ends = blocks.any(|(call, block)| call.is_none() && self.flow.block_successors[block].is_exit);
         if returns && !ends { Role::Resident } else { Role::Main }
     }
 
@@ -168,45 +191,31 @@ impl ProgramUnit<'_> {
         self.calls.get(place)
     }
 
+    /// Iterates over the reachable blocks.
+    pub(crate) fn reached_blocks(&self) -> impl Iterator<Item = (OpIndex, &ast::Block)> {
+        self.blocks.iter().enumerate().filter(|(block, _)| self.is_reached[*block])
+    }
+
+    /// Iterates over the operations of the reachable blocks.
+    pub(crate) fn reached_ops(&self) -> impl Iterator<Item = (OpIndex, &'a Op)> {
+        self.program.ops().iter().enumerate().filter(|(block, _)| self.is_reached[*block])
+    }
+
+    /// Iterates over the reachable blocks of words.
+    pub(crate) fn reached_words(&self) -> impl Iterator<Item = (OpIndex, &'a Words)> {
+        self.reached_ops().filter_map(|(block, op)| match op.kind() {
+            OpKind::Words(words) => Some((block, words)),
+            _ => None,
+        })
+    }
+
     /// Creates a finding about a block.
     pub(crate) fn finding(
         &self,
         kind: &'static FindingKind,
         block: OpIndex,
         message: impl Into<String>,
-    ) -> RuleFinding {
-        let place = Backtrace { block: self.op(block).span, calls: None };
-        RuleFinding { block, diagnostic: Diagnostic::new(kind, message).with_backtrace(place) }
-    }
-}
-
-/// Finding of a rule about a block.
-#[derive(Debug)]
-pub(crate) struct RuleFinding {
-    pub block: OpIndex,
-    pub diagnostic: Diagnostic,
-}
-
-impl RuleFinding {
-    /// Sets the exact part of the block.
-    pub(crate) fn with_span(mut self, span: Span) -> Self {
-        self.diagnostic.span = Some(span);
-        self
-    }
-
-    /// Sets a severity, not higher than the rule's.
-    pub(crate) fn with_severity(mut self, severity: Severity) -> Self {
-        self.diagnostic = self.diagnostic.with_severity(severity);
-        self
-    }
-
-    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
-        self.diagnostic = self.diagnostic.help(help);
-        self
-    }
-
-    pub(crate) fn label(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.diagnostic.labels.push((span, text.into()));
-        self
+    ) -> Diagnostic {
+        Diagnostic::new(kind, message).with_backtrace(Backtrace { block: self.op(block).span, calls: None })
     }
 }

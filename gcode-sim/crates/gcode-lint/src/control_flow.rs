@@ -1,5 +1,4 @@
 //! Control flow of a program: the blocks that can follow each block, and the blocks that are reachable.
-use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{CallCode, CallTarget, OpIndex, OpKind, Operand, Program, Statement, Words};
 
 use super::literal;
@@ -15,6 +14,30 @@ pub(crate) struct Successors {
     pub jumps_anywhere: bool,
     /// True if the program ends, returns, or stops with its own alarm (`#3000`).
     pub is_exit: bool,
+}
+
+impl Successors {
+    /// The next block, and these jumps.
+    fn next_or(jumps: Vec<OpIndex>) -> Self {
+        Self { falls_through: true, jumps, ..Self::default() }
+    }
+
+    fn exit() -> Self {
+        Self { is_exit: true, ..Self::default() }
+    }
+
+    /// The same blocks, and the next block.
+    fn or_next(self) -> Self {
+        Self { falls_through: true, ..self }
+    }
+
+    fn or(mut self, other: Self) -> Self {
+        self.falls_through |= other.falls_through;
+        self.jumps_anywhere |= other.jumps_anywhere;
+        self.is_exit |= other.is_exit;
+        self.jumps.extend(other.jumps);
+        self
+    }
 }
 
 /// Jump to a sequence number, with its target if it exists.
@@ -42,11 +65,9 @@ impl ControlFlowGraph {
             if op.number.is_some() {
                 flow.numbered.push(block);
             }
-            let mut ways = flow.block_successors_of(program, block, op.kind());
-            if op.skip().is_some() {
-                ways.falls_through = true;
-            }
-            flow.block_successors.push(ways);
+            let successors = flow.block_successors_of(program, block, op.kind());
+            let is_skippable = op.skip().is_some();
+            flow.block_successors.push(if is_skippable { successors.or_next() } else { successors });
         }
         flow
     }
@@ -54,53 +75,44 @@ impl ControlFlowGraph {
     fn block_successors_of(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Successors {
         match kind {
             // An alarm stops the control; the blocks after it are checked as if it were corrected.
-            OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => {
-                Successors { falls_through: true, ..Successors::default() }
-            }
+            OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => Successors::next_or(Vec::new()),
             OpKind::Words(words) => {
-                let mut ways = self.word_successors(program, block, words);
-                if let Some((_, short)) = words.skipped_form() {
-                    let other = self.word_successors(program, block, short);
-                    ways.falls_through |= other.falls_through;
-                    ways.is_exit |= other.is_exit;
-                    ways.jumps.extend(other.jumps);
+                let successors = self.word_successors(program, block, words);
+                match words.skipped_form() {
+                    Some((_, short)) => successors.or(self.word_successors(program, block, short)),
+                    None => successors,
                 }
-                ways
             }
             OpKind::Statement(statement) => self.statement_successors(program, block, statement),
-            OpKind::If { then, .. } => {
-                Successors { falls_through: true, ..self.block_successors_of(program, block, then) }
-            }
+            OpKind::If { then, .. } => self.block_successors_of(program, block, then).or_next(),
         }
     }
 
     fn word_successors(&mut self, program: &Program, block: OpIndex, words: &Words) -> Successors {
-        let mut ways = Successors { falls_through: true, ..Successors::default() };
         let codes = || words.list.iter().filter(|w| w.letter == b'M').filter_map(literal::word_count);
-        if codes().any(|m| matches!(m, 2 | 30)) {
-            ways = Successors { is_exit: true, ..Successors::default() };
-        }
+        let is_end = codes().any(|m| matches!(m, 2 | 30));
+        let mut found = if is_end { Successors::exit() } else { Successors::next_or(Vec::new()) };
         // Haas: M97 calls a subprogram at a sequence number of the same program.
         if codes().any(|m| m == 97)
             && let Some(number) = words.list.iter().find(|w| w.letter == b'P').and_then(literal::word_count)
         {
-            ways.jumps.extend(program.find_number(number, block + 1));
+            found.jumps.extend(program.find_number(number, block + 1));
         }
         if let Some(call) = words.call().filter(|call| call.kind == CallCode::Return) {
-            ways.falls_through = false;
-            ways.is_exit = true;
+            found.falls_through = false;
+            found.is_exit = true;
             if let CallTarget::Number(word) = &call.target {
                 match literal::word_count(word) {
                     Some(number) => {
                         let to = program.find_number(number, 0);
-                        ways.jumps.extend(to);
+                        found.jumps.extend(to);
                         self.jumps.push(Jump { block, number, to, is_return: true });
                     }
-                    None => ways.jumps_anywhere = true,
+                    None => found.jumps_anywhere = true,
                 }
             }
         }
-        ways
+        found
     }
 
     fn statement_successors(
@@ -111,22 +123,11 @@ impl ControlFlowGraph {
     ) -> Successors {
         match statement {
             Statement::Goto(to) => self.jump_successors(program, block, &to.node),
-            Statement::IfGoto { to, .. } => {
-                Successors { falls_through: true, ..self.jump_successors(program, block, &to.node) }
-            }
-            Statement::IfThen { then, .. } => {
-                Successors { falls_through: true, ..self.statement_successors(program, block, then) }
-            }
-            Statement::While { end, .. } => {
-                Successors { falls_through: true, jumps: vec![end + 1], ..Successors::default() }
-            }
+            Statement::IfGoto { to, .. } => self.jump_successors(program, block, &to.node).or_next(),
+            Statement::IfThen { then, .. } => self.statement_successors(program, block, then).or_next(),
+            Statement::While { end, .. } => Successors::next_or(vec![end + 1]),
             Statement::End { start, .. } => Successors { jumps: vec![*start], ..Successors::default() },
-            Statement::Assign { target, .. } if target.is_variable(3000) => {
-                Successors { is_exit: true, ..Successors::default() }
-            }
-            Statement::Assignments(all) if all.iter().any(is_raise) => {
-                Successors { is_exit: true, ..Successors::default() }
-            }
+            statement if is_raise(statement) => Successors::exit(),
             Statement::Assign { .. }
             | Statement::AssignFree(_)
             | Statement::Assignments(_)
@@ -135,29 +136,19 @@ impl ControlFlowGraph {
             | Statement::Print { .. }
             | Statement::OpenOutput
             | Statement::CloseOutput
-            | Statement::Alarm(_) => Successors { falls_through: true, ..Successors::default() },
+            | Statement::Alarm(_) => Successors::next_or(Vec::new()),
         }
     }
 
     fn jump_successors(&mut self, program: &Program, block: OpIndex, to: &Operand) -> Successors {
-        let Some(number) = literal::operand_number(to).and_then(literal::to_whole) else {
-            let computed = literal::operand_number(to).is_none();
-            return Successors { jumps_anywhere: computed, ..Successors::default() };
+        let Operand::Number(number) = to else {
+            return Successors { jumps_anywhere: true, ..Successors::default() };
         };
+        let Some(number) = literal::to_whole(*number) else { return Successors::default() };
         let to = program.find_number(number, block + 1);
         self.jumps.push(Jump { block, number, to, is_return: false });
         // The rule `missing-n` reports a missing target; the blocks after it are not a second fault.
         Successors { falls_through: to.is_none(), jumps: to.into_iter().collect(), ..Successors::default() }
-    }
-
-    /// Adds the blocks to which the program called in `block` may return.
-    pub(super) fn add_return_targets(&mut self, block: OpIndex, to: impl IntoIterator<Item = OpIndex>) {
-        self.block_successors[block].jumps.extend(to);
-    }
-
-    /// Marks a call whose program may return to any numbered block.
-    pub(super) fn add_return_anywhere(&mut self, block: OpIndex) {
-        self.block_successors[block].jumps_anywhere = true;
     }
 
     /// Returns the number of nodes: the blocks, the end of the program and one for computed jumps.
@@ -171,10 +162,10 @@ impl ControlFlowGraph {
     /// Iterates over the nodes that can follow a node.
     pub(crate) fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
         let anywhere = self.block_successors.len() + 1;
-        let ways = self.block_successors.get(place);
-        let jumps = ways.map_or(&[][..], |ways| &ways.jumps);
-        let next = ways.filter(|ways| ways.falls_through).map(|_| place + 1);
-        let computed = ways.filter(|ways| ways.jumps_anywhere).map(|_| anywhere);
+        let block = self.block_successors.get(place);
+        let jumps = block.map_or(&[][..], |block| &block.jumps);
+        let next = block.filter(|block| block.falls_through).map(|_| place + 1);
+        let computed = block.filter(|block| block.jumps_anywhere).map(|_| anywhere);
         let numbered = if place == anywhere { &self.numbered[..] } else { &[] };
         jumps.iter().copied().chain(next).chain(computed).chain(numbered.iter().copied())
     }
@@ -208,9 +199,4 @@ fn is_raise(statement: &Statement) -> bool {
         Statement::Assignments(all) => all.iter().any(is_raise),
         _ => false,
     }
-}
-
-/// Returns true for the alarms of unpaired loops, which the rule `loop-pairs` reports.
-pub(crate) fn is_loop_alarm(alarm: &Alarm) -> bool {
-    matches!(alarm, Alarm::MissingEnd { .. } | Alarm::MissingDo { .. } | Alarm::LoopNumber { .. })
 }

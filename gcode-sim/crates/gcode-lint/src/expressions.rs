@@ -1,15 +1,38 @@
-//! Expressions of a block: those of its words, statements and conditions.
+//! Expressions of a block, each with the use that the block makes of its value.
 use gcode_lang::syntax::ast::{Block, Condition, Expr, Item, PrintPart, Statement, WordValue};
 
-/// Returns the outermost expressions in the order written.
-pub(super) fn block_expressions(block: &Block) -> Vec<&Expr> {
+use super::literal;
+
+/// Use of a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ValueUse {
+    /// Left side of an assignment: only the number of the variable is read.
+    Target,
+    /// Compared with `#0`, a test for vacancy.
+    VacancyTest,
+    /// Operand of another comparison.
+    Comparison,
+    /// Passed on unchanged, vacancy included: `#1=#2`, `G65 … A#2`.
+    PassedOn,
+    /// Value of a word, which is ignored if it is vacant.
+    Word,
+    /// Any other use, where a vacant value counts as 0.
+    Computed,
+}
+
+/// Outermost expressions with their uses, in the order written.
+pub(crate) type UsedExpressions<'a> = Vec<(&'a Expr, ValueUse)>;
+
+/// Returns the outermost expressions of a block.
+pub(super) fn block_expressions(block: &Block) -> UsedExpressions<'_> {
     let mut found = Vec::new();
+    let has_call = block.items.iter().any(is_macro_call);
     for item in &block.items {
         match item {
             Item::Word(word) => {
-                found.extend(word.axis.as_deref());
+                found.extend(word.axis.iter().map(|axis| (&**axis, ValueUse::Computed)));
                 if let WordValue::Expr(expr) = &word.value {
-                    found.push(expr);
+                    found.push((expr, if has_call { ValueUse::PassedOn } else { ValueUse::Word }));
                 }
             }
             Item::Statement(statement) => collect_from_statement(&statement.node, &mut found),
@@ -19,35 +42,56 @@ pub(super) fn block_expressions(block: &Block) -> Vec<&Expr> {
     found
 }
 
-fn collect_from_statement<'a>(statement: &'a Statement, found: &mut Vec<&'a Expr>) {
+/// Returns the outermost expressions of a condition.
+pub(super) fn condition_expressions(condition: &Condition) -> UsedExpressions<'_> {
+    let mut found = Vec::new();
+    collect_from_condition(condition, &mut found);
+    found
+}
+
+/// Returns true for G65, G66 and G66.1, whose other words are arguments.
+fn is_macro_call(item: &Item) -> bool {
+    let Item::Word(word) = item else { return false };
+    let WordValue::Literal(number) = &word.value else { return false };
+    word.address.letter == b'G' && [65.0, 66.0, 66.1].contains(&number.value())
+}
+
+fn collect_from_statement<'a>(statement: &'a Statement, found: &mut UsedExpressions<'a>) {
     match statement {
-        Statement::Assign { target, value } => found.extend([target, value]),
-        Statement::Goto(to) => found.push(to),
+        Statement::Assign { target, value } => {
+            found.extend([(target, ValueUse::Target), (value, ValueUse::PassedOn)]);
+        }
         Statement::IfGoto { condition, to } => {
             collect_from_condition(condition, found);
-            found.push(to);
+            found.push((to, ValueUse::Computed));
         }
         Statement::IfThen { condition, then } => {
             collect_from_condition(condition, found);
             collect_from_statement(then, found);
         }
         Statement::While { condition, .. } | Statement::If { condition, .. } => {
-            collect_from_condition(condition, found)
+            collect_from_condition(condition, found);
         }
-        Statement::Print { parts, .. } => {
-            found.extend(parts.iter().filter_map(|part| match part {
-                PrintPart::Value { variable, .. } => Some(variable),
-                PrintPart::Text(_) => None,
-            }));
+        Statement::Print { parts, .. } => found.extend(parts.iter().filter_map(|part| match part {
+            PrintPart::Value { variable, .. } => Some((variable, ValueUse::Computed)),
+            PrintPart::Text(_) => None,
+        })),
+        Statement::Goto(value) | Statement::SetNames { first: value, .. } => {
+            found.push((value, ValueUse::Computed));
         }
-        Statement::SetNames { first, .. } => found.push(first),
         Statement::Do(_) | Statement::End(_) | Statement::OpenOutput | Statement::CloseOutput => {}
     }
 }
 
-fn collect_from_condition<'a>(condition: &'a Condition, found: &mut Vec<&'a Expr>) {
+fn collect_from_condition<'a>(condition: &'a Condition, found: &mut UsedExpressions<'a>) {
     match condition {
-        Condition::Compare { left, right, .. } => found.extend([left, right]),
+        Condition::Compare { left, right, .. } => {
+            let usage = |other: &Expr| match literal::variable(other) {
+                Some(0 | 3100) => ValueUse::VacancyTest,
+                _ => ValueUse::Comparison,
+            };
+            found.extend([(left, usage(right)), (right, usage(left))]);
+        }
         Condition::Logic(_, _, one, other) => {
             collect_from_condition(one, found);
             collect_from_condition(other, found);

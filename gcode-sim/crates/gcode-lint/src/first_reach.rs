@@ -43,7 +43,7 @@ impl<'a> FirstReach<'a> {
     fn find_set_reads(&self) -> BTreeSet<(OpIndex, u32)> {
         let mut readers: BTreeMap<(usize, u32), BTreeSet<OpIndex>> = BTreeMap::new();
         for (block, written) in self.unit.blocks.iter().enumerate() {
-            for number in variables::block_uses(written).reads.iter().map(|read| read.number) {
+            for number in variables::block_reads(written).iter().map(|read| read.number) {
                 if (1..=33).contains(&number) && is_unclear(self.bits(block, number)) {
                     readers.entry((self.component[block], number)).or_default().insert(block);
                 }

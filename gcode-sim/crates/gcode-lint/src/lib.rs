@@ -26,6 +26,7 @@ mod expressions;
 mod first_reach;
 mod literal;
 mod parameters;
+mod prelude;
 mod rule;
 pub mod rules;
 mod suppression;

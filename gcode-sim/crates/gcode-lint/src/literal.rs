@@ -1,5 +1,5 @@
 //! Literal numbers: values of words, operands and expressions known without a run.
-use gcode_lang::program::{LoweredWord, Operand, WordOperand, names};
+use gcode_lang::program::{LoweredWord, WordOperand, names};
 use gcode_lang::syntax::ast::{BinaryOp, Decimal, Expr, ExprKind, Name};
 
 /// Returns the number of a word, with or without a decimal point; `None` if it is computed.
@@ -15,13 +15,6 @@ pub(super) fn word_number(word: &LoweredWord) -> Option<f64> {
 /// Returns the whole number of a word.
 pub(super) fn word_count(word: &LoweredWord) -> Option<u32> {
     word_number(word).and_then(to_whole)
-}
-
-pub(super) fn operand_number(operand: &Operand) -> Option<f64> {
-    match operand {
-        Operand::Number(number) => Some(*number),
-        Operand::Variable { .. } | Operand::Code(_) => None,
-    }
 }
 
 /// Rounds as a control does for an index or a sequence number; `None` out of range.

@@ -1,10 +1,10 @@
 //! Rule: the kind of its finding, and the function that reports it.
-use gcode_lang::diag::{Document, FindingKind, Severity};
+use gcode_lang::diag::{Diagnostic, Document, FindingKind, Severity};
 
-use super::context::{CheckContext, ProgramUnit, RuleFinding};
+use super::context::{CheckContext, ProgramUnit};
 
 /// Reports the findings of a rule in one program.
-type Find = fn(&CheckContext<'_>, &ProgramUnit<'_>) -> Vec<RuleFinding>;
+type Find = fn(&CheckContext<'_>, &ProgramUnit<'_>) -> Vec<Diagnostic>;
 
 /// Rule of the static check.
 pub struct Rule {

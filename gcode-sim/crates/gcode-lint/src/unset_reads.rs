@@ -7,10 +7,11 @@ use gcode_lang::syntax::ast::{Expr, Statement};
 
 use super::calls::CallSite;
 use super::context::ProgramUnit;
+use super::expressions::ValueUse;
 use super::first_reach::FirstReach;
 use super::literal::variable;
 use super::vacancy::{ANY_VALUE, Locals, NUMBER, States, guards};
-use super::variables::{self, VariableRead, VariableUse};
+use super::variables::{self, VariableRead};
 
 /// Returns the locals at the start of a called macro.
 pub(super) fn entry_locals(call: &CallSite) -> Locals {
@@ -25,18 +26,18 @@ pub(super) fn entry_locals(call: &CallSite) -> Locals {
 pub(super) fn unset_reads<'a>(
     unit: &'a ProgramUnit<'a>,
     states: &'a States,
-) -> impl Iterator<Item = ((OpIndex, u32), (Span, VariableUse))> + 'a {
+) -> impl Iterator<Item = ((OpIndex, u32), (Span, ValueUse))> + 'a {
     let first = Rc::new(FirstReach::new(unit, states));
     let reached = unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some());
     reached.flat_map(move |(block, written)| {
         let itself = variables::assignment(written)
             .filter(|(target, value)| target.kind == value.kind || same_variable(target, value));
-        let reads = variables::block_uses(written).reads;
+        let reads = variables::block_reads(written);
         let minded = guarded_locals(unit, block, &reads);
         let plain = reads.into_iter().filter(move |read| {
             // `#1=#1` has no effect.
             (1..=33).contains(&read.number)
-                && read.usage != VariableUse::VacancyTest
+                && read.usage != ValueUse::VacancyTest
                 && itself.is_none()
                 && !minded.contains(&read.number)
         });
@@ -57,7 +58,7 @@ fn guarded_locals(unit: &ProgramUnit<'_>, block: OpIndex, reads: &[VariableRead]
     else {
         return Vec::new();
     };
-    let tested = reads.iter().filter(|read| read.usage == VariableUse::VacancyTest).map(|read| read.number);
+    let tested = reads.iter().filter(|read| read.usage == ValueUse::VacancyTest).map(|read| read.number);
     // After IF[#9 EQ #0]THEN a read of #9 is still an error.
     tested.filter(|number| !is_computed_with(reads, *number) || guards(condition, *number)).collect()
 }
@@ -65,7 +66,7 @@ fn guarded_locals(unit: &ProgramUnit<'_>, block: OpIndex, reads: &[VariableRead]
 /// Returns true if a local has a use other than comparison.
 fn is_computed_with(reads: &[VariableRead], number: u32) -> bool {
     reads.iter().any(|read| {
-        read.number == number && !matches!(read.usage, VariableUse::VacancyTest | VariableUse::Comparison)
+        read.number == number && !matches!(read.usage, ValueUse::VacancyTest | ValueUse::Comparison)
     })
 }
 

@@ -345,7 +345,7 @@ impl Run {
                 Diagnostic::new(kind, message).with_backtrace(Backtrace { block, calls: None }).help(help);
             match note {
                 // G53 without axes is a deliberate wait.
-                Note::NoAxis { code: 530 } => finding.with_severity(Severity::Note),
+                Note::NoAxis(530) => finding.with_severity(Severity::Note),
                 _ => finding,
             }
         })

@@ -42,11 +42,9 @@
 
   function pickMove(side, move) {
     viewer.pick = { side, move };
-    const kind = { r: "rapid", f: "feed", a: "arc", p: "probing move" }[side.kinds[move]];
     const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${side.xyz[3 * at + axis].toFixed(3)}`).join(" ");
     const [from, to] = [point(side.starts[move]), point(side.starts[move + 1] - 1)];
-    const feed = side.feeds[move] ? ` F${Number(side.feeds[move].toFixed(3))}` : "";
-    tell(`${name(side)}move ${move + 1} of ${side.moves}, ${kind}${feed} from ${from} to ${to}`, side, linesOf(viewer.pick));
+    tell(`${name(side)}move ${move + 1} of ${side.all_moves}, ${side.kinds[side.kind[move]]} from ${from} to ${to}`, side, linesOf(viewer.pick));
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     viewer.ask();
@@ -55,9 +53,8 @@
   function pickHole(side, hole) {
     viewer.pick = { side, hole, row: hole.row ?? undefined };
     table.show(hole.row);
-    const depth = Math.hypot(...hole.entry.map((value, axis) => value - hole.bottom[axis]));
     const at = hole.entry.map((value, axis) => `${"XYZ"[axis]} ${value.toFixed(3)}`).join(" ");
-    tell(`${name(side)}hole ${hole.id} at ${at}, depth ${depth.toFixed(3)}`, side, hole.lines);
+    tell(`${name(side)}hole ${hole.id} at ${at}, depth ${hole.depth.toFixed(3)}`, side, hole.lines);
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     viewer.ask();
@@ -93,10 +90,10 @@
 
   function step(side, by) {
     const shown = (move) =>
-      (viewer.options.rapids || side.kinds[move] !== "r") && (!viewer.options.changedOnly || side.isChanged.has(move));
-    let move = viewer.pick.side === side && viewer.pick.move !== undefined ? viewer.pick.move + by : by > 0 ? 0 : side.counts.length - 1;
-    while (move >= 0 && move < side.counts.length && !shown(move)) move += by;
-    if (move >= 0 && move < side.counts.length) pickMove(side, move);
+      (viewer.options.rapids || side.moves[move].pen !== "rapid") && (!viewer.options.changedOnly || side.isChanged.has(move));
+    let move = viewer.pick.side === side && viewer.pick.move !== undefined ? viewer.pick.move + by : by > 0 ? 0 : side.moves.length - 1;
+    while (move >= 0 && move < side.moves.length && !shown(move)) move += by;
+    if (move >= 0 && move < side.moves.length) pickMove(side, move);
   }
 
   const follow = () => viewer.pick.side && land(anchorsOf(viewer.pick)[0]);

@@ -1,5 +1,5 @@
 //! The drawing: canvases, their controls, and the data that the page's script draws and links from.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 use serde::Serialize;
@@ -9,9 +9,11 @@ use super::lines::Lines;
 use super::rows::HoleRowState;
 use super::words::{count, shown};
 use super::{Page, ReviewSide, heading};
+use crate::report::figures::short;
+use gcode_draw::{HoleStatus, Mark, Pen, Scene, Shape, Stroke};
 use gcode_inspect::machine::HeadKind;
 use gcode_part::Hole;
-use gcode_review::BlockLocation;
+use gcode_review::{BlockLocation, Leg};
 
 /// Numbers of moves and points drawn; the page must rotate without delay.
 const MOST_MOVES: usize = 40_000;
@@ -27,18 +29,16 @@ pub(super) struct Data {
     sides: Vec<SidePath>,
 }
 
-/// One side; lists of moves have one entry per move.
+/// One side: the scene that is drawn, and the links from it to the listing and the table.
 #[derive(Debug, Serialize)]
 struct SidePath {
     word: &'static str,
-    /// Kinds of moves: `r`apid, `f`eed, `a`rc, `p`robing move.
-    kinds: String,
-    /// Number of points of each move.
-    counts: Vec<u32>,
-    /// Coordinates x y z of all points, in thousandths of a millimetre.
-    points: Vec<i64>,
-    /// Feed rates, mm/min; 0 for a rapid.
-    feeds: Vec<f64>,
+    /// A stroke for each move, a mark for each hole.
+    scene: Scene<3>,
+    /// Kinds of moves with their feed rates, mm/min: `rapid`, `arc F200`.
+    kinds: Vec<String>,
+    /// Index of each move's kind.
+    kind: Vec<usize>,
     /// Index of each move's place in `places`.
     at: Vec<usize>,
     /// Moves that the other side does not make.
@@ -47,19 +47,15 @@ struct SidePath {
     lines: Vec<(Option<String>, String, String)>,
     /// Block and calls of each place, innermost first, as indices into `lines`.
     places: Vec<Vec<usize>>,
-    holes: Vec<DrawnHole>,
+    holes: Vec<HoleLinks>,
     /// Total number of moves, drawn or not.
-    moves: usize,
+    all_moves: usize,
     all_holes: usize,
 }
 
-#[derive(Debug, Serialize)]
-struct DrawnHole {
-    entry: [f64; 3],
-    bottom: [f64; 3],
-    diameter: f64,
-    id: String,
-    state: &'static str,
+/// Links of a hole.
+#[derive(Debug, Default, Serialize)]
+struct HoleLinks {
     /// Row of the hole in the table.
     row: Option<usize>,
     /// Block and call, as indices into [`SidePath::lines`].
@@ -102,7 +98,7 @@ fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable
     let record = &side.observed.revision.record;
     let legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
     let mut known = LineIndex::default();
-    let holes = holes(page, place, side, table, &mut known);
+    let (marks, holes) = holes(page, place, side, table, &mut known).into_iter().unzip();
     let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
     let mut places = Vec::new();
     let mut at = Vec::with_capacity(legs.len());
@@ -112,25 +108,40 @@ fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable
             places.len() - 1
         }));
     }
+    let kinds: Vec<String> = legs.iter().map(kind).collect::<BTreeSet<_>>().into_iter().collect();
     let different = match (page.old, sides) {
         (Some((_, difference)), 2) => difference.compared.steps[place].as_slice(),
         _ => &[],
     };
     let is_different = |step: &usize| different.binary_search(step).is_ok();
-    let coordinates = legs.iter().flat_map(|leg| &leg.points).flat_map(|p| [p.x, p.y, p.z]);
     SidePath {
         word: side.word,
-        kinds: legs.iter().filter_map(|leg| leg.kind.chars().next()).collect(),
-        counts: legs.iter().map(|leg| leg.points.len() as u32).collect(),
-        points: coordinates.map(|mm| (mm * 1000.0).round() as i64).collect(),
-        feeds: legs.iter().map(|leg| leg.feed.unwrap_or(0.0)).collect(),
+        scene: Scene { strokes: legs.iter().map(stroke).collect(), marks, ..Scene::default() },
+        kind: legs.iter().map(|leg| kinds.binary_search(&kind(leg)).unwrap_or_default()).collect(),
+        kinds,
         at,
         changed: (0..legs.len()).filter(|leg| is_different(&legs[*leg].step)).collect(),
         lines: known.lines,
         places,
         holes,
-        moves: record.moves(),
+        all_moves: record.moves(),
         all_holes: side.observed.revision.simulation.extracted.holes.len(),
+    }
+}
+
+fn stroke(leg: &Leg) -> Stroke<3> {
+    let pen = match leg.kind {
+        "rapid" => Pen::Rapid,
+        "probing move" => Pen::Probe,
+        _ => Pen::Feed,
+    };
+    Stroke::new(pen, Shape::Line(leg.points.iter().map(|point| point.coords.into()).collect()))
+}
+
+fn kind(leg: &Leg) -> String {
+    match leg.feed {
+        Some(feed) if feed != 0.0 => format!("{} F{}", leg.kind, short(rounded(feed, 1e3))),
+        _ => leg.kind.to_owned(),
     }
 }
 
@@ -140,39 +151,41 @@ fn holes(
     side: &ReviewSide<'_>,
     table: &HoleTable,
     known: &mut LineIndex,
-) -> Vec<DrawnHole> {
+) -> Vec<(Mark<3>, HoleLinks)> {
     let simulation = &side.observed.revision.simulation;
     let rows = table.of_side(place);
     let mut all = Vec::new();
     for (number, found) in simulation.extracted.holes.iter().enumerate().take(MOST_HOLES) {
         let row = rows.get(&number);
         let lines = known.numbers(&BlockLocation::of(&simulation.run, &found.backtrace), side.lines);
-        let hole = found.hole(|_| (String::new(), 0));
         let id = row.map_or_else(|| (number + 1).to_string(), |(_, id, _)| (*id).to_owned());
-        let state = row.map_or(HoleRowState::Unjudged, |(_, _, state)| *state);
-        all.push(DrawnHole { lines, row: row.map(|(row, ..)| *row), ..hole_of(&hole, id, state) });
+        let status = row.map_or(HoleRowState::Unjudged, |(_, _, state)| *state).status();
+        let mark = mark(&found.hole(|_| (String::new(), 0)), id, status);
+        all.push((mark, HoleLinks { row: row.map(|(row, ..)| *row), lines }));
     }
     let missing = side.observed.verdict.iter().flat_map(|verdict| &verdict.missing);
-    let wanted = page.reference.iter().flat_map(|reference| &reference.holes);
-    let wanted: BTreeMap<_, _> = wanted.map(|hole| (hole.id.as_deref().unwrap_or_default(), hole)).collect();
-    all.extend(
-        missing.filter_map(|id| Some(hole_of(wanted.get(id.as_str())?, shown(id), HoleRowState::Missing))),
-    );
+    let nominal = page.reference.iter().flat_map(|reference| &reference.holes);
+    let nominal: BTreeMap<_, _> =
+        nominal.map(|hole| (hole.id.as_deref().unwrap_or_default(), hole)).collect();
+    let missing =
+        missing.filter_map(|id| Some(mark(nominal.get(id.as_str())?, shown(id), HoleStatus::Missing)));
+    all.extend(missing.map(|mark| (mark, HoleLinks::default())));
     all
 }
 
-fn hole_of(hole: &Hole, id: String, state: HoleRowState) -> DrawnHole {
-    let bottom = std::array::from_fn(|i| hole.entry[i] - hole.axis[i] * hole.depth);
-    let round = |point: [f64; 3]| point.map(|mm| (mm * 1000.0).round() / 1000.0);
-    DrawnHole {
-        entry: round(hole.entry),
-        bottom: round(bottom),
-        diameter: hole.diameter.unwrap_or(0.0),
-        id,
-        state: state.class(),
-        row: None,
-        lines: Vec::new(),
+fn mark(hole: &Hole, id: String, status: HoleStatus) -> Mark<3> {
+    Mark {
+        radius: hole.diameter.unwrap_or(0.0) / 2.0,
+        depth: rounded(hole.depth, 1e3),
+        label: vec![id],
+        direction: Some(hole.axis.map(|part| rounded(part, 1e6))),
+        ..Mark::new(hole.entry.map(|mm| rounded(mm, 1e3)), status)
     }
+}
+
+/// Rounds to parts of 1, without a negative zero.
+fn rounded(value: f64, parts: f64) -> f64 {
+    0.0 + (value * parts).round() / parts
 }
 
 pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
@@ -237,11 +250,11 @@ fn label(action: &str) -> Option<&'static str> {
 
 /// Returns notes on omitted moves and holes.
 fn left_out(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>], drawn: &SidePath) -> Markup {
-    let shown = drawn.counts.len();
+    let shown = drawn.scene.strokes.len();
     html! {
-        @if shown < drawn.moves {
+        @if shown < drawn.all_moves {
             p.note {
-                (heading(side, sides)) ": the first " (count(shown as u64)) " of " (count(drawn.moves as u64))
+                (heading(side, sides)) ": the first " (count(shown as u64)) " of " (count(drawn.all_moves as u64))
                 " moves are drawn."
             }
         }

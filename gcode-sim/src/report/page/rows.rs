@@ -5,6 +5,7 @@ use super::words::shown;
 use super::{ReviewSide, heading};
 use crate::report::figures::{rounded, signed};
 use crate::report::hole_changes::{self, remarks};
+use gcode_draw::HoleStatus;
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::verify::{ExtraHole, HoleVerdict, Verdict};
 use gcode_part::Reference;
@@ -25,18 +26,26 @@ pub(super) enum HoleRowState {
 }
 
 impl HoleRowState {
-    /// Returns the CSS class of the state, also used in the script's data.
-    pub(super) fn class(self) -> &'static str {
+    /// Returns the CSS class of the state, and the status that the drawing shows.
+    fn shown(self) -> (&'static str, HoleStatus) {
         match self {
-            Self::Bad => "bad",
-            Self::Missing => "missing",
-            Self::Extra => "extra",
-            Self::Changed => "changed",
-            Self::Altered => "altered",
-            Self::Good => "good",
-            Self::Same => "same",
-            Self::Unjudged => "unjudged",
+            Self::Bad => ("bad", HoleStatus::Bad),
+            Self::Missing => ("missing", HoleStatus::Missing),
+            Self::Extra => ("extra", HoleStatus::Extra),
+            Self::Changed => ("changed", HoleStatus::Bad),
+            Self::Altered => ("altered", HoleStatus::Bad),
+            Self::Good => ("good", HoleStatus::Good),
+            Self::Same => ("same", HoleStatus::Good),
+            Self::Unjudged => ("unjudged", HoleStatus::Unjudged),
         }
+    }
+
+    pub(super) fn class(self) -> &'static str {
+        self.shown().0
+    }
+
+    pub(super) fn status(self) -> HoleStatus {
+        self.shown().1
     }
 
     pub(super) fn needs_attention(self) -> bool {

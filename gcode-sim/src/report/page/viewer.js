@@ -33,25 +33,34 @@ class Camera {
 }
 
 class Side {
-  constructor(data, canvas) {
-    Object.assign(this, data, { canvas, context: canvas.getContext("2d") });
-    this.starts = new Uint32Array(this.counts.length + 1);
-    this.counts.forEach((count, move) => (this.starts[move + 1] = this.starts[move] + count));
-    this.xyz = Float64Array.from(this.points, (thousandths) => thousandths / 1000);
-    this.isChanged = new Set(this.changed);
-    this.screen = new Float32Array(2 * this.starts[this.counts.length]);
+  // The scene has polylines with a pen, one for each move, and marks with a status, one for each hole.
+  constructor({ scene, holes, changed, ...data }, canvas) {
+    Object.assign(this, data, { canvas, context: canvas.getContext("2d"), moves: scene.strokes });
+    this.starts = new Uint32Array(this.moves.length + 1);
+    this.moves.forEach(({ line }, move) => (this.starts[move + 1] = this.starts[move] + line.length / 3));
+    this.xyz = Float64Array.from(this.moves.flatMap(({ line }) => line));
+    this.isChanged = new Set(changed);
+    this.screen = new Float32Array((2 * this.xyz.length) / 3);
+    this.holes = scene.marks.map(({ position, direction, depth = 0, ...mark }, index) => ({
+      ...mark,
+      ...holes[index],
+      id: mark.label[0],
+      entry: position,
+      bottom: position.map((mm, axis) => mm - depth * direction[axis]),
+      depth,
+    }));
   }
 
   // What has to be seen: cuts and holes; where there are none, every move.
   extent() {
     const points = this.holes.flatMap((hole) => [...hole.entry, ...hole.bottom]);
     const take = (wanted) => {
-      for (let move = 0; move < this.counts.length; move++) {
-        if (!wanted(this.kinds[move])) continue;
+      for (let move = 0; move < this.moves.length; move++) {
+        if (!wanted(this.moves[move].pen)) continue;
         for (let at = 3 * this.starts[move]; at < 3 * this.starts[move + 1]; at++) points.push(this.xyz[at]);
       }
     };
-    take((kind) => kind !== "r");
+    take((pen) => pen !== "rapid");
     if (points.length === 0) take(() => true);
     return points;
   }
@@ -81,7 +90,7 @@ class Side {
     context.setLineDash(dash);
     let drawn = 0;
     context.beginPath();
-    for (let move = 0; move < this.counts.length; move++) {
+    for (let move = 0; move < this.moves.length; move++) {
       if (!wanted(move)) continue;
       let at = 2 * this.starts[move];
       context.moveTo(this.screen[at], this.screen[at + 1]);
@@ -99,13 +108,13 @@ class Side {
   draw(colours, options, pick) {
     const context = this.context;
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    const few = this.counts.length < 5000;
+    const few = this.moves.length < 5000;
     const shown = (move) => !options.changedOnly || this.isChanged.has(move);
-    const plain = (kinds) => (move) => shown(move) && kinds.includes(this.kinds[move]) && !this.isChanged.has(move);
-    if (options.rapids) this.strokeMoves(colours.rapid, 1, few ? [5, 4] : [], plain("r"));
-    this.strokeMoves(colours.feed, 1.6, [], plain("fa"));
-    this.strokeMoves(colours.probe, 2, [2, 3], plain("p"));
-    const rapid = (move) => this.kinds[move] === "r";
+    const plain = (pen) => (move) => shown(move) && this.moves[move].pen === pen && !this.isChanged.has(move);
+    if (options.rapids) this.strokeMoves(colours.rapid, 1, few ? [5, 4] : [], plain("rapid"));
+    this.strokeMoves(colours.feed, 1.6, [], plain("feed"));
+    this.strokeMoves(colours.probe, 2, [2, 3], plain("probe"));
+    const rapid = (move) => this.moves[move].pen === "rapid";
     if (options.rapids) this.strokeMoves(colours.changed, few ? 2 : 0.8, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
     this.strokeMoves(colours.changed, few ? 3.5 : 1.2, [], (move) => this.isChanged.has(move) && !rapid(move));
     const line = pick.line?.side === this ? pick.line.number : null;
@@ -125,11 +134,11 @@ class Side {
 
   drawHoles(colours, pick) {
     const isPicked = (hole) => hole === pick.hole || (hole.row !== null && hole.row === pick.row);
-    const wrong = (hole) => ["bad", "extra", "changed", "altered", "missing"].includes(hole.state);
+    const wrong = (hole) => ["bad", "extra", "missing"].includes(hole.status);
     const kind = (hole) => (isPicked(hole) ? "pick" : wrong(hole) ? "wrong" : "hole");
     const groups = new Map();
     for (const hole of this.holes) {
-      const name = `${this.isAway(hole) ? "a" : "b"} ${kind(hole)} ${hole.state === "missing"}`;
+      const name = `${this.isAway(hole) ? "a" : "b"} ${kind(hole)} ${hole.status === "missing"}`;
       if (!groups.has(name)) groups.set(name, []);
       groups.get(name).push(hole);
     }
@@ -183,7 +192,7 @@ class Side {
   }
 
   radius(hole) {
-    return Math.max(this.holes.length > 500 ? 1.5 : 3, (hole.diameter / 2) * this.view.scale);
+    return Math.max(this.holes.length > 500 ? 1.5 : 3, hole.radius * this.view.scale);
   }
 
   strokeHoles(holes, ringed) {
@@ -241,8 +250,8 @@ class Side {
       if (far < Math.max(reach, this.radius(hole)) && (!best || far < best.far)) best = { far, hole, side: this };
     }
     if (best) return best;
-    for (let move = 0; move < this.counts.length; move++) {
-      if ((!options.rapids && this.kinds[move] === "r") || (options.changedOnly && !this.isChanged.has(move))) continue;
+    for (let move = 0; move < this.moves.length; move++) {
+      if ((!options.rapids && this.moves[move].pen === "rapid") || (options.changedOnly && !this.isChanged.has(move))) continue;
       for (let at = 2 * this.starts[move]; at < 2 * (this.starts[move + 1] - 1); at += 2) {
         const far = toSegment(x, y, this.screen[at], this.screen[at + 1], this.screen[at + 2], this.screen[at + 3]);
         // Of two that lie on one another the later is seen.

@@ -1,6 +1,5 @@
-//! Straight lines and arcs of a contour, with their parallels.
-use super::crossing::Curve;
-use super::{Point, cross, left_normal};
+//! Straight lines and arcs of a contour with their parallels, and intersections of these.
+use super::{Point, SAME_DIRECTION, cross, left_normal};
 use gcode_lang::units::Deg;
 
 /// Shortest length that counts, mm.
@@ -176,6 +175,70 @@ fn parallel_radius(centre: Point, sweep: Deg, at: Point, distance: f64) -> f64 {
     (at - centre).norm() - distance * sweep.0.signum()
 }
 
+/// Infinite line or full circle.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Curve {
+    Line {
+        point: Point,
+        /// Unit vector.
+        direction: Point,
+    },
+    Circle {
+        centre: Point,
+        radius: f64,
+    },
+}
+
+/// Largest gap at which two curves still touch: rounding of the computation.
+const TOUCH_TOLERANCE: f64 = 1e-9;
+
+/// Returns the intersection nearest to a point; `None` without an intersection.
+pub(super) fn nearest_crossing(a: Curve, b: Curve, to: Point) -> Option<Point> {
+    let all = crossings(a, b);
+    let distance = |p: &Point| (*p - to).norm();
+    all.into_iter().flatten().min_by(|p, q| distance(p).total_cmp(&distance(q)))
+}
+
+fn crossings(a: Curve, b: Curve) -> [Option<Point>; 2] {
+    match (a, b) {
+        (Curve::Line { point, direction }, Curve::Line { point: other, direction: along }) => {
+            let sine = cross(direction, along);
+            if sine.abs() < SAME_DIRECTION {
+                return [None, None];
+            }
+            [Some(point + direction * (cross(other - point, along) / sine)), None]
+        }
+        (Curve::Line { point, direction }, Curve::Circle { centre, radius })
+        | (Curve::Circle { centre, radius }, Curve::Line { point, direction }) => {
+            let foot = point + direction * direction.dot(centre - point);
+            chord_points(foot, direction, radius, (foot - centre).norm())
+        }
+        (Curve::Circle { centre, radius }, Curve::Circle { centre: other, radius: second }) => {
+            let centre_offset = other - centre;
+            let centre_distance = centre_offset.norm();
+            if centre_distance < TOUCH_TOLERANCE {
+                return [None, None];
+            }
+            let axis = centre_offset / centre_distance;
+            // Distance from the first centre to the line through both intersections.
+            let along = (centre_distance * centre_distance + radius * radius - second * second)
+                / (2.0 * centre_distance);
+            chord_points(centre + axis * along, left_normal(axis), radius, along.abs())
+        }
+    }
+}
+
+/// Returns the points of a circle on a line at distance `height` from its centre.
+///
+/// `foot` is the foot of the perpendicular from the centre.
+fn chord_points(foot: Point, direction: Point, radius: f64, height: f64) -> [Option<Point>; 2] {
+    if height > radius + TOUCH_TOLERANCE {
+        return [None, None];
+    }
+    let half = ((radius - height) * (radius + height)).max(0.0).sqrt();
+    [Some(foot + direction * half), Some(foot - direction * half)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -183,7 +246,7 @@ mod tests {
     fn quarter(sweep: f64) -> Segment {
         // From (10, 0) about the origin.
         let to = if sweep > 0.0 { Point::new(0.0, 10.0) } else { Point::new(0.0, -10.0) };
-        Segment::Arc { from: Point::new(10.0, 0.0), to, centre: Point::zeros(), sweep: Deg(sweep) }
+        Segment::Arc { from: Point::new(10.0, 0.0), to, centre: Point::default(), sweep: Deg(sweep) }
     }
 
     #[test]
@@ -212,9 +275,32 @@ mod tests {
 
     #[test]
     fn a_whole_circle_stays_whole() {
-        let (from, centre) = (Point::new(10.0, 0.0), Point::zeros());
+        let (from, centre) = (Point::new(10.0, 0.0), Point::default());
         let circle = Segment::Arc { from, to: from, centre, sweep: Deg(-360.0) };
         let at = circle.parallel_start(-4.0);
         assert!((circle.sweep_between(at, at, -4.0).0 + 360.0).abs() < 1e-9);
+    }
+
+    fn point(x: f64, y: f64) -> Point {
+        Point::new(x, y)
+    }
+
+    #[test]
+    fn three_four_five() {
+        let circle = Curve::Circle { centre: point(0.0, 0.0), radius: 5.0 };
+        let line = Curve::Line { point: point(3.0, -9.0), direction: point(0.0, 1.0) };
+        assert_eq!(nearest_crossing(circle, line, point(0.0, 9.0)), Some(point(3.0, 4.0)));
+        assert_eq!(nearest_crossing(line, circle, point(0.0, -9.0)), Some(point(3.0, -4.0)));
+        let other = Curve::Circle { centre: point(6.0, 0.0), radius: 5.0 };
+        assert_eq!(nearest_crossing(circle, other, point(0.0, 9.0)), Some(point(3.0, 4.0)));
+    }
+
+    #[test]
+    fn what_is_apart_does_not_cross() {
+        let circle = Curve::Circle { centre: point(0.0, 0.0), radius: 1.0 };
+        let line = Curve::Line { point: point(2.0, 0.0), direction: point(0.0, 1.0) };
+        let parallel = Curve::Line { point: point(3.0, 0.0), direction: point(0.0, -1.0) };
+        assert_eq!(nearest_crossing(circle, line, point(0.0, 0.0)), None);
+        assert_eq!(nearest_crossing(line, parallel, point(0.0, 0.0)), None);
     }
 }

@@ -1,21 +1,20 @@
-//! Cutter compensation: from the programmed path to the path of the tool's centre.
+//! Cutter compensation: from the programmed path to the path of the tool centre.
 //!
-//! After the operator's manual, "Details of cutter compensation": a block moves from the vector at its start to the
-//! vector at its end, and the vector at its end depends on the next block that moves in the plane. Where a corner has
-//! several vectors, the moves between them belong to the latter block.
-use super::super::checked::ExecResult;
-use super::super::contour;
-use super::super::data::ControlData;
-use super::buffer::Lookahead;
-use super::pending::{PathMove, PendingCornerArc, PendingItem, PendingMove};
-use super::request::{CornerArc, LookaheadRequest};
+//! Source: operator's manual, "Details of cutter compensation". A block moves from the vector at its start to the vector
+//! at its end, which depends on the next block that moves in the plane. If a corner has several vectors, the moves between
+//! them belong to the latter block.
+use super::path_move::{PathMove, PendingCornerArc, PendingItem, PendingMove};
+use super::{CornerArc, Lookahead, LookaheadRequest};
+use crate::contour;
 use crate::contour::{Point, Segment};
+use crate::data::ControlData;
+use crate::functions::ExecResult;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, PlanarArc};
 use gcode_lang::units::Deg;
 
 impl Lookahead {
-    /// Takes the next move of the shaped path.
+    /// Takes the next move of the path that corner words have shaped.
     pub(super) fn compensate(
         &mut self,
         data: &ControlData,
@@ -76,7 +75,7 @@ impl Lookahead {
         Ok(())
     }
 
-    /// A move without compensation: the one that cancels it, that takes up the vector of G40 alone, or any other.
+    /// Takes a move without compensation: the one that cancels it, takes up the vector of G40 alone, or any other.
     fn cancel_compensation(
         &mut self,
         data: &ControlData,
@@ -104,22 +103,22 @@ impl Lookahead {
             return Err(Alarm::NotSimulated { what }.located_at(rounding.backtrace.block));
         }
         self.is_compensating = false;
-        self.set_offset(Point::zeros());
+        self.set_offset(Point::default());
         self.emit_along(data, path_move, segment.end(), 0.0);
         Ok(())
     }
 
-    /// A move of G28, G53 and the like: in the plane it takes the vector away, and the next move starts up anew.
-    pub(super) fn suspend(&mut self, data: &ControlData, piece: &PathMove) {
-        if piece.segment.is_none() {
-            return self.emit_pending(data, PendingItem::Move(piece.clone()));
+    /// Emits a move of G28, G53 or a cycle: in the plane it cancels the vector, and the next move starts up again.
+    pub(super) fn suspend(&mut self, data: &ControlData, path_move: &PathMove) {
+        if path_move.segment.is_none() {
+            return self.emit_pending(data, PendingItem::Move(path_move.clone()));
         }
         self.is_compensating = false;
-        self.set_offset(Point::zeros());
-        self.emit_straight(data, piece, piece.end_position());
+        self.set_offset(Point::default());
+        self.emit_straight(data, path_move, path_move.end_position());
     }
 
-    /// Ends the open move with the centre beside its end, as where nothing follows.
+    /// Ends the pending move with the centre beside its end, as if nothing followed.
     pub(super) fn close_pending_move(&mut self, data: &ControlData) -> ExecResult<()> {
         self.blocks_without_move = 0;
         if let Some(pending_move) = self.pending_move.take() {
@@ -130,9 +129,8 @@ impl Lookahead {
         Ok(())
     }
 
-    /// Tells the open move, now that the points at its end are known, and what waited behind it. The answer is where
-    /// the next move begins. A way against the programmed one would cut into the part (operator's manual,
-    /// interference check).
+    /// Emits the pending move, whose end points are now known, and the items after it; returns the start of the next
+    /// move. A path against the programmed one would cut into the part (operator's manual, interference check).
     fn close_move(
         &mut self,
         data: &ControlData,
@@ -152,35 +150,27 @@ impl Lookahead {
         Ok(ends.to_vec())
     }
 
-    /// The moves from point to point of a corner; the first is where the centre stands.
-    fn emit_corner(&mut self, data: &ControlData, piece: &PathMove, points: &[Point]) {
+    /// Emits the moves from point to point of a corner; the first point is the tool centre.
+    fn emit_corner(&mut self, data: &ControlData, path_move: &PathMove, points: &[Point]) {
         for point in points.iter().skip(1) {
             let to = self.with_plane_point(self.tool_centre, *point);
-            self.emit_straight(data, piece, to);
+            self.emit_straight(data, path_move, to);
         }
     }
 
-    fn defer_behind_move(&mut self, data: &ControlData, held: PendingItem) {
-        if self.pending_move.is_some() {
-            self.pending_items.push(held);
-        } else {
-            self.emit_pending(data, held);
-        }
-    }
-
-    /// G39: round the corner to beside a direction at once, or to beside the next move when that is read.
+    /// G39: goes round the corner to beside a direction at once, or to beside the next move when that is read.
     pub(super) fn start_corner_arc(
         &mut self,
         data: &ControlData,
         arc: &CornerArc,
-        order: &LookaheadRequest,
+        request: &LookaheadRequest,
     ) -> ExecResult<()> {
         self.close_pending_move(data)?;
-        let Some(distance) = order.distance else {
+        let Some(distance) = request.distance else {
             let what = "G39 without an offset of the cutter (D0)".into();
-            return Err(Alarm::NotSimulated { what }.located_at(order.backtrace.block));
+            return Err(Alarm::NotSimulated { what }.located_at(request.backtrace.block));
         };
-        let corner_arc = PendingCornerArc { backtrace: order.backtrace.clone(), rate: arc.rate, distance };
+        let corner_arc = PendingCornerArc { backtrace: request.backtrace.clone(), rate: arc.rate, distance };
         let Some(direction) = arc.direction else {
             self.pending_corner_arc = Some(corner_arc);
             return Ok(());
@@ -200,10 +190,10 @@ impl Lookahead {
         end: Point,
     ) -> ExecResult<()> {
         let (from, to) = (self.plane_point(&self.tool_centre) - corner, end - corner);
-        let turn = Deg::atan2(from.x * to.y - from.y * to.x, from.dot(to));
-        // Round the outside of a corner the tool turns to the side that it isn't on.
+        let rotation = Deg::atan2(from.x * to.y - from.y * to.x, from.dot(to));
+        // Round the outside of a corner the path bends away from the side of the tool.
         let outside = -rounding.distance.signum();
-        let sweep = if turn.abs().0 > 180.0 - 1e-6 { Deg(180.0 * outside) } else { turn };
+        let sweep = if rotation.abs().0 > 180.0 - 1e-6 { Deg(180.0 * outside) } else { rotation };
         if sweep.0 * outside < -1e-6 {
             return Err(Alarm::Interference.located_at(rounding.backtrace.block));
         }
@@ -211,12 +201,12 @@ impl Lookahead {
         let arc = PlanarArc { plane: self.plane, centre: (corner.x, corner.y), sweep };
         let segment =
             Segment::Arc { from: self.plane_point(&self.tool_centre), to: end, centre: corner, sweep };
-        let piece = PathMove {
+        let path_move = PathMove {
             kind: EventKind::Arc { to, arc, rate: rounding.rate },
             segment: Some(segment),
             backtrace: rounding.backtrace.clone(),
         };
-        self.emit_along(data, &piece, end, 0.0);
+        self.emit_along(data, &path_move, end, 0.0);
         Ok(())
     }
 }

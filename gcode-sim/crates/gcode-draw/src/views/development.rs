@@ -4,33 +4,24 @@
 //! increases downwards. The cut is the seam: its left and right edges are the same line of the part. A
 //! development much longer round than along x is cut into strips, one below the other, so that holes are as
 //! large as the sheet allows.
-use super::super::measure::{bar_length, plain};
-use super::super::role::{Pen, Point};
-use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title, ZoneDeviation};
-use super::side::displacement;
-use super::top::{
-    Cylinder, DrawnHole, MAX_NUMBERED, TopView, headline, number_few, standings, turn_name, worst,
-};
+use super::top::{Cylinder, DrawnHole, MAX_NUMBERED, TopView, number_few};
+use crate::measure::{bar_length, plain};
+use crate::picture::{LegendItem, Picture, Sample};
+use crate::scene::{Axis, Mark, Pen, Point, Scene, Shape, Stroke, ZoneDeviation};
 use gcode_lang::units::Deg;
-use gcode_part::Hole;
 
-/// Builds the scene of a development; `None` if the part is not a cylinder.
-pub fn development(view: &TopView) -> Option<Scene> {
+/// Builds the picture of a development; `None` if the part is not a cylinder.
+pub fn development(view: &TopView) -> Option<Picture> {
     let sheet = UnrolledCylinder::of(view.cylinder?, view);
     let mut marks: Vec<Mark> = view.holes.iter().filter_map(|hole| sheet.mark(hole, view)).collect();
     number_few(&mut marks);
-    let title = Title {
-        name: view.name.clone(),
-        view: format!("Development of diameter {}, seen from outside", plain(2.0 * sheet.cylinder.radius)),
-        position: view.tolerance,
-        verdict: headline(view),
-        lines: worst(view).into_iter().chain(view.lines.iter().cloned()).chain([sheet.range()]).collect(),
-        caution: "Predicted by simulation, not measured".to_owned(),
-    };
-    let axes = vec![Axis { name: turn_name(view), direction: [1.0, 0.0] }];
+    let what = format!("Development of diameter {}, seen from outside", plain(2.0 * sheet.cylinder.radius));
+    let turn = if view.is_rotary_reversed { "−" } else { "" };
+    let axes = vec![Axis { name: format!("{turn}{}", view.rotary), direction: [1.0, 0.0] }];
     let legend = sheet.legend(view, &marks);
-    let strokes = sheet.strokes();
-    Some(Scene { title, axes, strokes, marks, zone: view.tolerance, legend, chart: None })
+    let title = view.title(what, view.tolerance, Some(sheet.range()));
+    let scene = Scene { axes, strokes: sheet.strokes(), marks, zone: view.tolerance };
+    Some(Picture { title, scene, legend, chart: None })
 }
 
 /// Possible numbers of strips: every strip spans a whole number of degrees.
@@ -56,23 +47,18 @@ struct UnrolledCylinder {
 impl UnrolledCylinder {
     /// Chooses the number of strips that draws the holes largest.
     fn of(cylinder: Cylinder, view: &TopView) -> Self {
-        let places = view.holes.iter().filter_map(|hole| hole.nominal.as_ref().or(hole.actual.as_ref()));
+        let places = view.holes.iter().filter_map(DrawnHole::shown);
         let reach = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
         let (low, high) = places.map(|hole| hole.entry[0]).fold((0.0, cylinder.length), reach);
         let diameter = view.holes.iter().find_map(|hole| hole.nominal.as_ref()?.diameter);
-        let usual = diameter.unwrap_or(0.0) / 2.0;
-        let cut =
-            |strips: u32| Self { cylinder, strips, low, high, usual, few: view.holes.len() <= MAX_NUMBERED };
+        let (usual, few) = (diameter.unwrap_or(0.0) / 2.0, view.holes.len() <= MAX_NUMBERED);
+        let cut = |strips: u32| Self { cylinder, strips, low, high, usual, few };
         let scale = |sheet: &Self| {
-            let (wide, tall) =
-                (1.1 * sheet.width() + sheet.margin(), f64::from(sheet.strips) * sheet.height());
-            (SHEET / wide).min(1.0 / tall)
+            let wide = 1.1 * sheet.width() + sheet.margin();
+            (SHEET / wide).min(1.0 / (f64::from(sheet.strips) * sheet.height()))
         };
-        STRIPS
-            .into_iter()
-            .skip(1)
-            .map(cut)
-            .fold(cut(1), |best, next| if WORTH * scale(&best) < scale(&next) { next } else { best })
+        let better = |best: Self, next: Self| if WORTH * scale(&best) < scale(&next) { next } else { best };
+        STRIPS.into_iter().skip(1).map(cut).fold(cut(1), better)
     }
 
     fn range(&self) -> String {
@@ -115,22 +101,19 @@ impl UnrolledCylinder {
         0.0 - (f64::from(strip) * self.height() + x)
     }
 
-    fn place(&self, hole: &Hole) -> Point {
-        let (strip, right) = self.right(Deg::atan2(hole.entry[1], hole.entry[2]));
-        [right, self.down(strip, hole.entry[0])]
-    }
-
     fn mark(&self, hole: &DrawnHole, view: &TopView) -> Option<Mark> {
-        let shown = hole.nominal.as_ref().or(hole.actual.as_ref())?;
-        let both = hole.nominal.as_ref().zip(hole.actual.as_ref());
+        let shown = hole.shown()?;
+        let (strip, right) = self.right(Deg::atan2(shown.entry[1], shown.entry[2]));
+        // Along the circumference and along x.
+        let azimuth = Deg::atan2(shown.axis[1], shown.axis[2]);
+        let seen = |[x, y, z]: [f64; 3]| [y * azimuth.cos() - z * azimuth.sin(), 0.0 - x];
+        let deviation = hole.deviation();
         Some(Mark {
-            position: self.place(shown),
             radius: shown.diameter.map_or(self.usual, |diameter| diameter / 2.0),
-            status: hole.status,
-            label: super::top::label(hole, view),
-            direction: None,
-            deviation: both.and_then(|(nominal, found)| zone_deviation(nominal, found)),
-            actual: None,
+            label: view.label(hole),
+            deviation: deviation
+                .map(|off| ZoneDeviation { entry: seen(off.entry), bottom: seen(off.bottom) }),
+            ..Mark::new([right, self.down(strip, shown.entry[0])], hole.status)
         })
     }
 
@@ -144,7 +127,7 @@ impl UnrolledCylinder {
             let (top, bottom) = (y(self.low) + self.margin(), y(self.high) - self.margin());
             let left = 0.0 - self.margin();
             let mut line = |from: Point, to: Point, pen: Pen, caption: Option<String>| {
-                strokes.push(Stroke { shape: Shape::Line(vec![from, to]), pen, caption });
+                strokes.push(Stroke { caption, ..Stroke::new(pen, Shape::Line(vec![from, to])) });
             };
             for (at, is_seam) in [(0.0, strip == 0), (width, strip + 1 == self.strips)] {
                 let pen = if is_seam { Pen::Outline } else { Pen::Construction };
@@ -189,18 +172,13 @@ impl UnrolledCylinder {
     }
 
     fn legend(&self, view: &TopView, marks: &[Mark]) -> Vec<LegendItem> {
-        let item = |sample: Sample, text: String| LegendItem { sample, text };
-        let mut items = standings(view);
-        if let Some(zone) = view.tolerance.filter(|_| marks.iter().any(|m| m.deviation.is_some())) {
-            let text = format!("{} Φ{}, axial view,", view.purpose.deviation_label(), plain(zone));
-            items.push(item(Sample::Deviation, text));
-        }
-        items.push(item(Sample::Pen(Pen::Outline), "seam: both edges are one line".to_owned()));
+        let mut items = view.status_legend(marks);
         let thin = match self.strips {
             1 => "ends of the pattern",
             _ => "cuts: continued on the next strip; ends of the pattern",
         };
-        items.push(item(Sample::Pen(Pen::Construction), thin.to_owned()));
+        items.push(LegendItem::new(Sample::Pen(Pen::Outline), "seam: both edges are one line"));
+        items.push(LegendItem::new(Sample::Pen(Pen::Construction), thin));
         items
     }
 }
@@ -213,20 +191,10 @@ fn marks_along(end: f64, least: f64) -> Vec<f64> {
     all.chain([end]).collect()
 }
 
-/// Returns actual − nominal along the circumference and along x.
-fn zone_deviation(nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
-    let azimuth = Deg::atan2(nominal.axis[1], nominal.axis[2]);
-    let end = |depth: f64| {
-        let off = displacement(nominal, found, depth)?;
-        Some([off.y * azimuth.cos() - off.z * azimuth.sin(), 0.0 - off.x])
-    };
-    Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::role::HoleStatus;
+    use gcode_part::Hole;
 
     fn hole(x: f64, azimuth: f64, radius: f64) -> Hole {
         let (s, c) = (Deg(azimuth).sin(), Deg(azimuth).cos());
@@ -234,41 +202,31 @@ mod tests {
         Hole { id: None, entry, axis: [0.0, s, c], depth: 5.0, diameter: Some(3.0), from: None }
     }
 
-    fn drawn(nominal: Hole, found: Hole) -> DrawnHole {
-        DrawnHole {
-            id: "1".to_owned(),
-            nominal: Some(nominal),
-            actual: Some(found),
-            status: HoleStatus::Good,
-            position_deviation: None,
-            rotary_angle: None,
-            remarks: Vec::new(),
-        }
-    }
-
-    fn scene(hole: DrawnHole) -> Scene {
-        unrolled(hole, 400.0)
-    }
-
-    fn unrolled(hole: DrawnHole, length: f64) -> Scene {
+    /// Draws a hole on a cylinder of radius 100 with 8 rows.
+    fn scene(nominal: Option<Hole>, actual: Hole, length: f64) -> Scene {
         let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length, rows: 8 });
-        development(&TopView { cylinder, holes: vec![hole], ..TopView::default() }).unwrap()
+        let hole = DrawnHole { nominal, actual: Some(actual), ..DrawnHole::default() };
+        development(&TopView { cylinder, holes: vec![hole], ..TopView::default() }).unwrap().scene
+    }
+
+    fn mark(nominal: Hole, actual: Hole, length: f64) -> Mark {
+        scene(Some(nominal), actual, length).marks.remove(0)
     }
 
     /// A quarter turn of radius 100 is 157.08 mm, whatever the diameter on which the hole begins.
     #[test]
     fn azimuth_goes_right_as_an_arc_and_x_down() {
-        let mark = scene(drawn(hole(20.0, 90.0, 110.0), hole(20.0, 90.0, 112.0))).marks.remove(0);
+        let mark = mark(hole(20.0, 90.0, 110.0), hole(20.0, 90.0, 112.0), 400.0);
         assert!((mark.position[0] - 157.079_632_679).abs() < 1e-6 && mark.position[1] == -20.0, "{mark:?}");
     }
 
     #[test]
     fn what_stands_on_the_seam_stands_at_its_left() {
         for azimuth in [0.0, 360.0, -0.000_1, 359.999_9] {
-            let mark = scene(drawn(hole(0.0, azimuth, 100.0), hole(0.0, azimuth, 100.0))).marks.remove(0);
+            let mark = mark(hole(0.0, azimuth, 100.0), hole(0.0, azimuth, 100.0), 400.0);
             assert!(mark.position[0].abs() < 0.001, "{azimuth}: {mark:?}");
         }
-        let mark = scene(drawn(hole(0.0, -1.0, 100.0), hole(0.0, -1.0, 100.0))).marks.remove(0);
+        let mark = mark(hole(0.0, -1.0, 100.0), hole(0.0, -1.0, 100.0), 400.0);
         assert!((mark.position[0] - 359.0 * 100.0 * std::f64::consts::PI / 180.0).abs() < 1e-6);
     }
 
@@ -277,7 +235,7 @@ mod tests {
     fn a_deviation_points_where_the_hole_is() {
         let mut found = hole(20.03, 90.0, 100.0);
         found.entry[2] -= 0.02;
-        let deviation = scene(drawn(hole(20.0, 90.0, 100.0), found)).marks[0].deviation.unwrap();
+        let deviation = mark(hole(20.0, 90.0, 100.0), found, 400.0).deviation.unwrap();
         assert!(
             (deviation.entry[0] - 0.02).abs() < 1e-9 && (deviation.entry[1] + 0.03).abs() < 1e-9,
             "{deviation:?}"
@@ -287,9 +245,7 @@ mod tests {
     /// 628 mm round and 30 mm long: three strips of 120°.
     #[test]
     fn a_long_way_round_is_cut_into_strips_and_nothing_lies_across_a_cut() {
-        let at = |azimuth: f64| {
-            unrolled(drawn(hole(20.0, azimuth, 100.0), hole(20.0, azimuth, 100.0)), 30.0).marks[0].position
-        };
+        let at = |azimuth: f64| mark(hole(20.0, azimuth, 100.0), hole(20.0, azimuth, 100.0), 30.0).position;
         let third = 209.439_510_239;
         let block = at(0.0)[1] - at(120.0)[1];
         assert!(30.0 < block && block < 90.0, "{block}");
@@ -318,7 +274,7 @@ mod tests {
                 rotary: "A".to_owned(),
                 ..TopView::default()
             };
-            development(&view).unwrap().axes.remove(0).name
+            development(&view).unwrap().scene.axes.remove(0).name
         };
         assert_eq!((name(false), name(true)), ("A".to_owned(), "−A".to_owned()));
     }
@@ -329,7 +285,7 @@ mod tests {
     fn odd_rows_have_a_tick_too() {
         let of = |rows: u32| {
             let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length: 400.0, rows });
-            let scene = development(&TopView { cylinder, ..TopView::default() }).unwrap();
+            let scene = development(&TopView { cylinder, ..TopView::default() }).unwrap().scene;
             let named = scene.strokes.iter().filter_map(|stroke| stroke.caption.clone());
             let named: Vec<String> = named.filter(|caption| caption.starts_with('r')).collect();
             (named, scene.strokes.len())
@@ -343,14 +299,8 @@ mod tests {
     /// A hole far beyond the length must not land on the next strip.
     #[test]
     fn strips_keep_apart_from_what_was_drilled_beyond_them() {
-        let beyond = |azimuth: f64| {
-            let hole = hole(170.0, azimuth, 100.0);
-            unrolled(DrawnHole { nominal: None, ..drawn(hole.clone(), hole) }, 30.0)
-        };
-        let captions = |scene: &Scene| {
-            let lines = scene.strokes.iter().filter_map(|s| s.caption.clone()).collect::<Vec<_>>();
-            lines.iter().filter(|caption| *caption == "x 0").count()
-        };
-        assert_eq!(captions(&beyond(0.0)), 2, "of 170, not of 30, which would be cut into three");
+        let scene = scene(None, hole(170.0, 0.0, 100.0), 30.0);
+        let zeros = scene.strokes.iter().filter(|stroke| stroke.caption.as_deref() == Some("x 0")).count();
+        assert_eq!(zeros, 2, "of 170, not of 30, which would be cut into three");
     }
 }

@@ -1,5 +1,5 @@
 //! Contents of a burr's pictures: outline, flutes, faults and helix angles.
-use super::super::role::HoleStatus;
+use crate::scene::HoleStatus;
 
 /// Contents of a burr's pictures; mm and degrees.
 #[derive(Clone, Debug)]

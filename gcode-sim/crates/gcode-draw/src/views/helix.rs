@@ -1,16 +1,16 @@
 //! Graphs of the helix angle along the flutes: actual, nominal with tolerance, and deviation.
-use super::super::chart::{Chart, ChartMarker, Curve, Graph};
-use super::super::role::{HoleStatus, Pen, Point};
-use super::super::scene::{LegendItem, Sample, Scene, Title};
 use super::flute_view::{FluteView, HelixCourses, HelixPoint};
+use crate::chart::{Chart, ChartMarker, Curve, Graph};
+use crate::picture::{LegendItem, Picture, Sample, Title};
+use crate::scene::{HoleStatus, Pen, Point};
 
 /// Height of a tolerance band, in parts of the graph's height, below which it is drawn as a line.
 const MIN_BAND_SHARE: f64 = 0.1;
 /// Least enlargement of deviations that justifies a separate graph.
 const MIN_MAGNIFICATION: f64 = 2.0;
 
-/// Builds the scene with the graphs of the helix angle.
-pub fn helix_graph(view: &FluteView) -> Scene {
+/// Builds the picture with the graphs of the helix angle.
+pub fn helix_graph(view: &FluteView) -> Picture {
     let helix = &view.helix;
     let mut graphs = vec![helix.angles()];
     if helix.needs_deviations() {
@@ -22,7 +22,7 @@ pub fn helix_graph(view: &FluteView) -> Scene {
         gaps: Vec::new(),
         graphs,
     };
-    Scene {
+    Picture {
         title: Title {
             name: view.name.clone(),
             view: "Helix angle along the flutes; below 0 left-hand".to_owned(),
@@ -33,7 +33,7 @@ pub fn helix_graph(view: &FluteView) -> Scene {
         },
         legend: helix.legend(),
         chart: Some(chart),
-        ..Scene::default()
+        ..Picture::default()
     }
 }
 
@@ -106,12 +106,10 @@ impl HelixCourses {
 
     fn legend(&self) -> Vec<LegendItem> {
         let [asked, other] = self.laws;
-        let pen = |pen: Pen, text: String| Some(LegendItem { sample: Sample::Pen(pen), text });
+        let pen = |pen: Pen, text: String| Some(LegendItem::new(Sample::Pen(pen), text));
         let is_ground = !self.passes.is_empty();
-        let fault = self.sign(|at| at.actual).map(|_| LegendItem {
-            sample: Sample::Status(HoleStatus::Bad),
-            text: "Fault: out of tolerance".to_owned(),
-        });
+        let sample = Sample::Status(HoleStatus::Bad);
+        let fault = self.sign(|at| at.actual).map(|_| LegendItem::new(sample, "Fault: out of tolerance"));
         let worst = format!("Pass {}, the largest deviation from the law", self.worst_pass + 1);
         let items = [
             fault,

@@ -4,5 +4,4 @@ pub(super) mod flute_view;
 pub(super) mod flutes;
 pub(super) mod helix;
 pub(super) mod purpose;
-pub(super) mod side;
 pub(super) mod top;

@@ -1,5 +1,5 @@
 //! Purpose of a picture of holes, a verdict or a comparison of revisions, and its wording.
-use super::super::role::HoleStatus;
+use crate::scene::HoleStatus;
 
 /// Purpose of a picture, which selects the words of the title block and the legend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,34 +12,29 @@ pub enum PicturePurpose {
 }
 
 impl PicturePurpose {
-    /// Returns the word beside a hole that is missing or extra, and in the headline.
-    pub(super) fn status_word(self, standing: HoleStatus) -> &'static str {
-        match (self, standing) {
-            (Self::Verdict, HoleStatus::Good) => "in tolerance",
-            (Self::Verdict, HoleStatus::Bad) => "out",
-            (Self::Verdict, HoleStatus::Missing) => "missing",
-            (Self::Verdict, HoleStatus::Extra) => "extra",
-            (Self::Change, HoleStatus::Good) => "unchanged",
-            (Self::Change, HoleStatus::Bad) => "changed",
-            (Self::Change, HoleStatus::Missing) => "lost",
-            (Self::Change, HoleStatus::Extra) => "added",
-            (_, HoleStatus::Unjudged) => "not verified",
+    /// Returns the word of a status, beside a hole and in the headline, and its legend text.
+    fn words(self, status: HoleStatus) -> [&'static str; 2] {
+        match (self, status) {
+            (Self::Verdict, HoleStatus::Good) => ["in tolerance", "in tolerance"],
+            (Self::Verdict, HoleStatus::Bad) => ["out", "out of tolerance"],
+            (Self::Verdict, HoleStatus::Missing) => ["missing", "missing: not made"],
+            (Self::Verdict, HoleStatus::Extra) => ["extra", "extra: not in the reference"],
+            (Self::Change, HoleStatus::Good) => ["unchanged", "unchanged"],
+            (Self::Change, HoleStatus::Bad) => ["changed", "changed: symbol at the old position"],
+            (Self::Change, HoleStatus::Missing) => ["lost", "lost: only in the old program"],
+            (Self::Change, HoleStatus::Extra) => ["added", "added: only in the new program"],
+            (_, HoleStatus::Unjudged) => ["not verified", "hole, not verified"],
         }
     }
 
+    /// Returns the word beside a hole that is missing or extra, and in the headline.
+    pub(super) fn status_word(self, status: HoleStatus) -> &'static str {
+        self.words(status)[0]
+    }
+
     /// Returns the legend text of a status.
-    pub(super) fn legend(self, standing: HoleStatus) -> &'static str {
-        match (self, standing) {
-            (Self::Verdict, HoleStatus::Good) => "in tolerance",
-            (Self::Verdict, HoleStatus::Bad) => "out of tolerance",
-            (Self::Verdict, HoleStatus::Missing) => "missing: not made",
-            (Self::Verdict, HoleStatus::Extra) => "extra: not in the reference",
-            (Self::Change, HoleStatus::Good) => "unchanged",
-            (Self::Change, HoleStatus::Bad) => "changed: symbol at the old position",
-            (Self::Change, HoleStatus::Missing) => "lost: only in the old program",
-            (Self::Change, HoleStatus::Extra) => "added: only in the new program",
-            (_, HoleStatus::Unjudged) => "hole, not verified",
-        }
+    pub(super) fn legend(self, status: HoleStatus) -> &'static str {
+        self.words(status)[1]
     }
 
     /// Returns the text before the largest deviation.
@@ -83,19 +78,16 @@ impl PicturePurpose {
         if is_good && self == Self::Verdict {
             return Some((HoleStatus::Good, format!("PASS: {good} of {good} holes in tolerance")));
         }
-        let mut words = match all {
-            0 => Vec::new(),
-            _ => vec![format!("{good} of {all} {}", self.status_word(HoleStatus::Good))],
-        };
         let wrong = [(bad, HoleStatus::Bad), (missing, HoleStatus::Missing), (extra, HoleStatus::Extra)];
-        for (number, standing) in wrong.into_iter().filter(|(number, _)| 0 < *number) {
-            words.push(format!("{number} {}", self.status_word(standing)));
-        }
-        match others {
-            0 => {}
-            1 => words.push("1 other change".to_owned()),
-            _ => words.push(format!("{others} other changes")),
-        }
+        let wrong = wrong.into_iter().filter(|(number, _)| 0 < *number);
+        let good = (0 < all).then(|| format!("{good} of {all} {}", self.status_word(HoleStatus::Good)));
+        let wrong = wrong.map(|(number, status)| format!("{number} {}", self.status_word(status)));
+        let others = match others {
+            0 => None,
+            1 => Some("1 other change".to_owned()),
+            _ => Some(format!("{others} other changes")),
+        };
+        let words: Vec<String> = good.into_iter().chain(wrong).chain(others).collect();
         let words = words.join(", ");
         Some(match (self, is_good) {
             (Self::Change, true) => (HoleStatus::Good, words),
@@ -111,21 +103,18 @@ mod tests {
 
     #[test]
     fn the_headline_names_what_is_wrong_and_what_has_changed() {
-        let headline = |question: PicturePurpose, counts| question.headline(counts, 0);
-        let good = |text: &str| Some((HoleStatus::Good, text.to_owned()));
-        let bad = |text: &str| Some((HoleStatus::Bad, text.to_owned()));
-        assert_eq!(headline(PicturePurpose::Verdict, [4, 0, 0, 0]), good("PASS: 4 of 4 holes in tolerance"));
-        assert_eq!(
-            headline(PicturePurpose::Verdict, [2, 0, 1, 1]),
-            bad("FAIL: 2 of 3 in tolerance, 1 missing, 1 extra")
-        );
-        assert_eq!(headline(PicturePurpose::Change, [4, 0, 0, 0]), good("4 of 4 unchanged"));
-        assert_eq!(
-            headline(PicturePurpose::Change, [2, 1, 0, 1]),
-            bad("2 of 3 unchanged, 1 changed, 1 added")
-        );
-        assert_eq!(headline(PicturePurpose::Change, [0; 4]), None);
-        assert_eq!(PicturePurpose::Change.headline([4, 0, 0, 0], 1), bad("4 of 4 unchanged, 1 other change"));
-        assert_eq!(PicturePurpose::Change.headline([0; 4], 2), bad("2 other changes"));
+        use HoleStatus::{Bad, Good};
+        use PicturePurpose::{Change, Verdict};
+        for (purpose, counts, others, status, words) in [
+            (Verdict, [4, 0, 0, 0], 0, Good, "PASS: 4 of 4 holes in tolerance"),
+            (Verdict, [2, 0, 1, 1], 0, Bad, "FAIL: 2 of 3 in tolerance, 1 missing, 1 extra"),
+            (Change, [4, 0, 0, 0], 0, Good, "4 of 4 unchanged"),
+            (Change, [2, 1, 0, 1], 0, Bad, "2 of 3 unchanged, 1 changed, 1 added"),
+            (Change, [4, 0, 0, 0], 1, Bad, "4 of 4 unchanged, 1 other change"),
+            (Change, [0; 4], 2, Bad, "2 other changes"),
+        ] {
+            assert_eq!(purpose.headline(counts, others), Some((status, words.to_owned())));
+        }
+        assert_eq!(Change.headline([0; 4], 0), None);
     }
 }

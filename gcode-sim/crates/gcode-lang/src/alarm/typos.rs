@@ -10,7 +10,9 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
     let line = source.bytes[from..].split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
     let (before, rest) = line.split_at((at.column as usize - 1).min(line.len()));
     let [before, rest] = [before, rest].map(|bytes| without_comments(&String::from_utf8_lossy(bytes)));
-    let place = AlarmLine { before: &before, rest: rest.trim_matches(' '), text: &sources.text(span) };
+    let rest = rest.trim_matches(' ');
+    let whole = format!("{before}{rest}");
+    let place = AlarmLine { whole: &whole, before: &before, rest, text: &sources.text(span) };
     let rules = [
         foreign_character,
         letter_o,
@@ -29,6 +31,7 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
 
 /// Line of an alarm, without its comments.
 struct AlarmLine<'a> {
+    whole: &'a str,
     /// Text before the alarm.
     before: &'a str,
     /// Text from the alarm to the end of the line.
@@ -44,6 +47,16 @@ fn without_comments(text: &str) -> String {
         !is_in_comment && *c != ')'
     };
     text.chars().filter(is_kept).collect()
+}
+
+/// Returns the start of a text up to the first other character.
+fn leading(text: &str, fits: fn(char) -> bool) -> &str {
+    &text[..text.len() - text.trim_start_matches(fits).len()]
+}
+
+/// Returns the end of a text after the last other character.
+fn trailing(text: &str, fits: fn(char) -> bool) -> &str {
+    &text[text.trim_end_matches(fits).len()..]
 }
 
 /// Returns true for an alarm about notation.
@@ -92,8 +105,7 @@ fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     if !is_read_failure(alarm) && !matches!(alarm, Alarm::ImproperGCode { .. }) {
         return None;
     }
-    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
-    let chars: Vec<char> = line.chars().collect();
+    let chars: Vec<char> = alarm_line.whole.chars().collect();
     (0..chars.len()).find_map(|at| {
         let letter = chars[at];
         if !letter.is_ascii_uppercase() || letter == 'O' || at > 0 && chars[at - 1].is_ascii_alphabetic() {
@@ -117,7 +129,7 @@ fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
 fn number_with_n(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let number =
         alarm_line.rest.strip_prefix('N').filter(|_| matches!(alarm, Alarm::Expression { .. }))?.trim_start();
-    let digits: String = number.chars().take_while(char::is_ascii_digit).collect();
+    let digits = leading(number, |c| c.is_ascii_digit());
     (alarm_line.before.trim_end().ends_with("GOTO") && !digits.is_empty())
         .then(|| format!("write GOTO {digits}, without N"))
 }
@@ -128,9 +140,8 @@ fn misplaced_comma(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> 
         .rest
         .strip_prefix(',')
         .filter(|_| is_read_failure(alarm) || matches!(alarm, Alarm::CornerWords))?;
-    let whole: String = alarm_line.before.chars().rev().take_while(char::is_ascii_digit).collect();
-    let whole: String = whole.chars().rev().collect();
-    let part: String = behind.chars().take_while(char::is_ascii_digit).collect();
+    let is_digit = |c: char| c.is_ascii_digit();
+    let (whole, part) = (trailing(alarm_line.before, is_digit), leading(behind, is_digit));
     if !part.is_empty() && !whole.is_empty() {
         return Some(format!("write {whole}.{part}: the decimal separator is a point"));
     }
@@ -144,13 +155,10 @@ fn exponent(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     if !matches!(alarm, Alarm::MixedStatements | Alarm::ImproperAddress { letter: 'E' }) {
         return None;
     }
-    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
+    let line = alarm_line.whole;
     line.match_indices('E').find_map(|(at, _)| {
-        let number = |c: &char| matches!(c, '0'..='9' | '.');
-        let mantissa: String = line[..at].chars().rev().take_while(number).collect();
-        let mantissa: String = mantissa.chars().rev().collect();
-        let power: String =
-            line[at + 1..].chars().take_while(|c| matches!(c, '0'..='9' | '-' | '+')).collect();
+        let mantissa = trailing(&line[..at], |c| matches!(c, '0'..='9' | '.'));
+        let power = leading(&line[at + 1..], |c| matches!(c, '0'..='9' | '-' | '+'));
         let written = format!("{mantissa}E{power}");
         let value: f64 = written.parse().ok().filter(|_| !mantissa.is_empty())?;
         Some(format!("write {value} for {written}: numbers have no exponent"))
@@ -162,7 +170,7 @@ fn missing_operator(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String>
     if *alarm != Alarm::MissingEquals {
         return None;
     }
-    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
+    let line = alarm_line.whole;
     let at = line.rfind('#')?;
     let before = line[..at].trim_end();
     let is_value = before.ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ']'));
@@ -183,7 +191,7 @@ fn else_case(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
 fn two_signs(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::IllegalMinus { letter } = alarm else { return None };
     let value = alarm_line.rest.strip_prefix('-').filter(|_| alarm_line.before.trim_end().ends_with('-'))?;
-    let value: String = value.chars().take_while(|c| matches!(c, '0'..='9' | '.')).collect();
+    let value = leading(value, |c| matches!(c, '0'..='9' | '.'));
     Some(format!("write one sign: {letter}-{value}, or {letter}-[-{value}]"))
 }
 
@@ -206,7 +214,7 @@ fn radius_without_point(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<Str
 /// Detects two times in one dwell, `G04 X1.5 P500`.
 fn dwell_with_two_times(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::NotSimulated { what } = alarm else { return None };
-    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
+    let line = alarm_line.whole;
     let is_dwell = line.split(|c: char| !c.is_ascii_alphanumeric()).any(|word| matches!(word, "G4" | "G04"));
     (is_dwell && what.ends_with("in this block") && line.contains('P'))
         .then(|| "write one time for a dwell: X in seconds or P in milliseconds".to_owned())
@@ -217,7 +225,7 @@ mod tests {
     use super::*;
 
     /// Returns the remedy for an alarm at the first occurrence of `at` in the line.
-    fn told(alarm: Alarm, line: &str, at: &str) -> String {
+    fn help(alarm: Alarm, line: &str, at: &str) -> String {
         let mut sources = Sources::default();
         let text = format!("O1\n{line}\nM30\n");
         let source = sources.add("O1.nc", text.clone().into_bytes());
@@ -240,67 +248,67 @@ mod tests {
 
     #[test]
     fn a_letter_o_for_a_zero() {
-        assert!(told(Alarm::MixedStatements, "G90 GO1 X10. F100.", "G90").contains("write G01"));
-        assert!(told(no_value(), "GOO X10.", "O X").contains("write G00"));
-        assert!(told(no_value(), "M3O", "O\n").contains("write M30"));
-        assert!(told(no_number('Y'), "G00 X1O.5 Y", "Y").contains("write X10.5"));
+        assert!(help(Alarm::MixedStatements, "G90 GO1 X10. F100.", "G90").contains("write G01"));
+        assert!(help(no_value(), "GOO X10.", "O X").contains("write G00"));
+        assert!(help(no_value(), "M3O", "O\n").contains("write M30"));
+        assert!(help(no_number('Y'), "G00 X1O.5 Y", "Y").contains("write X10.5"));
         for (alarm, line) in
             [(no_value(), "GO TO X"), (Alarm::WhileFormat, "WHILE #1 LT 5 DO1"), (no_value(), "#1=ROUND X")]
         {
-            assert!(!told(alarm, line, line).contains("letter O"), "{line}");
+            assert!(!help(alarm, line, line).contains("letter O"), "{line}");
         }
     }
 
     #[test]
     fn characters_that_only_look_right() {
         assert!(
-            told(no_number('X'), "G00 X\u{2212}10.", "X")
+            help(no_number('X'), "G00 X\u{2212}10.", "X")
                 .contains("U+2212 is not a character of a control: type the minus")
         );
-        assert!(told(no_number('X'), "G00 X\u{2013}10.", "X").contains("type the minus"));
-        assert!(told(not_a_word(), "G00\u{a0}X1.", "\u{a0}X").contains("type a space"));
-        assert!(told(not_a_word(), "G00 \u{ff38}10.", "\u{ff38}").contains("type 'X' in half width"));
-        assert!(told(not_a_word(), "G00 é", "é").contains("'é' (U+00E9)"));
+        assert!(help(no_number('X'), "G00 X\u{2013}10.", "X").contains("type the minus"));
+        assert!(help(not_a_word(), "G00\u{a0}X1.", "\u{a0}X").contains("type a space"));
+        assert!(help(not_a_word(), "G00 \u{ff38}10.", "\u{ff38}").contains("type 'X' in half width"));
+        assert!(help(not_a_word(), "G00 é", "é").contains("'é' (U+00E9)"));
         // A comment may contain any text.
-        assert!(!told(no_number('X'), "G00 X (é)", "X").contains("character"));
+        assert!(!help(no_number('X'), "G00 X (é)", "X").contains("character"));
     }
 
     #[test]
     fn commas_for_points_and_between_words() {
-        assert_eq!(told(not_a_word(), "G00 X10,5", ",5"), "write 10.5: the decimal separator is a point");
-        assert!(told(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("not separated by commas"));
-        assert!(!told(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("not separated by commas"));
+        assert_eq!(help(not_a_word(), "G00 X10,5", ",5"), "write 10.5: the decimal separator is a point");
+        assert!(help(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("not separated by commas"));
+        assert!(!help(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("not separated by commas"));
     }
 
     #[test]
     fn what_other_languages_have() {
         assert_eq!(
-            told(Alarm::MixedStatements, "#1=1E3", "#1"),
+            help(Alarm::MixedStatements, "#1=1E3", "#1"),
             "write 1000 for 1E3: numbers have no exponent"
         );
         let alarm = Alarm::ImproperAddress { letter: 'E' };
-        assert_eq!(told(alarm, "G00 X2.5E-2", "E"), "write 0.025 for 2.5E-2: numbers have no exponent");
-        assert!(told(no_number('E'), "IF[#1EQ1]THEN #2=1 ELSE #2=2", "ELSE").contains("no ELSE"));
-        assert_eq!(told(Alarm::MissingEquals, "#1=5#2", "#2"), "check for a missing + - * or / before #2");
-        assert_eq!(told(no_value(), "GOTO N10", "N10"), "write GOTO 10, without N");
+        assert_eq!(help(alarm, "G00 X2.5E-2", "E"), "write 0.025 for 2.5E-2: numbers have no exponent");
+        assert!(help(no_number('E'), "IF[#1EQ1]THEN #2=1 ELSE #2=2", "ELSE").contains("no ELSE"));
+        assert_eq!(help(Alarm::MissingEquals, "#1=5#2", "#2"), "check for a missing + - * or / before #2");
+        assert_eq!(help(no_value(), "GOTO N10", "N10"), "write GOTO 10, without N");
     }
 
     #[test]
     fn numbers_that_can_not_be_meant() {
         assert_eq!(
-            told(Alarm::IllegalMinus { letter: 'Z' }, "G00 Z--5", "-5"),
+            help(Alarm::IllegalMinus { letter: 'Z' }, "G00 Z--5", "-5"),
             "write one sign: Z-5, or Z-[-5]"
         );
-        assert_eq!(told(Alarm::DivideByZero, "#1=10/0", "10/0"), "correct the divisor: it is written as 0");
-        assert!(told(Alarm::DivideByZero, "#1=10/#2", "10/#2").contains("vacant"));
+        assert_eq!(help(Alarm::DivideByZero, "#1=10/0", "10/0"), "correct the divisor: it is written as 0");
+        assert!(help(Alarm::DivideByZero, "#1=10/#2", "10/#2").contains("vacant"));
         let small = |radius: f64| Alarm::RadiusTooSmall { radius, half_chord: 5.0 };
         assert_eq!(
-            told(small(0.004), "G02 X10. R4", "R4"),
+            help(small(0.004), "G02 X10. R4", "R4"),
             "write R4.: R4 without a decimal point is 0.004 mm here"
         );
         // With calculator input a missing point is not the error.
-        assert!(!told(small(4.0), "G02 X10. R4", "R4").contains("without"));
+        assert!(!help(small(4.0), "G02 X10. R4", "R4").contains("without"));
         let alarm = Alarm::NotSimulated { what: "X in this block".into() };
-        assert!(told(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));
+        assert!(help(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));
     }
 }

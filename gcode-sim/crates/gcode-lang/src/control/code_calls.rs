@@ -107,22 +107,14 @@ const FIRST_ADDRESS_PARAMETER: u16 = 6090;
 /// Addresses that 6090 and 6091 may hold.
 pub const ADDRESSES: &[u8] = b"ABDFHIJKMPQRSTVXYZ";
 
-/// Codes × 10 that are calls or program ends themselves.
-const RESERVED_CODES: [(u8, u32); 13] = [
-    (b'G', 650),
-    (b'G', 660),
-    (b'G', 661),
-    (b'G', 670),
-    (b'M', 0),
-    (b'M', 10),
-    (b'M', 20),
-    (b'M', 300),
-    (b'M', 960),
-    (b'M', 970),
-    (b'M', 980),
-    (b'M', 990),
-    (b'M', 1980),
-];
+/// Returns the codes × 10 of a letter that are calls or program ends themselves.
+const fn reserved(letter: u8) -> &'static [u32] {
+    match letter {
+        b'G' => &[650, 660, 661, 670],
+        b'M' => &[0, 10, 20, 300, 960, 970, 980, 990, 1980],
+        _ => &[],
+    }
+}
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CodeCall {
@@ -183,7 +175,7 @@ impl CodeCalls {
 
     fn find_in_ranges(&self, letter: u8, code: u32) -> Option<CalledProgram> {
         let number = code.is_multiple_of(10).then_some(i64::from(code / 10))?;
-        if RESERVED_CODES.contains(&(letter, code)) {
+        if reserved(letter).contains(&code) {
             return None;
         }
         CODE_RANGES.iter().zip(&self.ranges).find_map(|(family, [first, program, count])| {
@@ -225,7 +217,7 @@ impl CodeCalls {
 
     /// Iterates over the codes of a letter that cannot be made calls.
     pub fn reserved_codes(letter: u8) -> impl Iterator<Item = u32> {
-        RESERVED_CODES.iter().filter(move |(taken, _)| *taken == letter).map(|(_, code)| code / 10)
+        reserved(letter).iter().map(|code| code / 10)
     }
 
     /// Iterates over the programs that an address may call: its own and those of 6090 and 6091.
@@ -244,19 +236,14 @@ impl CodeCalls {
             }
             let kind = if value < 0 { CodeCallKind::Modal } else { family.kind };
             let code = u32::try_from(value.unsigned_abs()).ok()?.checked_mul(10)?;
-            if value != 0 && RESERVED_CODES.contains(&(family.letter, code)) {
+            if value != 0 && reserved(family.letter).contains(&code) {
                 return None;
             }
             self.codes.retain(|call| call.parameter != Some(number));
             if value != 0 {
-                let program = family.program + u32::from(number - family.first);
-                let called = CalledProgram { program, kind };
-                self.codes.push(CodeCall {
-                    parameter: Some(number),
-                    letter: family.letter,
-                    code,
-                    target: called,
-                });
+                let target =
+                    CalledProgram { program: family.program + u32::from(number - family.first), kind };
+                self.codes.push(CodeCall { parameter: Some(number), letter: family.letter, code, target });
             }
             return Some(());
         }
@@ -311,7 +298,7 @@ impl CodeCalls {
     }
 
     fn add(&mut self, letter: u8, code: u32, called: CalledProgram) -> Option<()> {
-        if RESERVED_CODES.contains(&(letter, code)) {
+        if reserved(letter).contains(&code) {
             return None;
         }
         self.codes.retain(|call| (call.letter, call.code) != (letter, code));

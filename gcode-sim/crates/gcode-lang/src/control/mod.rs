@@ -3,7 +3,6 @@ mod code_calls;
 mod dialect;
 mod parameters;
 mod table;
-mod undocumented;
 
 use crate::motion::{Axes, AxisIndex, MAX_AXES, Position};
 use crate::units::{MmPerMin, round_scaled};
@@ -12,8 +11,7 @@ pub use code_calls::{
     ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
 };
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
-pub use table::{ROWS, SettingError, SettingRow, SettingValues};
-pub use undocumented::{ArgumentScale, UndocumentedChoices};
+pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
 
 /// Least input increment (parameter 1013).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,37 +72,19 @@ impl Dialect {
     pub const ALL: [(&'static str, Self); 3] =
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
 
+    /// Families of a code that every control has.
+    pub(crate) const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::HaasNgc];
+    /// Fanuc controls.
+    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
+    /// Controls with five simultaneous axes.
+    pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
+    /// Haas controls.
+    pub(crate) const HAAS: &'static [Self] = &[Self::HaasNgc];
+
     /// Returns the name, `fanuc-31i`.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, dialect)| *dialect == self).map_or("", |(name, _)| name)
     }
-}
-
-/// Set of G and M codes of a control.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CodeSet {
-    /// Codes of a 31i.
-    #[default]
-    Fanuc31i,
-    /// Codes of a 0i-F.
-    Fanuc0iF,
-    /// Codes of a Haas.
-    Haas,
-}
-
-impl CodeSet {
-    /// All code sets with their names on the command line.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::Haas)];
-
-    /// Code sets of a row that applies to every control.
-    pub(crate) const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
-    /// Code sets of the Fanuc controls.
-    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
-    /// Code sets of the controls with five simultaneous axes.
-    pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
-    /// Code set of the Haas controls.
-    pub(crate) const HAAS: &'static [Self] = &[Self::Haas];
 }
 
 /// Numbering of the tool offset variables.
@@ -130,6 +110,23 @@ impl OffsetVariables {
     }
 }
 
+/// Unit of a macro argument without a decimal point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArgumentScale {
+    /// The number itself.
+    Whole,
+    /// The unit of the word F in the active feed mode.
+    Feed,
+    /// Least increments of a length.
+    Increments,
+}
+
+impl ArgumentScale {
+    /// All units with their names on the command line.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("whole", Self::Whole), ("feed", Self::Feed), ("increments", Self::Increments)];
+}
+
 /// Stroke limits in machine coordinates, mm or degrees; `None` for an axis without a limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrokeLimits {
@@ -139,212 +136,158 @@ pub struct StrokeLimits {
     pub min: [Option<f64>; MAX_AXES],
 }
 
-/// Everything that a run depends on besides the programs.
-///
-/// `Default` is a mill of the 30i / 0i-F class, metric, IS-B.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// Family of the control.
-    pub dialect: Dialect,
-    /// Set of G and M codes.
-    pub codes: CodeSet,
-    /// Least input increment.
-    pub increment: Increment,
-    /// Axes in the order of their numbers.
-    pub axes: Axes,
-    /// ROA 1008#0: axes whose work coordinate rolls over from 360 to 0 and that take the shorter rotation.
-    pub rolls_over: [bool; MAX_AXES],
-    /// DPI 3401#0: a number without a point is mm, degrees or seconds, not increments.
-    pub uses_calculator_input: bool,
-    /// NAT 6004#0: ASIN returns −90 to 90 and ATAN −180 to 180, not 270 to 90 and 0 to 360.
-    pub returns_signed_angles: bool,
-    /// MFZ 6004#1: sines, cosines and tangents below 1e-8 become 0.
-    pub zeroes_residues: bool,
-    /// IJK 6008#7: I J K in G65 are always specification I.
-    pub reads_ijk_plainly: bool,
-    /// CVA 6007#4: arguments of macro calls are converted when they are passed; ADP then has no effect.
-    pub converts_arguments: bool,
-    /// FXY 5101#0: cycles drill along the normal of the plane or the axis in their block, not always Z.
-    pub drills_by_plane: bool,
-    /// V15 6000#3: geometry and wear are exchanged in the tool offset variables.
-    pub series_15_offsets: bool,
-    /// AD2 3403#6: a repeated address in a block raises PS5074.
-    pub alarms_on_repeated_address: bool,
-    /// Too many M codes in a block raise PS0335; otherwise the last counts.
-    pub plural_m_alarms: bool,
-    /// M3B 3404#7: up to three M codes in a block.
-    pub allows_three_m_codes: bool,
-    /// Number added to n by `#3000=n`; MCA 6008#1 makes it 0.
-    pub macro_alarm_base: u16,
-    /// Largest n that the manual gives for `#3000=n`.
-    pub macro_alarm_max: u16,
-    /// `IF[…]` accepts an assignment or words without THEN.
-    pub allows_plain_if: bool,
-    /// `IF[…]THEN` accepts words.
-    pub then_takes_words: bool,
-    /// First and last common variable beyond #999; `None` without any.
-    pub extra_commons: Option<(u32, u32)>,
-    /// Numbering of the tool offset variables.
-    pub offset_variables: OffsetVariables,
-    /// PRT 6001#1: DPRNT omits the blanks before a number.
-    pub omits_print_blanks: bool,
-    /// DPRNT prints all digits of a number with more digits than its format, not only the lower ones.
-    pub print_expands: bool,
-    /// DPRNT and BPRNT raise an alarm without a preceding POPEN.
-    pub print_needs_open: bool,
-    /// Most digits that the format of DPRNT allows.
-    pub print_digits: usize,
-    /// ODI 5004#2: the offsets of D are diameters.
-    pub offsets_are_diameters: bool,
-    /// EVR 5001#4: a changed offset of D applies from the next block, not from the next D.
-    pub applies_radius_at_once: bool,
-    /// SUP 5003#0: cutter compensation starts and ends by type B.
-    pub starts_up_by_type_b: bool,
-    /// 19625: number of lookahead blocks in cutter compensation; two of them must move.
-    pub lookahead_blocks: usize,
-    /// SCR 5400#7: factors of G51 count in 0.001, not 0.00001.
-    pub has_coarse_scaling: bool,
-    /// Block skip switches 1 to 9 that are on.
-    pub skip_switches: [bool; 9],
-    /// M01 stops.
-    pub stops_at_m01: bool,
-    /// Inputs #1000 to #1031 that are 1, as bits.
-    pub inputs: u32,
-    /// Fraction of a G31 path after which the skip signal comes; `None` for no signal.
-    pub skip_signal: Option<f64>,
-    /// A G31 that ends without its signal raises an alarm.
-    pub missed_skip_alarms: bool,
-    /// Number of M99 in the main program that ends the run; `None` for no limit.
-    pub main_program_cycles: Option<u32>,
-    /// Codes and addresses that call programs.
-    pub code_calls: CodeCalls,
-    /// 1420: rapid rate of the linear axes.
-    pub rapid: MmPerMin,
-    /// 1420: rapid rate of the rotary axes, degrees per minute.
-    pub rapid_rotary: f64,
-    /// 3410: largest difference between the radii at start and end of an arc, mm.
-    pub arc_tolerance: f64,
-    /// 5440: final approach of G60 with its direction, mm or degrees.
-    pub one_side_overrun: Position,
-    /// M97 P calls the subprogram at a sequence number of its own program.
-    pub has_local_calls: bool,
-    /// 5114: retract of G73, mm.
-    pub g73_retract: f64,
-    /// 5115: clearance of G83 above the last depth, mm.
-    pub g83_clearance: f64,
-    /// 1241 to 1243: second, third and fourth reference position, in machine coordinates.
-    pub reference_positions: [Position; 3],
-    /// 1320 and 1321: stroke limits; `None` for unlimited axes.
-    pub stroke_limits: Option<StrokeLimits>,
-    /// Number of additional work coordinate systems: G54.1 P1…, G154 P1….
-    pub work_systems: usize,
-    /// `#10100` is `#100`; `#10500` to `#10999` are `#500` to `#999`.
-    pub aliases_commons: bool,
-    /// `#n.m` is bit m of #n.
-    pub has_variable_bits: bool,
-    /// Programs and variables may have names; PRM, AX and AXNUM are available.
-    pub has_named_variables: bool,
-    /// FUP, LN, EXP, BIN, BCD, POW, ADP and ATAN with a comma are available.
-    pub has_extended_functions: bool,
-    /// G10 accepts parameters, variables and tool life.
-    pub allows_parameter_input: bool,
-    /// `M98 P` with five digits or more is repeats and program.
-    pub reads_repeats_in_p: bool,
-    /// Letter that repeats a drilling block, K or L.
-    pub cycle_repeat_letter: u8,
-    /// G28 without an axis moves all axes to the reference position.
-    pub homes_all_axes: bool,
-    /// P of a dwell with a point is seconds.
-    pub dwell_in_seconds: bool,
-    /// F without a point counts increments.
-    pub feed_in_increments: bool,
-    /// G73 and G83 accept I, J and K for decreasing pecks.
-    pub has_shrinking_pecks: bool,
-    /// Height above R to which G83 retracts, mm.
-    pub g83_above_r: f64,
-    /// Number of tool offset pairs.
-    pub tool_offsets: usize,
-    /// Deepest nesting of macro calls.
-    pub macro_levels: usize,
-    /// Deepest nesting of calls of all kinds.
-    pub call_levels: usize,
-    /// #3011 as yyyymmdd; a run never reads a clock.
-    pub date: u32,
-    /// #3012 as hhmmss at the start of the run.
-    pub time: u32,
-    /// Behaviour on which the manuals are silent.
-    pub undocumented: UndocumentedChoices,
+/// Declares a struct whose fields have default values, `field: type = value`.
+macro_rules! with_defaults {
+    ($(#[$doc:meta])* pub struct $name:ident { $($(#[$field_doc:meta])* pub $field:ident: $type:ty = $value:expr,)+ }) => {
+        $(#[$doc])*
+        pub struct $name {
+            $($(#[$field_doc])* pub $field: $type,)+
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $value,)+ }
+            }
+        }
+    };
 }
 
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            dialect: Dialect::default(),
-            codes: CodeSet::default(),
-            increment: Increment::default(),
-            axes: Axes::default(),
-            rolls_over: [false; MAX_AXES],
-            uses_calculator_input: false,
-            returns_signed_angles: false,
-            zeroes_residues: false,
-            reads_ijk_plainly: false,
-            converts_arguments: false,
-            drills_by_plane: false,
-            series_15_offsets: false,
-            alarms_on_repeated_address: false,
-            plural_m_alarms: false,
-            allows_three_m_codes: false,
-            macro_alarm_base: 3000,
-            macro_alarm_max: 200,
-            allows_plain_if: false,
-            then_takes_words: false,
-            extra_commons: Some((98_000, 98_499)),
-            offset_variables: OffsetVariables::default(),
-            omits_print_blanks: false,
-            print_expands: false,
-            print_needs_open: false,
-            print_digits: 8,
-            offsets_are_diameters: false,
-            applies_radius_at_once: false,
-            starts_up_by_type_b: false,
-            lookahead_blocks: 3,
-            has_coarse_scaling: true,
-            skip_switches: [false; 9],
-            stops_at_m01: true,
-            inputs: 0,
-            skip_signal: None,
-            missed_skip_alarms: false,
-            main_program_cycles: None,
-            code_calls: CodeCalls::default(),
-            rapid: MmPerMin(24_000.0),
-            rapid_rotary: 3_600.0,
-            arc_tolerance: 0.02,
-            one_side_overrun: Position::default(),
-            has_local_calls: false,
-            g73_retract: 1.0,
-            g83_clearance: 0.5,
-            reference_positions: [Position::default(); 3],
-            stroke_limits: None,
-            work_systems: 300,
-            aliases_commons: false,
-            has_variable_bits: false,
-            has_named_variables: true,
-            has_extended_functions: true,
-            allows_parameter_input: true,
-            reads_repeats_in_p: true,
-            cycle_repeat_letter: b'K',
-            homes_all_axes: false,
-            dwell_in_seconds: false,
-            feed_in_increments: false,
-            has_shrinking_pecks: false,
-            g83_above_r: 0.0,
-            tool_offsets: 400,
-            macro_levels: 5,
-            call_levels: 15,
-            date: 20_260_101,
-            time: 120_000,
-            undocumented: UndocumentedChoices::default(),
-        }
+with_defaults! {
+    /// Everything that a run depends on besides the programs.
+    ///
+    /// `Default` is a mill of the 30i / 0i-F class, metric, IS-B.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Settings {
+        /// Family of the control.
+        pub dialect: Dialect = Default::default(),
+        /// Family whose G and M codes the control has.
+        pub codes: Dialect = Default::default(),
+        /// Least input increment.
+        pub increment: Increment = Default::default(),
+        /// Axes in the order of their numbers.
+        pub axes: Axes = Default::default(),
+        /// ROA 1008#0: axes whose work coordinate rolls over from 360 to 0 and that take the shorter rotation.
+        pub rolls_over: [bool; MAX_AXES] = [false; MAX_AXES],
+        /// DPI 3401#0: a number without a point is mm, degrees or seconds, not increments.
+        pub uses_calculator_input: bool = false,
+        /// NAT 6004#0: ASIN returns −90 to 90 and ATAN −180 to 180, not 270 to 90 and 0 to 360.
+        pub returns_signed_angles: bool = false,
+        /// MFZ 6004#1: sines, cosines and tangents below 1e-8 become 0.
+        pub zeroes_residues: bool = false,
+        /// IJK 6008#7: I J K in G65 are always specification I.
+        pub reads_ijk_plainly: bool = false,
+        /// CVA 6007#4: arguments of macro calls are converted when they are passed; ADP then has no effect.
+        pub converts_arguments: bool = false,
+        /// FXY 5101#0: cycles drill along the normal of the plane or the axis in their block, not always Z.
+        pub drills_by_plane: bool = false,
+        /// V15 6000#3: geometry and wear are exchanged in the tool offset variables.
+        pub series_15_offsets: bool = false,
+        /// AD2 3403#6: a repeated address in a block raises PS5074.
+        pub alarms_on_repeated_address: bool = false,
+        /// Too many M codes in a block raise PS0335; otherwise the last counts.
+        pub plural_m_alarms: bool = false,
+        /// M3B 3404#7: up to three M codes in a block.
+        pub allows_three_m_codes: bool = false,
+        /// Number added to n by `#3000=n`; MCA 6008#1 makes it 0.
+        pub macro_alarm_base: u16 = 3000,
+        /// Largest n that the manual gives for `#3000=n`.
+        pub macro_alarm_max: u16 = 200,
+        /// `IF[…]` accepts an assignment or words without THEN.
+        pub allows_plain_if: bool = false,
+        /// `IF[…]THEN` accepts words.
+        pub then_takes_words: bool = false,
+        /// First and last common variable beyond #999; `None` without any.
+        pub extra_commons: Option<(u32, u32)> = Some((98_000, 98_499)),
+        /// Numbering of the tool offset variables.
+        pub offset_variables: OffsetVariables = Default::default(),
+        /// PRT 6001#1: DPRNT omits the blanks before a number.
+        pub omits_print_blanks: bool = false,
+        /// DPRNT prints all digits of a number with more digits than its format, not only the lower ones.
+        pub print_expands: bool = false,
+        /// DPRNT and BPRNT raise an alarm without a preceding POPEN.
+        pub print_needs_open: bool = false,
+        /// Most digits that the format of DPRNT allows.
+        pub print_digits: usize = 8,
+        /// ODI 5004#2: the offsets of D are diameters.
+        pub offsets_are_diameters: bool = false,
+        /// EVR 5001#4: a changed offset of D applies from the next block, not from the next D.
+        pub applies_radius_at_once: bool = false,
+        /// SUP 5003#0: cutter compensation starts and ends by type B.
+        pub starts_up_by_type_b: bool = false,
+        /// 19625: number of lookahead blocks in cutter compensation; two of them must move.
+        pub lookahead_blocks: usize = 3,
+        /// SCR 5400#7: factors of G51 count in 0.001, not 0.00001.
+        pub has_coarse_scaling: bool = true,
+        /// Block skip switches 1 to 9 that are on.
+        pub skip_switches: [bool; 9] = [false; 9],
+        /// M01 stops.
+        pub stops_at_m01: bool = true,
+        /// Inputs #1000 to #1031 that are 1, as bits.
+        pub inputs: u32 = 0,
+        /// Fraction of a G31 path after which the skip signal comes; `None` for no signal.
+        pub skip_signal: Option<f64> = None,
+        /// A G31 that ends without its signal raises an alarm.
+        pub missed_skip_alarms: bool = false,
+        /// Number of M99 in the main program that ends the run; `None` for no limit.
+        pub main_program_cycles: Option<u32> = None,
+        /// Codes and addresses that call programs.
+        pub code_calls: CodeCalls = Default::default(),
+        /// 1420: rapid rate of the linear axes.
+        pub rapid: MmPerMin = MmPerMin(24_000.0),
+        /// 1420: rapid rate of the rotary axes, degrees per minute.
+        pub rapid_rotary: f64 = 3_600.0,
+        /// 3410: largest difference between the radii at start and end of an arc, mm.
+        pub arc_tolerance: f64 = 0.02,
+        /// 5440: final approach of G60 with its direction, mm or degrees.
+        pub one_side_overrun: Position = Default::default(),
+        /// M97 P calls the subprogram at a sequence number of its own program.
+        pub has_local_calls: bool = false,
+        /// 5114: retract of G73, mm.
+        pub g73_retract: f64 = 1.0,
+        /// 5115: clearance of G83 above the last depth, mm.
+        pub g83_clearance: f64 = 0.5,
+        /// 1241 to 1243: second, third and fourth reference position, in machine coordinates.
+        pub reference_positions: [Position; 3] = [Position::default(); 3],
+        /// 1320 and 1321: stroke limits; `None` for unlimited axes.
+        pub stroke_limits: Option<StrokeLimits> = None,
+        /// Number of additional work coordinate systems: G54.1 P1…, G154 P1….
+        pub work_systems: usize = 300,
+        /// `#10100` is `#100`; `#10500` to `#10999` are `#500` to `#999`.
+        pub aliases_commons: bool = false,
+        /// `#n.m` is bit m of #n.
+        pub has_variable_bits: bool = false,
+        /// Programs and variables may have names; PRM, AX and AXNUM are available.
+        pub has_named_variables: bool = true,
+        /// FUP, LN, EXP, BIN, BCD, POW, ADP and ATAN with a comma are available.
+        pub has_extended_functions: bool = true,
+        /// G10 accepts parameters, variables and tool life.
+        pub allows_parameter_input: bool = true,
+        /// `M98 P` with five digits or more is repeats and program.
+        pub reads_repeats_in_p: bool = true,
+        /// Letter that repeats a drilling block, K or L.
+        pub cycle_repeat_letter: u8 = b'K',
+        /// G28 without an axis moves all axes to the reference position.
+        pub homes_all_axes: bool = false,
+        /// P of a dwell with a point is seconds.
+        pub dwell_in_seconds: bool = false,
+        /// F without a point counts increments.
+        pub feed_in_increments: bool = false,
+        /// G73 and G83 accept I, J and K for decreasing pecks.
+        pub has_shrinking_pecks: bool = false,
+        /// Height above R to which G83 retracts, mm.
+        pub g83_above_r: f64 = 0.0,
+        /// Number of tool offset pairs.
+        pub tool_offsets: usize = 400,
+        /// Deepest nesting of macro calls.
+        pub macro_levels: usize = 5,
+        /// Deepest nesting of calls of all kinds.
+        pub call_levels: usize = 15,
+        /// #3011 as yyyymmdd; a run never reads a clock.
+        pub date: u32 = 20_260_101,
+        /// #3012 as hhmmss at the start of the run.
+        pub time: u32 = 120_000,
+        /// Behaviour on which the manuals are silent.
+        pub undocumented: UndocumentedChoices = Default::default(),
     }
 }
 

@@ -1,5 +1,5 @@
 //! Named settings: the parameter in the manual, the key on the command line, and how the value is read.
-use super::{ArgumentScale, CodeSet, Dialect, Increment, OffsetVariables, Settings};
+use super::{ArgumentScale, Dialect, Increment, OffsetVariables, Settings};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
@@ -25,6 +25,7 @@ pub enum SettingError {
 }
 
 /// Named setting.
+#[derive(Clone, Copy)]
 pub struct SettingRow {
     /// Key on the command line.
     pub key: &'static str,
@@ -139,10 +140,19 @@ macro_rules! row {
 const REPEAT_LETTERS: [(&str, u8); 2] = [("K", b'K'), ("L", b'L')];
 
 /// All named settings in the order of their list.
+pub const ROWS: &[SettingRow] = &{
+    let mut all = [DOCUMENTED[0]; DOCUMENTED.len() + UNDOCUMENTED.len()];
+    let (first, last) = all.split_at_mut(DOCUMENTED.len());
+    first.copy_from_slice(DOCUMENTED);
+    last.copy_from_slice(UNDOCUMENTED);
+    all
+};
+
+/// Settings that manuals describe.
 #[rustfmt::skip]
-pub const ROWS: &[SettingRow] = &[
+const DOCUMENTED: &[SettingRow] = &[
     choice!("DIALECT", "the family of controls", Dialect::ALL, |s, v| s.apply_dialect(v)),
-    choice!("CODES", "the set of G and M codes", CodeSet::ALL, |s, v| s.codes = v),
+    choice!("CODES", "the set of G and M codes", Dialect::ALL, |s, v| s.codes = v),
     choice!("INCREMENT", "1013: the least input increment", Increment::ALL, |s, v| s.increment = v),
     switch!("DPI", "3401#0, setting 162 of a Haas: numbers without a decimal point are mm, degrees, seconds", uses_calculator_input),
     switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", returns_signed_angles),
@@ -211,38 +221,68 @@ pub const ROWS: &[SettingRow] = &[
     whole!("CALL-LEVELS", "levels of calls", 1, 30, |s, v| s.call_levels = v),
     whole!("DATE", "#3011, as yyyymmdd", 0, 99_991_231, |s, v| s.date = v as u32),
     whole!("TIME", "#3012, as hhmmss", 0, 235_959, |s, v| s.time = v as u32),
-    switch!("VACANT-MINUS", "-#1 of a vacant #1 stays vacant in an expression", undocumented.minus_keeps_vacancy),
-    switch!("VACANT-BRACKETS", "[#1] of a vacant #1 stays vacant", undocumented.brackets_keep_vacancy),
-    switch!("ROUND-LITERALS", "literals finer than the increment are rounded, not truncated", undocumented.rounds_literals),
-    switch!("GOTO-FIRST", "of duplicate N, GOTO takes the first in the program, not the next", undocumented.goto_takes_first_number),
-    switch!("THEN-GOTO", "IF[..]THEN GOTO is accepted", undocumented.then_takes_goto),
-    switch!("L-RESETS", "G65 L sets the arguments again for every repeat", undocumented.repeats_reset_locals),
-    switch!("G66.1-CALLS", "G66.1 with arguments calls its macro at once", undocumented.every_block_calls_itself),
-    switch!("G66-KEEPS-LOCALS", "a modal macro keeps its locals from its last call", undocumented.modal_keeps_locals),
-    switch!("GOTO-MINUS-UP", "GOTO-n searches upwards", undocumented.minus_searches_up),
-    switch!("MISSING-N-78", "GOTO without its target is PS0078, not PS0128", undocumented.missing_target_is_78),
-    switch!("BITS-ALARM", "AND, OR, XOR of a negative number raise an alarm", undocumented.negative_bits_alarm),
-    switch!("SHOWN-TRANSFORMED", "#5001.. under G51, G51.1, G68, G68.2 are the transformed coordinates", undocumented.shows_transformed),
-    switch!("NEW-FUNCTIONS", "POW, MOD and ATAN[a,b] are available", undocumented.has_new_functions),
-    switch!("ATAN-0-ALARM", "ATAN[0]/[0] raises an alarm", undocumented.atan_of_zeros_alarms),
-    switch!("TAN-90-ALARM", "TAN[90] raises an alarm", undocumented.tan_90_alarms),
-    switch!("G53-IN-G91", "G53 moves incrementally in G91", undocumented.g53_moves_in_g91),
-    switch!("K0-MOVES", "a drilling block with K0 moves in the plane", undocumented.k0_positions),
-    switch!("SKIP-KEEPS-END", "#5001.. after a skipped G31 are the commanded end", undocumented.skip_keeps_end),
-    switch!("G43-MOVES", "G43 H without an axis moves by the offset at once", undocumented.length_moves_at_once),
-    switch!("TAP-DWELL-R", "G84 and G74 dwell at R as well", undocumented.tap_dwells_at_r),
-    switch!("G67-ALARM", "G67 without G66 raises an alarm", undocumented.g67_alarms),
-    switch!("SMALL-R-ALARM", "an arc whose R is too small raises an alarm", undocumented.small_radius_alarms),
-    switch!("TWO-ASSIGNMENTS", "several assignments in a block are accepted", undocumented.allows_several_assignments),
-    switch!("SIGNS", "conditions accept = <> > >= < <= & and |", undocumented.allows_relation_signs),
-    switch!("SHORT-WORDS", "statement keywords may be abbreviated to two letters: WH GO EN TH PO PC DP BP SE", undocumented.allows_short_words),
-    switch!("LOWER-CASE", "lower case is read as capitals, not refused", undocumented.reads_lower_case),
-    switch!("LARGE-ALARMS", "#3000=n shows a number that is too large", undocumented.shows_large_alarm_numbers),
-    switch!("M98-NO-P-311", "M98 without P is PS0311, not PS0076", undocumented.missing_p_is_311),
-    switch!("M06-STOPS-SPINDLE", "M06 stops the spindle", undocumented.tool_change_stops_spindle),
-    choice!("ARGUMENT-E", "unit of an argument E without a decimal point", ArgumentScale::ALL, |s, v| s.undocumented.argument_e = v),
-    choice!("ARGUMENT-F", "unit of an argument F without a decimal point", ArgumentScale::ALL, |s, v| s.undocumented.argument_f = v),
 ];
+
+/// Declares [`UndocumentedChoices`], their defaults and their settings: key, field, default, meaning.
+macro_rules! undocumented_choices {
+    ($($key:literal $field:ident = $default:literal, $meaning:literal;)+) => {
+        /// Choices of the simulator where manuals are silent or contradict one another.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct UndocumentedChoices {
+            $(#[doc = concat!("`", $key, "`: `", $meaning, "`.")] pub $field: bool,)+
+            /// Unit of an argument E without a decimal point.
+            pub argument_e: ArgumentScale,
+            /// Unit of an argument F without a decimal point.
+            pub argument_f: ArgumentScale,
+        }
+
+        impl Default for UndocumentedChoices {
+            fn default() -> Self {
+                let (argument_e, argument_f) = (ArgumentScale::Whole, ArgumentScale::Feed);
+                Self { $($field: $default,)+ argument_e, argument_f }
+            }
+        }
+
+        /// Settings of the undocumented choices.
+        const UNDOCUMENTED: &[SettingRow] = &[
+            $(switch!($key, $meaning, undocumented.$field),)+
+            choice!("ARGUMENT-E", "unit of an argument E without a decimal point", ArgumentScale::ALL, |s, v| s.undocumented.argument_e = v),
+            choice!("ARGUMENT-F", "unit of an argument F without a decimal point", ArgumentScale::ALL, |s, v| s.undocumented.argument_f = v),
+        ];
+    };
+}
+
+undocumented_choices! {
+    "VACANT-MINUS" minus_keeps_vacancy = false, "-#1 of a vacant #1 stays vacant in an expression instead of becoming 0";
+    "VACANT-BRACKETS" brackets_keep_vacancy = true, "[#1] of a vacant #1 stays vacant instead of becoming 0";
+    "ROUND-LITERALS" rounds_literals = false, "literals finer than the increment are rounded, not truncated";
+    "GOTO-FIRST" goto_takes_first_number = false, "of duplicate N, GOTO takes the first in the program, not the next";
+    "THEN-GOTO" then_takes_goto = false, "IF[..]THEN GOTO is accepted";
+    "L-RESETS" repeats_reset_locals = false, "G65 L sets the arguments again for every repeat";
+    "G66.1-CALLS" every_block_calls_itself = true, "G66.1 with arguments calls its macro at once";
+    "G66-KEEPS-LOCALS" modal_keeps_locals = true, "a modal macro keeps its locals from its last call";
+    "GOTO-MINUS-UP" minus_searches_up = false, "GOTO-n searches upwards instead of raising PS1128";
+    "MISSING-N-78" missing_target_is_78 = false, "GOTO without its target is PS0078, not PS0128";
+    "BITS-ALARM" negative_bits_alarm = false, "AND, OR, XOR of a negative number raise PS0119 instead of working on two's complements";
+    "SHOWN-TRANSFORMED" shows_transformed = false, "#5001.. under G51, G51.1, G68, G68.2 are the transformed coordinates, not the programmed ones";
+    "NEW-FUNCTIONS" has_new_functions = true, "POW, MOD and ATAN[a,b] are available";
+    "ATAN-0-ALARM" atan_of_zeros_alarms = false, "ATAN[0]/[0] raises PS0119 instead of returning 0";
+    "TAN-90-ALARM" tan_90_alarms = false, "TAN[90] raises PS0119 instead of returning a large number";
+    "G53-IN-G91" g53_moves_in_g91 = false, "G53 in G91 moves by the increment instead of not moving";
+    "K0-MOVES" k0_positions = false, "a drilling block with K0 moves in the plane";
+    "SKIP-KEEPS-END" skip_keeps_end = false, "#5001.. after a skipped G31 are the commanded end, not the position of the signal";
+    "G43-MOVES" length_moves_at_once = true, "G43 H without an axis moves by the offset at once";
+    "TAP-DWELL-R" tap_dwells_at_r = true, "G84 and G74 dwell at R as well";
+    "G67-ALARM" g67_alarms = true, "G67 without G66 raises PS1100";
+    "SMALL-R-ALARM" small_radius_alarms = true, "an arc whose R is too small raises PS0020 instead of becoming a half circle";
+    "TWO-ASSIGNMENTS" allows_several_assignments = false, "several assignments in a block are accepted";
+    "SIGNS" allows_relation_signs = false, "conditions accept = <> > >= < <= & and |";
+    "SHORT-WORDS" allows_short_words = true, "statement keywords may be abbreviated to two letters: WH GO EN TH PO PC DP BP SE";
+    "LOWER-CASE" reads_lower_case = true, "lower case is read as capitals instead of raising PS0004";
+    "LARGE-ALARMS" shows_large_alarm_numbers = true, "#3000=n shows a number that is too large instead of raising PS0119";
+    "M98-NO-P-311" missing_p_is_311 = false, "M98 without P is PS0311, not PS0076";
+    "M06-STOPS-SPINDLE" tool_change_stops_spindle = true, "M06 stops the spindle";
+}
 
 impl Settings {
     /// Sets a setting, an input or a code that calls a program, from the text of its value.

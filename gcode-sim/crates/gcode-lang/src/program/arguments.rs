@@ -32,41 +32,24 @@ impl ArgumentLocals {
                 }
                 Ok(Some(4 + 3 * self.set + usize::from(letter - b'I')))
             }
-            b'G' if self.is_every_block => Ok(Some(10)),
-            b'L' if self.is_every_block => Ok(Some(12)),
-            b'N' if self.is_every_block => Ok(Some(14)),
-            b'P' if self.is_every_block => Ok(Some(16)),
-            b'L' | b'P' => Ok(None),
-            letter => {
-                let local = plain_argument(letter);
-                local.map(Some).ok_or(Alarm::ImproperAddress { letter: char::from(letter) })
-            }
+            b'L' | b'P' if !self.is_every_block => Ok(None),
+            b'G' | b'N' if !self.is_every_block => Err(Alarm::ImproperAddress { letter: char::from(letter) }),
+            letter => LETTERS
+                .iter()
+                .position(|other| *other == letter && letter != b'O')
+                .map(|place| Some(place + 1))
+                .ok_or(Alarm::ImproperAddress { letter: char::from(letter) }),
         }
     }
 }
 
-/// Returns the local of a letter in argument specification I.
-fn plain_argument(letter: u8) -> Option<usize> {
-    Some(match letter {
-        b'A' => 1,
-        b'B' => 2,
-        b'C' => 3,
-        b'D' => 7,
-        b'E' => 8,
-        b'F' => 9,
-        b'H' => 11,
-        b'I' => 4,
-        b'J' => 5,
-        b'K' => 6,
-        b'M' => 13,
-        b'Q'..=b'Z' => usize::from(letter - b'Q') + 17,
-        _ => return None,
-    })
-}
+/// Letters of #1 to #26 in argument specification I. G, L, N and P are arguments of G66.1 only, O never.
+const LETTERS: &[u8; 26] = b"ABCIJKDEFGHLMNOPQRSTUVWXYZ";
 
 /// Returns the letter that sets a local in argument specification I; `None` if no letter does.
 pub fn argument_letter(local: usize) -> Option<char> {
-    (b'A'..=b'Z').find(|letter| plain_argument(*letter) == Some(local)).map(char::from)
+    let letter = LETTERS.get(local.checked_sub(1)?).filter(|letter| !b"GLNOP".contains(letter))?;
+    Some(char::from(*letter))
 }
 
 #[cfg(test)]

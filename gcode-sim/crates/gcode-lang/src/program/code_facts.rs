@@ -229,9 +229,10 @@ pub(super) const SMOOTHNESS: CodeFacts = CodeFacts {
 };
 pub(super) const TOOL_OFFSET: CodeFacts = CodeFacts { lookahead: Alarms, ..MODAL };
 
+/// Code of group 00: axis words are not a move.
+const ONE_SHOT: CodeFacts = CodeFacts { axis_words: Other, ..MODAL };
+
 pub(super) const DWELL: CodeFacts = CodeFacts {
-    axis_words: Other,
-    without_axes: Same,
     words: CodeWords {
         own: Letters::of(b"U"),
         refuses_tool: true,
@@ -239,43 +240,31 @@ pub(super) const DWELL: CodeFacts = CodeFacts {
         ..CodeWords::NONE
     },
     lookahead: Dwell,
-    coordinates: Free,
     timing: Waits,
-    unsimulated: Unsimulated::No,
+    ..ONE_SHOT
 };
 pub(super) const DATA_INPUT: CodeFacts = CodeFacts {
     axis_words: Tables,
-    without_axes: Same,
     words: CodeWords {
         own: Letters::of(b"L"),
         refuses_tool: true,
         measured: Measured::ByTable,
         ..CodeWords::NONE
     },
-    lookahead: Path,
-    coordinates: Free,
     timing: Waits,
     unsimulated: Unsimulated::Writes,
+    ..ONE_SHOT
 };
-pub(super) const DATA_INPUT_END: CodeFacts = CodeFacts {
-    axis_words: Other,
-    without_axes: Same,
-    words: CodeWords::NONE,
-    lookahead: Path,
-    coordinates: Free,
-    timing: ReadAhead,
-    unsimulated: Unsimulated::No,
-};
+pub(super) const DATA_INPUT_END: CodeFacts = ONE_SHOT;
 
 /// G30.
 pub(super) const SECOND_REFERENCE: CodeFacts = CodeFacts {
     axis_words: Position,
     without_axes: Nothing,
-    words: CodeWords::NONE,
     lookahead: Suspends,
     coordinates: NotTransformed,
-    timing: ReadAhead,
     unsimulated: Unsimulated::Code(Letters::of(b"P")),
+    ..ONE_SHOT
 };
 pub(super) const CHECK_REFERENCE: CodeFacts =
     CodeFacts { unsimulated: Unsimulated::Code(NO_LETTERS), ..SECOND_REFERENCE };
@@ -285,48 +274,33 @@ pub(super) const FROM_REFERENCE: CodeFacts = CodeFacts { axis_words: Other, ..CH
 pub(super) const SKIP: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     without_axes: Nothing,
-    words: CodeWords::NONE,
     lookahead: Suspends,
-    coordinates: Free,
     timing: Waits,
-    unsimulated: Unsimulated::No,
+    ..ONE_SHOT
 };
 pub(super) const MACHINE_SYSTEM: CodeFacts = CodeFacts { coordinates: NotTransformed, ..SKIP };
 pub(super) const ONE_SIDE: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     without_axes: Nothing,
-    words: CodeWords::NONE,
     lookahead: Refused,
     coordinates: NotScaled,
-    timing: ReadAhead,
     unsimulated: Unsimulated::Path(NO_LETTERS),
+    ..ONE_SHOT
 };
 /// G52, G92 and G92.1.
 pub(super) const SET_SYSTEM: CodeFacts = CodeFacts {
-    axis_words: Other,
     without_axes: Nothing,
-    words: CodeWords::NONE,
-    lookahead: Path,
     coordinates: NotTransformed,
     timing: MovesNothing,
     unsimulated: Unsimulated::Writes,
+    ..ONE_SHOT
 };
-pub(super) const CORNER_ARC: CodeFacts = CodeFacts {
-    axis_words: Other,
-    without_axes: Same,
-    words: CodeWords::NONE,
-    lookahead: CornerArc,
-    coordinates: NotScaled,
-    timing: ReadAhead,
-    unsimulated: Unsimulated::No,
-};
+pub(super) const CORNER_ARC: CodeFacts =
+    CodeFacts { lookahead: CornerArc, coordinates: NotScaled, ..ONE_SHOT };
 /// G12, G13, G70 and G71 of a Haas.
 pub(super) const PATTERN: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
-    without_axes: Same,
     words: CodeWords { own: Letters::of(b"L"), ..CodeWords::NONE },
-    lookahead: Path,
     coordinates: NotScaled,
-    timing: ReadAhead,
-    unsimulated: Unsimulated::No,
+    ..ONE_SHOT
 };

@@ -5,7 +5,7 @@ use super::modes::{
     CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, Motion, Plane, Polar, ReturnTo, Rotation,
     Scaling, SpindleMode, StrokeCheck, Unit,
 };
-use crate::control::CodeSet;
+use crate::control::Dialect;
 
 /// Effect of a G code.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,7 +151,7 @@ pub struct GCodeRow {
     /// Description in a few words.
     pub help: &'static str,
     /// Controls with this meaning of the code.
-    pub code_sets: &'static [CodeSet],
+    pub dialects: &'static [Dialect],
 }
 
 impl GCodeRow {

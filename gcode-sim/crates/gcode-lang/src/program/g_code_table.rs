@@ -6,7 +6,7 @@ use super::modes::{
     CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, Motion, Plane, Polar, ReturnTo, Rotation,
     Scaling, SpindleMode, StrokeCheck, Unit,
 };
-use crate::control::CodeSet;
+use crate::control::Dialect;
 
 impl GCodeRow {
     /// Returns the row with the given facts in place of those of a modal code.
@@ -17,22 +17,22 @@ impl GCodeRow {
 
 /// Returns a row that applies to all controls.
 const fn row(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code, effect, help, facts: facts::MODAL, code_sets: CodeSet::ALL_CONTROLS }
+    GCodeRow { code, effect, help, facts: facts::MODAL, dialects: Dialect::ALL_CONTROLS }
 }
 
 /// Returns a row that does not apply to a Haas.
 const fn fanuc(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code_sets: CodeSet::FANUC, ..row(code, effect, help) }
+    GCodeRow { dialects: Dialect::FANUC, ..row(code, effect, help) }
 }
 
 /// Returns a row for controls with five simultaneous axes; the 0i-F has four.
 const fn five_axis(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code_sets: CodeSet::FIVE_AXES, ..row(code, effect, help) }
+    GCodeRow { dialects: Dialect::FIVE_AXES, ..row(code, effect, help) }
 }
 
 /// Returns a row for a Haas alone.
 const fn haas(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code_sets: CodeSet::HAAS, ..row(code, effect, help) }
+    GCodeRow { dialects: Dialect::HAAS, ..row(code, effect, help) }
 }
 
 const fn cycle(cycle: &'static Cycle) -> GCodeRow {
@@ -40,7 +40,7 @@ const fn cycle(cycle: &'static Cycle) -> GCodeRow {
 }
 
 const fn fanuc_cycle(of: &'static Cycle) -> GCodeRow {
-    GCodeRow { code_sets: CodeSet::FANUC, ..cycle(of) }
+    GCodeRow { dialects: Dialect::FANUC, ..cycle(of) }
 }
 
 /// All codes in ascending order; a code with several meanings has one row per meaning.

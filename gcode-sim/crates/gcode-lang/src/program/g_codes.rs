@@ -2,20 +2,20 @@
 use super::code_facts::AxisWords;
 pub use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot, name, spelled};
 use super::g_code_table::CODES;
-use crate::control::CodeSet;
+use crate::control::Dialect;
 
-/// Rows of a code × 10 by code set, as indices; 255 for a code that the controls lack.
+/// Rows of a code × 10 by family, as indices; 255 for a code that the controls lack.
 #[derive(Clone, Copy, Debug)]
-pub struct RowLookup([u8; CodeSet::ALL_CONTROLS.len()]);
+pub struct RowLookup([u8; Dialect::ALL_CONTROLS.len()]);
 
 impl RowLookup {
     const NONE: u8 = u8::MAX;
-    const NOT_FOUND: Self = Self([Self::NONE; CodeSet::ALL_CONTROLS.len()]);
+    const NOT_FOUND: Self = Self([Self::NONE; Dialect::ALL_CONTROLS.len()]);
 
     /// Returns the row of the code on a control.
     #[inline]
-    pub fn row_for(&self, set: CodeSet) -> Option<&'static GCodeRow> {
-        CODES.get(usize::from(self.0[set as usize]))
+    pub fn row_for(&self, dialect: Dialect) -> Option<&'static GCodeRow> {
+        CODES.get(usize::from(self.0[dialect as usize]))
     }
 
     /// Returns the row of the code on the first control that has it.
@@ -43,8 +43,8 @@ const LOOKUP: [RowLookup; LAST_CODE + 1] = {
             "a code of group 00 has facts of its own"
         );
         let mut set = 0;
-        while set < row.code_sets.len() {
-            all[row.code as usize].0[row.code_sets[set] as usize] = place as u8;
+        while set < row.dialects.len() {
+            all[row.code as usize].0[row.dialects[set] as usize] = place as u8;
             set += 1;
         }
         place += 1;
@@ -62,20 +62,20 @@ mod tests {
     #[test]
     fn rows_ascend_and_a_control_has_one_for_each_code() {
         for pair in CODES.windows(2) {
-            let once = pair[0].code_sets.iter().all(|set| !pair[1].code_sets.contains(set));
+            let once = pair[0].dialects.iter().all(|set| !pair[1].dialects.contains(set));
             let ascends = pair[0].code < pair[1].code || pair[0].code == pair[1].code && once;
             assert!(ascends, "G{}", spelled(pair[1].code));
         }
-        assert!(find(143).row_for(CodeSet::Fanuc31i).is_none());
+        assert!(find(143).row_for(Dialect::Fanuc31i).is_none());
     }
 
     #[test]
     fn a_code_is_what_its_control_makes_of_it() {
         let effect = |code, set| find(code).row_for(set).map(|row| row.effect);
-        assert_eq!(effect(1540, CodeSet::Haas), Some(Effect::AdditionalWork));
-        assert_eq!(effect(1540, CodeSet::Fanuc31i), None);
-        assert_eq!(effect(510, CodeSet::Fanuc31i), Some(Effect::Scaling(Scaling::On)));
-        assert_eq!(effect(510, CodeSet::Haas), Some(Effect::NotSimulated));
-        assert_eq!(effect(434, CodeSet::Fanuc0iF), None);
+        assert_eq!(effect(1540, Dialect::HaasNgc), Some(Effect::AdditionalWork));
+        assert_eq!(effect(1540, Dialect::Fanuc31i), None);
+        assert_eq!(effect(510, Dialect::Fanuc31i), Some(Effect::Scaling(Scaling::On)));
+        assert_eq!(effect(510, Dialect::HaasNgc), Some(Effect::NotSimulated));
+        assert_eq!(effect(434, Dialect::Fanuc0iF), None);
     }
 }

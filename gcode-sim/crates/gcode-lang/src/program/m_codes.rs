@@ -1,5 +1,5 @@
 //! Table of the M codes that the control itself executes.
-use crate::control::CodeSet;
+use crate::control::Dialect;
 
 /// Effect of an M code on the control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,20 +46,20 @@ pub struct MCodeRow {
     /// Description in a few words.
     pub help: &'static str,
     /// Controls with this meaning of the code.
-    pub code_sets: &'static [CodeSet],
+    pub dialects: &'static [Dialect],
 }
 
 /// Returns a row that applies to all controls.
 const fn row(code: u32, effect: MCodeEffect, help: &'static str) -> MCodeRow {
-    MCodeRow { code, effect, help, code_sets: CodeSet::ALL_CONTROLS }
+    MCodeRow { code, effect, help, dialects: Dialect::ALL_CONTROLS }
 }
 
 const fn fanuc(code: u32, effect: MCodeEffect, help: &'static str) -> MCodeRow {
-    MCodeRow { code, effect, help, code_sets: CodeSet::FANUC }
+    MCodeRow { code, effect, help, dialects: Dialect::FANUC }
 }
 
 const fn haas(code: u32, effect: MCodeEffect, help: &'static str) -> MCodeRow {
-    MCodeRow { code, effect, help, code_sets: CodeSet::HAAS }
+    MCodeRow { code, effect, help, dialects: Dialect::HAAS }
 }
 
 /// Codes with an effect on the control. All others go to the machine builder's logic.
@@ -101,6 +101,6 @@ pub fn ends_or_stops(code: u32) -> bool {
 }
 
 /// Returns the effect of an M code; `None` if the machine builder's logic executes it.
-pub fn find(code: u32, set: CodeSet) -> Option<MCodeEffect> {
-    M_CODES.iter().find(|row| row.code == code && row.code_sets.contains(&set)).map(|row| row.effect)
+pub fn find(code: u32, dialect: Dialect) -> Option<MCodeEffect> {
+    M_CODES.iter().find(|row| row.code == code && row.dialects.contains(&dialect)).map(|row| row.effect)
 }

@@ -54,8 +54,7 @@ impl<L: Library + ?Sized> Library for &mut L {
 pub struct Memory {
     sources: Sources,
     programs: Vec<Program>,
-    numbers: BTreeMap<u32, ProgramId>,
-    names: BTreeMap<String, ProgramId>,
+    by_name: BTreeMap<ProgramName, ProgramId>,
     /// Programs whose number or name an earlier program has.
     duplicates: Vec<ProgramId>,
 }
@@ -70,18 +69,10 @@ impl Memory {
         let bytes = &self.sources.get(source).bytes;
         for program in outline::programs(source, bytes) {
             let id = ProgramId(self.programs.len() as u32);
-            match &program.name {
-                ProgramName::Number(number) => {
-                    if *self.numbers.entry(*number).or_insert(id) != id {
-                        self.duplicates.push(id);
-                    }
-                }
-                ProgramName::Name(name) => {
-                    if *self.names.entry(name.clone()).or_insert(id) != id {
-                        self.duplicates.push(id);
-                    }
-                }
-                ProgramName::Unnamed => {}
+            if program.name != ProgramName::Unnamed
+                && *self.by_name.entry(program.name.clone()).or_insert(id) != id
+            {
+                self.duplicates.push(id);
             }
             self.programs.push(program);
         }
@@ -143,51 +134,39 @@ impl Memory {
 
     /// Returns the program with this O number.
     pub fn find(&self, number: u32) -> Option<ProgramId> {
-        self.numbers.get(&number).copied()
+        self.by_name.get(&ProgramName::Number(number)).copied()
     }
 
     /// Returns the program called `<name>`; `<O0123>` is program O0123.
     pub fn find_name(&self, name: &str) -> Option<ProgramId> {
-        match ProgramName::of(name.to_owned()) {
-            ProgramName::Number(number) => self.find(number),
-            ProgramName::Name(name) => self.names.get(&name).copied(),
-            ProgramName::Unnamed => None,
-        }
+        self.by_name.get(&ProgramName::of(name.to_owned())).copied()
     }
 
     /// Returns the program with this O number, loaded from the library if it is not in memory.
     pub fn fetch(&mut self, number: u32, library: &mut impl Library) -> Option<ProgramId> {
-        if let Some(id) = self.find(number) {
-            return Some(id);
-        }
-        let (name, bytes) = library.program(number)?;
-        let first = self.programs.len();
-        self.load(name, bytes);
-        if self.find(number).is_none() && self.programs.get(first)?.name == ProgramName::Unnamed {
-            // The file is named after its program and omits the O word.
-            self.numbers.insert(number, ProgramId(first as u32));
-        }
-        self.find(number)
+        self.fetch_program(ProgramName::Number(number), library)
     }
 
     /// Returns the program called `<name>`, loaded from the library if it is not in memory.
     pub fn fetch_name(&mut self, name: &str, library: &mut impl Library) -> Option<ProgramId> {
-        if let Some(id) = self.find_name(name) {
-            return Some(id);
+        self.fetch_program(ProgramName::of(name.to_owned()), library)
+    }
+
+    fn fetch_program(&mut self, name: ProgramName, library: &mut impl Library) -> Option<ProgramId> {
+        if !self.by_name.contains_key(&name) {
+            let (file, bytes) = match &name {
+                ProgramName::Number(number) => library.program(*number)?,
+                ProgramName::Name(name) => library.named(name)?,
+                ProgramName::Unnamed => return None,
+            };
+            let first = ProgramId(self.programs.len() as u32);
+            self.load(file, bytes);
+            // A file named after its program may omit the O word or the name.
+            if self.programs.get(first.0 as usize)?.name == ProgramName::Unnamed {
+                self.by_name.entry(name.clone()).or_insert(first);
+            }
         }
-        let name = match ProgramName::of(name.to_owned()) {
-            ProgramName::Number(number) => return self.fetch(number, library),
-            ProgramName::Name(name) => name,
-            ProgramName::Unnamed => return None,
-        };
-        let (file, bytes) = library.named(&name)?;
-        let first = self.programs.len();
-        self.load(file, bytes);
-        if self.find_name(&name).is_none() && self.programs.get(first)?.name == ProgramName::Unnamed {
-            // The file is named after its program and omits the name.
-            self.names.insert(name.clone(), ProgramId(first as u32));
-        }
-        self.find_name(&name)
+        self.by_name.get(&name).copied()
     }
 
     /// Returns the program that contains a place.

@@ -37,7 +37,7 @@ use self::blocks::Blocks;
 use self::loops::Loops;
 use crate::alarm::LocatedAlarm;
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{PrintKind, ProgramName};
+use crate::syntax::ast::{self, PrintKind, ProgramName};
 
 /// Index of an operation in its program.
 pub type OpIndex = usize;
@@ -47,7 +47,6 @@ pub type OpIndex = usize;
 pub struct Program {
     /// O number or name.
     pub name: ProgramName,
-    number: Option<u32>,
     /// First sequence number other than 0.
     first_number: Option<u32>,
     /// Place from the O word, or the first block, to the end of the last block.
@@ -265,17 +264,17 @@ impl Program {
     ///
     /// `None` for a program with a name.
     pub fn number(&self) -> Option<u32> {
-        self.number
+        match self.name {
+            ProgramName::Number(number) => Some(number),
+            ProgramName::Name(_) => None,
+            ProgramName::Unnamed => self.first_number,
+        }
     }
 
     /// Returns the number that #4115 reads: the O number, the first N of a program without O, 0 for a named
     /// program.
     pub fn shown_number(&self) -> u32 {
-        match self.name {
-            ProgramName::Number(number) => number,
-            ProgramName::Name(_) => 0,
-            ProgramName::Unnamed => self.first_number.unwrap_or(0),
-        }
+        self.number().unwrap_or(0)
     }
 
     /// Returns the label that a control displays: `O8101`, `<BRACKET-OP1>`; `MAIN` for an unnamed program.
@@ -303,6 +302,11 @@ impl Program {
     /// Returns an operation lowered by [`Program::lower_block`]; `None` if it is not, or no longer, lowered.
     pub fn op(&self, index: OpIndex) -> Option<&Op> {
         self.blocks.op(index)
+    }
+
+    /// Iterates over the trees of all blocks, read again from the text.
+    pub fn trees(&self) -> impl Iterator<Item = ast::Block> + '_ {
+        (0..).map_while(|index| self.blocks.tree(index))
     }
 
     fn numbers(&self) -> &[(u32, u32)] {

@@ -7,7 +7,7 @@ use super::loops::{LoopRole, Loops};
 use super::lowering::Lowering;
 use super::{OpIndex, OpKind, Program, Statement};
 use crate::source::{Bytes, SourceId, Span};
-use crate::syntax::ast::{self, ProgramName};
+use crate::syntax::ast;
 use crate::syntax::{
     BlockOutline, ProgramParts, end_without_spaces, outline, sequence_number_at, without_trailer,
 };
@@ -93,14 +93,8 @@ fn finish(
 ) -> Program {
     let OutlineBuilder { end, first_number, loops, separate_trees: apart, .. } = context;
     let end = end_without_spaces(text.content(), end);
-    let number = match name {
-        ProgramName::Number(number) => Some(number),
-        ProgramName::Name(_) => None,
-        ProgramName::Unnamed => first_number,
-    };
     Program {
         name,
-        number,
         first_number,
         span: Span { end: end.max(span.end), ..span },
         blocks: Blocks::new(text, blocks, apart),

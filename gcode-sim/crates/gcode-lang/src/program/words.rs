@@ -113,6 +113,12 @@ pub struct CallOp {
     pub span: Span,
 }
 
+impl CallOp {
+    fn new(kind: CallCode, span: Span) -> Self {
+        Self { kind, target: CallTarget::None, repeats: None, start: None, arguments: Vec::new(), span }
+    }
+}
+
 impl Words {
     fn new(list: Vec<LoweredWord>, call: Option<CallOp>) -> Self {
         let rest = call.map(|call| Box::new(UncommonWords { call: Some(call), ..UncommonWords::default() }));
@@ -140,6 +146,17 @@ impl Words {
     #[inline]
     pub fn is_plain(&self) -> bool {
         self.uncommon.as_ref().is_none_or(|rest| rest.call.is_none() && rest.skipped_form.is_none())
+    }
+
+    /// Iterates over the G codes written as numbers, each with its meaning on each control.
+    pub fn g_codes(&self) -> impl Iterator<Item = RowLookup> + '_ {
+        self.list.iter().filter_map(|word| match word.value {
+            WordOperand::G(_, found) => Some(found),
+            WordOperand::Literal(_)
+            | WordOperand::Number(_)
+            | WordOperand::Variable { .. }
+            | WordOperand::Code(_) => None,
+        })
     }
 
     /// Returns the call of the block.
@@ -176,22 +193,16 @@ impl Lowering {
         items: &[Item],
         skips: &[(u8, usize)],
     ) -> Result<Words, LocatedAlarm> {
-        let Some(((switch, place), before)) = skips.split_last() else {
-            return self.lower_plain_words(items);
-        };
-        let short = self.lower_words(&items[..*place], before)?;
-        let mut whole = self.lower_plain_words(items)?;
-        whole.uncommon_mut().skipped_form = Some((*switch, short));
-        Ok(whole)
-    }
-
-    fn lower_plain_words(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
+        let mut skipped_form = None;
+        if let Some(((switch, place), before)) = skips.split_last() {
+            skipped_form = Some((*switch, self.lower_words(&items[..*place], before)?));
+        }
         (self.codes, self.axes) = (Vec::new(), Vec::new());
         let mut words = self.lower_list(items)?;
         let (codes, axes) = (std::mem::take(&mut self.codes), std::mem::take(&mut self.axes));
-        if !codes.is_empty() || !axes.is_empty() {
-            let rest = words.uncommon_mut();
-            (rest.codes, rest.axes) = (codes, axes);
+        if skipped_form.is_some() || !codes.is_empty() || !axes.is_empty() {
+            let uncommon = words.uncommon_mut();
+            (uncommon.skipped_form, uncommon.codes, uncommon.axes) = (skipped_form, codes, axes);
         }
         Ok(words)
     }
@@ -213,26 +224,22 @@ impl Lowering {
             (false, true) => return subprogram(list, words),
             (true, _) => {}
         }
-        let is = |coded: &LoweredWord, code: u32| matches!(coded.value, WordOperand::G(c, _) if c == code);
-        let call = [(650, CallCode::Macro), (660, CallCode::AfterMoves), (661, CallCode::EveryBlock)];
-        for (code, kind) in call {
-            if let Some(at) = list.iter().position(|w| is(w, code)) {
-                self.record_syntax(DialectSyntax::GCodeCall(code), list[at].span);
+        const CALLS: [(u32, CallCode); 4] = [
+            (650, CallCode::Macro),
+            (660, CallCode::AfterMoves),
+            (661, CallCode::EveryBlock),
+            (670, CallCode::Cancel),
+        ];
+        for (code, kind) in CALLS {
+            let is_it = |word: &LoweredWord| matches!(word.value, WordOperand::G(c, _) if c == code);
+            let Some(at) = list.iter().position(is_it) else { continue };
+            let span = list[at].span;
+            self.record_syntax(DialectSyntax::GCodeCall(code), span);
+            if kind != CallCode::Cancel {
                 return macro_call(list, at, kind, words);
             }
-        }
-        if let Some(at) = list.iter().position(|w| is(w, 670)) {
-            let span = list.remove(at).span;
-            self.record_syntax(DialectSyntax::GCodeCall(670), span);
-            let call = CallOp {
-                kind: CallCode::Cancel,
-                target: CallTarget::None,
-                repeats: None,
-                start: None,
-                arguments: Vec::new(),
-                span,
-            };
-            return Ok(Words::new(list, Some(call)));
+            list.remove(at);
+            return Ok(Words::new(list, Some(CallOp::new(kind, span))));
         }
         subprogram(list, words)
     }
@@ -254,7 +261,7 @@ impl Lowering {
         };
         let axis = match &word.axis {
             Some(axis) => {
-                let axis = self.operand(axis, ExprContext::Macro)?;
+                let axis = self.operand(axis, ExprContext::MACRO)?;
                 self.axes.push(axis);
                 Some(self.axes.len() as u32 - 1)
             }
@@ -314,8 +321,7 @@ fn macro_call<'a>(
         return Err(Alarm::MacroFormat { what }.located_at(list[0].span));
     }
     list.remove(0);
-    let mut call =
-        CallOp { kind, target: CallTarget::None, repeats: None, start: None, arguments: Vec::new(), span };
+    let mut call = CallOp::new(kind, span);
     for (coded, word) in list.into_iter().zip(words.skip(1)) {
         match (coded.letter, &word.value) {
             (b'P', WordValue::Name(name)) => call.target = CallTarget::Name(name.clone()),
@@ -344,21 +350,16 @@ fn subprogram<'a>(
     list: Vec<LoweredWord>,
     words: impl Iterator<Item = &'a Word> + Clone,
 ) -> Result<Words, LocatedAlarm> {
-    let code = |word: &Word| match word.value {
-        WordValue::Literal(Decimal { negative: false, digits, places: None })
-            if word.address.letter == b'M' =>
-        {
-            Some(digits)
-        }
-        _ => None,
-    };
     let has = |letter: u8| words.clone().any(|word| word.address.letter == letter);
-    let kind = |word: &Word| match code(word)? {
-        // M97 without P ends a macro interrupt.
-        97 if has(b'P') => Some(CallCode::Local),
-        98 => Some(CallCode::Subprogram),
-        99 => Some(CallCode::Return),
-        198 => Some(CallCode::File),
+    let kind = |word: &Word| match (word.address.letter, &word.value) {
+        (b'M', WordValue::Literal(Decimal { negative: false, digits, places: None })) => match digits {
+            // M97 without P ends a macro interrupt.
+            97 if has(b'P') => Some(CallCode::Local),
+            98 => Some(CallCode::Subprogram),
+            99 => Some(CallCode::Return),
+            198 => Some(CallCode::File),
+            _ => None,
+        },
         _ => None,
     };
     let mut calls = words.clone().filter_map(|word| Some((word, kind(word)?)));
@@ -371,14 +372,7 @@ fn subprogram<'a>(
     if let Some((second, _)) = calls.next() {
         return Err(Alarm::TwoSubprogramCalls.located_at(second.span));
     }
-    let mut call_op = CallOp {
-        kind: calling,
-        target: CallTarget::None,
-        repeats: None,
-        start: None,
-        arguments: Vec::new(),
-        span: call.span,
-    };
+    let mut call_op = CallOp::new(calling, call.span);
     let mut other_words = Vec::with_capacity(list.len());
     for (coded, word) in list.into_iter().zip(words.clone()) {
         match (coded.letter, &word.value) {

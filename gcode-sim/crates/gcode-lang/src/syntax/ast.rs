@@ -18,7 +18,7 @@ pub struct Program {
 }
 
 /// Number or name of a program.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ProgramName {
     /// `O0001`, `:0007` or `<O0123>`.
     Number(u32),
@@ -37,9 +37,7 @@ impl ProgramName {
             Self::Unnamed => "MAIN".into(),
         }
     }
-}
 
-impl ProgramName {
     /// Interprets the text of `<text>`: O and digits are a number, any other text is a name.
     pub fn of(text: String) -> Self {
         let digits = text.strip_prefix('O').filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()));
@@ -189,6 +187,27 @@ pub struct Expr {
     pub span: Span,
 }
 
+impl Expr {
+    /// Iterates over the direct parts in the order written: operands, arguments, the number of a variable.
+    pub fn operands(&self) -> impl Iterator<Item = &Self> {
+        let (first, second, third) = match &self.kind {
+            ExprKind::Literal(_) | ExprKind::AxisNumber(_) => (None, None, None),
+            ExprKind::Named(name) => (name.index.as_ref(), None, None),
+            ExprKind::Variable(part)
+            | ExprKind::Negate(part)
+            | ExprKind::Plus(part)
+            | ExprKind::Bracket(part)
+            | ExprKind::Call(_, CallForm::One(part)) => (Some(part), None, None),
+            ExprKind::Binary(_, left, right)
+            | ExprKind::Call(_, CallForm::Slash(left, right) | CallForm::Comma(left, right)) => {
+                (Some(left), Some(right), None)
+            }
+            ExprKind::Parameter { number, bit, axis } => (Some(number), bit.as_ref(), axis.as_ref()),
+        };
+        [first, second, third].into_iter().flatten().map(|part| &**part)
+    }
+}
+
 /// Variants of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
@@ -332,6 +351,27 @@ pub enum OperatorSpelling {
     Letters,
     /// `=`, `&`.
     Sign,
+}
+
+impl BinaryOp {
+    /// Operators of a sum with their spellings.
+    pub(super) const OF_SUM: [(&'static str, Self); 5] =
+        [("+", Self::Add), ("-", Self::Sub), ("|", Self::Or), ("OR", Self::Or), ("XOR", Self::Xor)];
+    /// Operators of a product, which bind tighter.
+    pub(super) const OF_PRODUCT: [(&'static str, Self); 5] =
+        [("*", Self::Mul), ("/", Self::Div), ("&", Self::And), ("AND", Self::And), ("MOD", Self::Mod)];
+}
+
+impl Relation {
+    /// All relations with their letters and signs; a sign that begins another one follows it.
+    pub(super) const SPELLINGS: [(Self, &'static str, &'static str); 6] = [
+        (Self::Ne, "NE", "<>"),
+        (Self::Ge, "GE", ">="),
+        (Self::Le, "LE", "<="),
+        (Self::Eq, "EQ", "="),
+        (Self::Gt, "GT", ">"),
+        (Self::Lt, "LT", "<"),
+    ];
 }
 
 /// Relation between two values.

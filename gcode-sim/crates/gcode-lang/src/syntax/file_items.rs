@@ -13,7 +13,7 @@ use crate::source::{SourceId, Span, end_of_line, line_length};
 
 /// Item of a file. Items are read one at a time, so that a long file is never held as a tree.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FileItem<B = Block> {
+pub enum FileItem {
     /// `%`: the following blocks belong to no program yet.
     Section,
     /// `O0001`, `:0007` or `<NAME>`; words on its line form the next item.
@@ -23,8 +23,8 @@ pub enum FileItem<B = Block> {
         /// Place of the O word.
         span: Span,
     },
-    /// Block in the form that the reader of the file produces.
-    Block(B),
+    /// Block with its comments.
+    Block(Block),
 }
 
 /// Iterator over the items of a file. Empty lines are omitted.

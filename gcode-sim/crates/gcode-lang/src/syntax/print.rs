@@ -126,7 +126,9 @@ fn expr(value: &Expr) -> String {
         ExprKind::Negate(inner) => format!("-{}", expr(inner)),
         ExprKind::Plus(inner) => format!("+{}", expr(inner)),
         ExprKind::Bracket(inner) => format!("[{}]", expr(inner)),
-        ExprKind::Binary(op, left, right) => format!("{}{}{}", expr(left), operator(*op), expr(right)),
+        ExprKind::Binary(op, left, right) => {
+            format!("{}{}{}", expr(left), operator(*op, OperatorSpelling::Letters), expr(right))
+        }
         ExprKind::Call(function, form) => match form {
             CallForm::One(a) => format!("{}[{}]", function.name(), expr(a)),
             CallForm::Slash(a, b) => format!("{}[{}]/[{}]", function.name(), expr(a), expr(b)),
@@ -141,46 +143,30 @@ fn expr(value: &Expr) -> String {
     }
 }
 
-fn operator(op: BinaryOp) -> &'static str {
-    match op {
-        BinaryOp::Add => "+",
-        BinaryOp::Sub => "-",
-        BinaryOp::Mul => "*",
-        BinaryOp::Div => "/",
-        BinaryOp::Mod => " MOD ",
-        BinaryOp::And => " AND ",
-        BinaryOp::Or => " OR ",
-        BinaryOp::Xor => " XOR ",
+/// Prints an operator by letters, in spaces, or by its sign; some have only one of the spellings.
+fn operator(op: BinaryOp, spelling: OperatorSpelling) -> String {
+    let all = [BinaryOp::OF_SUM, BinaryOp::OF_PRODUCT].into_iter().flatten();
+    let texts = all.filter(|(_, other)| *other == op).map(|(text, _)| text);
+    let is_sign = |text: &&str| text.len() == 1;
+    match texts.max_by_key(|text| is_sign(text) == (spelling == OperatorSpelling::Sign)) {
+        Some(text) if !is_sign(&text) => format!(" {text} "),
+        text => text.unwrap_or_default().to_owned(),
     }
 }
 
 /// Prints a condition without the brackets of its IF or WHILE.
 fn condition(value: &Condition) -> String {
     match value {
-        Condition::Compare { left, relation, spelling: written, right, .. } => {
-            let relation = match (relation, written) {
-                (Relation::Eq, OperatorSpelling::Letters) => "EQ",
-                (Relation::Eq, OperatorSpelling::Sign) => "=",
-                (Relation::Ne, OperatorSpelling::Letters) => "NE",
-                (Relation::Ne, OperatorSpelling::Sign) => "<>",
-                (Relation::Gt, OperatorSpelling::Letters) => "GT",
-                (Relation::Gt, OperatorSpelling::Sign) => ">",
-                (Relation::Ge, OperatorSpelling::Letters) => "GE",
-                (Relation::Ge, OperatorSpelling::Sign) => ">=",
-                (Relation::Lt, OperatorSpelling::Letters) => "LT",
-                (Relation::Lt, OperatorSpelling::Sign) => "<",
-                (Relation::Le, OperatorSpelling::Letters) => "LE",
-                (Relation::Le, OperatorSpelling::Sign) => "<=",
-            };
-            format!("{} {relation} {}", expr(left), expr(right))
+        Condition::Compare { left, relation, spelling, right, .. } => {
+            let row = Relation::SPELLINGS.iter().find(|(other, ..)| other == relation);
+            let text = row.map_or("", |(_, letters, sign)| match spelling {
+                OperatorSpelling::Letters => letters,
+                OperatorSpelling::Sign => sign,
+            });
+            format!("{} {text} {}", expr(left), expr(right))
         }
-        Condition::Logic(op, written, left, right) => {
-            let sign = match (written, op) {
-                (OperatorSpelling::Sign, BinaryOp::And) => "&",
-                (OperatorSpelling::Sign, BinaryOp::Or) => "|",
-                _ => operator(*op),
-            };
-            format!("{}{sign}{}", condition(left), condition(right))
+        Condition::Logic(op, spelling, left, right) => {
+            format!("{}{}{}", condition(left), operator(*op, *spelling), condition(right))
         }
         Condition::Bracket(inner) => format!("[{}]", condition(inner)),
     }

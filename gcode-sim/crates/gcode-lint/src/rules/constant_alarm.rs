@@ -1,26 +1,24 @@
 //! Rule: arithmetic on constants that always raises an alarm, `SQRT[-4]`, `5/0`, `ACOS[1.5]`.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::expressions;
 use gcode_control::static_eval::{atan2, binary, function, power};
-use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::alarm::LocatedAlarm;
 use gcode_lang::control::Settings;
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind, Function};
 
-use super::unreadable::finding;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::expressions;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("constant-alarm", Severity::Error, "arithmetic on constants that always raises an alarm", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
+    for (index, block) in unit.reached_blocks() {
         let mut numbers = ConstantEvaluator { settings: context.settings, alarms: Vec::new() };
-        for expr in expressions::block_expressions(block) {
+        for (expr, _) in expressions::block_expressions(block) {
             numbers.value(expr);
         }
-        found.extend(numbers.alarms.iter().map(|alarm| finding(context, unit, &RULE.kind, index, alarm)));
+        found
+            .extend(numbers.alarms.iter().map(|alarm| context.alarm_finding(unit, &RULE.kind, index, alarm)));
     }
     found
 }

@@ -3,16 +3,15 @@
 //! The target of a jump then depends on the control's parameters and on the blocks read so far.
 use std::collections::BTreeMap;
 
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::parameters;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
 use gcode_lang::source::Span;
+
+use crate::parameters;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("doubled-n", Severity::Warning, "a sequence number that is defined twice", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
     let parameters = parameters::parameter_blocks(unit.program);

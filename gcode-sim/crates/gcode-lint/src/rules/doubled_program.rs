@@ -1,12 +1,10 @@
 //! Rule: two programs with the same number or name. A control refuses the second and does not start.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("doubled-program", Severity::Error, "a program number that is defined twice", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let refused = context.memory.duplicates().any(|program| std::ptr::eq(program, unit.program));
     if !refused || unit.program.ops().is_empty() {
         return Vec::new();

@@ -1,26 +1,25 @@
 //! Rule: a loop that never ends, because no block changes its exit conditions or because it has no exit.
 use std::collections::{BTreeMap, BTreeSet};
 
+use gcode_lang::syntax::ast::{Condition, Statement};
+
 use crate::components::strongly_connected_components;
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control_flow::{Jump, raises_alarm};
+use crate::expressions::condition_expressions;
 use crate::literal;
-use crate::rule::Rule;
+use crate::prelude::*;
 use crate::vacancy::{Locals, truth};
 use crate::variables::{self, VariableUses};
-use gcode_lang::diag::Severity;
-use gcode_lang::program::{OpIndex, OpKind};
-use gcode_lang::syntax::ast::{Condition, Statement};
 
 pub(super) static RULE: Rule = Rule::new("endless-loop", Severity::Warning, "a loop that never ends", find);
 
 /// First system variable. System variables may change by themselves.
 const FIRST_SYSTEM: u32 = 1000;
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut reported = vec![false; unit.program.ops().len()];
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
+    for (block, op) in unit.reached_ops() {
         use gcode_lang::program::Statement::{Do, While};
         let OpKind::Statement(While { end, .. } | Do { end, .. }) = *op.kind() else { continue };
         let inside: Vec<OpIndex> = (block..=end).filter(|b| unit.is_reached[*b]).collect();
@@ -37,7 +36,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> 
 }
 
 /// Finds endless cycles closed by a GOTO, each component once.
-fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<RuleFinding> {
+fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let backward_target = |jump: &Jump| {
         let to = jump.to.filter(|to| *to <= jump.block)?;
@@ -70,10 +69,10 @@ fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[b
     found
 }
 
-fn loop_finding(unit: &ProgramUnit<'_>, block: OpIndex) -> RuleFinding {
+fn loop_finding(unit: &ProgramUnit<'_>, block: OpIndex) -> Diagnostic {
     match condition(unit, block) {
         Some(condition) => {
-            let uses = variables::condition_uses(condition);
+            let uses = VariableUses::of(condition_expressions(condition));
             let mut names: Vec<String> = uses.reads.iter().map(|read| format!("#{}", read.number)).collect();
             names.dedup();
             let message = if names.is_empty() {
@@ -137,7 +136,7 @@ fn has_exit(
                 truth(condition, &Locals::ANYTHING) == Some(leaves_when)
                     || written
                         .get_or_insert_with(|| WrittenVariables::collect(context, unit, inside))
-                        .changes(&variables::condition_uses(condition))
+                        .changes(&VariableUses::of(condition_expressions(condition)))
             }
             None => true,
         }

@@ -1,14 +1,13 @@
 //! Rule: a jump into a loop from outside. At END the control finds no DO and raises PS1124.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::rule::Rule;
 use gcode_lang::alarm::kinds::PS1124;
-use gcode_lang::diag::Severity;
-use gcode_lang::program::{OpIndex, OpKind, Statement};
+use gcode_lang::program::Statement;
+
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("jump-into-loop", Severity::Error, "a jump into a loop from outside", find);
 
-fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let enclosing = enclosing_loops(unit);
     for jump in unit.flow.jumps.iter().filter(|jump| unit.is_reached[jump.block] && !jump.is_return) {

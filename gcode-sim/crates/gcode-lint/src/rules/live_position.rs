@@ -4,16 +4,15 @@
 //! signals and the codes of the executing block then have the values of that instant.
 //!
 //! #5001… (end of the preceding block) and #5061… (latched by G31) do not depend on the instant.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::literal;
-use crate::variables;
 use std::ops::RangeInclusive;
 
-use crate::rule::Rule;
 use gcode_lang::control::Settings;
-use gcode_lang::diag::Severity;
 use gcode_lang::program::code_facts::Timing;
-use gcode_lang::program::{OpIndex, OpKind, Statement, WordOperand, Words};
+use gcode_lang::program::{Statement, WordOperand, Words};
+
+use crate::literal;
+use crate::prelude::*;
+use crate::variables;
 
 pub(super) static RULE: Rule =
     Rule::new("live-position", Severity::Warning, "a position read while a move may be in progress", find);
@@ -26,26 +25,21 @@ const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
 /// Output signals.
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let pending = pending_moves(context.settings, unit);
     let mut found = Vec::new();
-    for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
+    for (block, written) in unit.reached_blocks() {
         let Some(motion) = pending[block] else { continue };
-        let reads = variables::block_uses(written).reads.into_iter();
-        let live = reads.filter(|read| LIVE_VARIABLES.iter().any(|range| range.contains(&read.number)));
+        let reads = variables::block_reads(written).into_iter();
+        let mut live = reads.filter(|read| LIVE_VARIABLES.iter().any(|range| range.contains(&read.number)));
         // One finding per block: a probe reads several axes at once.
-        if let Some(read) = live.take(1).next() {
-            let number = read.number;
-            let message = format!("#{number} is read while the preceding move may still be in progress");
-            let finding = unit.finding(&RULE.kind, block, message).with_span(read.span);
-            let finding = finding.label(unit.op(motion).span, "the move");
-            found.push(finding.help(HELP));
-        }
+        let read = live.next().map(|read| (read.number, "read", Some(read.span)));
         let target = variables::assignment(written).and_then(|(target, _)| literal::variable(target));
-        if let Some(number) = target.filter(|number| OUTPUTS.contains(number)) {
-            let message = format!("#{number} is set while the preceding move may still be in progress");
-            let finding = unit.finding(&RULE.kind, block, message);
-            found.push(finding.label(unit.op(motion).span, "the move").help(HELP));
+        let set = target.filter(|number| OUTPUTS.contains(number)).map(|number| (number, "set", None));
+        for (number, access, span) in read.into_iter().chain(set) {
+            let message = format!("#{number} is {access} while the preceding move may still be in progress");
+            let finding = unit.finding(&RULE.kind, block, message).label(unit.op(motion).span, "the move");
+            found.push(Diagnostic { span, ..finding.help(HELP) });
         }
     }
     found
@@ -89,7 +83,7 @@ fn move_effect(settings: &Settings, kind: &OpKind) -> Option<bool> {
 }
 
 fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
-    let mut axis = false;
+    let mut has_axis = false;
     for word in &words.list {
         match (word.letter, word.value) {
             (b'G', WordOperand::G(_, found)) => {
@@ -105,10 +99,10 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
             (b'M', _) if !matches!(literal::word_count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => {
                 return Some(false);
             }
-            (letter, _) => axis |= word.axis.is_some() || settings.axes.find(letter).is_some(),
+            (letter, _) => has_axis |= word.axis.is_some() || settings.axes.find(letter).is_some(),
         }
     }
-    axis.then_some(true)
+    has_axis.then_some(true)
 }
 
 #[cfg(test)]

@@ -1,77 +1,72 @@
 //! Rule: DO and END that do not pair: a missing partner, nested loops of one number, or overlapping loops.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::rule::Rule;
 use gcode_lang::alarm::kinds::{PS0124, PS0126, PS1124};
-use gcode_lang::diag::Severity;
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Item, Statement};
+
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("loop-pairs", Severity::Error, "DO and END that do not pair, or loops that overlap", find);
 
-fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
+    let mut report = |block: OpIndex, message: String, help: &str, label: Option<(Span, String)>| {
+        if unit.is_reached[block] {
+            let labels = label.into_iter().collect();
+            found.push(Diagnostic { labels, ..unit.finding(&RULE.kind, block, message).help(help) });
+        }
+    };
     let mut unpaired = Vec::new();
     let mut open: Vec<(i64, usize, Span)> = Vec::new();
     for (block, read) in unit.blocks.iter().enumerate() {
         let Some((number, begins)) = read.items.iter().find_map(loop_word) else { continue };
-        let word = if begins { "DO" } else { "END" };
         if !(1..=3).contains(&number) {
             // The fault is in its DO.
-            if !begins && unpaired.contains(&number) {
-                continue;
+            if begins || !unpaired.contains(&number) {
+                let word = if begins { "DO" } else { "END" };
+                let message = format!("{PS0126}: {word}{number}: a loop's number is 1, 2 or 3");
+                report(block, message, "number it 1, 2 or 3", None);
             }
             unpaired.push(number);
-            let message = format!("{PS0126}: {word}{number}: a loop's number is 1, 2 or 3");
-            found.push(unit.finding(&RULE.kind, block, message).help("number it 1, 2 or 3"));
         } else if begins {
             if let Some((.., outer)) = open.iter().find(|(n, ..)| *n == number) {
                 let message = format!("{PS0124}: DO{number} inside an open DO{number}");
-                let finding =
-                    unit.finding(&RULE.kind, block, message).label(*outer, "the outer loop begins here");
-                found.push(finding.help("give the inner loop another number, 1 to 3"));
+                let label = (*outer, "the outer loop begins here".to_owned());
+                report(block, message, "give the inner loop another number, 1 to 3", Some(label));
             }
             open.push((number, block, read.span));
-        } else {
-            let Some(place) = open.iter().rposition(|(n, ..)| *n == number) else {
-                let message = format!("{PS1124}: END{number} without a DO{number} before it");
-                found.push(unit.finding(&RULE.kind, block, message).help("write its DO, or remove it"));
-                continue;
-            };
+        } else if let Some(place) = open.iter().rposition(|(n, ..)| *n == number) {
             let crossed = open.split_off(place);
             if let Some((inner, _, begun)) = crossed.get(1) {
                 let message = format!("{PS0124}: END{number} while DO{inner} is open: the loops overlap");
-                let finding =
-                    unit.finding(&RULE.kind, block, message).label(*begun, format!("DO{inner} begins here"));
-                found.push(finding.help(format!("write END{inner} before END{number}")));
-                // Their ENDs follow this one and are not a second fault.
-                open.extend(crossed.into_iter().skip(1));
+                let label = (*begun, format!("DO{inner} begins here"));
+                report(block, message, &format!("write END{inner} before END{number}"), Some(label));
             }
+            // Their ENDs follow this one and are not a second fault.
+            open.extend(crossed.into_iter().skip(1));
+        } else {
+            let message = format!("{PS1124}: END{number} without a DO{number} before it");
+            report(block, message, "write its DO, or remove it", None);
         }
     }
     for (number, block, _) in open {
         let message = format!("{PS0124}: DO{number} has no END{number}");
-        found
-            .push(unit.finding(&RULE.kind, block, message).help(format!("write END{number} after the loop")));
+        report(block, message, &format!("write END{number} after the loop"), None);
     }
-    found.retain(|finding| unit.is_reached[finding.block]);
     found
 }
 
 /// Returns the number of a loop and true if it begins in this item.
 fn loop_word(item: &Item) -> Option<(i64, bool)> {
-    let statement = match item {
-        Item::Statement(statement) => statement,
+    match item {
+        Item::Statement(statement) => match &statement.node {
+            Statement::While { number, .. } | Statement::Do(number) => Some((number.node, true)),
+            Statement::End(number) => Some((number.node, false)),
+            _ => None,
+        },
         // `WHILE(#1 GT 0)DO1` has its own fault; its END has none.
-        Item::Unreadable(unreadable) => {
-            return unreadable_loop_number(&unreadable.text).map(|number| (number, true));
-        }
-        Item::Word(_) | Item::Skip(_) => return None,
-    };
-    match &statement.node {
-        Statement::While { number, .. } | Statement::Do(number) => Some((number.node, true)),
-        Statement::End(number) => Some((number.node, false)),
-        _ => None,
+        Item::Unreadable(unreadable) => Some((unreadable_loop_number(&unreadable.text)?, true)),
+        Item::Word(_) | Item::Skip(_) => None,
     }
 }
 

@@ -4,20 +4,20 @@
 //! variable.
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use gcode_lang::program::argument_letter;
+use gcode_lang::syntax::ast::Statement;
+
 use crate::control_flow::raises_alarm;
-use crate::rule::Rule;
+use crate::expressions::ValueUse;
+use crate::prelude::*;
 use crate::unset_reads::{entry_locals, unset_reads};
 use crate::vacancy::{Locals, NUMBER, States, UNSET, states, truth};
-use crate::variables::{self, VariableUse};
-use gcode_lang::diag::Severity;
-use gcode_lang::program::{OpIndex, OpKind, argument_letter};
-use gcode_lang::syntax::ast::Statement;
+use crate::variables;
 
 pub(super) static RULE: Rule =
     Rule::new("missing-argument", Severity::Error, "a macro call without a required argument", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut known: BTreeMap<(usize, Locals), Vec<MissingArgumentEffect>> = BTreeMap::new();
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block] && call.has_own_locals) {
@@ -85,7 +85,7 @@ fn missing_argument_effects(
     let states = states(called, entry);
     for ((block, local), (_, usage)) in unset_reads(called, &states) {
         let Some(letter) = argument_letter(local as usize) else { continue };
-        if usage == VariableUse::Computed && reported.insert(local) {
+        if usage == ValueUse::Computed && reported.insert(local) {
             let line = context.memory.sources().line_column(called.op(block).span).line;
             let message =
                 format!("{label} uses {letter} (#{local}) in line {line}; if it is omitted, it is 0");

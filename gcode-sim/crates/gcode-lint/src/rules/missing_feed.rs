@@ -1,32 +1,25 @@
 //! Rule: a feed move that no F precedes on any path, PS0011.
-use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
-use gcode_lang::alarm::Alarm;
 use gcode_lang::program::code_facts::AxisWords;
-use gcode_lang::program::{OpIndex, OpKind, WordOperand, Words};
+use gcode_lang::program::{Op, WordOperand, Words};
 
-use super::unreadable::finding;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule = Rule::new("missing-feed", Severity::Error, "a feed move before any F", find);
 
 /// G01, G02 and G03, × 10.
 const FEEDS: [u32; 3] = [10, 20, 30];
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     // The caller of a program may have set the feed.
     if unit.role != Role::Main {
         return Vec::new();
     }
-    let mut found = Vec::new();
-    for (block, fed) in feed_before(context, unit).into_iter().enumerate() {
-        let OpKind::Words(words) = unit.op(block).kind() else { continue };
-        if fed == Some(false) && !has_feed_word(words) && is_feed_move(context, words) {
-            let alarm = Alarm::FeedZero.located_at(unit.op(block).span);
-            found.push(finding(context, unit, &RULE.kind, block, &alarm));
-        }
-    }
-    found
+    let fed = feed_before(context, unit);
+    let unfed = unit.reached_words().filter(|(block, words)| {
+        fed[*block] == Some(false) && !has_feed_word(words) && is_feed_move(context, words)
+    });
+    let alarm = |block| Alarm::FeedZero.located_at(unit.op(block).span);
+    unfed.map(|(block, _)| context.alarm_finding(unit, &RULE.kind, block, &alarm(block))).collect()
 }
 
 /// Returns, for each block, whether some path to it may have an F; `None` for an unreachable block.
@@ -50,24 +43,18 @@ fn feed_before(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option
 
 /// Returns true if a block has an F or calls a program that may have one.
 fn may_set_feed(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
-    let sets_feed = match unit.op(block).kind() {
-        OpKind::Words(words) => has_feed_word(words),
-        OpKind::If { .. } => true,
-        _ => false,
-    };
-    let called = unit.call_in(block).map(|call| context.called_unit(call));
-    sets_feed
-        || match called {
-            None => false,
-            Some(None) => true,
+    let has_feed = |op: &Op| matches!(op.kind(), OpKind::Words(words) if has_feed_word(words));
+    if has_feed(unit.op(block)) || matches!(unit.op(block).kind(), OpKind::If { .. }) {
+        return true;
+    }
+    unit.call_in(block).is_some_and(|call| match context.called_unit(call) {
+        None => true,
+        Some(called) => {
+            let called = &context.units[called];
             // Its own calls are not followed; they may have an F.
-            Some(Some(called)) => {
-                let called = &context.units[called];
-                let written =
-                    |block| matches!(called.op(block).kind(), OpKind::Words(words) if has_feed_word(words));
-                !called.calls.is_empty() || (0..called.program.ops().len()).any(written)
-            }
+            !called.calls.is_empty() || called.program.ops().iter().any(has_feed)
         }
+    })
 }
 
 fn has_feed_word(words: &Words) -> bool {

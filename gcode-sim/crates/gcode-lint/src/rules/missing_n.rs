@@ -1,67 +1,53 @@
 //! Rule: a jump to a sequence number that is not defined, PS0128 at GOTO and PS0078 at M99 P.
-use crate::calls::CalledProgramName;
-use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
-use crate::rule::Rule;
 use gcode_lang::alarm::kinds::{PS0078, PS0128};
-use gcode_lang::diag::Severity;
+use gcode_lang::program::Program;
+
+use crate::calls::CalledProgramName;
+use crate::control_flow::Jump;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("missing-n", Severity::Error, "a jump to a sequence number that is not defined", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
+    let finding = |block: OpIndex, target: String, program: &Program| {
+        let message = format!("{target} is not in {}", program.label());
+        unit.finding(&RULE.kind, block, message).help(HELP)
+    };
+    let is_missing = |program: &Program, number: u32| program.find_number(number, 0).is_none();
     for jump in unit.flow.jumps.iter().filter(|jump| unit.is_reached[jump.block]) {
-        let number = jump.number;
+        let Jump { block, number, .. } = *jump;
         if !jump.is_return {
             if jump.to.is_none() {
-                let message =
-                    format!("{PS0128}: sequence number N{number} is not in {}", unit.program.label());
-                found.push(unit.finding(&RULE.kind, jump.block, message).help(HELP));
+                found.push(finding(block, format!("{PS0128}: sequence number N{number}"), unit.program));
             }
             continue;
         }
         match unit.role {
             Role::Main if jump.to.is_none() => {
-                let message = format!(
-                    "{PS0078}: sequence number N{number}, where execution continues, is not in {}",
-                    unit.program.label()
-                );
-                found.push(unit.finding(&RULE.kind, jump.block, message).help(HELP));
+                let target = format!("{PS0078}: sequence number N{number}, where execution continues,");
+                found.push(finding(block, target, unit.program));
             }
             Role::Main | Role::Resident => {}
             Role::Called => {
-                let lacking = unit
-                    .callers
-                    .iter()
-                    .find(|(caller, _)| context.units[*caller].program.find_number(number, 0).is_none());
-                if let Some((caller, site)) = lacking {
-                    let caller = &context.units[*caller];
-                    let message = format!(
-                        "{PS0078}: sequence number N{number}, the return target, is not in {}",
-                        caller.program.label()
-                    );
-                    let call = caller.op(caller.calls[*site].block).span;
-                    found.push(
-                        unit.finding(&RULE.kind, jump.block, message).label(call, "called here").help(HELP),
-                    );
+                let mut callers = unit.callers.iter().map(|(caller, site)| (&context.units[*caller], *site));
+                if let Some((caller, site)) = callers.find(|(caller, _)| is_missing(caller.program, number)) {
+                    let target = format!("{PS0078}: sequence number N{number}, the return target,");
+                    let call = caller.op(caller.calls[site].block).span;
+                    found.push(finding(block, target, caller.program).label(call, "called here"));
                 }
             }
         }
     }
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
-        if let (Some(number), Some(called)) = (call.start, context.called_unit(call)) {
-            let program = context.units[called].program;
-            if program.find_number(number, 0).is_none() {
-                let label = program.label();
-                let message = format!("{PS0078}: sequence number N{number}, the start, is not in {label}");
-                found.push(unit.finding(&RULE.kind, call.block, message).help(HELP));
-            }
-        } else if let (Some(number), CalledProgramName::Missing) = (call.start, &call.target)
-            && unit.program.find_number(number, 0).is_none()
+        let called = context.called_unit(call).map(|called| context.units[called].program);
+        let own = (call.target == CalledProgramName::Missing).then_some(unit.program);
+        if let (Some(number), Some(program)) = (call.start, called.or(own))
+            && is_missing(program, number)
         {
-            let message =
-                format!("{PS0078}: sequence number N{number}, the start, is not in {}", unit.program.label());
-            found.push(unit.finding(&RULE.kind, call.block, message).help(HELP));
+            let target = format!("{PS0078}: sequence number N{number}, the start,");
+            found.push(finding(call.block, target, program));
         }
     }
     found

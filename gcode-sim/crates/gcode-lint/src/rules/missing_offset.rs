@@ -1,35 +1,24 @@
 //! Rule: an H or D beyond the tool offsets of the control, PS0030.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal;
-use gcode_lang::alarm::Alarm;
-use gcode_lang::program::OpKind;
-
-use super::unreadable::finding;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("missing-offset", Severity::Error, "an H or D number beyond the tool offsets", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let max = context.settings.tool_offsets;
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
-        let OpKind::Words(words) = op.kind() else { continue };
+    for (block, words) in unit.reached_words() {
         // H and D in a block with a call may be arguments.
         if unit.call_in(block).is_some() {
             continue;
         }
         for word in words.list.iter().filter(|word| matches!(word.letter, b'H' | b'D')) {
-            let Some(number) = literal::word_count(word).filter(|number| *number as usize > max) else {
-                continue;
-            };
-            let alarm = Alarm::OffsetNumber { number: i64::from(number) }.located_at(word.span);
-            let finding = finding(context, unit, &RULE.kind, block, &alarm);
-            found
-                .push(finding.help(format!(
-                    "correct the number: this control has {max}, or give --control OFFSETS=…"
-                )));
+            let number = literal::word_count(word).filter(|number| *number as usize > max);
+            let Some(number) = number.map(i64::from) else { continue };
+            let alarm = Alarm::OffsetNumber { number }.located_at(word.span);
+            let help = format!("correct the number: this control has {max}, or give --control OFFSETS=…");
+            found.push(context.alarm_finding(unit, &RULE.kind, block, &alarm).help(help));
         }
     }
     found

@@ -2,17 +2,16 @@
 //!
 //! Programs that count in increments throughout (`X45000`) are exempt: they have no decimal point, and a
 //! number of 1 mm or more.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::literal::without_point;
-use crate::parameters;
-use crate::rule::Rule;
 use gcode_lang::control::Settings;
-use gcode_lang::diag::Severity;
 use gcode_lang::program::code_facts::Measured;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::{Motion, Unit};
-use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
+use gcode_lang::program::{LoweredWord, WordOperand, Words};
 use gcode_lang::syntax::ast::Decimal;
+
+use crate::literal::without_point;
+use crate::parameters;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule = Rule::new(
     "missing-point",
@@ -24,19 +23,16 @@ pub(super) static RULE: Rule = Rule::new(
 /// Number of increments from which a peck or a dwell may be intended: many programs write `G4 X500`.
 const MIN_INTENDED_INCREMENTS: u64 = 100;
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let settings = context.settings;
     if settings.uses_calculator_input || counts_in_increments(unit, settings) {
         return Vec::new();
     }
-    let is_inch = unit.program.ops().iter().any(|op| {
-        block_words(op.kind())
-            .is_some_and(|words| g_codes(words).any(|row| row.effect == Effect::Unit(Unit::Inch)))
-    });
+    let mut words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
+    let is_inch = words.any(|words| g_codes(words).any(|row| row.effect == Effect::Unit(Unit::Inch)));
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
-        let Some(words) = block_words(op.kind()).filter(|_| !parameters[block]) else { continue };
+    for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
         for word in measured_words(words, settings) {
             let Some(number) = without_point(word) else { continue };
             let is_count =
@@ -46,11 +42,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> 
             }
             let written = spelled(word.letter, number);
             let message = format!("{written} is {}", meaning(word.letter, number, words, settings, is_inch));
-            found.push(
-                unit.finding(&RULE.kind, block, message)
-                    .with_span(word.span)
-                    .help(format!("write {written}.")),
-            );
+            let finding = unit.finding(&RULE.kind, block, message).with_span(word.span);
+            found.push(finding.help(format!("write {written}.")));
         }
     }
     found
@@ -65,13 +58,7 @@ fn block_words(kind: &OpKind) -> Option<&Words> {
 
 /// The rows of a block's G codes, whatever the control.
 fn g_codes(words: &Words) -> impl Iterator<Item = &'static GCodeRow> + '_ {
-    words.list.iter().filter_map(|word| match word.value {
-        WordOperand::G(_, found) => found.row_for_any(),
-        WordOperand::Literal(_)
-        | WordOperand::Number(_)
-        | WordOperand::Variable { .. }
-        | WordOperand::Code(_) => None,
-    })
+    words.g_codes().filter_map(|found| found.row_for_any())
 }
 
 /// What the words of a block measure: of several codes the one that leaves fewest.
@@ -90,25 +77,21 @@ fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator
 }
 
 fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
-    let axis = settings.axes.find(word.letter).is_some();
-    match measured(words) {
-        Measured::Nothing => return false,
-        Measured::Seconds => return matches!(word.letter, b'X' | b'U'),
-        Measured::ByTable => {
-            return match parameters::data_input_kind(words) {
-                Some(2 | 20) => axis,
-                Some(1 | 10..=13) => word.letter == b'R',
-                _ => false,
-            };
+    let is_axis = settings.axes.find(word.letter).is_some();
+    match (measured(words), word.letter) {
+        (Measured::Nothing, _) => false,
+        (Measured::Seconds, letter) => matches!(letter, b'X' | b'U'),
+        (Measured::ByTable, letter) => match parameters::data_input_kind(words) {
+            Some(2 | 20) => is_axis,
+            Some(1 | 10..=13) => letter == b'R',
+            _ => false,
+        },
+        (Measured::AsInMove, b'Q') => {
+            g_codes(words).any(|row| matches!(row.effect, Effect::Cycle(Some(cycle)) if cycle.uses_q()))
         }
-        Measured::Axes => return axis,
-        Measured::AsInMove => {}
-    }
-    match word.letter {
-        b'Q' => g_codes(words).any(|row| matches!(row.effect, Effect::Cycle(Some(cycle)) if cycle.uses_q())),
-        b'I' | b'J' | b'K' | b'R' => true,
-        b'C' if word.comma => true,
-        _ => axis,
+        (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => true,
+        (Measured::AsInMove, b'C') if word.comma => true,
+        (Measured::AsInMove | Measured::Axes, _) => is_axis,
     }
 }
 

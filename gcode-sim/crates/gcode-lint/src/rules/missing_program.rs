@@ -1,14 +1,13 @@
 //! Rule: a call of a program that is neither in the file nor in the folders, PS0076, or PS0310 by name.
-use crate::calls::CalledProgramName;
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::rule::Rule;
 use gcode_lang::alarm::kinds::{PS0076, PS0310};
-use gcode_lang::diag::Severity;
+
+use crate::calls::CalledProgramName;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("missing-program", Severity::Error, "a call of a program that is not found", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut reported: Vec<&CalledProgramName> = Vec::new();
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
@@ -20,21 +19,23 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> 
         }
         reported.push(&call.target);
         let label = call.target.label();
-        let finding = match call.target {
+        let (message, help) = match call.target {
             CalledProgramName::Computed => continue,
             // M98 Q alone starts in this program.
             CalledProgramName::Missing if call.start.is_some() => continue,
-            CalledProgramName::Missing => unit
-                .finding(&RULE.kind, call.block, format!("{PS0076}: a call without a program number"))
-                .help("write the program number after P"),
-            CalledProgramName::Number(_) => unit
-                .finding(&RULE.kind, call.block, format!("{PS0076}: program {label} is not found"))
-                .help("give the folder that holds it with --lib"),
-            CalledProgramName::Name(_) => unit
-                .finding(&RULE.kind, call.block, format!("{PS0310}: program {label} is not found"))
-                .help("give the folder that holds it with --lib, or put it into the same file"),
+            CalledProgramName::Missing => {
+                (format!("{PS0076}: a call without a program number"), "write the program number after P")
+            }
+            CalledProgramName::Number(_) => (
+                format!("{PS0076}: program {label} is not found"),
+                "give the folder that holds it with --lib",
+            ),
+            CalledProgramName::Name(_) => (
+                format!("{PS0310}: program {label} is not found"),
+                "give the folder that holds it with --lib, or put it into the same file",
+            ),
         };
-        found.push(finding.with_span(call.span));
+        found.push(unit.finding(&RULE.kind, call.block, message).with_span(call.span).help(help));
     }
     found
 }

@@ -28,9 +28,9 @@ mod unset_variable;
 
 use gcode_lang::diag::{Diagnostic, FindingKind};
 
-use super::context::{CheckContext, RuleFinding};
+use super::context::CheckContext;
 pub use super::rule::Rule;
-use super::suppression::Suppressions;
+use super::suppression::suppressions;
 
 /// All rules, in the order of their findings about one block.
 pub static ALL: &[&Rule] = &[
@@ -74,11 +74,11 @@ pub(super) fn codes() -> Vec<&'static str> {
 pub(super) fn findings(context: &CheckContext<'_>) -> Vec<Diagnostic> {
     let mut all = Vec::new();
     for unit in &context.units {
-        let suppressions = Suppressions::new(unit);
-        let mut found: Vec<RuleFinding> = ALL.iter().flat_map(|rule| (rule.find)(context, unit)).collect();
-        found.retain(|finding| !suppressions.suppresses(finding));
-        found.sort_by_key(|finding| finding.block);
-        all.extend(found.into_iter().map(|finding| finding.diagnostic));
+        let off = suppressions(unit);
+        let mut found: Vec<_> = ALL.iter().flat_map(|rule| (rule.find)(context, unit)).collect();
+        found.retain(|finding| !off.iter().any(|suppression| suppression.suppresses(finding)));
+        found.sort_by_key(|finding| finding.backtrace.as_ref().map(|place| place.block.start));
+        all.extend(found);
     }
     all
 }

@@ -1,12 +1,9 @@
 //! Rule: a variable that does not exist (PS0115) or that cannot be written (PS0116) or read (PS1115).
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::{literal, variables};
 use gcode_control::static_eval::VariableTable;
-use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::alarm::LocatedAlarm;
 
-use super::unreadable::finding;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::prelude::*;
+use crate::{literal, variables};
 
 pub(super) static RULE: Rule = Rule::new(
     "no-such-variable",
@@ -15,17 +12,17 @@ pub(super) static RULE: Rule = Rule::new(
     find,
 );
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let known = VariableTable::new(context.settings);
     let mut found = Vec::new();
-    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
+    for (index, block) in unit.reached_blocks() {
         let mut report = |alarm: LocatedAlarm| {
             // A limit of the simulator is not a fault of the program.
             if !matches!(alarm.node, Alarm::NotSimulated { .. }) {
-                found.push(finding(context, unit, &RULE.kind, index, &alarm));
+                found.push(context.alarm_finding(unit, &RULE.kind, index, &alarm));
             }
         };
-        for read in variables::block_uses(block).reads {
+        for read in variables::block_reads(block) {
             if let Err(alarm) = known.read(read.number) {
                 report(alarm.located_at(read.span));
             }

@@ -1,14 +1,13 @@
 //! Rule: a comment that is not closed. The rest of its line is comment too, and some controls refuse the
 //! line.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
 use gcode_lang::syntax::ast::CommentMark;
+
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("open-comment", Severity::Warning, "a comment that is not closed", find);
 
-fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate() {
         for comment in block.comments.iter().filter(|comment| comment.mark == CommentMark::Unclosed) {

@@ -1,19 +1,11 @@
 //! Rule: `=`, `<` or `>` in a condition instead of EQ, NE, LT, LE, GT or GE.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use gcode_lang::alarm::Alarm;
-
-use super::unreadable::{alarm_blocks, finding, refused_blocks};
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("relation-symbol", Severity::Error, "= < > instead of EQ, LT, GT …", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let of_all = alarm_blocks(unit).map(|(block, alarm)| (block, alarm.clone()));
-    let all = of_all.chain(refused_blocks(context, unit));
-    let signs = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));
-    signs.map(|(block, alarm)| finding(context, unit, &RULE.kind, block, &alarm)).collect()
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    context.reading_findings(unit, &RULE.kind, |alarm| matches!(alarm, Alarm::RelationSymbol))
 }
 
 #[cfg(test)]

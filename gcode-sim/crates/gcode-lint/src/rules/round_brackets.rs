@@ -1,17 +1,11 @@
 //! Rule: `(` instead of `[`. Round brackets are a comment, so their content has no effect.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use gcode_lang::alarm::Alarm;
-
-use super::unreadable::{alarm_blocks, finding};
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("round-brackets", Severity::Error, "( ) instead of [ ]: round brackets are a comment", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let alarms = alarm_blocks(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RoundBrackets { .. }));
-    alarms.map(|(block, alarm)| finding(context, unit, &RULE.kind, block, alarm)).collect()
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    context.reading_findings(unit, &RULE.kind, |alarm| matches!(alarm, Alarm::RoundBrackets { .. }))
 }
 
 #[cfg(test)]

@@ -2,13 +2,12 @@
 //! short.
 use std::f64::consts::PI;
 
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind};
+
 use crate::expressions;
 use crate::literal::constant;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
-use gcode_lang::source::Span;
-use gcode_lang::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind};
+use crate::prelude::*;
 
 pub(super) static RULE: Rule = Rule::new("rounded-pi", Severity::Warning, "a rounded π as a factor", find);
 
@@ -17,13 +16,13 @@ const PI_TOLERANCE: f64 = 0.002;
 /// Six decimals are exact enough: 1 µm on a diameter of 1 m.
 const PI_PRECISION: f64 = 1e-6;
 
-fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
+    for (index, block) in unit.reached_blocks() {
         let mut factors = Vec::new();
-        expressions::block_expressions(block)
-            .into_iter()
-            .for_each(|expr| collect_factors(expr, &mut factors));
+        for (expr, _) in expressions::block_expressions(block) {
+            collect_factors(expr, &mut factors);
+        }
         for (pi, span) in factors {
             let deviation = (pi - PI) / PI * 100.0;
             let written = format!("{pi:.7}");
@@ -52,17 +51,8 @@ fn collect_factors(expr: &Expr, found: &mut Vec<(f64, Span)>) {
                 }
             }
         }
-        ExprKind::Binary(_, left, right) => {
-            [left, right].into_iter().for_each(|part| collect_factors(part, found))
-        }
-        ExprKind::Negate(inner) | ExprKind::Plus(inner) | ExprKind::Bracket(inner) => {
-            collect_factors(inner, found)
-        }
-        ExprKind::Call(_, CallForm::One(argument)) => collect_factors(argument, found),
-        ExprKind::Call(_, CallForm::Slash(one, other) | CallForm::Comma(one, other)) => {
-            [one, other].into_iter().for_each(|part| collect_factors(part, found));
-        }
-        _ => {}
+        ExprKind::Variable(_) | ExprKind::Named(_) | ExprKind::Parameter { .. } => {}
+        _ => expr.operands().for_each(|part| collect_factors(part, found)),
     }
 }
 

@@ -1,48 +1,36 @@
 //! Rule: more M codes in a block than the control accepts. Only the last counts, or the block raises an
 //! alarm.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::literal;
-use gcode_lang::alarm::Alarm;
-use gcode_lang::program::{OpKind, m_codes};
+use gcode_lang::program::m_codes;
 
-use super::unreadable::finding;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::literal;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("several-m-codes", Severity::Error, "more M codes in a block than the control accepts", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let settings = context.settings;
     let max = if settings.allows_three_m_codes { 3 } else { 1 };
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
-        let OpKind::Words(words) = op.kind() else { continue };
+    for (block, words) in unit.reached_words() {
         let mut kept = Vec::new();
         for word in words.list.iter().filter(|word| word.letter == b'M') {
             // A code that calls a macro is not an M code of the control.
             let code =
                 literal::word_count(word).filter(|code| settings.code_calls.find_call(b'M', *code).is_none());
             let Some(code) = code else { continue };
-            if kept.len() == max
-                && let Some(first) = kept.pop()
-            {
-                if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
-                    let alarm = Alarm::PluralM { first, second: code }.located_at(word.span);
-                    found.push(finding(context, unit, &RULE.kind, block, &alarm));
-                } else {
-                    let message =
-                        format!("M{first} is lost: of several M codes in a block only the last counts");
-                    let help = "write each in a block of its own; M3B=1 is for a control that accepts three";
-                    found.push(
-                        unit.finding(&RULE.kind, block, message)
-                            .with_severity(Severity::Warning)
-                            .with_span(word.span)
-                            .help(help),
-                    );
-                }
-            }
+            let lost = if kept.len() == max { kept.pop() } else { None };
             kept.push(code);
+            let Some(first) = lost else { continue };
+            if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
+                let alarm = Alarm::PluralM { first, second: code }.located_at(word.span);
+                found.push(context.alarm_finding(unit, &RULE.kind, block, &alarm));
+            } else {
+                let message = format!("M{first} is lost: of several M codes in a block only the last counts");
+                let help = "write each in a block of its own; M3B=1 is for a control that accepts three";
+                let finding = unit.finding(&RULE.kind, block, message).with_span(word.span).help(help);
+                found.push(finding.with_severity(Severity::Warning));
+            }
         }
     }
     found

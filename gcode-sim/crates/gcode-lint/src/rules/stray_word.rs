@@ -1,26 +1,21 @@
 //! Rule: a word that no block of this control accepts: `X10., Y5.` (PS0053), `X1E3` and missing axes
 //! (PS0009).
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use gcode_lang::alarm::Alarm;
-use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
+use gcode_lang::program::{LoweredWord, Words};
 
-use super::unreadable::finding;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("stray-word", Severity::Error, "a word that no block of this control accepts", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
-        let OpKind::Words(words) = op.kind() else { continue };
+    for (block, words) in unit.reached_words() {
         if unit.call_in(block).is_some() {
             continue;
         }
         let stray = words.list.iter().filter_map(|word| Some((word, alarm(context, words, word)?)));
         found.extend(stray.map(|(word, alarm)| {
-            let finding = finding(context, unit, &RULE.kind, block, &alarm.located_at(word.span));
+            let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm.located_at(word.span));
             match (word.comma, word.letter) {
                 (true, _) => finding.help("remove the comma: words are not separated by commas"),
                 (_, b'E') => {
@@ -35,25 +30,18 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> 
 
 fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Option<Alarm> {
     let axes = &context.settings.axes;
-    let mut codes = words.list.iter().filter_map(|word| match word.value {
-        WordOperand::G(_, found) => found.row_for(context.settings.codes),
-        WordOperand::Literal(_)
-        | WordOperand::Number(_)
-        | WordOperand::Variable { .. }
-        | WordOperand::Code(_) => None,
-    });
-    let is_of_code = codes.any(|row| row.facts.words.own.has(word.letter));
     if word.comma {
         // `,A` is an angle of direct drawing dimension programming, which the simulator does not execute.
         return (!matches!(word.letter, b'R' | b'C' | b'A')).then_some(Alarm::CornerWords);
     }
-    let refused = match word.letter {
-        _ if is_of_code => false,
+    let mut codes = words.g_codes().filter_map(|found| found.row_for(context.settings.codes));
+    let is_refused = match word.letter {
         b'E' => true,
-        b'A' | b'B' | b'C' | b'U' | b'V' | b'W' | b'X' | b'Y' | b'Z' => axes.find(word.letter).is_none(),
+        b'A'..=b'C' | b'U'..=b'Z' => axes.find(word.letter).is_none(),
         _ => false,
     };
-    refused.then_some(Alarm::ImproperAddress { letter: char::from(word.letter) })
+    (is_refused && !codes.any(|row| row.facts.words.own.has(word.letter)))
+        .then_some(Alarm::ImproperAddress { letter: char::from(word.letter) })
 }
 
 #[cfg(test)]

@@ -1,24 +1,22 @@
 //! Rule: `(CHECK-OFF NAME)` with a name that is not a rule, which suppresses nothing.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::rule::Rule;
-use crate::suppression::Suppressions;
-use gcode_lang::diag::Severity;
+use crate::prelude::*;
+use crate::suppression::suppressions;
 
 pub(super) static RULE: Rule =
     Rule::new("unknown-check", Severity::Warning, "CHECK-OFF with a name that is not a rule", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let suppressions = Suppressions::new(unit);
-    let known = |name: &str| context.rules.iter().any(|rule| rule.eq_ignore_ascii_case(name));
-    let unknown = suppressions.names().filter(|(name, _)| !known(name)).map(|(name, span)| {
-        let block = unit.blocks.iter().position(|b| b.comments.iter().any(|c| c.span == span)).unwrap_or(0);
-        let message = match name {
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    let mut off = suppressions(unit);
+    off.retain(|found| !context.rules.iter().any(|rule| rule.eq_ignore_ascii_case(&found.name)));
+    let findings = off.into_iter().map(|unknown| {
+        let message = match &*unknown.name {
             "" => "CHECK-OFF does not name a rule".to_owned(),
             name => format!("{name} is not a rule: CHECK-OFF suppresses nothing"),
         };
-        unit.finding(&RULE.kind, block, message).with_span(span).help("see docs/checks.md for the rules")
+        let finding = unit.finding(&RULE.kind, unknown.block, message).with_span(unknown.comment);
+        finding.help("see docs/checks.md for the rules")
     });
-    unknown.collect()
+    findings.collect()
 }
 
 #[cfg(test)]

@@ -3,79 +3,58 @@
 //! Notes report M codes of the machine builder and codes that are not simulated.
 use std::collections::BTreeSet;
 
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
-use crate::literal;
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::kinds::PS0010;
+use gcode_lang::control::Settings;
 use gcode_lang::program::g_codes::{Effect, spelled};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::{LoweredWord, OpKind, WordOperand};
+use gcode_lang::program::{LoweredWord, WordOperand};
 
-use super::unreadable::{alarm_blocks, finding, refused_blocks};
-use crate::rule::Rule;
-use gcode_lang::alarm::kinds::PS0010;
-use gcode_lang::diag::Severity;
+use crate::literal;
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("unknown-code", Severity::Error, "a G or M code the control does not have", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let written = alarm_blocks(unit).map(|(block, alarm)| (block, alarm.clone()));
-    let all = written.chain(refused_blocks(context, unit));
-    let improper = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::ImproperGCode { .. }));
-    let mut found: Vec<_> =
-        improper.map(|(block, alarm)| finding(context, unit, &RULE.kind, block, &alarm)).collect();
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    let is_improper = |alarm: &Alarm| matches!(alarm, Alarm::ImproperGCode { .. });
+    let mut found = context.reading_findings(unit, &RULE.kind, is_improper);
     let mut reported = BTreeSet::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
-        let OpKind::Words(words) = op.kind() else { continue };
+    for (block, words) in unit.reached_words() {
         for word in &words.list {
-            let Some((name, message, certain)) = describe_code(context, word) else { continue };
-            if certain {
-                let help = "correct it, or name the macro it calls with --code";
-                found.push(unit.finding(&RULE.kind, block, message).with_span(word.span).help(help));
-            } else if reported.insert(name) {
-                found.push(
-                    unit.finding(&RULE.kind, block, message)
-                        .with_severity(Severity::Note)
-                        .with_span(word.span),
-                );
+            let Some((message, raises_alarm)) = code_fault(context.settings, word) else { continue };
+            let finding = unit.finding(&RULE.kind, block, message.clone()).with_span(word.span);
+            if raises_alarm {
+                found.push(finding.help("correct it, or name the macro it calls with --code"));
+            } else if reported.insert(message) {
+                found.push(finding.with_severity(Severity::Note));
             }
         }
     }
     found
 }
 
-/// Returns name, message and certainty of a fault; only a certain one raises an alarm.
-fn describe_code(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, String, bool)> {
+/// Returns the message for a code that does not run as written, and true if it raises an alarm.
+fn code_fault(settings: &Settings, word: &LoweredWord) -> Option<(String, bool)> {
+    let is_call = |code: u32| settings.code_calls.find_call(word.letter, code).is_some();
     match (word.letter, word.value) {
-        (b'G', WordOperand::G(code, found)) => {
-            let row = found.row_for(context.settings.codes);
+        (b'G', WordOperand::G(code, found)) if !is_call(code) => {
             let name = format!("G{}", spelled(code));
-            let calls = context.settings.code_calls.find_call(b'G', code).is_some();
-            match row.map(|row| row.effect) {
-                _ if calls => None,
-                None => Some((name.clone(), format!("{PS0010}: the control has no {name}"), true)),
-                Some(Effect::NotSimulated) => {
-                    let help = row.map_or("", |row| row.help);
-                    Some((name.clone(), format!("{name} ({help}) is not simulated"), false))
+            match found.row_for(settings.codes) {
+                None => Some((format!("{PS0010}: the control has no {name}"), true)),
+                Some(row) if row.effect == Effect::NotSimulated => {
+                    Some((format!("{name} ({}) is not simulated", row.help), false))
                 }
                 Some(_) => None,
             }
         }
         (b'M', _) => {
-            let code = literal::word_count(word)?;
-            let calls = context.settings.code_calls.find_call(b'M', code.saturating_mul(10)).is_some();
-            let name = format!("M{code:02}");
-            match m_codes::find(code, context.settings.codes) {
-                _ if calls => None,
-                Some(MCodeEffect::NotSimulated) => {
-                    Some((name.clone(), format!("{name} is not simulated"), false))
-                }
-                Some(_) => None,
-                None => {
-                    let message = format!("{name} is a code of the machine builder: its effect is unknown");
-                    Some((name, message, false))
-                }
-            }
+            let code = literal::word_count(word).filter(|code| !is_call(code.saturating_mul(10)))?;
+            let fault = match m_codes::find(code, settings.codes) {
+                Some(MCodeEffect::NotSimulated) => "is not simulated",
+                Some(_) => return None,
+                None => "is a code of the machine builder: its effect is unknown",
+            };
+            Some((format!("M{code:02} {fault}"), false))
         }
         _ => None,
     }

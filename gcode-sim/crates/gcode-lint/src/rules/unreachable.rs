@@ -1,15 +1,14 @@
 //! Rule: blocks that are never reached: after M30, M99, GOTO or #3000, without a jump to them.
-use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use gcode_lang::program::Statement;
+
 use crate::control_flow::raises_alarm;
-use crate::rule::Rule;
-use gcode_lang::diag::Severity;
-use gcode_lang::program::{OpIndex, OpKind, Statement};
+use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("unreachable", Severity::Warning, "blocks that are never reached", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let mut found: Vec<RuleFinding> = Vec::new();
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    let mut found: Vec<Diagnostic> = Vec::new();
     let ops = unit.program.ops();
     let mut block = 0;
     while block < ops.len() {

@@ -1,16 +1,15 @@
 //! Rule: a #3000 that is never reached, so that the test it belongs to has no effect.
-use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
+use gcode_lang::syntax::ast::Statement;
+
 use crate::control_flow::raises_alarm;
-use crate::rule::Rule;
+use crate::prelude::*;
 use crate::vacancy::{Locals, states, truth};
 use crate::variables;
-use gcode_lang::diag::Severity;
-use gcode_lang::syntax::ast::Statement;
 
 pub(super) static RULE: Rule =
     Rule::new("unreachable-alarm", Severity::Warning, "a #3000 that is never reached", find);
 
-fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     // The result must hold for all calls of a program, also those outside the check.
     let entry = if unit.role == Role::Main { Locals::UNSET } else { Locals::ANYTHING };
     let states = states(unit, entry);

@@ -1,20 +1,19 @@
 //! Rule: a local variable that is read before it is set. Its word is ignored, or it counts as 0.
 use std::collections::BTreeMap;
 
-use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
-use crate::rule::Rule;
+use gcode_lang::program::argument_letter;
+use gcode_lang::source::Span;
+
+use crate::expressions::ValueUse;
+use crate::prelude::*;
 use crate::unset_reads::{entry_locals, unset_reads};
 use crate::vacancy::{Locals, states};
-use crate::variables::VariableUse;
-use gcode_lang::diag::Severity;
-use gcode_lang::program::{OpIndex, argument_letter};
-use gcode_lang::source::Span;
 
 pub(super) static RULE: Rule =
     Rule::new("unset-variable", Severity::Warning, "a local variable that is read before it is set", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let mut unset: BTreeMap<(OpIndex, u32), (Span, VariableUse)> = BTreeMap::new();
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    let mut unset: BTreeMap<(OpIndex, u32), (Span, ValueUse)> = BTreeMap::new();
     match unit.role {
         Role::Resident => {}
         Role::Main => {
@@ -40,10 +39,10 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> 
     let mut found = Vec::new();
     for ((block, local), (span, usage)) in unset {
         let so = match usage {
-            VariableUse::Word => "its word is ignored",
-            VariableUse::PassedOn => "it is passed on vacant",
-            VariableUse::VacancyTest | VariableUse::Comparison => "a vacant variable is compared",
-            VariableUse::Computed => "it counts as 0",
+            ValueUse::Word => "its word is ignored",
+            ValueUse::PassedOn => "it is passed on vacant",
+            ValueUse::VacancyTest | ValueUse::Comparison => "a vacant variable is compared",
+            ValueUse::Computed | ValueUse::Target => "it counts as 0",
         };
         let message = format!("#{local} is read but never set: {so}");
         let help = format!("set #{local} before it is read, or correct its number");

@@ -21,10 +21,25 @@ const MAX_VARIABLE_NUMBER: f64 = 999_999_999.0;
 
 /// Context of an expression.
 #[derive(Clone, Copy)]
-pub(in crate::program) enum ExprContext {
-    Macro,
-    /// Value of this address.
-    Address(u8),
+pub(in crate::program) struct ExprContext {
+    /// Address whose value the expression is; `None` in a macro statement.
+    address: Option<u8>,
+    /// Number of brackets around the expression.
+    brackets: usize,
+}
+
+impl ExprContext {
+    pub(in crate::program) const MACRO: Self = Self { address: None, brackets: 0 };
+
+    /// The context of an expression in further brackets.
+    fn inside(self, brackets: usize) -> Self {
+        Self { brackets: self.brackets + brackets, ..self }
+    }
+
+    /// The context of an index or argument that is no part of the value.
+    fn of_macro(self) -> Self {
+        Self { address: None, ..self }
+    }
 }
 
 type LoweringResult<T> = Result<T, LocatedAlarm>;
@@ -44,15 +59,14 @@ impl Lowering {
             }
             _ => {}
         }
-        self.compile(expr.span, |this| this.compile_expr(expr, context, 0)).map(Operand::Code)
+        self.compile(expr.span, |this| this.compile_expr(expr, context)).map(Operand::Code)
     }
 
     /// Lowers the value of a word; its own sign is not part of the expression.
     pub(in crate::program) fn word_value(&mut self, expr: &Expr, letter: u8) -> LoweringResult<Operand> {
-        let context = ExprContext::Address(letter);
+        let context = ExprContext { address: Some(letter), ..ExprContext::MACRO };
         let ExprKind::Negate(inner) = &expr.kind else { return self.operand(expr, context) };
-        let write =
-            |this: &mut Self| this.compile_unary(inner, UncommonOp::NegateWord, expr.span, context, 0);
+        let write = |this: &mut Self| this.compile_unary(inner, UncommonOp::NegateWord, expr.span, context);
         self.compile(expr.span, write).map(Operand::Code)
     }
 
@@ -83,8 +97,8 @@ impl Lowering {
     }
 
     /// Emits the code of `expr` and returns the stack depth it needs.
-    fn compile_expr(&mut self, expr: &Expr, context: ExprContext, brackets: usize) -> LoweringResult<usize> {
-        let (source, depth) = self.compile_source(expr, context, brackets)?;
+    fn compile_expr(&mut self, expr: &Expr, context: ExprContext) -> LoweringResult<usize> {
+        let (source, depth) = self.compile_source(expr, context)?;
         if source != LAST {
             self.emit(UncommonOp::Load(source), expr.span);
         }
@@ -99,9 +113,8 @@ impl Lowering {
         &mut self,
         expr: &Expr,
         context: ExprContext,
-        brackets: usize,
     ) -> LoweringResult<(OperandSource, usize)> {
-        if brackets > MAX_BRACKETS {
+        if context.brackets > MAX_BRACKETS {
             return Err(Alarm::TooManyBrackets.located_at(expr.span));
         }
         match &expr.kind {
@@ -117,13 +130,13 @@ impl Lowering {
                     };
                     return Ok((source, 1));
                 }
-                let depth = self.compile_expr(index, ExprContext::Macro, brackets)?;
+                let depth = self.compile_expr(index, context.of_macro())?;
                 self.emit(UncommonOp::LoadIndirect, expr.span);
                 return Ok((LAST, depth));
             }
             _ => {}
         }
-        self.compile_computed(expr, context, brackets).map(|depth| (LAST, depth))
+        self.compile_computed(expr, context).map(|depth| (LAST, depth))
     }
 
     /// Returns the sources of an operator's two values. The first is pushed if both are computed.
@@ -131,11 +144,10 @@ impl Lowering {
         &mut self,
         [left, right]: [&Expr; 2],
         context: ExprContext,
-        brackets: usize,
     ) -> LoweringResult<([OperandSource; 2], usize)> {
-        let (mut left_source, left_depth) = self.compile_source(left, context, brackets)?;
+        let (mut left_source, left_depth) = self.compile_source(left, context)?;
         let behind_left = self.instructions.len();
-        let (right_source, right_depth) = self.compile_source(right, context, brackets)?;
+        let (right_source, right_depth) = self.compile_source(right, context)?;
         if (left_source, right_source) == (LAST, LAST) {
             left_source = WAITING;
             let wait = Instruction { operation: UncommonOp::Push.into(), span: left.span };
@@ -145,44 +157,36 @@ impl Lowering {
     }
 
     /// Emits the code of an expression other than a number or a variable.
-    fn compile_computed(
-        &mut self,
-        expr: &Expr,
-        context: ExprContext,
-        brackets: usize,
-    ) -> LoweringResult<usize> {
+    fn compile_computed(&mut self, expr: &Expr, context: ExprContext) -> LoweringResult<usize> {
         let span = expr.span;
         Ok(match &expr.kind {
-            ExprKind::Literal(_) | ExprKind::Variable(_) => self.compile_expr(expr, context, brackets)?,
+            ExprKind::Literal(_) | ExprKind::Variable(_) => self.compile_expr(expr, context)?,
             ExprKind::Named(name) => {
-                let depth = self.compile_named(name, span, brackets)?;
+                let depth = self.compile_named(name, span, context)?;
                 self.emit(UncommonOp::LoadIndirect, span);
                 depth
             }
-            ExprKind::Negate(inner) => {
-                self.compile_unary(inner, UncommonOp::Negate, span, context, brackets)?
-            }
-            ExprKind::Plus(inner) => self.compile_unary(inner, UncommonOp::Plus, span, context, brackets)?,
+            ExprKind::Negate(inner) => self.compile_unary(inner, UncommonOp::Negate, span, context)?,
+            ExprKind::Plus(inner) => self.compile_unary(inner, UncommonOp::Plus, span, context)?,
             ExprKind::Bracket(inner) => {
-                self.compile_unary(inner, UncommonOp::Bracket, span, context, brackets + 1)?
+                self.compile_unary(inner, UncommonOp::Bracket, span, context.inside(1))?
             }
             ExprKind::Binary(op, left, right) => {
                 if *op == BinaryOp::Mod {
                     self.record_syntax(DialectSyntax::NewFunction("MOD"), span);
                 }
-                let (values, depth) = self.compile_sources([left, right], context, brackets)?;
+                let (values, depth) = self.compile_sources([left, right], context)?;
                 self.emit(Operation::binary(*op, values), span);
                 depth
             }
-            ExprKind::Call(function, form) => {
-                self.compile_call(*function, form, span, context, brackets + 1)?
-            }
+            ExprKind::Call(function, form) => self.compile_call(*function, form, span, context.inside(1))?,
             ExprKind::Parameter { number, bit, axis } => {
                 self.record_syntax(DialectSyntax::NewWord("PRM"), span);
-                let mut depth = self.compile_expr(number, ExprContext::Macro, brackets + 1)?;
+                let context = context.of_macro().inside(1);
+                let mut depth = self.compile_expr(number, context)?;
                 for (place, part) in bit.iter().chain(axis).enumerate() {
                     self.emit(UncommonOp::Push, span);
-                    depth = depth.max(self.compile_expr(part, ExprContext::Macro, brackets + 1)? + place + 1);
+                    depth = depth.max(self.compile_expr(part, context)? + place + 1);
                 }
                 self.emit(UncommonOp::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
                 depth
@@ -201,9 +205,8 @@ impl Lowering {
         operation: UncommonOp,
         span: Span,
         context: ExprContext,
-        brackets: usize,
     ) -> LoweringResult<usize> {
-        let depth = self.compile_expr(inner, context, brackets)?;
+        let depth = self.compile_expr(inner, context)?;
         self.emit(operation, span);
         Ok(depth)
     }
@@ -214,10 +217,9 @@ impl Lowering {
         form: &CallForm,
         span: Span,
         context: ExprContext,
-        brackets: usize,
     ) -> LoweringResult<usize> {
         let two = |this: &mut Self, a: &Expr, b: &Expr, operation: fn([OperandSource; 2]) -> Operation| {
-            let (values, depth) = this.compile_sources([a, b], context, brackets)?;
+            let (values, depth) = this.compile_sources([a, b], context)?;
             this.emit(operation(values), span);
             Ok(depth)
         };
@@ -229,10 +231,10 @@ impl Lowering {
         if let Some(name) = new {
             self.record_syntax(DialectSyntax::NewFunction(name), span);
         }
-        if let Some(name) = new.or(extended_function_name(function)) {
+        if let Some(name) = new.or(is_extended(function).then(|| function.name())) {
             self.record_syntax(DialectSyntax::MoreFunction(name), span);
         }
-        match (function, form, context) {
+        match (function, form, context.address) {
             (Function::Atan, CallForm::Slash(a, b) | CallForm::Comma(a, b), _) => {
                 two(self, a, b, Operation::Atan2)
             }
@@ -240,23 +242,22 @@ impl Lowering {
                 two(self, a, b, |values| UncommonOp::Power(values).into())
             }
             (Function::Pow, CallForm::One(_), _) => Err(Alarm::MissingComma.located_at(span)),
-            (Function::Round, CallForm::One(inner), ExprContext::Address(letter)) => {
-                self.compile_unary(inner, UncommonOp::RoundTo(letter), span, context, brackets)
+            (Function::Round, CallForm::One(inner), Some(letter)) => {
+                self.compile_unary(inner, UncommonOp::RoundTo(letter), span, context)
             }
             (Function::Adp, CallForm::One(inner), _) => {
                 let ExprKind::Variable(index) = &inner.kind else {
                     return Err(Alarm::ArgumentFormat { function: "ADP".into() }.located_at(span));
                 };
-                self.compile_unary(index, UncommonOp::AddPoint, span, ExprContext::Macro, brackets)
+                self.compile_unary(index, UncommonOp::AddPoint, span, context.of_macro())
             }
             (_, CallForm::One(inner), _) => {
-                let (value, depth) = self.compile_source(inner, context, brackets)?;
+                let (value, depth) = self.compile_source(inner, context)?;
                 self.emit(Operation::Function(function, value), span);
                 Ok(depth)
             }
             (_, CallForm::Slash(..) | CallForm::Comma(..), _) => {
-                Err(Alarm::ArgumentFormat { function: format!("{function:?}").to_uppercase() }
-                    .located_at(span))
+                Err(Alarm::ArgumentFormat { function: function.name().into() }.located_at(span))
             }
         }
     }
@@ -264,7 +265,7 @@ impl Lowering {
     /// Lowers the left side of an assignment.
     pub(in crate::program) fn compile_target(&mut self, target: &Expr) -> LoweringResult<AssignmentTarget> {
         match &target.kind {
-            ExprKind::Variable(index) => match self.operand(index, ExprContext::Macro)? {
+            ExprKind::Variable(index) => match self.operand(index, ExprContext::MACRO)? {
                 // The nearest whole number, as for any index.
                 Operand::Number(number) if (0.0..=MAX_VARIABLE_NUMBER).contains(&number.round()) => {
                     Ok(AssignmentTarget::Slot(Slot::of(number.round() as u32)))
@@ -272,7 +273,8 @@ impl Lowering {
                 operand => Ok(AssignmentTarget::Computed(operand)),
             },
             ExprKind::Named(name) => {
-                let code = self.compile(target.span, |this| this.compile_named(name, target.span, 0))?;
+                let code = self
+                    .compile(target.span, |this| this.compile_named(name, target.span, ExprContext::MACRO))?;
                 Ok(AssignmentTarget::Computed(Operand::Code(code)))
             }
             _ => Err(Alarm::Expression { text: String::new() }.located_at(target.span)),
@@ -280,7 +282,7 @@ impl Lowering {
     }
 
     /// Emits the code for the number of a named variable.
-    fn compile_named(&mut self, name: &Name, span: Span, brackets: usize) -> LoweringResult<usize> {
+    fn compile_named(&mut self, name: &Name, span: Span, context: ExprContext) -> LoweringResult<usize> {
         let text = || name.text.clone();
         self.record_syntax(DialectSyntax::NewWord("[#NAME]"), span);
         if !name.text.starts_with('_') {
@@ -296,7 +298,7 @@ impl Lowering {
         let row =
             names::find(&name.text).ok_or_else(|| Alarm::NoVariableName { name: text() }.located_at(span))?;
         let depth = match (&name.index, row.suffix) {
-            (Some(index), Some(_)) => self.compile_expr(index, ExprContext::Macro, brackets + 2)?,
+            (Some(index), Some(_)) => self.compile_expr(index, context.of_macro().inside(2))?,
             (None, None) => 1,
             _ => return Err(Alarm::Suffix { name: text() }.located_at(span)),
         };
@@ -323,7 +325,7 @@ impl Lowering {
                 if *written == OperatorSpelling::Sign {
                     self.record_syntax(DialectSyntax::RelationSigns, *span);
                 }
-                let (values, depth) = self.compile_sources([left, right], ExprContext::Macro, 1)?;
+                let (values, depth) = self.compile_sources([left, right], ExprContext::MACRO.inside(1))?;
                 self.emit(Operation::Compare(*relation, values), *span);
                 Ok(depth)
             }
@@ -344,15 +346,8 @@ impl Lowering {
     }
 }
 
-/// Returns the name of a function outside the basic set, `None` for any other.
-fn extended_function_name(function: Function) -> Option<&'static str> {
-    Some(match function {
-        Function::Fup => "FUP",
-        Function::Ln => "LN",
-        Function::Exp => "EXP",
-        Function::Bin => "BIN",
-        Function::Bcd => "BCD",
-        Function::Adp => "ADP",
-        _ => return None,
-    })
+/// Returns true for a function outside the basic set.
+fn is_extended(function: Function) -> bool {
+    use Function::{Adp, Bcd, Bin, Exp, Fup, Ln};
+    matches!(function, Fup | Ln | Exp | Bin | Bcd | Adp)
 }

@@ -160,7 +160,7 @@ impl Lowering {
             ast::Statement::End(number) => Statement::End { number: loop_number(number)?, start: 0 },
             ast::Statement::SetNames { first, names } => {
                 self.record_syntax(DialectSyntax::NewWord("SETVN"), span);
-                let first = self.operand(first, ExprContext::Macro)?;
+                let first = self.operand(first, ExprContext::MACRO)?;
                 Statement::SetNames { first, names: names.clone() }
             }
             ast::Statement::Print { kind, parts } => self.lower_print(*kind, parts, span)?,
@@ -176,7 +176,7 @@ impl Lowering {
         span: Span,
         block: &ast::Block,
     ) -> LoweringResult<Statement> {
-        let (to, value) = (self.compile_target(target)?, self.operand(value, ExprContext::Macro)?);
+        let (to, value) = (self.compile_target(target)?, self.operand(value, ExprContext::MACRO)?);
         Ok(match (to, value) {
             (AssignmentTarget::Slot(Slot::Free(place)), Operand::Code(code)) => {
                 Statement::AssignFree(Assign { variable: place, code })
@@ -190,7 +190,7 @@ impl Lowering {
     }
 
     fn lower_jump_target(&mut self, to: &ast::Expr) -> LoweringResult<Spanned<Operand>> {
-        Ok(Spanned::new(self.operand(to, ExprContext::Macro)?, to.span))
+        Ok(Spanned::new(self.operand(to, ExprContext::MACRO)?, to.span))
     }
 
     fn lower_print(
@@ -210,7 +210,7 @@ impl Lowering {
                         (ast::PrintKind::Binary, [decimals @ 0..=9]) => (0, *decimals),
                         _ => return Err(Alarm::PrintFormat.located_at(span)),
                     };
-                    let value = self.operand(variable, ExprContext::Macro)?;
+                    let value = self.operand(variable, ExprContext::MACRO)?;
                     PrintPart::Value { value, whole, decimals }
                 }
             });

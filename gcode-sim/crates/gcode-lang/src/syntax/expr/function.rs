@@ -33,7 +33,8 @@ impl Function {
         ("ADP", Self::Adp),
     ];
 
-    pub(in crate::syntax) fn name(self) -> &'static str {
+    /// Returns the full name.
+    pub(crate) fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, function)| *function == self).map_or("", |(name, _)| name)
     }
 }

@@ -4,10 +4,6 @@
 //! separated where one of them is required, so that nothing is read twice.
 mod function;
 
-use nom::Parser;
-use nom::branch::alt;
-use nom::combinator::value;
-
 use super::ast::{BinaryOp, Condition, Expr, ExprKind, OperatorSpelling, Relation};
 use super::number::{EXPRESSION_LIMIT, decimal};
 use super::token::{
@@ -78,54 +74,42 @@ fn number<'a>(rest: Input<'a>, from: Input<'a>, mixed: ExprOrCondition) -> ReadR
     }
 }
 
-type OperatorParser = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)>;
 type OperandParser = for<'a> fn(LineInput, Input<'a>, u8) -> ReadResult<'a, ExprOrCondition>;
 
 /// Reads a chain of `+ - OR XOR |`, left to right.
 fn sum(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
-    let operator: OperatorParser = |input| match next(input)? {
-        (b'+', rest) => Some((rest, BinaryOp::Add, OperatorSpelling::Sign)),
-        (b'-', rest) => Some((rest, BinaryOp::Sub, OperatorSpelling::Sign)),
-        (b'|', rest) => Some((rest, BinaryOp::Or, OperatorSpelling::Sign)),
-        (b'O' | b'o', _) => letter_operator(input, "OR", BinaryOp::Or),
-        (b'X' | b'x', _) => letter_operator(input, "XOR", BinaryOp::Xor),
-        _ => None,
-    };
-    chain(line, input, depth, operator, term)
+    chain(line, input, depth, BinaryOp::OF_SUM, term)
 }
 
 /// Reads a chain of `* / AND MOD &`, left to right.
 fn term(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
-    let operator: OperatorParser = |input| match next(input)? {
-        (b'*', rest) => Some((rest, BinaryOp::Mul, OperatorSpelling::Sign)),
-        (b'/', rest) => Some((rest, BinaryOp::Div, OperatorSpelling::Sign)),
-        (b'&', rest) => Some((rest, BinaryOp::And, OperatorSpelling::Sign)),
-        (b'A' | b'a', _) => letter_operator(input, "AND", BinaryOp::And),
-        (b'M' | b'm', _) => letter_operator(input, "MOD", BinaryOp::Mod),
-        _ => None,
-    };
-    chain(line, input, depth, operator, signed)
+    chain(line, input, depth, BinaryOp::OF_PRODUCT, signed)
 }
 
-fn letter_operator<'a>(
+/// Reads one of some operators.
+fn operator<'a>(
     input: Input<'a>,
-    text: &'static str,
-    op: BinaryOp,
+    spellings: [(&'static str, BinaryOp); 5],
 ) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)> {
-    word(text)(input).ok().map(|(rest, ())| (rest, op, OperatorSpelling::Letters))
+    let (first, after) = next(input)?;
+    let begins = |text: &str| text.as_bytes()[0] == first.to_ascii_uppercase();
+    spellings.iter().filter(|(text, _)| begins(text)).find_map(|(text, op)| match text.len() {
+        1 => Some((after, *op, OperatorSpelling::Sign)),
+        _ => word(text)(input).ok().map(|(rest, ())| (rest, *op, OperatorSpelling::Letters)),
+    })
 }
 
 fn chain<'a>(
     line: LineInput,
     input: Input<'a>,
     depth: u8,
-    operator: OperatorParser,
+    spellings: [(&'static str, BinaryOp); 5],
     part: OperandParser,
 ) -> ReadResult<'a, ExprOrCondition> {
     let start = spaces(input);
     let (mut rest, mut left) = part(line, input, depth)?;
     let mut count = 0;
-    while let Some((after, op, written)) = operator(rest) {
+    while let Some((after, op, written)) = operator(rest, spellings) {
         let at = spaces(rest);
         count += 1;
         if count > MAX_OPERATORS {
@@ -198,19 +182,11 @@ fn bracket(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprO
     let start = &input[1..];
     let (rest, left) = require_value(sum(line, start, depth), start)?;
     let (rest, inside) = match (relation(rest), left) {
-        (Ok((after, (relation, written))), ExprOrCondition::Expr(left)) => {
+        (Ok((after, (relation, spelling))), ExprOrCondition::Expr(left)) => {
             let (after, right) = require_value(expr(line, after, depth), after)?;
             let span = line.span(spaces(start), after);
-            (
-                after,
-                ExprOrCondition::Condition(Condition::Compare {
-                    left,
-                    relation,
-                    spelling: written,
-                    right,
-                    span,
-                }),
-            )
+            let compare = Condition::Compare { left, relation, spelling, right, span };
+            (after, ExprOrCondition::Condition(compare))
         }
         (Ok(_), ExprOrCondition::Condition(_)) => return no_expression(spaces(rest)),
         (Err(nom::Err::Error(_)), left) => (rest, left),
@@ -227,35 +203,21 @@ fn bracket(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprO
     Ok((rest, inside))
 }
 
-/// Signs of relations, longer ones first.
-const SIGNS: [(&[u8], Relation); 6] = [
-    (b"<>", Relation::Ne),
-    (b">=", Relation::Ge),
-    (b"<=", Relation::Le),
-    (b"=", Relation::Eq),
-    (b">", Relation::Gt),
-    (b"<", Relation::Lt),
-];
-
 fn relation(input: Input<'_>) -> ReadResult<'_, (Relation, OperatorSpelling)> {
     let start = spaces(input);
-    if let Some((sign, relation)) = SIGNS.iter().find(|(sign, _)| start.starts_with(sign)) {
-        let rest = &start[sign.len()..];
-        return match next(rest) {
-            // No control has `==` or `=>`.
-            Some((b'=' | b'<' | b'>', _)) => fail(start, Alarm::RelationSymbol),
-            _ => Ok((rest, (*relation, OperatorSpelling::Sign))),
-        };
+    for (relation, letters, sign) in Relation::SPELLINGS {
+        if let Ok((rest, ())) = word(letters)(start) {
+            return Ok((rest, (relation, OperatorSpelling::Letters)));
+        }
+        if let Some(rest) = start.strip_prefix(sign.as_bytes()) {
+            return match next(rest) {
+                // No control has `==` or `=>`.
+                Some((b'=' | b'<' | b'>', _)) => fail(start, Alarm::RelationSymbol),
+                _ => Ok((rest, (relation, OperatorSpelling::Sign))),
+            };
+        }
     }
-    let letters = alt((
-        value(Relation::Eq, word("EQ")),
-        value(Relation::Ne, word("NE")),
-        value(Relation::Gt, word("GT")),
-        value(Relation::Ge, word("GE")),
-        value(Relation::Lt, word("LT")),
-        value(Relation::Le, word("LE")),
-    ));
-    letters.map(|relation| (relation, OperatorSpelling::Letters)).parse(input)
+    no_match(input)
 }
 
 /// Returns the next bracket depth, or fails beyond [`MAX_BRACKET_DEPTH`].

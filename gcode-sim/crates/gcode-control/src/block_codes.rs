@@ -1,0 +1,241 @@
+//! Codes of a block: modal G codes, F S T D H, M codes, and the letters that need a code.
+use super::functions::ExecResult;
+use super::notes::Note;
+use super::plan::{BlockFlow, BlockPlan};
+use super::planner::Planner;
+use super::state::{AxisWordUse, CycleState, PolarPoint};
+use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
+use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
+use gcode_lang::program::g_codes::{Effect, spelled};
+use gcode_lang::program::m_codes;
+use gcode_lang::program::m_codes::MCodeEffect;
+use gcode_lang::program::modes::{CutterSide, Polar, Rotation, Scaling, StrokeCheck};
+use gcode_lang::units::Rpm;
+
+impl Planner<'_> {
+    /// 1. Applies the modal G codes in their order; returns the use of the axis words instead of a move.
+    #[inline]
+    pub(super) fn apply_modal_codes(&self, plan: &mut BlockPlan) -> ExecResult<Option<AxisWordUse>> {
+        if self.words.has_other_g_codes {
+            return self.apply_all_codes(plan);
+        }
+        if let Some(motion) = self.words.motion {
+            plan.state.set_motion_mode(motion);
+        }
+        Ok(None)
+    }
+
+    /// Applies the G codes of a block that has codes outside group 01.
+    #[inline(never)]
+    fn apply_all_codes(&self, plan: &mut BlockPlan) -> ExecResult<Option<AxisWordUse>> {
+        let state = &mut plan.state;
+        let before = state.modal;
+        let mut axis_use = None;
+        let mut is_cycle_active = before.cycle.is_some();
+        for row in self.words.g_codes() {
+            if let Effect::Motion(motion) = row.effect {
+                state.set_motion_mode(motion);
+                is_cycle_active = false;
+                continue;
+            }
+            if row.facts.lookahead == LookaheadUse::Alarms && state.modal.cutter != CutterSide::Off {
+                return Err(Alarm::ToolOffsetInCompensation.located_at(self.block));
+            }
+            self.words.mark_read(row.facts.words.without_effect);
+            if matches!(row.effect, Effect::NotSimulated | Effect::Call) {
+                return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.help)));
+            }
+            let new = state.modal.apply(row.effect);
+            if new.is_some() && axis_use.is_some() && new != axis_use {
+                return Err(self.not_simulated("several one-shot G codes in one block"));
+            }
+            axis_use = new.or(axis_use);
+            if row.effect == Effect::Cycle(None) {
+                state.cycle = CycleState::default();
+                is_cycle_active = false;
+            }
+        }
+        let modal = state.modal;
+        if modal.plane != before.plane && self.registers.lookahead.is_offset() {
+            return Err(Alarm::PlaneInCompensation.located_at(self.block));
+        }
+        if modal.plane != before.plane && state.transform.rotation.is_some() {
+            return Err(Alarm::PlaneInRotation.located_at(self.block));
+        }
+        if before.scaling == Scaling::On
+            && modal.scaling == Scaling::On
+            && let Some(row) = self.words.g_codes().find(|row| row.facts.coordinates != CoordinateUse::Free)
+        {
+            return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(self.block));
+        }
+        self.check_transform_order(&before, state)?;
+        if modal.scaling == Scaling::Off {
+            state.transform.scaling = None;
+        }
+        if modal.rotation == Rotation::Off {
+            state.transform.rotation = None;
+            state.transform.tilt = None;
+        }
+        if modal.polar == Polar::On && before.polar == Polar::Off {
+            state.polar = PolarPoint::default();
+        }
+        if modal.work != before.work {
+            state.last_end_point = None;
+            self.data.recompute_position(state);
+        } else if state.transform != self.registers.state.transform {
+            self.data.apply_transform_change(state);
+        }
+        if modal.cycle.is_some() && !is_cycle_active {
+            let axis = self.locate(self.drilling_axis(state))?;
+            state.cycle.axis = Some(axis);
+            state.cycle.initial = state.programmed[axis];
+            state.cycle.is_initial_unknown = state.work_zero_unknown >> axis & 1 == 1;
+        }
+        // G54 P is G54.1 P.
+        let selects_additional_work = self.words.has(b'P')
+            && axis_use.is_none()
+            && modal.cycle.is_none()
+            && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
+        Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
+    }
+
+    /// 1. Applies F S T D H, and the radius of D.
+    pub(super) fn plan_coded_words(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        if let Some(f) = self.feed_word(&plan.state)? {
+            plan.state.codes.f = f;
+        }
+        if let Some(s) = self.words.count(b'S')? {
+            plan.state.codes.s = f64::from(s);
+        }
+        if let Some(t) = self.words.count(b'T')? {
+            plan.state.codes.t = t;
+        }
+        let codes = &mut plan.state.codes;
+        for (letter, code) in [(b'D', &mut codes.d), (b'H', &mut codes.h)] {
+            let Some(number) = self.words.count(letter)? else { continue };
+            if number as usize > self.data.settings.tool_offsets {
+                let alarm = Alarm::OffsetNumber { number: i64::from(number) };
+                return Err(alarm.located_at(self.words.span(letter)));
+            }
+            *code = number;
+        }
+        self.check_misplaced_words(plan)?;
+        let is_compensating = plan.state.modal.cutter != CutterSide::Off;
+        let selects_side = || self.words.has_non_motion_code(|effect| matches!(effect, Effect::Cutter(_)));
+        if self.words.has(b'D')
+            || is_compensating && (self.data.settings.applies_radius_at_once || selects_side())
+        {
+            plan.state.cutter_radius = self.data.offset_radius(plan.state.codes.d).unwrap_or(0.0);
+        }
+        Ok(())
+    }
+
+    /// Raises the alarm of a word that needs a code which the block lacks, or excludes one that it has.
+    fn check_misplaced_words(&self, plan: &BlockPlan) -> ExecResult<()> {
+        let owned = self.words.letters_of_codes();
+        if let Some(letter) = self.words.first_letter_of(Letters::of(b"ENO").bits() & !owned) {
+            return Err(self.improper_address(letter));
+        }
+        if self.words.has_non_motion_code(|effect| effect == Effect::LookAhead)
+            && self.words.count(b'P')?.is_none_or(|p| p > 1)
+        {
+            return Err(Alarm::LookAheadFormat.located_at(self.block));
+        }
+        // The axis words of G22 are limits, no move.
+        let has_limits =
+            self.words.has_non_motion_code(|effect| effect == Effect::StrokeCheck(StrokeCheck::On));
+        if has_limits && (self.names_axis() || self.words.has_any(b"IJK")) {
+            return Err(self.not_simulated("G22 with limits"));
+        }
+        if self.words.has(b'T') && self.words.g_codes().any(|row| row.facts.words.refuses_tool) {
+            return Err(Alarm::TNotAllowed.located_at(self.words.span(b'T')));
+        }
+        let repeats_cycle =
+            self.data.settings.cycle_repeat_letter == b'L' && plan.state.modal.cycle.is_some();
+        if self.words.has_letters(Letters::of(b"L").bits() & !owned) && !repeats_cycle {
+            return Err(self.improper_address(b'L'));
+        }
+        let axes = Letters::of(b"ABCUVWXYZ").bits() & !owned;
+        if let Some(letter) = self.words.first_letter_of(axes & !self.data.settings.axes.letter_bits()) {
+            return Err(self.improper_address(letter));
+        }
+        Ok(())
+    }
+
+    fn improper_address(&self, letter: u8) -> LocatedAlarm {
+        Alarm::ImproperAddress { letter: char::from(letter) }.located_at(self.words.span(letter))
+    }
+
+    /// 2., 5. and 6. Plans what M codes do, each at its time.
+    pub(super) fn plan_m_codes(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        plan.notes.extend(self.words.replaced_m_codes.iter().map(|code| Note::MCodeLost(*code)));
+        for (code, span) in self.words.m_codes.iter().copied() {
+            plan.state.codes.m = code;
+            let speed = Rpm(plan.state.codes.s);
+            let Some(effect) = m_codes::find(code, self.data.settings.codes) else {
+                plan.auxiliary_codes.push(code);
+                plan.push_event(EventKind::Auxiliary { code });
+                if code > 9999 {
+                    plan.notes.push(Note::LongMCode(code));
+                }
+                continue;
+            };
+            match effect {
+                MCodeEffect::Stop => plan.stops.push(StopKind::M00),
+                MCodeEffect::OptionalStop if self.data.settings.stops_at_m01 => {
+                    plan.stops.push(StopKind::M01)
+                }
+                MCodeEffect::OptionalStop | MCodeEffect::NoEffect => {}
+                MCodeEffect::End => plan.flow = BlockFlow::End,
+                MCodeEffect::SpindleForward => self.set_spindle(plan, SpindleDirection::Clockwise, speed),
+                MCodeEffect::SpindleReverse => {
+                    self.set_spindle(plan, SpindleDirection::Counterclockwise, speed)
+                }
+                MCodeEffect::SpindleStop | MCodeEffect::Orient => {
+                    if effect == MCodeEffect::Orient {
+                        self.words.mark_read(Letters::of(b"PR"));
+                    }
+                    plan.state.spindle = SpindleDirection::Off;
+                    plan.events_after_motion
+                        .push((EventKind::Spindle { direction: SpindleDirection::Off, speed }, 0.0));
+                }
+                MCodeEffect::ToolChange => {
+                    let stops_spindle = self.data.settings.undocumented.tool_change_stops_spindle;
+                    if stops_spindle && plan.state.spindle != SpindleDirection::Off {
+                        self.set_spindle(plan, SpindleDirection::Off, speed);
+                    }
+                    plan.state.tool = plan.state.codes.t;
+                    plan.push_event(EventKind::ToolChange { number: plan.state.codes.t });
+                }
+                MCodeEffect::CoolantOn => {
+                    plan.state.is_coolant_on = true;
+                    plan.push_event(EventKind::Coolant { is_on: true, code });
+                }
+                MCodeEffect::CoolantOff => {
+                    plan.state.is_coolant_on = false;
+                    plan.events_after_motion.push((EventKind::Coolant { is_on: false, code }, 0.0));
+                }
+                MCodeEffect::InterruptOn => {
+                    self.words.mark_read(Letters::of(b"P"));
+                    plan.notes.push(Note::InterruptNotSimulated);
+                }
+                MCodeEffect::InterruptOff => {}
+                MCodeEffect::Call | MCodeEffect::NotSimulated => {
+                    return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.located_at(span));
+                }
+            }
+        }
+        let changes_spindle =
+            || plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
+        if self.words.has(b'S') && plan.state.spindle != SpindleDirection::Off && !changes_spindle() {
+            self.set_spindle(plan, plan.state.spindle, Rpm(plan.state.codes.s));
+        }
+        Ok(())
+    }
+
+    fn set_spindle(&self, plan: &mut BlockPlan, direction: SpindleDirection, speed: Rpm) {
+        plan.state.spindle = direction;
+        plan.push_event(EventKind::Spindle { direction, speed });
+    }
+}
