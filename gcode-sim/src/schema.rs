@@ -20,7 +20,7 @@ use gcode_inspect::verify::Verdict;
 use gcode_inspect::verify::flutes::{FluteVerdict, NominalFlutes};
 use gcode_part::HoleList;
 use gcode_part::job::control_file::ControlFile;
-use gcode_part::job::{FileRates, JobFile};
+use gcode_part::job::{JobFile, Rates};
 use gcode_review::AcceptedFile;
 
 /// One kind of document and its schema.
@@ -40,7 +40,7 @@ pub const FORMATS: &[Format] = &[
     file::<MachineFile>("machine", "a machine file: --machine"),
     file::<ControlFile>("control", "settings of the control: --control-file"),
     file::<ErrorFile>("errors", "set-up and machine errors: budget --errors"),
-    file::<FileRates>("rates", "machine-hour rates: gcode-gen sheet --rates"),
+    file::<Rates>("rates", "machine-hour rates: gcode-gen sheet --rates"),
     Format {
         name: "reference",
         about: "a list of holes: --reference",
@@ -100,7 +100,8 @@ fn written<T: JsonSchema>() -> Schema {
 /// Returns the schema of a TOML file, without references: editors ignore keywords beside `$ref`.
 fn toml<T: JsonSchema>() -> Schema {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
-    of::<T>(settings.with_transform(RecursiveTransform(without_null)))
+    let settings = settings.with_transform(RecursiveTransform(without_null));
+    of::<T>(settings.with_transform(RecursiveTransform(describe_default)))
 }
 
 fn of<T: JsonSchema>(settings: SchemaSettings) -> Schema {
@@ -110,6 +111,18 @@ fn of<T: JsonSchema>(settings: SchemaSettings) -> Schema {
 /// Removes number formats: the width of an integer is an implementation detail.
 fn without_bits(schema: &mut Schema) {
     schema.remove("format");
+}
+
+/// Moves a default to the description, unless that states it already: `Of a touch, mm/min [default: 100].`
+fn describe_default(schema: &mut Schema) {
+    let default = schema.remove("default").and_then(|default| default.as_f64());
+    let Some((default, description)) = default.zip(schema.get("description").and_then(Value::as_str)) else {
+        return;
+    };
+    if !description.contains("[default: ") {
+        let described = format!("{} [default: {default}].", description.trim_end_matches('.'));
+        schema.insert("description".to_owned(), described.into());
+    }
 }
 
 /// Removes null: TOML has none, and an optional key keeps its own type.

@@ -126,7 +126,7 @@ fn the_ellipse_shows_three_of_six_misplacements() {
             "0.01°"
         };
         let following =
-            read_stylus(&request, &mut Programs(&bench.package), surface, job.probe_radius).unwrap();
+            read_stylus(&request, &mut Programs(&bench.package), surface, job.probe.radius).unwrap();
         let readings = &following.readings.passes[0].readings;
         let ends = [&readings[0], &readings[readings.len() - 1]].map(|reading| {
             let normal = surface.nearest(&reading.ball_centre).normal;

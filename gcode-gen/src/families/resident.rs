@@ -42,7 +42,7 @@ impl Macro {
 #[cfg(test)]
 mod tests {
     use gcode_lang::control::{Dialect, Increment};
-    use gcode_part::job::{Alignment, Burr, Honeycomb, Job, PinHoles};
+    use gcode_part::job::Job;
 
     use super::*;
     use crate::families::{ALL, emit};
@@ -66,13 +66,14 @@ mod tests {
         }
     }
 
-    fn with_control(job: Job, control: JobControl) -> Job {
-        match job {
-            Job::PinHoles(job) => Job::PinHoles(PinHoles { control, ..job }),
-            Job::Honeycomb(job) => Job::Honeycomb(Honeycomb { control, ..job }),
-            Job::Burr(job) => Job::Burr(Burr { control, ..job }),
-            Job::Alignment(job) => Job::Alignment(Alignment { control, ..job }),
-        }
+    fn with_control(mut job: Job, control: JobControl) -> Job {
+        *match &mut job {
+            Job::PinHoles(job) => &mut job.control,
+            Job::Honeycomb(job) => &mut job.control,
+            Job::Burr(job) => &mut job.control,
+            Job::Alignment(job) => &mut job.control,
+        } = control;
+        job
     }
 
     /// Changes of the new jobs that change the text of a macro.

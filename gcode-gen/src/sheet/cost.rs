@@ -76,7 +76,7 @@ pub fn machine_time(words: &SheetInfo, record: &Record) -> MachineTime {
         run: record.times.total() / 60.0,
         stops: record.stops.len(),
         tool_changes: record.tools.len(),
-        minutes: words.minutes,
+        minutes: words.minutes(),
     }
 }
 
@@ -86,16 +86,16 @@ pub fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
     let beside = |other: &AlternativeMachine| Cost {
         machine: Some(other.machine.clone()),
         time: MachineTime {
-            run: other.run.unwrap_or(own.run),
+            run: other.run_minutes.unwrap_or(own.run),
             minutes: Minutes {
-                setup: other.minutes.setup.or(own.minutes.setup),
-                stop: other.minutes.stop.or(own.minutes.stop),
-                tool_change: other.minutes.tool_change.or(own.minutes.tool_change),
+                setup: other.setup_minutes.or(own.minutes.setup),
+                stop: other.stop_minutes.or(own.minutes.stop),
+                tool_change: other.tool_change_minutes.or(own.minutes.tool_change),
             },
             ..own.clone()
         },
         rate: other.rate,
-        is_run_specified: other.run.is_some(),
+        is_run_specified: other.run_minutes.is_some(),
     };
     let first = Cost { machine: None, time: own.clone(), rate: rates.rate, is_run_specified: false };
     std::iter::once(first).chain(rates.alternatives.iter().map(beside)).collect()
@@ -124,19 +124,15 @@ mod tests {
 
     #[test]
     fn a_quarter_of_the_rate_in_the_same_time_is_75_percent_less() {
-        let other = AlternativeMachine {
-            machine: "5-axis".into(),
-            rate: 400.0,
-            run: None,
-            minutes: Minutes::default(),
-        };
+        let other =
+            AlternativeMachine { machine: "5-axis".into(), rate: 400.0, ..AlternativeMachine::default() };
         let rates = Rates { currency: "CNY".into(), rate: 100.0, alternatives: vec![other.clone()] };
         let costs = costs(&rates, &two_hours());
         assert_eq!((costs[0].cost(), costs[1].cost()), (200.0, 800.0));
         assert_eq!(costs[0].change(&costs[1]), Some(-75.0));
         // Without stops there, 60 min: 400, a saving of one half.
-        let minutes = Minutes { stop: Some(0.0), ..Minutes::default() };
-        let rates = Rates { alternatives: vec![AlternativeMachine { minutes, ..other }], ..rates };
+        let other = AlternativeMachine { stop_minutes: Some(0.0), ..other };
+        let rates = Rates { alternatives: vec![other], ..rates };
         let costs = super::costs(&rates, &two_hours());
         assert_eq!((costs[1].cost(), costs[0].change(&costs[1])), (400.0, Some(-50.0)));
         // A set-up time of only the other machine would look like a saving.

@@ -149,7 +149,7 @@ fn of_alignment(job: &Alignment) -> Vec<Characteristic> {
     let (e, f) = (job.chord.e_radius, job.chord.f_radius);
     let (across, up) = (e - f, height(e) - height(f));
     let chord = (across * across + up * up).sqrt();
-    let limits = &job.limits;
+    let limits = &job.limits();
     let blocks = format!("{}″ error of the blocks", signed_to(setting.remainder, 2));
     let run_out = format!("#580 #581 ±{} mm, #582 #583 ±{}°", short(limits.shift), short(limits.tilt));
     let best = "the model's; #572 is the difference of the best pair";

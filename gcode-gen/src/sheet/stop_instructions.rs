@@ -9,7 +9,7 @@ use super::record::OperatorStop;
 pub fn instructions(job: &Job, stop: &OperatorStop) -> Vec<String> {
     if let (Job::PinHoles(job), StopKind::Message, [(variable, angle)]) =
         (job, stop.kind, stop.variables.as_slice())
-        && job.machine.head.kind == HeadKind::Manual
+        && job.machine.head.kind() == HeadKind::Manual
         && *variable == job.macros.common
     {
         return set_head(job, *angle);
@@ -65,8 +65,8 @@ fn set_up(job: &Alignment, stop: &OperatorStop) -> Option<Vec<String>> {
                 .to_owned(),
             format!(
                 "Limits: #580 and #581 each ±{} mm, #582 and #583 each ±{}°. Within them nothing is moved.",
-                short(job.limits.shift),
-                short(job.limits.tilt)
+                short(job.limits().shift),
+                short(job.limits().tilt)
             ),
             "#580 above 0: the part is too far towards X+, move it towards X−. #581 above 0: too far \
              towards Z+, move it towards Z−. Below 0: the opposite direction."

@@ -85,11 +85,7 @@ pub fn rules() -> impl Iterator<Item = Page> {
 
 /// Returns the entries of `diff` and `test`, each a section of their page.
 pub fn changes() -> impl Iterator<Item = Page> {
-    let sections = include_str!("../../../docs/changes.md").split("\n## ").skip(1);
-    sections.filter_map(|text| {
-        let (code, title) = text.lines().next()?.split_once(": ")?;
-        Some(Page { code, title, text })
-    })
+    gcode_review::kinds::ALL.iter().map(|kind| Page::from(*kind))
 }
 
 /// Returns every page, in the order in which they are listed.

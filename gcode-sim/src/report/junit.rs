@@ -2,6 +2,7 @@
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::test_report::{CaseAnswer, CaseReport, OLDER_TEXT, TestReport};
+use gcode_review::kinds;
 
 /// Returns the document of `test --format junit`: one suite with a test for each case.
 ///
@@ -20,15 +21,17 @@ fn case(case: &CaseReport) -> TestCase {
     let mut text = String::new();
     case.append_text(&mut text);
     let (code, message) = match (case.answer, &case.against, case.changes.first()) {
-        (CaseAnswer::Refused, ..) => ("case-refused", case.error.clone().unwrap_or_default()),
+        (CaseAnswer::Refused, ..) => (kinds::CASE_REFUSED.code, case.error.clone().unwrap_or_default()),
         (CaseAnswer::Changed, _, Some(first)) => {
             let more = case.changes.len() - 1;
             let and = if more == 0 { String::new() } else { format!("; and {more} more") };
             (&*first.code, format!("{}: {}{and}", first.code, first.message))
         }
         (_, Some(against), _) => (&*against.code, format!("{}: {}", against.code, against.message)),
-        (CaseAnswer::Older, ..) => ("case-older", format!("{OLDER_TEXT}; {}", case.unrecorded_text())),
-        (CaseAnswer::New, ..) => ("case-new", "nothing accepted yet".to_owned()),
+        (CaseAnswer::Older, ..) => {
+            (kinds::CASE_OLDER.code, format!("{OLDER_TEXT}; {}", case.unrecorded_text()))
+        }
+        (CaseAnswer::New, ..) => (kinds::CASE_NEW.code, "nothing accepted yet".to_owned()),
         (CaseAnswer::Same | CaseAnswer::Changed, None, _) => {
             return named(case, TestCaseStatus::success());
         }

@@ -149,22 +149,18 @@ pub(crate) struct MoveRecorder {
 
 impl EventSink for MoveRecorder {
     fn event(&mut self, event: &Event<'_>) {
-        let (kind, to, feed) = match event.kind {
-            EventKind::Rapid { to } => ("rapid", *to, None),
-            EventKind::Feed { to, rate } | EventKind::Skip { to, rate, .. } => ("feed", *to, Some(rate.0)),
-            EventKind::Arc { to, rate, .. } => ("arc", *to, Some(rate.0)),
-            EventKind::Dwell { .. } => ("dwell", self.position, None),
-            EventKind::ToolChange { .. }
-            | EventKind::ToolLength { .. }
-            | EventKind::WorkZeroUnknown { .. }
-            | EventKind::Spindle { .. }
-            | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. }
-            | EventKind::Stop { .. } => return,
+        let kind = match event.kind {
+            EventKind::Rapid { .. } => "rapid",
+            EventKind::Feed { .. } | EventKind::Skip { .. } => "feed",
+            EventKind::Arc { .. } => "arc",
+            EventKind::Dwell { .. } => "dwell",
+            _ => return,
         };
+        let to = event.kind.end().copied().unwrap_or(self.position);
         if to != self.position || matches!(kind, "arc" | "dwell") {
             self.is_truncated = self.moves.len() >= MAX_MOVES;
             if !self.is_truncated {
+                let feed = event.kind.rate().map(|rate| rate.0);
                 self.moves.push((kind, to, event.seconds.0, feed, event.block));
             }
         }

@@ -10,8 +10,7 @@ use super::figures::count;
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::alarm::kinds::PS0076;
 use gcode_lang::diag::Severity;
-use gcode_review::alarm_code;
-use gcode_review::{BlockLocation, Change, Totals};
+use gcode_review::{BlockLocation, Change, Totals, alarm_code, kinds};
 
 /// The document of `test --format json`, which `test --merge` reads.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -229,13 +228,13 @@ impl CaseReport {
         let mut all = Vec::new();
         match self.answer {
             CaseAnswer::Refused => {
-                all.push(found("case-refused", self.error.clone().unwrap_or_default(), None));
+                all.push(found(kinds::CASE_REFUSED.code, self.error.clone().unwrap_or_default(), None));
             }
-            CaseAnswer::New => all.push(found("case-new", "nothing accepted yet".to_owned(), None)),
+            CaseAnswer::New => all.push(found(kinds::CASE_NEW.code, "nothing accepted yet".to_owned(), None)),
             CaseAnswer::Same | CaseAnswer::Changed | CaseAnswer::Older => {}
         }
         if !self.not_compared.is_empty() {
-            all.push(found("case-older", self.unrecorded_text(), None));
+            all.push(found(kinds::CASE_OLDER.code, self.unrecorded_text(), None));
         }
         let before = format!("{}: ", self.name);
         for change in &self.changes {

@@ -12,7 +12,7 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     let job = bench.job;
     let surface = bench.surface();
     let request = bench.request(Placement::default())?;
-    let following = read_stylus(&request, &mut bench.programs(), surface, job.probe_radius)
+    let following = read_stylus(&request, &mut bench.programs(), surface, job.probe.radius)
         .map_err(|e| bench.broken(&e))?;
     let mut tried = TrialResult { seconds: following.run.control.seconds().0, ..bench.result() };
     let sources = following.run.control.memory().sources();
@@ -26,16 +26,16 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     };
     let Some((least, greatest)) = pass.extremes() else { return Ok(tried) };
     let worst = greatest.value.max(-least.value);
-    if worst > job.ellipse.chord_error {
+    if worst > job.ellipse().chord_error {
         tried.refuse(format!(
             "the distance of the ball from the surface is off by up to {worst:.4} mm; the chord error is {}",
-            job.ellipse.chord_error
+            job.ellipse().chord_error
         ));
     }
-    for (reading, nominal) in ends(pass).into_iter().zip([job.ellipse.from, job.ellipse.to]) {
+    for (reading, nominal) in ends(pass).into_iter().zip([job.ellipse().from, job.ellipse().to]) {
         // The ball touches where the normal through its centre meets the surface.
         let x = reading.ball_centre.x
-            - surface.nearest(&reading.ball_centre).normal.x * (job.probe_radius + reading.value);
+            - surface.nearest(&reading.ball_centre).normal.x * (job.probe.radius + reading.value);
         // Rounding moves the centre by up to half an increment in x and y each, and the foot of the normal by
         // at most twice that.
         if (x - nominal).abs() > 2.0 * job.control.increment.size() || reading.ball_centre.z != 0.0 {

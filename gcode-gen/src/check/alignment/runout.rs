@@ -89,12 +89,14 @@ fn is_contact_missed(run: &Run) -> bool {
 fn fit_uncertainty(job: &Alignment) -> Result<FitUncertainty, FitError> {
     let runout = &job.runout;
     let sign = f64::from(job.machine.rotary.sign);
-    let step = (runout.to - runout.from) / f64::from(runout.readings - 1);
+    let step = (runout.angles.to - runout.angles.from) / f64::from(runout.angles.count - 1);
     let touches = TouchPlan {
         surface: Surface::Ellipsoid { a: job.surface.a, b: job.surface.b },
-        radius: job.probe_radius,
+        radius: job.probe.radius,
         heights: runout.heights.into(),
-        azimuths: (0..runout.readings).map(|n| Deg(sign * (runout.from + step * f64::from(n)))).collect(),
+        azimuths: (0..runout.angles.count)
+            .map(|n| Deg(sign * (runout.angles.from + step * f64::from(n))))
+            .collect(),
     };
     touches.uncertainty()
 }
@@ -114,8 +116,8 @@ fn describe_fit_error(job: &Alignment, why: FitError) -> String {
              'runout.heights', 'runout.angles'): the noise of a touch would be amplified more than 300 \
              times; use heights farther apart, or wider angles",
             job.machine.rotary.letter,
-            short(runout.from),
-            short(runout.to)
+            short(runout.angles.from),
+            short(runout.angles.to)
         ),
     }
 }
@@ -132,7 +134,7 @@ impl NoiseEstimate {
     fn of(job: &Alignment, passed: FitUncertainty) -> Self {
         let [x, _, z] = passed.shift;
         let [about_x, about_z] = passed.tilt;
-        Self { touch: job.probe_noise, factors: [x.max(z), about_x.max(about_z)] }
+        Self { touch: job.probe_noise(), factors: [x.max(z), about_x.max(about_z)] }
     }
 
     fn deviations(&self) -> [f64; 2] {

@@ -14,7 +14,8 @@ const MARGIN: f64 = 0.05;
 /// Returns a sentence with a sufficient search distance for parts in these positions; `None` if none
 /// suffices.
 pub(super) fn advice(bench: &TrialProgram<'_>, parts: &[Placement]) -> Option<String> {
-    let job = Alignment { probe_search: bench.job.surface.a.min(1000.0), ..bench.job.clone() };
+    let mut job = bench.job.clone();
+    job.probe.search = job.surface.a.min(1000.0);
     let package = emit(&job);
     let wide = TrialProgram { job: &job, package: &package, main: bench.main };
     let mut farthest = 0.0_f64;
@@ -25,7 +26,7 @@ pub(super) fn advice(bench: &TrialProgram<'_>, parts: &[Placement]) -> Option<St
         }
         for (first, height) in [600, 800].into_iter().zip(job.runout.heights) {
             let expected = expected(&job, height);
-            let readings = (first..first + job.runout.readings)
+            let readings = (first..first + job.runout.angles.count)
                 .map(|number| (common_variable(&run, number) - expected).abs());
             farthest = readings.fold(farthest, f64::max);
         }
@@ -37,12 +38,12 @@ pub(super) fn advice(bench: &TrialProgram<'_>, parts: &[Placement]) -> Option<St
 /// the job's suffices.
 pub(super) fn search_advice(bench: &TrialProgram<'_>, what: &str, farthest: f64) -> Option<String> {
     let enough = ((farthest + MARGIN) * 10.0).ceil() / 10.0;
-    (enough > bench.job.probe_search && enough <= 1000.0).then(|| {
+    (enough > bench.job.probe.search && enough <= 1000.0).then(|| {
         format!(
             "{}: {what} up to {} mm from their nominal position, key 'probe.search' is {}: use {}\n",
             bench.name(),
             short((farthest * 100.0).ceil() / 100.0),
-            short(bench.job.probe_search),
+            short(bench.job.probe.search),
             short(enough)
         )
     })
@@ -50,7 +51,7 @@ pub(super) fn search_advice(bench: &TrialProgram<'_>, what: &str, farthest: f64)
 
 /// Returns x in the middle of a touch, where O8211 expects the centre of the ball.
 fn expected(job: &Alignment, height: f64) -> f64 {
-    let (across, up) = (job.surface.a + job.probe_radius, job.surface.b + job.probe_radius);
+    let (across, up) = (job.surface.a + job.probe.radius, job.surface.b + job.probe.radius);
     across * (1.0 - (height / up) * (height / up)).sqrt()
 }
 

@@ -56,12 +56,12 @@ fn write(job: &Alignment, text: &mut ProgramText) {
     for ((name, first, turn), x) in POINTS.into_iter().zip([chord.e_radius, chord.f_radius]) {
         let touch = [
             ('D', x),
-            ('F', job.probe_feed),
+            ('F', job.probe.feed),
             ('H', candidates),
             ('I', first),
             ('K', turn),
-            ('R', job.probe_radius),
-            ('V', job.probe_search),
+            ('R', job.probe.radius),
+            ('V', job.probe.search),
         ];
         text.block(Block::call(TOUCH, common).numbers(touch).comment(name));
     }
@@ -69,9 +69,9 @@ fn write(job: &Alignment, text: &mut ProgramText) {
         ('D', chord.e_radius),
         ('E', chord.f_radius),
         ('H', candidates),
-        ('T', chord.uneven),
+        ('T', job.unevenness()),
         ('U', f64::from(job.machine.rotary.sign)),
-        ('V', job.probe_search),
+        ('V', job.probe.search),
     ];
     text.block(Block::call(MATCH, common).numbers(choose).comment("CHORD"));
     text.block("M30");

@@ -18,11 +18,11 @@ pub(super) const MACROS: &[Macro] =
     &[Macro { number: PATH, file: "O8221_ellipse.nc", text: include_str!("ellipse.nc") }];
 
 fn write(job: &Alignment, text: &mut ProgramText) {
-    let path = &job.ellipse;
+    let path = &job.ellipse();
     let rotary = job.machine.rotary.letter;
     let k = control::alarm_thousands(job.control.dialect);
     let [from, to] = [path.from, path.to].map(number);
-    text.remark(format!("FROM X {from} TO X {to} OF THE SURFACE, Z 0., BALL R {}", number(job.probe_radius)));
+    text.remark(format!("FROM X {from} TO X {to} OF THE SURFACE, Z 0., BALL R {}", number(job.probe.radius)));
     common_remarks(job, text);
     text.remarks([
         format!("CALLS O{PATH}, ALARMS {k}101-{k}114"),
@@ -35,13 +35,13 @@ fn write(job: &Alignment, text: &mut ProgramText) {
     let arguments = [
         ('A', job.surface.a),
         ('B', job.surface.b),
-        ('C', job.machine.clearance),
+        ('C', job.machine.clearance()),
         ('D', path.from),
         ('E', path.to),
         ('F', path.feed),
         ('Q', path.chord_error),
-        ('R', job.probe_radius),
-        ('V', job.machine.retract),
+        ('R', job.probe.radius),
+        ('V', job.machine.retract()),
     ];
     text.block(Block::call(PATH, arguments).comment("ELLIPSE"));
     text.block("M30");

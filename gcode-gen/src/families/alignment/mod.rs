@@ -97,6 +97,6 @@ fn machine_file(job: &Alignment) -> String {
          radius = {:?}\n",
         control::machine_file(job.control),
         control::rotary_table(job.machine.rotary, 'y', "its axis goes through the part's origin"),
-        job.probe_radius
+        job.probe.radius
     )
 }

@@ -22,10 +22,10 @@ fn write(job: &Alignment, text: &mut ProgramText) {
     let runout = &job.runout;
     let k = control::alarm_thousands(job.control.dialect);
     let [low, high] = runout.heights.map(number);
-    let [from, to] = [runout.from, runout.to].map(number);
+    let [from, to] = [runout.angles.from, runout.angles.to].map(number);
     text.remark(format!(
         "{} READINGS FROM {rotary}{from} TO {rotary}{to} AT Y {low} AND Y {high}",
-        runout.readings
+        runout.angles.count
     ));
     common_remarks(job, text);
     text.remarks([
@@ -61,16 +61,16 @@ fn pass(job: &Alignment) -> Block {
     let arguments = [
         ('A', job.surface.a),
         ('B', job.surface.b),
-        ('R', job.probe_radius),
+        ('R', job.probe.radius),
         ('I', low),
         ('J', high),
-        ('D', runout.from),
-        ('E', runout.to),
-        ('H', f64::from(runout.readings)),
-        ('F', job.probe_feed),
-        ('V', job.probe_search),
+        ('D', runout.angles.from),
+        ('E', runout.angles.to),
+        ('H', f64::from(runout.angles.count)),
+        ('F', job.probe.feed),
+        ('V', job.probe.search),
         ('U', f64::from(job.machine.rotary.sign)),
-        ('W', job.probe_noise),
+        ('W', job.probe_noise()),
         ('T', runout.y_shift),
     ];
     Block::call(FIT, arguments)

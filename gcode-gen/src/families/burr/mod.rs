@@ -33,7 +33,7 @@ pub(super) fn emit(job: &Burr) -> Package {
         .into_iter()
         .zip(signs(job).map(|(_, sign)| minus(sign).to_owned()))
         .collect();
-    let called = if job.program.form == ProgramForm::Loop { MACROS } else { &[] };
+    let called = if job.form() == ProgramForm::Loop { MACROS } else { &[] };
     let main = Program { number: MAIN, text: main(job) };
     package(job.control, vec![main], called, &marks, machine_file(job))
 }
@@ -63,8 +63,8 @@ fn main(job: &Burr) -> String {
         text.remark(format!("MOVES FOR A CHORD ERROR OF {least}, SO THAT THE HELIX ANGLE HOLDS"));
     }
     start.blocks(&mut text);
-    text.blocks([format!("S{:.0} M03", job.program.wheel), "M08".to_owned()]);
-    match job.program.form {
+    text.blocks([format!("S{:.0} M03", job.program.wheel()), "M08".to_owned()]);
+    match job.form() {
         ProgramForm::Loop => write_calls(job, chord_error, &mut text),
         ProgramForm::Moves => write_moves(job, chord_error, &mut text),
     }
@@ -110,8 +110,8 @@ fn write_calls(job: &Burr, chord_error: f64, text: &mut ProgramText) {
         ('B', job.helix),
         ('C', 90.0 - shape.tip_angle),
         ('D', chord_error),
-        ('E', job.program.plunge),
-        ('F', job.program.speed),
+        ('E', job.program.plunge()),
+        ('F', job.program.speed()),
         ('H', if job.law == FluteLaw::Published { 1.0 } else { 0.0 }),
         ('I', x),
         ('J', y),
@@ -131,7 +131,7 @@ fn write_calls(job: &Burr, chord_error: f64, text: &mut ProgramText) {
 /// Writes every flute point by point.
 fn write_moves(job: &Burr, chord_error: f64, text: &mut ProgramText) {
     let points = points(job, chord_error);
-    let (signs, clear, stand_off) = (job.grinder.signs, clearance_y(job), stand_off(job));
+    let (signs, clear, stand_off) = (job.grinder.signs(), clearance_y(job), stand_off(job));
     // Rounded here, because a control truncates digits beyond its increment.
     let increment = job.control.increment;
     let along = |letter: char, sign: i8, value: f64| {
@@ -146,7 +146,7 @@ fn write_moves(job: &Burr, chord_error: f64, text: &mut ProgramText) {
                 along('Y', signs.y, point.y),
                 along('A', signs.a, start + point.a.0),
                 along('C', signs.c, point.c.0),
-                number(rate(job.program.speed, point.path_length))
+                number(rate(job.program.speed(), point.path_length))
             )
         };
         text.remark(format!("FLUTE {} OF {}", flute + 1, job.flutes));
@@ -160,7 +160,7 @@ fn write_moves(job: &Burr, chord_error: f64, text: &mut ProgramText) {
                 along('B', signs.b, job.helix)
             ),
             along('Y', signs.y, stand_off),
-            format!("G01 Y0. F{}", number(job.program.plunge)),
+            format!("G01 Y0. F{}", number(job.program.plunge())),
             "G93".to_owned(),
         ]);
         text.blocks(rest.iter().map(cut));
@@ -185,14 +185,14 @@ fn reversed_axes(job: &Burr) -> String {
 
 /// Returns the axes with their signs.
 fn signs(job: &Burr) -> [(char, i8); 5] {
-    let AxisSigns { x, y, a, b, c } = job.grinder.signs;
+    let AxisSigns { x, y, a, b, c } = job.grinder.signs();
     [('X', x), ('Y', y), ('A', a), ('B', b), ('C', c)]
 }
 
 /// Returns the text of `machine.toml`.
 fn machine_file(job: &Burr) -> String {
     let [x, y] = job.grinder.c_offset;
-    let signs = job.grinder.signs;
+    let signs = job.grinder.signs();
     let contact = y - job.shape.radius;
     let link = |letter: char, moves: &str, sign: i8, centre: &str| {
         format!("[[table]]\nletter = \"{letter}\"\n{moves}\nsign = {sign}\n{centre}\n")

@@ -82,5 +82,5 @@ pub(super) fn clearance_y(job: &Burr) -> f64 {
 
 /// Returns the distance from the tooth bottom at which rapid changes to feed.
 pub(super) fn stand_off(job: &Burr) -> f64 {
-    job.grinder.clearance + job.shape.tooth_depth
+    job.grinder.clearance() + job.shape.tooth_depth
 }

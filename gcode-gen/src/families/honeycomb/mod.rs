@@ -53,9 +53,9 @@ fn main(job: &Honeycomb) -> String {
     start.blocks(&mut text);
     let drill = &job.drill;
     text.blocks([
-        format!("T{} M06", drill.number),
-        format!("S{:.0} M03", drill.speed),
-        format!("G43 H{} Z{}", drill.number, number(job.machine.retract)),
+        format!("T{} M06", drill.number()),
+        format!("S{:.0} M03", drill.speed()),
+        format!("G43 H{} Z{}", drill.number(), number(job.machine.retract())),
         "M08".to_owned(),
     ]);
     text.block(call(job));
@@ -66,13 +66,13 @@ fn main(job: &Honeycomb) -> String {
 /// Returns the remarks at the head: conditions for the run.
 fn header(job: &Honeycomb) -> Vec<String> {
     let cylinder = job.cylinder;
-    let [diameter, outer, length] = [cylinder.diameter, cylinder.outer, cylinder.length].map(number);
+    let [diameter, outer, length] = [cylinder.diameter, cylinder.outer(), cylinder.length].map(number);
     let rotary = job.machine.rotary;
-    let (nominal, letter) = match job.spacing {
+    let (nominal, letter) = match job.pattern.spacing() {
         Spacing::Pitch(pitch) => (format!("PITCH {} SPECIFIED", number(pitch)), 'B'),
         Spacing::Divisions(divisions) => (format!("{divisions} ROWS OF EACH OF TWO GROUPS"), 'E'),
     };
-    let measured = match job.metric {
+    let measured = match job.pattern.metric {
         Metric::Arc => "ON THE DEVELOPED SURFACE",
         Metric::Chord => "STRAIGHT",
     };
@@ -103,11 +103,11 @@ fn header(job: &Honeycomb) -> Vec<String> {
 fn call(job: &Honeycomb) -> Block {
     let cylinder = job.cylinder;
     let (drill, machine) = (&job.drill, &job.machine);
-    let (pitch, divisions) = match job.spacing {
+    let (pitch, divisions) = match job.pattern.spacing() {
         Spacing::Pitch(pitch) => (pitch, 0.0),
         Spacing::Divisions(divisions) => (0.0, f64::from(divisions)),
     };
-    let metric = match job.metric {
+    let metric = match job.pattern.metric {
         Metric::Arc => 0.0,
         Metric::Chord => 1.0,
     };
@@ -117,14 +117,14 @@ fn call(job: &Honeycomb) -> Block {
         ('E', divisions),
         ('H', metric),
         ('X', cylinder.length),
-        ('I', cylinder.outer),
+        ('I', cylinder.outer()),
         ('J', cylinder.bore),
         ('A', drill.diameter),
         ('Z', drill.depth),
-        ('C', machine.clearance),
-        ('V', machine.retract),
-        ('F', drill.feed),
-        ('Q', drill.peck),
+        ('C', machine.clearance()),
+        ('V', machine.retract()),
+        ('F', drill.feed()),
+        ('Q', drill.peck()),
         ('U', f64::from(machine.rotary.sign)),
     ];
     Block::call(COMB, arguments)
@@ -148,8 +148,8 @@ fn machine_file(job: &Honeycomb) -> String {
          diameter = {:?}\n",
         control::machine_file(job.control),
         control::rotary_table(job.machine.rotary, 'x', "its axis is the cylinder's"),
-        -job.cylinder.outer / 2.0,
-        job.drill.number,
+        -job.cylinder.outer() / 2.0,
+        job.drill.number(),
         job.drill.diameter
     )
 }

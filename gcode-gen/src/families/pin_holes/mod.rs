@@ -59,7 +59,7 @@ pub(super) fn emit(job: &PinHoles) -> Package {
 fn header(job: &PinHoles) -> [String; 18] {
     let (a, b) = (number(job.surface.a), number(job.surface.b));
     let rotary = job.machine.rotary;
-    let head = match job.machine.head.kind {
+    let head = match job.machine.head.kind() {
         HeadKind::Manual => "SET BY HAND AT A STOP".to_owned(),
         HeadKind::Axis(letter) => format!("MOVED AS AXIS {letter}"),
     };
@@ -88,7 +88,7 @@ fn header(job: &PinHoles) -> [String; 18] {
 }
 
 fn tool_remark(tool: &Tool) -> String {
-    format!("T{} {} DIAMETER {}", tool.number, tool.name, number(tool.diameter))
+    format!("T{} {} DIAMETER {}", tool.number, tool.name(), number(tool.diameter))
 }
 
 /// Writes the blocks of one tool, from its change to the position clear of the part.
@@ -104,7 +104,7 @@ fn tool_blocks(job: &PinHoles, pass: &ToolPass<'_>, next: Option<&ToolPass<'_>>,
     // The tip is then at least V above the pole, whatever the angle of the head: see O8102. This includes
     // the next tool, which may be longer.
     let longest = next.map_or(0.0, |next| reach(job, next.tool)).max(reach(job, tool));
-    let height = [job.surface.b, longest, job.machine.retract].map(number);
+    let height = [job.surface.b, longest, job.machine.retract()].map(number);
     text.block(Block::of(format!("G90 G00 Y[{}]", height.join("+"))).comment("B+Q+V, CLEAR OF THE PART"));
     text.block("M05");
 }
@@ -121,7 +121,7 @@ fn head_call(job: &PinHoles, tool: &Tool, setting: &HeadSetting<'_>) -> Block {
         ('R', setting.radius),
         ('H', axial_flag(setting.axis)),
         ('Q', reach(job, tool)),
-        ('V', job.machine.retract),
+        ('V', job.machine.retract()),
     ];
     Block::call(HEAD, arguments).comment("HEAD")
 }
@@ -134,10 +134,10 @@ fn hole_call(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> Block {
         ('W', hole.azimuth),
         ('H', axial_flag(hole.axis)),
         ('D', hole.depth),
-        ('C', job.machine.clearance),
-        ('V', job.machine.retract),
+        ('C', job.machine.clearance()),
+        ('V', job.machine.retract()),
         ('F', tool.feed),
-        ('E', tool.retract_feed),
+        ('E', tool.retract_feed()),
         ('U', f64::from(job.machine.rotary.sign)),
         ('Q', reach(job, tool)),
     ];
@@ -156,7 +156,7 @@ fn axial_flag(axis: AxisDirection) -> f64 {
 /// angle that is set, and is vacant until then.
 fn marks(job: &PinHoles) -> [(&'static str, String); 5] {
     let common = job.macros.common;
-    let (set_head, spindle_note) = match job.machine.head.kind {
+    let (set_head, spindle_note) = match job.machine.head.kind() {
         HeadKind::Manual => (
             format!("M09\nM05\n#3006=1(SET HEAD TO ANGLE IN #{common})\nM03\nM08"),
             "\n(STOPS SPINDLE AND COOLANT FOR THE OPERATOR, THEN M03 M08)",
@@ -175,7 +175,7 @@ fn marks(job: &PinHoles) -> [(&'static str, String); 5] {
 /// Returns the text of `machine.toml`.
 fn machine_file(job: &PinHoles) -> String {
     let head = job.machine.head;
-    let kind = match head.kind {
+    let kind = match head.kind() {
         HeadKind::Manual => "kind = \"manual\"".to_owned(),
         HeadKind::Axis(letter) => format!("kind = \"axis\"\nletter = \"{letter}\""),
     };

@@ -14,8 +14,8 @@ use crate::sheet::Sheet;
 /// Returns the values to be read at the stops; the form has room for three passes.
 fn lines(job: &Alignment) -> Vec<(String, &'static str, String)> {
     let rotary = job.machine.rotary.letter;
-    let shift = format!("±{}", short(job.limits.shift));
-    let tilt = format!("±{}", short(job.limits.tilt));
+    let shift = format!("±{}", short(job.limits().shift));
+    let tilt = format!("±{}", short(job.limits().tilt));
     let line = |place: &str, what: &'static str| (place.to_owned(), what, String::new());
     let mut all = vec![
         ("#580".to_owned(), "shift in X, mm", shift.clone()),
@@ -23,7 +23,7 @@ fn lines(job: &Alignment) -> Vec<(String, &'static str, String)> {
         ("#582".to_owned(), "tilt about X, °", tilt.clone()),
         ("#583".to_owned(), "tilt about Z, °", tilt),
         line("#584", "shift in Y, mm, less accurate"),
-        ("#585".to_owned(), "residual of the fit, mm", format!("at most {}", short(2.0 * job.probe_noise))),
+        ("#585".to_owned(), "residual of the fit, mm", format!("at most {}", short(2.0 * job.probe_noise()))),
         line("#596", "assumed angle of the table, °"),
         line("#586", "angle to set, °"),
         line("#587", "height of the gauge blocks for it, mm"),
@@ -59,10 +59,10 @@ pub(super) fn readings(sheet: &Sheet<'_>) -> Markup {
         vec![html! { b { (place) } }, cell(what), cell(limit), blank(), blank(), blank()]
     });
     let places = (0..PLACES).map(|n| {
-        let path = &job.ellipse;
+        let path = &job.ellipse();
         let [x, y, across, up] =
             on_surface(job.surface, path.from + (path.to - path.from) * f64::from(n) / f64::from(PLACES - 1));
-        let ball = [x + job.probe_radius * across, y + job.probe_radius * up];
+        let ball = [x + job.probe.radius * across, y + job.probe.radius * up];
         let [x, y] = ball.map(|value| cell(rounded(value, 2)));
         vec![x, y, cell("0"), blank(), blank()]
     });
@@ -82,7 +82,7 @@ pub(super) fn readings(sheet: &Sheet<'_>) -> Markup {
             p {
                 "Position of the ball centre; above 0 a gap. On a part in its nominal position the dial shows 0 all the way; "
                 code { "gcode-sim readings" } " predicts it for a misplaced part. "
-                b { "Limit: ±" (short(job.limits.dial)) " mm" } " at every position."
+                b { "Limit: ±" (short(job.limits().dial)) " mm" } " at every position."
             }
             div.fill { (table(&["#X", "#Y", "#nominal", "reading", "after correction"], places)) }
         }
@@ -110,7 +110,7 @@ pub(super) fn alarms(sheet: &Sheet<'_>) -> Markup {
             }
             li {
                 b { "The ball touches in rapid, " } "or the machine stops with its own alarm of the probe: the part protrudes by more than the search of "
-                (short(job.probe_search)) " mm, or G54 is wrong. RESET, take the ball clear, check ball and stylus and calibrate them again, set the "
+                (short(job.probe.search)) " mm, or G54 is wrong. RESET, take the ball clear, check ball and stylus and calibrate them again, set the "
                 "part up more accurately; then O8210 from its beginning. Watch the first touch of each height at reduced rapid."
             }
             li {

@@ -28,36 +28,36 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
                 } else {
                     cell(short(tool.length))
                 };
-                let feed = format!("{} in, {} out", short(tool.feed), short(tool.retract_feed));
-                row(format!("T{}", tool.number), &tool.name, tool.diameter, length, tool.speed, feed)
+                let feed = format!("{} in, {} out", short(tool.feed), short(tool.retract_feed()));
+                row(format!("T{}", tool.number), &tool.name(), tool.diameter, length, tool.speed, feed)
             })
             .collect(),
         Job::Honeycomb(job) => {
             let drill = &job.drill;
-            let length = html! { "measured, in H" (drill.number) };
+            let length = html! { "measured, in H" (drill.number()) };
             vec![row(
-                format!("T{}", drill.number),
+                format!("T{}", drill.number()),
                 "DRILL",
                 drill.diameter,
                 length,
-                drill.speed,
-                short(drill.feed),
+                drill.speed(),
+                short(drill.feed()),
             )]
         }
         Job::Alignment(job) => {
-            let ball = short(2.0 * job.probe_radius);
+            let ball = short(2.0 * job.probe.radius);
             let row = |tool: &str, name: &str, speed: Markup, feed: String| {
                 vec![cell(tool), cell(name), cell(&ball), cell("measured"), speed, cell(feed), blank()]
             };
             let touch = format!(
                 "{} per touch, within {} of the surface",
-                short(job.probe_feed),
-                short(job.probe_search)
+                short(job.probe.feed),
+                short(job.probe.search)
             );
             let along = format!(
                 "{} from {} in front of the surface on and along it",
-                short(job.ellipse.feed),
-                short(job.machine.clearance)
+                short(job.ellipse().feed),
+                short(job.machine.clearance())
             );
             vec![
                 row("O8210, O8200", "TOUCH PROBE, stylus ball", html! { "stands" }, touch),
@@ -66,14 +66,17 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
         }
         Job::Burr(job) => {
             let program = job.program;
-            let feed =
-                format!("{} along the flute, {} into the blank", short(program.speed), short(program.plunge));
+            let feed = format!(
+                "{} along the flute, {} into the blank",
+                short(program.speed()),
+                short(program.plunge())
+            );
             vec![vec![
                 cell("wheel"),
                 cell("GRINDING WHEEL"),
                 blank(),
                 blank(),
-                cell(short(program.wheel)),
+                cell(short(program.wheel())),
                 cell(feed),
                 blank(),
             ]]
@@ -85,7 +88,7 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
             (table(&["tool", "name", "#diameter", "#length", "#r/min", "feed", "holder, note"], rows))
             @if let Job::Alignment(job) = sheet.job {
                 p.note {
-                    "Both balls have the job's diameter, " (short(2.0 * job.probe_radius)) " mm: a smaller or larger one appears as a shift and a tilt that do not exist. "
+                    "Both balls have the job's diameter, " (short(2.0 * job.probe.radius)) " mm: a smaller or larger one appears as a shift and a tilt that do not exist. "
                     "The ball's centre is the reference: calibrate the probe so that #5061 to #5063 are its centre at the touch. No length offset: G49."
                 }
             }
@@ -105,7 +108,7 @@ pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
     let (Job::PinHoles(job), PackageVerdict::Holes(verdict)) = (sheet.job, &sheet.checked.verdict) else {
         return html! {};
     };
-    let by = match job.machine.head.kind {
+    let by = match job.machine.head.kind() {
         HeadKind::Manual => "set by hand at an operator stop".to_owned(),
         HeadKind::Axis(letter) => format!("moved by the program as axis {letter}"),
     };

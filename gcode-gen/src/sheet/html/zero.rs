@@ -122,7 +122,7 @@ fn alignment(job: &Alignment) -> Vec<String> {
             "Start every program with the ball above the pole of the part or clear of it at X+, and \
              {letter} free to rotate. O8210 moves out to X{} first, O8200 up; O8220 rotates {letter} to 0 \
              at the ball's position.",
-            short(job.surface.a + job.probe_radius + job.probe_search)
+            short(job.surface.a + job.probe.radius + job.probe.search)
         ),
     ]
 }
@@ -172,15 +172,15 @@ fn honeycomb(job: &Honeycomb) -> Vec<String> {
         "G54: X0 at the first hole of the first row, Y0 on the axis of the cylinder, Z0 on its outer surface.".to_owned(),
         format!(
             "Z0 is {} mm from the axis: the radius of the outer diameter {}.",
-            short(job.cylinder.outer / 2.0),
-            short(job.cylinder.outer)
+            short(job.cylinder.outer() / 2.0),
+            short(job.cylinder.outer())
         ),
         format!(
             "{letter} rotates about X; row by row {letter} = {minus}row·180/N (sign {}). {letter}0 is the \
              first row: put a seam or a mark there.",
             if minus.is_empty() { "+1" } else { "−1" }
         ),
-        format!("Tool length: H{0} is that of T{0}, called by G43.", job.drill.number),
+        format!("Tool length: H{0} is that of T{0}, called by G43.", job.drill.number()),
     ];
     all.extend(job.machine.clamp.map(|clamp| {
         format!("M{} releases the rotary before it rotates, M{} clamps it.", clamp.off, clamp.on)
@@ -191,7 +191,7 @@ fn honeycomb(job: &Honeycomb) -> Vec<String> {
 
 /// Draws the cylinder from the side, with the drill above it, and along its axis.
 fn of_honeycomb(job: &Honeycomb) -> Markup {
-    let (length, outer, bore) = (job.cylinder.length, job.cylinder.outer, job.cylinder.bore);
+    let (length, outer, bore) = (job.cylinder.length, job.cylinder.outer(), job.cylinder.bore);
     let scale = (180.0 / length).min(120.0 / outer);
     let (radius, unit) = (outer / 2.0, 1.0 / scale);
     let mut drawing = Drawing::new([70.0, 60.0], outer * scale + 105.0, unit);
@@ -201,7 +201,7 @@ fn of_honeycomb(job: &Honeycomb) -> Markup {
     let axis = format!("axis of {}, X", job.machine.rotary.letter);
     drawing.text([length, -radius], 8.0, 5.0, Align::Left, axis);
     drawing.arrow([0.0, 44.0 * unit], [0.0, 9.0 * unit]);
-    drawing.text(zero, 8.0, 38.0, Align::Left, format!("T{}, first hole", job.drill.number));
+    drawing.text(zero, 8.0, 38.0, Align::Left, format!("T{}, first hole", job.drill.number()));
     drawing.zero(zero, 12.0, 6.0, "G54 X0 Z0");
     let holes = format!("holes from X0 to X{}", short(length));
     drawing.text([length / 2.0, -outer], 0.0, -20.0, Align::Centre, holes);
@@ -218,7 +218,7 @@ fn of_honeycomb(job: &Honeycomb) -> Markup {
 
 fn burr(job: &Burr) -> Vec<String> {
     let [x, y] = job.grinder.c_offset.map(short);
-    let signs = job.grinder.signs;
+    let signs = job.grinder.signs();
     let turned: Vec<_> = [("X", signs.x), ("Y", signs.y), ("A", signs.a), ("B", signs.b), ("C", signs.c)]
         .into_iter()
         .filter_map(|(letter, sign)| (sign < 0).then_some(letter))

@@ -15,6 +15,7 @@ use super::control::Control;
 use super::executor::Executor;
 use super::flow::FrameKind;
 use super::functions::{ExecResult, locate};
+use super::lookahead::Lookahead;
 use super::notes::Note;
 use super::outcome::RunEnd;
 use super::plan::{BlockFlow, BlockPlan};
@@ -27,17 +28,17 @@ use gcode_lang::program::{CallCode, DialectSyntax, GuardedOp, Library, Memory, O
 use gcode_lang::source::Span;
 
 impl Control {
-    /// Executes the next block, and after a statement the blocks that follow it, up to `until` blocks in all: a statement
-    /// never leads into another program.
+    /// Executes the next block, and after a statement the blocks that follow it until the run [pauses]: a statement never
+    /// leads into another program.
+    ///
+    /// [pauses]: super::outcome::BlockEffects::set_pause
     #[inline(always)]
     pub(super) fn execute_block<S: EventSink>(
         &mut self,
-        until: u64,
         library: &mut impl Library,
         sink: &mut S,
     ) -> ExecResult<()> {
         let Self { memory, executor, plan, block_words, loop_detector, .. } = self;
-        executor.registers.block_effects.set_pause(until);
         let Some(program) = memory.get_mut(executor.flow.frame.program) else {
             return executor.end_of_program(memory);
         };
@@ -46,25 +47,32 @@ impl Control {
             let Some((program, op)) = program.lower_block(place) else {
                 return executor.end_of_program(memory);
             };
-            executor.flow.block = op.span;
             executor.log.blocks += 1;
             executor.flow.frame.next = place + 1;
-            match op.body() {
-                OpBody::Plain(OpKind::AssignFree(assign)) => executor.assign(assign)?,
+            let result = match op.body() {
+                OpBody::Plain(OpKind::AssignFree(assign)) => executor.assign(assign),
                 OpBody::Plain(OpKind::Statement(statement)) => {
-                    executor.statement(program, statement, loop_detector, sink)?;
+                    executor.flow.block = op.span;
+                    executor.statement(program, statement, loop_detector, sink)
                 }
-                _ => break (program, op),
-            }
-            if executor.registers.block_effects.is_pause(executor.log.blocks) {
-                return Ok(());
+                OpBody::Plain(OpKind::Words(words)) => {
+                    executor.flow.block = op.span;
+                    if executor.plain_move(op, words, sink).is_some() {
+                        return Ok(());
+                    }
+                    break (program, op);
+                }
+                _ => {
+                    executor.flow.block = op.span;
+                    break (program, op);
+                }
+            };
+            // The place of an assignment is read only after an alarm or an effect.
+            if result.is_err() || executor.registers.block_effects.is_pause(executor.log.blocks) {
+                executor.flow.block = op.span;
+                return result;
             }
         };
-        if let OpBody::Plain(OpKind::Words(words)) = op.body()
-            && executor.plain_move(op, words, sink).is_some()
-        {
-            return Ok(());
-        }
         let mut kind = match op.body() {
             OpBody::Plain(kind) => kind,
             OpBody::Guarded(guarded) if executor.check_guards(guarded)? => return Ok(()),
@@ -85,7 +93,9 @@ impl Control {
                 let alarm = Alarm::ParameterFormat { what: "R is missing".into() };
                 return Err(alarm.located_at(executor.flow.block));
             }
-            OpKind::Empty if op.number.is_some() => executor.process_number_block(sink)?,
+            OpKind::Empty if op.number.is_some() => {
+                executor.advance_lookahead(sink, Lookahead::count_number)?
+            }
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
             OpKind::Words(words) => {
@@ -96,7 +106,7 @@ impl Control {
                 plan.reset(&executor.registers.state);
                 if is_parameter {
                     executor.registers.evaluate_words(words, None, block_words)?;
-                    executor.planner(block_words).plan_parameter(words, op.number, plan)?;
+                    executor.planner(words, block_words).plan_parameter(op.number, plan)?;
                 } else {
                     executor.plan_words(words, block_words, plan)?;
                     plan.state.codes.n = op.number.unwrap_or(plan.state.codes.n);
@@ -119,38 +129,29 @@ impl Executor {
         block_words: &mut BlockWords,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
-        let words = self.without_skipped(words);
+        if let Some((switch, _)) = words.skipped_form() {
+            let is_on = self.registers.data.is_skip_on(*switch);
+            let note = Note::BlockSkip { switch: (*switch).max(1), is_on };
+            self.registers.block_effects.record_note(note);
+        }
+        let (words, _) = self.registers.data.unskipped(words);
         let mut calling_word = None;
         if !self.registers.data.settings.code_calls.is_empty() {
-            let planner = self.planner(block_words);
-            if planner.plan_macro_by_code(words, plan)? {
+            let planner = self.planner(words, block_words);
+            if planner.plan_macro_by_code(plan)? {
                 return Ok(());
             }
-            calling_word = planner.subprogram_by_code(words)?;
+            calling_word = planner.subprogram_by_code()?;
         }
         self.registers.evaluate_words(words, calling_word.as_ref(), block_words)?;
-        self.planner(block_words).plan_block(words, calling_word, plan)
-    }
-
-    /// Returns the words of a block without those that a block skip inside it excludes.
-    #[inline(always)]
-    fn without_skipped<'a>(&self, words: &'a Words) -> &'a Words {
-        let Some((switch, short)) = words.skipped_form() else { return words };
-        let is_on = self.registers.data.is_skip_on(*switch);
-        self.registers.block_effects.record_note(Note::BlockSkip { switch: (*switch).max(1), is_on });
-        if is_on { short } else { words }
+        self.planner(words, block_words).plan_block(calling_word, plan)
     }
 }
 
 impl Planner<'_> {
     /// Makes the plan of a block whose words are evaluated.
-    fn plan_block(
-        &self,
-        words: &Words,
-        calling_word: Option<CallingWord>,
-        plan: &mut BlockPlan,
-    ) -> ExecResult<()> {
-        self.check_words_with_return(words)?;
+    fn plan_block(&self, calling_word: Option<CallingWord>, plan: &mut BlockPlan) -> ExecResult<()> {
+        self.check_words_with_return()?;
         let axis_use = self.apply_modal_codes(plan)?;
         // A block with nothing but axis words and codes of group 01 has no other codes.
         if self.words.has_letters(!self.data.settings.axes.letter_bits())
@@ -171,11 +172,11 @@ impl Planner<'_> {
             }
             None => self.plan_motion(plan, has_new_length)?,
         }
-        if let Some(call) = words.call() {
-            self.plan_call(words, call, plan)?;
+        if let Some(call) = self.lowered.call() {
+            self.plan_call(call, plan)?;
         }
         if let Some(calling) = calling_word {
-            self.plan_calling_word(words, &calling, plan)?;
+            self.plan_calling_word(&calling, plan)?;
         }
         if plan.commands_axes {
             plan.state.last_end_point = None;
@@ -204,12 +205,12 @@ impl Planner<'_> {
     }
 
     /// Raises the alarm of words other than N, P and L beside M99 while G66 is active.
-    fn check_words_with_return(&self, words: &Words) -> ExecResult<()> {
-        let returns = words.call().is_some_and(|call| call.kind == CallCode::Return);
+    fn check_words_with_return(&self) -> ExecResult<()> {
+        let returns = self.lowered.call().is_some_and(|call| call.kind == CallCode::Return);
         if !returns || self.flow.modal_calls.is_empty() {
             return Ok(());
         }
-        match words.list.iter().find(|word| word.letter != b'L') {
+        match self.lowered.list.iter().find(|word| word.letter != b'L') {
             Some(word) => {
                 Err(Alarm::WordsWithReturn { letter: char::from(word.letter) }.located_at(word.span))
             }

@@ -7,12 +7,12 @@ use super::variables::{VACANT, Value};
 use super::words::{CallingWord, WordNumber, count};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{CalledProgram, CodeCallKind};
-use gcode_lang::program::{CallCode, CallOp, CallTarget, LoweredWord, Words, m_codes};
+use gcode_lang::program::{CallCode, CallOp, CallTarget, LoweredWord, m_codes};
 
 impl Planner<'_> {
     /// 7. Plans the call or return of a block.
-    pub(super) fn plan_call(&self, words: &Words, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
-        let count = |word: Option<&LoweredWord>| self.registers.count_of_word(words, word);
+    pub(super) fn plan_call(&self, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
+        let count = |word: Option<&LoweredWord>| self.registers.count_of_word(self.lowered, word);
         let refuse = |what: &str| Err(Alarm::NotSimulated { what: what.to_owned() }.located_at(call.span));
         let kind = match call.kind {
             CallCode::Return => {
@@ -75,7 +75,7 @@ impl Planner<'_> {
             }
         };
         let is_every_block = kind == CallKind::EveryBlock;
-        let locals = self.registers.evaluate_arguments(words, &call.arguments, is_every_block)?;
+        let locals = self.registers.evaluate_arguments(self.lowered, &call.arguments, is_every_block)?;
         let has_own_arguments = undocumented.every_block_calls_itself && !call.arguments.is_empty();
         plan.flow = BlockFlow::Call(Box::new(CallPlan {
             kind,
@@ -106,28 +106,28 @@ impl Planner<'_> {
 
     /// Plans the call of a macro by a code, which stands first in the block; the other words are the arguments. Returns
     /// true if there is one.
-    pub(super) fn plan_macro_by_code(&self, words: &Words, plan: &mut BlockPlan) -> ExecResult<bool> {
-        for (place, word) in words.list.iter().enumerate() {
-            let Some(called) = self.program_called_by(words, word)? else { continue };
+    pub(super) fn plan_macro_by_code(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
+        for (place, word) in self.lowered.list.iter().enumerate() {
+            let Some(called) = self.program_called_by(word)? else { continue };
             if called.kind == CodeCallKind::Subprogram {
                 continue;
             }
             if place > 0 {
                 let what = "words before a code that calls a macro".into();
-                return Err(Alarm::MacroFormat { what }.located_at(words.list[0].span));
+                return Err(Alarm::MacroFormat { what }.located_at(self.lowered.list[0].span));
             }
-            if let Some(second) = words.call() {
+            if let Some(second) = self.lowered.call() {
                 return Err(Alarm::TwoMacroCalls.located_at(second.span));
             }
-            let call = self.macro_call(called, words, word)?;
+            let call = self.macro_call(called, word)?;
             plan.flow = BlockFlow::Call(Box::new(call));
             return Ok(true);
         }
         Ok(false)
     }
 
-    fn macro_call(&self, called: CalledProgram, words: &Words, code: &LoweredWord) -> ExecResult<CallPlan> {
-        let arguments = &words.list[1..];
+    fn macro_call(&self, called: CalledProgram, code: &LoweredWord) -> ExecResult<CallPlan> {
+        let arguments = &self.lowered.list[1..];
         let is_every_block =
             called.kind == CodeCallKind::Modal && self.data.settings.code_calls.modal_is_every_block;
         for word in arguments.iter().filter(|_| !is_every_block) {
@@ -151,9 +151,9 @@ impl Planner<'_> {
                 CodeCallKind::Macro | CodeCallKind::Subprogram => CallKind::Macro,
             },
             target: ProgramRef::Number(called.program),
-            repeats: self.registers.count_of_word(words, repeats)?.unwrap_or(1),
+            repeats: self.registers.count_of_word(self.lowered, repeats)?.unwrap_or(1),
             start: None,
-            locals: self.registers.evaluate_arguments(words, arguments, is_every_block)?,
+            locals: self.registers.evaluate_arguments(self.lowered, arguments, is_every_block)?,
             is_immediate: !is_every_block || has_own_arguments,
             origins: call_origins(code.letter),
             is_external: false,
@@ -162,11 +162,11 @@ impl Planner<'_> {
     }
 
     /// Returns the word of a block that calls a subprogram; the other words of the block act first.
-    pub(super) fn subprogram_by_code(&self, words: &Words) -> ExecResult<Option<CallingWord>> {
+    pub(super) fn subprogram_by_code(&self) -> ExecResult<Option<CallingWord>> {
         let mut found = None;
-        for (place, word) in words.list.iter().enumerate() {
-            let Some(calling) = self.calling_word(words, place, word)? else { continue };
-            if found.is_some() || words.call().is_some() {
+        for (place, word) in self.lowered.list.iter().enumerate() {
+            let Some(calling) = self.calling_word(place, word)? else { continue };
+            if found.is_some() || self.lowered.call().is_some() {
                 return Err(Alarm::TwoSubprogramCalls.located_at(word.span));
             }
             found = Some(calling);
@@ -174,17 +174,12 @@ impl Planner<'_> {
         Ok(found)
     }
 
-    fn calling_word(
-        &self,
-        words: &Words,
-        index: usize,
-        word: &LoweredWord,
-    ) -> ExecResult<Option<CallingWord>> {
+    fn calling_word(&self, index: usize, word: &LoweredWord) -> ExecResult<Option<CallingWord>> {
         if let Some(call) = self.data.settings.code_calls.address_call(word.letter)
             && self.code_may_call(word.letter)
             && self.data.settings.axes.find(word.letter).is_none()
         {
-            let Some(raw) = self.registers.evaluate_word(words, word)? else { return Ok(None) };
+            let Some(raw) = self.registers.evaluate_word(self.lowered, word)? else { return Ok(None) };
             let number = match word.letter {
                 b'B' | b'S' | b'T' => f64::from(locate(count(raw, word.letter), word.span)?),
                 letter => self.registers.argument_value(raw, letter),
@@ -192,28 +187,23 @@ impl Planner<'_> {
             let (program, value) = (call.program, Some((call.variable, number)));
             return Ok(Some(CallingWord { index, takes_repeats: false, program, value }));
         }
-        let called = self.program_called_by(words, word)?;
+        let called = self.program_called_by(word)?;
         let program =
             called.filter(|called| called.kind == CodeCallKind::Subprogram).map(|called| called.program);
         Ok(program.map(|program| CallingWord { index, takes_repeats: true, program, value: None }))
     }
 
     /// Plans the subprogram call of a word, with its repetitions.
-    pub(super) fn plan_calling_word(
-        &self,
-        words: &Words,
-        calling: &CallingWord,
-        plan: &mut BlockPlan,
-    ) -> ExecResult<()> {
-        let word = &words.list[calling.index];
-        let repeats = words.list.iter().find(|other| calling.takes_repeats && other.letter == b'L');
+    pub(super) fn plan_calling_word(&self, calling: &CallingWord, plan: &mut BlockPlan) -> ExecResult<()> {
+        let word = &self.lowered.list[calling.index];
+        let repeats = self.lowered.list.iter().find(|other| calling.takes_repeats && other.letter == b'L');
         if let Some((number, value)) = calling.value {
             plan.writes.push(TableWrite::Variable { number, value: Value::Number(value) });
         }
         plan.flow = BlockFlow::Call(Box::new(CallPlan {
             kind: CallKind::Subprogram,
             target: ProgramRef::Number(calling.program),
-            repeats: self.registers.count_of_word(words, repeats)?.unwrap_or(1),
+            repeats: self.registers.count_of_word(self.lowered, repeats)?.unwrap_or(1),
             start: None,
             locals: VACANT,
             is_immediate: true,
@@ -225,11 +215,11 @@ impl Planner<'_> {
     }
 
     /// Returns the program that a G or M code calls; inside a program that a code has called it is an ordinary code.
-    fn program_called_by(&self, words: &Words, word: &LoweredWord) -> ExecResult<Option<CalledProgram>> {
+    fn program_called_by(&self, word: &LoweredWord) -> ExecResult<Option<CalledProgram>> {
         if !matches!(word.letter, b'G' | b'M') || !self.code_may_call(word.letter) {
             return Ok(None);
         }
-        let Some(raw) = self.registers.evaluate_word(words, word)? else { return Ok(None) };
+        let Some(raw) = self.registers.evaluate_word(self.lowered, word)? else { return Ok(None) };
         let tenths = match (word.letter, raw) {
             (b'G', WordNumber::Computed(value)) => (value * 10.0).round(),
             (b'G', WordNumber::Literal(number)) => number.value() * 10.0,

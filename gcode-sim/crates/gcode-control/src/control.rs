@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use super::executor::Executor;
 use super::functions::ExecResult;
+use super::lookahead::Lookahead;
 use super::loop_detection::LoopDetector;
 use super::notes::Note;
 use super::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress, RunEnd};
@@ -151,15 +152,19 @@ impl Control {
             }
             let until =
                 limits.blocks.min((self.executor.log.blocks / PROGRESS_INTERVAL + 1) * PROGRESS_INTERVAL);
+            self.executor.registers.block_effects.set_pause(until);
             while self.executor.log.blocks < until {
                 observer.before_block(self);
-                let until = if observer.is_active() { self.executor.log.blocks + 1 } else { until };
-                let result = self.execute_block(until, library, sink);
-                if !self.is_uneventful(&result)
-                    && let Some(outcome) = self.conclude(result, sink)
-                {
-                    observer.after_block(self);
-                    return *outcome;
+                if observer.is_active() {
+                    self.executor.registers.block_effects.set_pause(self.executor.log.blocks + 1);
+                }
+                let result = self.execute_block(library, sink);
+                if !self.is_uneventful(&result) {
+                    if let Some(outcome) = self.conclude(result, sink) {
+                        observer.after_block(self);
+                        return *outcome;
+                    }
+                    self.executor.registers.block_effects.set_pause(until);
                 }
                 observer.after_block(self);
             }
@@ -182,7 +187,8 @@ impl Control {
             return Some(outcome);
         }
         self.executor.log.max_moves = u64::MAX;
-        let result = self.execute_block(self.executor.log.blocks + 1, library, sink);
+        self.executor.registers.block_effects.set_pause(self.executor.log.blocks + 1);
+        let result = self.execute_block(library, sink);
         self.conclude(result, sink).map(|outcome| *outcome)
     }
 
@@ -202,7 +208,7 @@ impl Control {
     fn conclude<S: EventSink>(&mut self, mut result: ExecResult<()>, sink: &mut S) -> Option<Box<Outcome>> {
         let (note, run_end) = self.executor.registers.block_effects.take();
         if run_end == Some(RunEnd::ProgramEnd)
-            && let Err(alarm) = self.executor.finish_lookahead(sink)
+            && let Err(alarm) = self.executor.advance_lookahead(sink, Lookahead::finish)
         {
             result = Err(alarm);
         }

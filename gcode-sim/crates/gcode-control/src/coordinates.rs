@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_program_stands_follows_the_offset() {
+    fn the_programmed_position_follows_the_offset() {
         let mut data = ControlData::new(Settings::default());
         let mut state = State { machine: at(30.0, 0.0), ..State::default() };
         data.set_work_offset(1, 0, 10.0);

@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_is_drilled_from_r_to_z_and_left_for_the_level_in_force() {
+    fn a_hole_is_drilled_from_r_to_z_and_left_to_the_active_return_level() {
         let down = [("rapid", 50.0), ("rapid", 2.0), ("feed", -10.0)];
         assert_eq!(moves(&cycles::DRILL, ReturnTo::Initial, None), [&down[..], &[("rapid", 50.0)]].concat());
         assert_eq!(moves(&cycles::DRILL, ReturnTo::R, None), [&down[..], &[("rapid", 2.0)]].concat());

@@ -24,11 +24,6 @@ pub(super) struct BoltHolePattern {
 }
 
 impl Planner<'_> {
-    /// Returns true if the block drills: it names an axis or R.
-    pub(super) fn is_drilling_block(&self) -> bool {
-        self.words.has(b'R') || self.names_axis()
-    }
-
     /// Returns the drilling axis: Z; with FXY 5101#0 the normal of the plane or the axis parallel to it that the block names,
     /// the same until G80.
     pub(super) fn drilling_axis(&self, state: &State) -> Result<AxisIndex, Alarm> {
@@ -137,7 +132,6 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the number of holes of the block.
     fn cycle_repeats(&self, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {
         let letter = self.data.settings.cycle_repeat_letter;
         let repeats = match pattern {
@@ -194,7 +188,6 @@ impl Planner<'_> {
         Ok(holes)
     }
 
-    /// Returns the holes of a pattern round the current position.
     fn pattern_holes(&self, centre: &Position, pattern: BoltHolePattern) -> Vec<Position> {
         let hole = |index: u32| {
             let angle = Deg(pattern.start + f64::from(index) * pattern.angle_step);

@@ -73,7 +73,6 @@ impl ControlData {
         Self { settings, parameters: BTreeMap::new(), offsets, set_systems: BTreeSet::new() }
     }
 
-    /// Writes a work offset of one axis.
     pub(super) fn set_work_offset(&mut self, system: usize, axis: AxisIndex, value: f64) {
         self.offsets.work[system][axis] = value;
         self.set_systems.insert(system);
@@ -104,12 +103,10 @@ impl ControlData {
         Some(if self.settings.offsets_are_diameters { sum / 2.0 } else { sum })
     }
 
-    /// Returns the letter of an axis.
     pub(super) fn axis_letter(&self, axis: AxisIndex) -> u8 {
         self.settings.axes.letter(axis) as u8
     }
 
-    /// Returns true if a switch of block skip is on.
     pub(super) fn is_skip_on(&self, switch: u8) -> bool {
         self.settings.skip_switches.get(usize::from(switch.max(1)) - 1).copied().unwrap_or(false)
     }
@@ -167,7 +164,6 @@ impl ControlData {
     }
 }
 
-/// Returns the bit 0 to 7 of a value.
 pub(super) fn parameter_bit(bit: f64) -> Option<u8> {
     (0.0..=7.0).contains(&bit.round()).then_some(bit.round() as u8)
 }

@@ -8,7 +8,6 @@ use super::variables::{Value, VariableClass};
 use super::words::WordNumber;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::{ParameterError, ParameterId, Settings, is_without_effect};
-use gcode_lang::program::Words;
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::Distance;
 
@@ -99,12 +98,7 @@ impl Planner<'_> {
     }
 
     /// Plans a block between G10 L52 and G11: `N_ R_`, with P for an axis and Q for a bit.
-    pub(super) fn plan_parameter(
-        &self,
-        words: &Words,
-        number: Option<u32>,
-        plan: &mut BlockPlan,
-    ) -> ExecResult<()> {
+    pub(super) fn plan_parameter(&self, number: Option<u32>, plan: &mut BlockPlan) -> ExecResult<()> {
         let format_alarm =
             |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.located_at(self.block);
         let mut codes = self.words.g_codes();
@@ -113,13 +107,13 @@ impl Planner<'_> {
             (Some(code), None) if code.effect == Effect::OneShot(OneShot::DataInputEnd) => {
                 plan.state.is_in_parameter_input = false;
                 return match self.words.first_unread() {
-                    None if words.call().is_none() => Ok(()),
+                    None if self.lowered.call().is_none() => Ok(()),
                     _ => Err(format_alarm("words in a block with G11")),
                 };
             }
             _ => return Err(format_alarm("another G code before G11")),
         }
-        if !self.words.m_codes.is_empty() || words.call().is_some() {
+        if !self.words.m_codes.is_empty() || self.lowered.call().is_some() {
             return Err(format_alarm("an M code before G11"));
         }
         let number = number.and_then(|number| u16::try_from(number).ok());

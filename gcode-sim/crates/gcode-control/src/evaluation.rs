@@ -8,7 +8,7 @@ use super::functions::{
 use super::notes::Note;
 use super::quantities::POWERS;
 use super::registers::Registers;
-use super::variables::{StoredValue, Value, VariableClass};
+use super::variables::{Accumulator, Value, VariableClass};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{
     AssignmentTarget, ComputedSource, Instruction, Operand, OperandSource, Operation, Slot, UncommonOp,
@@ -49,12 +49,12 @@ impl Registers {
         let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition else {
             return None;
         };
-        Some(self.compare(*relation, [left, right], StoredValue::VACANT))
+        Some(self.compare(*relation, [left, right], Accumulator::VACANT))
     }
 
     /// Compares two values. Only = and ≠ distinguish vacant from 0.
     #[inline(always)]
-    fn compare(&self, relation: Relation, [left, right]: [&OperandSource; 2], last: StoredValue) -> bool {
+    fn compare(&self, relation: Relation, [left, right]: [&OperandSource; 2], last: Accumulator) -> bool {
         if matches!(relation, Relation::Eq | Relation::Ne) {
             let left = self.fetch(left, last);
             return compare(relation, left, self.fetch(right, last));
@@ -65,7 +65,7 @@ impl Registers {
 
     /// Returns the value of an operand; `last` is the result of the preceding instruction.
     #[inline(always)]
-    fn fetch(&self, source: &OperandSource, last: StoredValue) -> Value {
+    fn fetch(&self, source: &OperandSource, last: Accumulator) -> Value {
         match source {
             OperandSource::Number(number) => Value::Number(*number),
             OperandSource::Free(place) => self.variables.get_free(*place),
@@ -76,7 +76,7 @@ impl Registers {
 
     /// Returns the number of an operand, 0 for a vacant value.
     #[inline(always)]
-    fn fetch_number(&self, source: &OperandSource, last: StoredValue) -> f64 {
+    fn fetch_number(&self, source: &OperandSource, last: Accumulator) -> f64 {
         match source {
             OperandSource::Free(place) => self.variables.free_number(*place),
             OperandSource::Number(number) => *number,
@@ -94,7 +94,6 @@ impl Registers {
         }
     }
 
-    /// Returns the value of a variable of any kind.
     pub(super) fn read_variable(&self, number: u32) -> Result<Value, Alarm> {
         match self.variables.classify(number) {
             VariableClass::Local(place) | VariableClass::Common(place) => Ok(self.variables.get(place)),
@@ -111,10 +110,10 @@ impl Registers {
 
     /// Evaluates as [`Registers::run_code`], inlined into the loop over the blocks: most expressions are assigned.
     #[inline(always)]
-    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundingTarget) -> ExecResult<StoredValue> {
-        let mut last = StoredValue::VACANT;
+    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundingTarget) -> ExecResult<Accumulator> {
+        let mut last = Accumulator::VACANT;
         for Instruction { operation, span } in code {
-            last = StoredValue::of(match operation {
+            last = Accumulator::of(match operation {
                 Operation::Add(values) => self.binary(BinaryOp::Add, values, last, span)?,
                 Operation::Subtract(values) => self.binary(BinaryOp::Sub, values, last, span)?,
                 Operation::Multiply(values) => self.binary(BinaryOp::Mul, values, last, span)?,
@@ -147,7 +146,7 @@ impl Registers {
         &self,
         op: BinaryOp,
         [left, right]: &[OperandSource; 2],
-        last: StoredValue,
+        last: Accumulator,
         span: &Span,
     ) -> ExecResult<f64> {
         let left = self.fetch_number(left, last);
@@ -201,7 +200,7 @@ impl Registers {
     fn uncommon_op(
         &self,
         operation: &UncommonOp,
-        before: StoredValue,
+        before: Accumulator,
         rounds: RoundingTarget,
     ) -> Result<Value, Alarm> {
         let (last, undocumented) = (Value::from(before), &self.data.settings.undocumented);

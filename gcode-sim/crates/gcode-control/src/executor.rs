@@ -13,8 +13,8 @@ use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{Event, EventKind, EventSink};
-use gcode_lang::program::ProgramId;
 use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::{ProgramId, Words};
 use gcode_lang::source::{Span, Spanned};
 use gcode_lang::units::Seconds;
 
@@ -34,9 +34,9 @@ impl Executor {
 
     /// Returns the planner of a block with these words.
     #[inline(always)]
-    pub(super) fn planner<'a>(&'a self, words: &'a BlockWords) -> Planner<'a> {
+    pub(super) fn planner<'a>(&'a self, lowered: &'a Words, words: &'a BlockWords) -> Planner<'a> {
         let Self { registers, flow, log: _ } = self;
-        Planner { registers, data: &registers.data, flow, words, block: flow.block }
+        Planner { registers, data: &registers.data, flow, lowered, words, block: flow.block }
     }
 
     /// Carries out a plan in the order of its fields.
@@ -108,7 +108,6 @@ impl Executor {
         self.count_moves(moves);
     }
 
-    /// Emits an event and counts it.
     #[inline(always)]
     pub(super) fn emit<S: EventSink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
         self.count_event(kind, seconds);
@@ -116,7 +115,6 @@ impl Executor {
         sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.flow.frame.calls });
     }
 
-    /// Counts an event.
     #[inline(always)]
     fn count_event(&mut self, kind: &EventKind, seconds: f64) {
         self.registers.clock.motion_seconds += seconds;
@@ -155,7 +153,7 @@ impl Executor {
     }
 
     /// Advances the lookahead without a plan, if a move waits; an alarm changes nothing.
-    fn advance_lookahead<S: EventSink>(
+    pub(super) fn advance_lookahead<S: EventSink>(
         &mut self,
         sink: &mut S,
         advance: fn(&mut Lookahead, &ControlData, Span) -> ExecResult<()>,
@@ -168,16 +166,6 @@ impl Executor {
         lookahead.check_stroke(&self.registers.data)?;
         self.take_lookahead(&mut lookahead, sink);
         Ok(())
-    }
-
-    /// Executes a block that has only a sequence number.
-    pub(super) fn process_number_block<S: EventSink>(&mut self, sink: &mut S) -> ExecResult<()> {
-        self.advance_lookahead(sink, Lookahead::count_number)
-    }
-
-    /// Executes what waits at the end of a program without M30.
-    pub(super) fn finish_lookahead<S: EventSink>(&mut self, sink: &mut S) -> ExecResult<()> {
-        self.advance_lookahead(sink, Lookahead::finish)
     }
 
     /// Executes what waits before an alarm ends the run.

@@ -169,7 +169,6 @@ impl ProgramFlow {
         }
     }
 
-    /// Pushes the current frame onto the call stack.
     pub(super) fn push(&mut self, frame: Frame) {
         self.callers.push(std::mem::replace(&mut self.frame, frame));
     }
@@ -204,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_call_keeps_the_block_it_came_from() {
+    fn a_call_keeps_its_calling_block() {
         let mut flow = ProgramFlow::new(ProgramId(0));
         let from = Span { start: 3, end: 8, ..Span::default() };
         flow.block = from;
@@ -226,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn passes_of_the_main_program_count_where_they_end_the_run() {
+    fn passes_of_the_main_program_count_if_they_end_the_run() {
         let flow = ProgramFlow::new(ProgramId(0));
         let later =
             ProgramFlow { main_passes: 1, block: Span { start: 9, ..Span::default() }, ..flow.clone() };

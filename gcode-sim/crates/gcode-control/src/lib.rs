@@ -41,27 +41,34 @@
 
 mod contour;
 
-mod functions;
 pub mod notes;
 mod outcome;
 mod state;
 mod variables;
+
+mod functions;
 mod words;
+
+mod data;
 
 mod coordinates;
 mod cycle_expansion;
-mod data;
-mod linear_motion;
 mod lookahead;
 mod quantities;
 
-mod evaluation;
 mod flow;
+mod linear_motion;
 mod plan;
+
 mod registers;
-pub mod static_eval;
+
+mod evaluation;
 mod system_variables;
 mod word_values;
+
+pub mod static_eval;
+
+mod planner;
 
 mod block_codes;
 mod calls;
@@ -70,18 +77,19 @@ mod data_input;
 mod lookahead_request;
 mod moves;
 mod one_shot_codes;
-mod planner;
 mod probing;
 mod transform_codes;
 
 mod executor;
+
 mod loop_detection;
 mod plain_move;
 mod statements;
 
+mod control;
+
 mod block;
 mod call_execution;
-mod control;
 mod next_block;
 mod residual_state;
 

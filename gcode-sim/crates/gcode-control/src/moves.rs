@@ -49,7 +49,8 @@ impl Planner<'_> {
     /// 4. Plans a move by the modal codes: a drilling cycle, or group 01.
     pub(super) fn plan_motion(&self, plan: &mut BlockPlan, has_new_length: bool) -> ExecResult<()> {
         if let Some(cycle) = plan.state.modal.cycle {
-            if self.is_drilling_block() {
+            // A block drills if it names an axis or R.
+            if self.words.has(b'R') || self.names_axis() {
                 return self.plan_cycle(plan, cycle, None);
             }
             // Only blocks that drill store P and Q.
@@ -451,7 +452,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_quarter_counterclockwise_and_three_quarters_clockwise() {
+    fn the_sweep_of_a_quarter_is_90_or_minus_270_degrees() {
         let (start, end, centre) = ((1.0, 0.0), (0.0, 1.0), (0.0, 0.0));
         assert!((sweep(start, end, centre, false) - 90.0).abs() < 1e-12);
         assert!((sweep(start, end, centre, true) + 270.0).abs() < 1e-12);

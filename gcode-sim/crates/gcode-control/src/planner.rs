@@ -11,6 +11,7 @@ use super::words::{BlockWords, WordNumber};
 use crate::contour::Blend;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{AxisIndex, Position};
+use gcode_lang::program::Words;
 use gcode_lang::program::modes::{Distance, Polar, Unit};
 use gcode_lang::source::Span;
 
@@ -21,6 +22,9 @@ pub(super) struct Planner<'a> {
     /// Part of the registers that most of the planning needs.
     pub(super) data: &'a ControlData,
     pub(super) flow: &'a ProgramFlow,
+    /// Words as lowered, with the call of the block.
+    pub(super) lowered: &'a Words,
+    /// Evaluated words.
     pub(super) words: &'a BlockWords,
     /// Place of the block.
     pub(super) block: Span,
@@ -37,17 +41,14 @@ impl Planner<'_> {
         Alarm::NotSimulated { what: what.into() }.located_at(self.block)
     }
 
-    /// Returns true if the block names an axis.
     pub(super) fn names_axis(&self) -> bool {
         self.words.has_letters(self.data.settings.axes.letter_bits())
     }
 
-    /// Returns true if the block names this axis.
     pub(super) fn names(&self, axis: AxisIndex) -> bool {
         self.words.has(self.data.axis_letter(axis))
     }
 
-    /// Iterates over the axes that the block names.
     pub(super) fn named_axes(&self) -> impl Iterator<Item = AxisIndex> {
         (0..self.data.settings.axes.len()).filter(|axis| self.names(*axis))
     }
@@ -58,7 +59,6 @@ impl Planner<'_> {
         locate(self.data.dimension_of(&raw, letter, &self.data.measure(state.modal.unit)), span).map(Some)
     }
 
-    /// Returns the dimension of an axis word.
     pub(super) fn axis_dimension(&self, axis: AxisIndex, state: &State) -> ExecResult<Option<f64>> {
         self.dimension(self.data.axis_letter(axis), state)
     }

@@ -67,7 +67,6 @@ impl ControlData {
         if unit == Unit::Inch && !is_rotary_letter(letter) { metric + 1 } else { metric }
     }
 
-    /// Returns whole increments.
     pub(super) fn increments(&self, raw: &WordNumber, decimals: usize) -> Result<f64, Alarm> {
         let number = match raw {
             WordNumber::Computed(value) => computed_increments(*value, POWERS[decimals]),

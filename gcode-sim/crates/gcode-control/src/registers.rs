@@ -90,7 +90,6 @@ pub(super) fn check_signal_word(word: u32) -> Result<(), Alarm> {
 }
 
 impl Panel {
-    /// Sets one output signal.
     pub(super) fn set_output(&mut self, bit: u32, on: bool) {
         self.outputs = if on { self.outputs | 1 << bit } else { self.outputs & !(1 << bit) };
     }

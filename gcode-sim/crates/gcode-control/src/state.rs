@@ -52,7 +52,6 @@ pub struct State {
 }
 
 impl State {
-    /// Sets whether the position of an axis on the part is unknown.
     pub(super) fn set_work_zero_unknown(&mut self, axis: AxisIndex, is_unknown: bool) {
         self.work_zero_unknown = self.work_zero_unknown & !(1 << axis) | u8::from(is_unknown) << axis;
     }

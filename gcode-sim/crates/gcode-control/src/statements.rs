@@ -174,7 +174,6 @@ impl Executor {
         }
     }
 
-    /// Writes a variable of any kind.
     pub(super) fn write<S: EventSink>(
         &mut self,
         slot: Slot,
@@ -254,7 +253,6 @@ impl Executor {
     }
 }
 
-/// Returns the text of a comment.
 fn comment_text(text: Option<&[u8]>) -> String {
     text.map_or_else(String::new, |bytes| String::from_utf8_lossy(bytes).trim().to_owned())
 }

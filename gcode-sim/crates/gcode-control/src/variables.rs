@@ -38,23 +38,47 @@ impl Value {
     }
 }
 
-/// Value in a variable, and the result of an instruction. The number of a vacant value is 0, so that arithmetic doesn't test
-/// for it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct StoredValue {
+/// Result of an instruction. The number of a vacant value is 0, so that arithmetic doesn't test for it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Accumulator {
     pub(super) number: f64,
+    is_vacant: bool,
+}
+
+impl Accumulator {
+    pub(super) const VACANT: Self = Self { number: 0.0, is_vacant: true };
+
+    #[inline(always)]
+    pub(super) fn of(number: f64) -> Self {
+        Self { number, is_vacant: false }
+    }
+}
+
+impl From<Value> for Accumulator {
+    #[inline]
+    fn from(value: Value) -> Self {
+        Self { number: value.number(), is_vacant: value.is_vacant() }
+    }
+}
+
+impl From<Accumulator> for Value {
+    #[inline]
+    fn from(last: Accumulator) -> Self {
+        if last.is_vacant { Self::Vacant } else { Self::Number(last.number) }
+    }
+}
+
+/// Value in a variable, stored as in an [`Accumulator`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct StoredValue {
+    number: f64,
     is_vacant: bool,
     /// Decimals of an argument that was written without a point and counts increments; 0 for any other value.
     decimals: u8,
 }
 
 impl StoredValue {
-    pub(super) const VACANT: Self = Self { number: 0.0, is_vacant: true, decimals: 0 };
-
-    #[inline(always)]
-    pub(super) fn of(number: f64) -> Self {
-        Self { number, is_vacant: false, decimals: 0 }
-    }
+    const VACANT: Self = Self { number: 0.0, is_vacant: true, decimals: 0 };
 
     /// Returns bits that also distinguish 0 from −0.
     fn bits(self) -> (u64, bool) {
@@ -166,7 +190,6 @@ impl Vars {
         self.names.get(name).copied().ok_or_else(unknown)
     }
 
-    /// Returns the class of a variable number.
     #[inline]
     pub(super) fn classify(&self, number: u32) -> VariableClass {
         match Slot::of(number) {
@@ -190,7 +213,6 @@ impl Vars {
         }
     }
 
-    /// Returns the value of a variable of [`Slot::Free`].
     #[inline(always)]
     pub(super) fn get_free(&self, number: u16) -> Value {
         self.direct_values[usize::from(number) % PLACES].into()
@@ -202,10 +224,10 @@ impl Vars {
         self.direct_values[usize::from(number) % PLACES].number
     }
 
-    /// Writes a variable of [`Slot::Free`].
     #[inline(always)]
-    pub(super) fn set_free(&mut self, number: u16, value: StoredValue) {
-        self.direct_values[usize::from(number) % PLACES] = value;
+    pub(super) fn set_free(&mut self, number: u16, value: Accumulator) {
+        let stored = &mut self.direct_values[usize::from(number) % PLACES];
+        (stored.number, stored.is_vacant, stored.decimals) = (value.number, value.is_vacant, 0);
     }
 
     /// Returns the value at a place from [`Vars::classify`].
@@ -229,7 +251,6 @@ impl Vars {
         }
     }
 
-    /// Returns the number of places.
     fn places(&self) -> usize {
         DIRECT_COUNT + self.extra_values.len()
     }
@@ -267,7 +288,6 @@ impl Vars {
         }
     }
 
-    /// Returns true if all values are equal.
     pub(super) fn has_same_values(&self, other: &Self) -> bool {
         let Self {
             direct_values,

@@ -120,7 +120,6 @@ impl Registers {
         }
     }
 
-    /// Evaluates the value of a word.
     #[inline(always)]
     pub(super) fn evaluate_operand(&self, words: &Words, value: &WordOperand) -> ExecResult<Value> {
         match value {
@@ -149,7 +148,9 @@ impl Registers {
             let local = letters.next(word.letter).map_err(|alarm| alarm.located_at(word.span))?;
             let Some(local) = local else { continue };
             if let Some(raw) = self.raw_argument(words, word)? {
-                let decimals = self.argument_decimals(raw, word.letter);
+                // CVA (6007#4) leaves no decimals for ADP to restore.
+                let is_converted = self.data.settings.converts_arguments;
+                let decimals = if is_converted { 0 } else { self.counted_decimals(raw, word.letter) as u8 };
                 locals.set(local, Value::Number(self.argument_value(raw, word.letter)), decimals);
             }
         }
@@ -173,11 +174,6 @@ impl Registers {
             WordNumber::Computed(value) => value,
             WordNumber::Literal(number) => number.value() / POWERS[self.counted_decimals(raw, letter)],
         }
-    }
-
-    /// Returns the decimals that ADP restores: none with CVA (6007#4).
-    fn argument_decimals(&self, raw: WordNumber, letter: u8) -> u8 {
-        if self.data.settings.converts_arguments { 0 } else { self.counted_decimals(raw, letter) as u8 }
     }
 
     /// Returns the number of decimals of an argument without a point that counts the increments of its address.

@@ -61,7 +61,6 @@ pub(super) struct BlockWords {
 }
 
 impl BlockWords {
-    /// Removes all words.
     pub(super) fn clear(&mut self) {
         self.present_letters = 0;
         self.read_letters.set(0);
@@ -84,7 +83,6 @@ impl BlockWords {
         Ok(())
     }
 
-    /// Adds a G code.
     pub(super) fn put_g(&mut self, row: &'static GCodeRow) -> Result<(), Alarm> {
         if self.g_rows.len() == G_CODES {
             return Err(Alarm::MacroFormat { what: "too many G codes in one block".into() });
@@ -112,7 +110,6 @@ impl BlockWords {
         Ok(())
     }
 
-    /// Returns true if the block has a letter.
     pub(super) fn has(&self, letter: u8) -> bool {
         self.present_letters >> (letter - b'A') & 1 == 1
     }

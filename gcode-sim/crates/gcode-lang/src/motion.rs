@@ -3,6 +3,8 @@
 //! Events carry no modes, cycles, inches or variables; the control has resolved them.
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::source::Span;
 use crate::units::{Deg, MmPerMin, Rpm, Seconds};
 
@@ -278,6 +280,14 @@ impl EventKind {
             | Self::Stop { .. } => None,
         }
     }
+
+    /// Returns the feed along the path; `None` for a rapid and for an event without motion.
+    pub fn rate(&self) -> Option<MmPerMin> {
+        match self {
+            Self::Feed { rate, .. } | Self::Arc { rate, .. } | Self::Skip { rate, .. } => Some(*rate),
+            _ => None,
+        }
+    }
 }
 
 /// Geometry of an [`EventKind::Arc`].
@@ -304,14 +314,18 @@ pub enum LengthCompensation {
 }
 
 /// State of the spindle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum SpindleDirection {
     #[default]
     /// Stopped.
+    #[serde(rename = "off")]
     Off,
     /// Clockwise, M03.
+    #[serde(rename = "M03")]
     Clockwise,
     /// Counterclockwise, M04.
+    #[serde(rename = "M04")]
     Counterclockwise,
 }
 
@@ -319,13 +333,15 @@ pub enum SpindleDirection {
 ///
 /// The event of a message names the variables in its text (`#149`) with their values, so that a simulated
 /// operator can follow the instruction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum StopKind {
     /// M00, program stop.
     M00,
     /// M01, optional stop.
     M01,
     /// `#3006=1(TEXT)`, stop with a message.
+    #[serde(rename = "#3006")]
     Message,
 }
 

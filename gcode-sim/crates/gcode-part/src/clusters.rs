@@ -150,7 +150,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn groups_are_what_hangs_together(
+        fn clusters_are_the_transitive_closure(
             points in prop::collection::vec((-4i32..4, -4i32..4, -1i32..2, 0u8..3), 1..40),
         ) {
             let kinds: Vec<u8> = points.iter().map(|p| p.3).collect();

@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn on_the_axes_the_distance_is_what_is_left_of_the_radius() {
+    fn on_the_axes_the_distance_is_a_difference_of_radii() {
         let body = Surface::Ellipsoid { a: 1000.0, b: 400.0 };
         for (p, distance, normal) in [
             ([0.0, 403.0, 0.0], 3.0, [0.0, 1.0, 0.0]),
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_way_past_the_body_is_nearest_abeam() {
+    fn a_travel_past_the_body_is_nearest_abeam() {
         let sphere = Surface::Ellipsoid { a: 10.0, b: 10.0 };
         let nearest = |from: [f64; 3], to: [f64; 3]| sphere.nearest_between(&from.into(), &to.into());
         assert!((nearest([-20.0, 12.0, 0.0], [30.0, 12.0, 0.0]) - 0.4).abs() < 1e-12);
@@ -139,7 +139,7 @@ mod tests {
         /// A point moved along a surface normal has that distance: always outside, and inside up to the
         /// smallest radius of curvature.
         #[test]
-        fn along_the_normal_the_distance_is_the_way_gone(
+        fn along_the_normal_the_distance_is_the_travel(
             (a, b) in (1.0..2000.0, 1.0..2000.0f64),
             (latitude, azimuth) in (-1.57..1.57, -4.0..4.0f64),
             part in -0.99..3.0f64,
@@ -159,7 +159,7 @@ mod tests {
 
         /// No other point of the surface is nearer.
         #[test]
-        fn no_other_place_is_nearer(
+        fn no_other_point_is_nearer(
             (a, b) in (1.0..50.0, 1.0..50.0f64),
             p in prop::array::uniform3(-80.0..80.0f64),
             (latitude, azimuth) in (-1.57..1.57, -4.0..4.0f64),

@@ -63,12 +63,12 @@ impl Flutes {
             surface_tolerance: job.chord_error,
             helix_tolerance: Deg(job.tolerance.helix),
             index_tolerance: Deg(job.tolerance.index),
-            speed: job.program.is_speed_specified.then_some(job.program.speed),
-            plunge: job.program.is_plunge_specified.then_some(job.program.plunge),
-            clearance: job.grinder.is_clearance_specified.then_some(job.grinder.clearance),
-            wheel: job.program.is_wheel_specified.then_some(job.program.wheel),
+            speed: job.program.speed,
+            plunge: job.program.plunge,
+            clearance: job.grinder.clearance,
+            wheel: job.program.wheel,
             c_offset: job.grinder.c_offset,
-            signs: job.grinder.are_signs_specified.then_some(job.grinder.signs),
+            signs: job.grinder.specified_signs,
         }
     }
 

@@ -1,17 +1,17 @@
-//! Holes of a honeycomb on a cylinder about x, computed from distances between points of the cylinder.
+//! Holes of a honeycomb on a cylinder about x, and its pattern: metric, pitch, rows and distances in that metric.
 //!
 //! Rows are laid round the cylinder. At the resulting pitch a hole is as far from its neighbours in the next
 //! row as from those in its own.
 //!
 //! Part frame: x along the cylinder's axis, with the origin at the first hole of the first row; the first row
 //! lies at +z, and azimuth counts from z towards y. Both senses give the same holes.
+use nalgebra::{Point3, Vector3};
+
 use super::hole::Hole;
-use super::pattern::{Pattern, point, solve_pitch};
-use super::process::{ProcessLimits, ToolProcess};
-use super::read::ReferenceError;
-use super::reference::Reference;
-use super::surface::Surface;
+use super::nominal::{ProcessLimits, Reference, ToolProcess};
+use super::surface::{Surface, bisect};
 use crate::job::{Cylinder, Drill, Honeycomb, Metric, Spacing};
+use crate::reader::FileError;
 use gcode_lang::units::Deg;
 
 /// Limit of the number of holes, above that of any cylinder drilled hole by hole.
@@ -21,9 +21,9 @@ const MAX_HOLES: f64 = 200_000.0;
 ///
 /// # Errors
 /// A pattern that does not close, or whose holes overlap or exceed the limit.
-pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
+pub(super) fn reference(job: &Honeycomb) -> Result<Reference, FileError> {
     let pattern = pattern(job)?;
-    let (outer, drill) = (job.cylinder.outer / 2.0, job.drill);
+    let (outer, drill) = (job.cylinder.outer() / 2.0, job.drill);
     check_drillable(job, &pattern)?;
     let mut holes = Vec::new();
     for row in 0..pattern.rows {
@@ -45,8 +45,8 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
     }
     Ok(Reference {
         holes,
-        position: Some(job.position_tolerance),
-        depth: Some(job.depth_tolerance),
+        position: Some(job.tolerance.position),
+        depth: Some(job.tolerance.depth),
         surface: Some(Surface::Cylinder { radius: outer }),
         process_limits: process_limits(job),
         pattern: Some(pattern),
@@ -54,29 +54,29 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
 }
 
 fn process_limits(job: &Honeycomb) -> ProcessLimits {
-    let Drill { number, speed, feed, peck, depth, diameter, specified: said } = job.drill;
+    let Drill { speed, feed, depth, diameter, .. } = job.drill;
     ProcessLimits {
-        clearance: Some(job.machine.clearance),
-        approach: job.machine.is_clearance_specified.then_some(job.machine.clearance),
-        retract: job.machine.is_retract_specified.then_some(job.machine.retract),
+        clearance: Some(job.machine.clearance()),
+        approach: job.machine.clearance,
+        retract: job.machine.retract,
         rotary: Some(job.machine.rotary),
         clamp: job.machine.clamp,
         tools: vec![ToolProcess {
-            number,
-            offset: said.has_number.then_some(number),
-            speed: said.has_speed.then_some(speed),
-            feed: said.has_feed.then_some(feed),
+            number: job.drill.number(),
+            offset: job.drill.number,
+            speed,
+            feed,
             // Shallower holes are drilled without pecks.
-            peck: (said.has_peck && 3.0 * diameter < depth).then_some(peck),
+            peck: job.drill.peck.filter(|_| 3.0 * diameter < depth),
         }],
     }
 }
 
 /// Returns the number of rows and the pitch at which all six neighbours are equally far.
-fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
-    let (diameter, metric) = (job.cylinder.diameter, job.metric);
-    let error = |message: String| Err(ReferenceError { line: None, message });
-    let (rows, asked) = match job.spacing {
+fn pattern(job: &Honeycomb) -> Result<Pattern, FileError> {
+    let (diameter, metric) = (job.cylinder.diameter, job.pattern.metric);
+    let error = |message: String| Err(FileError { line: None, message });
+    let (rows, asked) = match job.pattern.spacing() {
         Spacing::Divisions(divisions) => (2 * divisions, None),
         Spacing::Pitch(pitch) => match nearest_count(diameter, pitch) {
             Some(count) => (2 * count, Some(pitch)),
@@ -93,7 +93,7 @@ fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
             "key 'pattern.pitch': fewer than two rows of one group fit round diameter {diameter}: use a smaller pitch"
         ));
     }
-    let Cylinder { length, outer, bore, .. } = job.cylinder;
+    let (Cylinder { length, bore, .. }, outer) = (job.cylinder, job.cylinder.outer());
     let pitch = solve_pitch(metric, diameter, rows);
     Ok(Pattern { metric, diameter, rows, pitch, specified_pitch: asked, length, outer, bore })
 }
@@ -128,13 +128,13 @@ fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
 
 /// Checks that the holes do not overlap, down to their bottoms in the material, and that their number is
 /// within the limit.
-fn check_drillable(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
-    let deepest = (job.cylinder.outer / 2.0 - job.drill.depth).max(job.cylinder.bore / 2.0);
+fn check_drillable(job: &Honeycomb, pattern: &Pattern) -> Result<(), FileError> {
+    let deepest = (job.cylinder.outer() / 2.0 - job.drill.depth).max(job.cylinder.bore / 2.0);
     let p = pattern.pitch;
     let apart = |x: f64, rows: f64, radius: f64| {
         (point(x, pattern.row_angle() * rows, radius) - point(0.0, Deg::ZERO, radius)).norm()
     };
-    let error = |message: String| Err(ReferenceError { line: None, message });
+    let error = |message: String| Err(FileError { line: None, message });
     for (x, rows, what) in
         [(p, 0.0, "in a row"), (p / 2.0, 1.0, "of neighbouring rows"), (0.0, 2.0, "of one group")]
     {
@@ -157,11 +157,117 @@ fn check_drillable(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceEr
     Ok(())
 }
 
+/// Nominal relation of a hole to its neighbours; lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pattern {
+    /// Metric of the distance between neighbours.
+    pub metric: Metric,
+    /// Diameter of the cylinder on which distances are measured.
+    pub diameter: f64,
+    /// Number of rows of both groups together.
+    pub rows: u32,
+    /// Distance of all neighbours in the closed pattern.
+    pub pitch: f64,
+    /// Specified pitch; `None` if the job specifies divisions.
+    pub specified_pitch: Option<f64>,
+    /// Holes lie at 0 ≤ x ≤ length.
+    pub length: f64,
+    /// Diameter at which the holes begin.
+    pub outer: f64,
+    /// Bore diameter; 0 for a solid cylinder.
+    pub bore: f64,
+}
+
+impl Pattern {
+    /// Returns the distance of two points of the cylinder in the pattern's metric, mm.
+    pub fn distance(&self, a: &Point3<f64>, b: &Point3<f64>) -> f64 {
+        distance(self.metric, self.diameter, a, b)
+    }
+
+    /// Returns the arc length of an angle on the cylinder, mm.
+    pub fn arc_length(&self, angle: Deg) -> f64 {
+        self.diameter / 2.0 * angle.to_rad()
+    }
+
+    /// Returns the outer intersection of a line towards `out` with the cylinder of the pattern; `None` if it
+    /// misses.
+    pub fn crossing(&self, on: &Point3<f64>, out: &Vector3<f64>) -> Option<Point3<f64>> {
+        // |p + t·u| = r in the yz plane, the outer of both solutions.
+        let (p, u) = (on.yz().coords, out.yz());
+        let (a, half_b, c) = (u.dot(&u), p.dot(&u), p.dot(&p) - self.diameter * self.diameter / 4.0);
+        let root = half_b * half_b - a * c;
+        (a > 1e-12 && root >= 0.0).then(|| on + out * ((root.sqrt() - half_b) / a))
+    }
+
+    /// Returns the distance to the hole two rows further at the same x, mm: the nearest after the six
+    /// neighbours.
+    pub fn second_neighbour_distance(&self) -> f64 {
+        let radius = self.diameter / 2.0;
+        self.distance(&point(0.0, Deg::ZERO, radius), &point(0.0, self.row_angle() * 2.0, radius))
+    }
+
+    /// Returns the row, from 0, whose azimuth is nearest to that of a point.
+    pub fn row_of(&self, p: &Point3<f64>) -> usize {
+        let rows = (azimuth(p).0 / self.row_angle().0).round();
+        rows.rem_euclid(f64::from(self.rows)) as usize
+    }
+
+    /// Returns the pitch with which this number of rows of both groups closes, mm.
+    pub fn closing_pitch(&self, rows: u32) -> f64 {
+        solve_pitch(self.metric, self.diameter, rows)
+    }
+
+    /// Returns the pitch with which the same rows close in the given metric, mm.
+    pub fn pitch_in_metric(&self, metric: Metric) -> f64 {
+        solve_pitch(metric, self.diameter, self.rows)
+    }
+
+    /// Returns the angle between neighbouring rows.
+    pub fn row_angle(&self) -> Deg {
+        Deg(360.0 / f64::from(self.rows))
+    }
+}
+
+/// Returns the azimuth of a point, from z towards y, −180 to 180.
+pub fn azimuth(p: &Point3<f64>) -> Deg {
+    Deg::atan2(p.y, p.z)
+}
+
+/// Returns the distance of two points of a cylinder in a metric, mm.
+fn distance(metric: Metric, diameter: f64, a: &Point3<f64>, b: &Point3<f64>) -> f64 {
+    match metric {
+        Metric::Chord => (b - a).norm(),
+        Metric::Arc => libm::hypot(b.x - a.x, diameter / 2.0 * angle(a, b).to_rad()),
+    }
+}
+
+/// Returns the angle between the azimuths of two points, 0 to 180.
+fn angle(a: &Point3<f64>, b: &Point3<f64>) -> Deg {
+    let (cross, dot) = (a.y * b.z - a.z * b.y, a.y * b.y + a.z * b.z);
+    Deg::atan2(cross.abs(), dot)
+}
+
+/// Returns the point of a cylinder about x at this azimuth.
+fn point(x: f64, azimuth: Deg, radius: f64) -> Point3<f64> {
+    Point3::new(x, radius * azimuth.sin(), radius * azimuth.cos())
+}
+
+/// Returns the pitch with which this number of rows closes, mm: neighbours in the next row are as far as
+/// those in the same row.
+fn solve_pitch(metric: Metric, diameter: f64, rows: u32) -> f64 {
+    // The neighbour in the next row is half a pitch further along x: for a small pitch it is farther than the
+    // pitch.
+    let next = |pitch: f64| {
+        let (radius, row) = (diameter / 2.0, Deg(360.0 / f64::from(rows)));
+        distance(metric, diameter, &point(0.0, Deg::ZERO, radius), &point(pitch / 2.0, row, radius))
+    };
+    bisect(0.0, 2.0 * next(0.0), |pitch| next(pitch) <= pitch)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::job::Job;
-    use nalgebra::Point3;
 
     fn job(changes: &[(&str, &str)]) -> Honeycomb {
         let mut text = String::from(
@@ -248,14 +354,15 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drilled_is_refused_with_its_numbers() {
+    fn an_impossible_pattern_is_refused_with_its_numbers() {
         let deep = refused(&[("pitch = 10", "pitch = 5.1"), ("depth = 12", "depth = 40")]);
-        let told =
+        let expected =
             "the holes overlap: with 356 rows the pitch is 5.095 mm, and holes of neighbouring rows are 4.";
-        assert!(deep.starts_with(told), "{deep}");
+        assert!(deep.starts_with(expected), "{deep}");
         let close = refused(&[("pitch = 10", "divisions = 200")]);
-        let told = "the holes overlap: with 400 rows the pitch is 4.534 mm, and holes in a row are 4.534 mm";
-        assert!(close.starts_with(told), "{close}");
+        let expected =
+            "the holes overlap: with 400 rows the pitch is 4.534 mm, and holes in a row are 4.534 mm";
+        assert!(close.starts_with(expected), "{close}");
         let many = refused(&[
             ("pitch = 10", "pitch = 1"),
             ("diameter = 5\n", "diameter = 0.5\n"),

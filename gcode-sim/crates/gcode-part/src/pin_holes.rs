@@ -4,24 +4,23 @@
 use nalgebra::{Point3, Vector3};
 
 use super::hole::Hole;
-use super::process::{ProcessLimits, ToolProcess};
-use super::read::ReferenceError;
-use super::reference::Reference;
+use super::nominal::{ProcessLimits, Reference, ToolProcess};
 use super::surface::Surface;
 use crate::job::{AxisDirection, HoleSpec, PinHoles, Tool};
+use crate::reader::FileError;
 use gcode_lang::units::Deg;
 
 /// Returns the nominal holes of a pin-hole job.
 ///
 /// # Errors
 /// A hole whose line misses the surface.
-pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
+pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
     let holes = job.holes.iter().map(|hole| pin_hole(&surface, hole));
     Ok(Reference {
         holes: holes.collect::<Result<_, _>>()?,
-        position: Some(job.position_tolerance),
-        depth: Some(job.depth_tolerance),
+        position: Some(job.tolerance.position),
+        depth: Some(job.tolerance.depth),
         surface: Some(surface),
         process_limits: process_limits(job),
         pattern: None,
@@ -37,9 +36,9 @@ fn process_limits(job: &PinHoles) -> ProcessLimits {
         peck: None,
     };
     ProcessLimits {
-        clearance: Some(job.machine.clearance),
-        approach: job.machine.is_clearance_specified.then_some(job.machine.clearance),
-        retract: job.machine.is_retract_specified.then_some(job.machine.retract),
+        clearance: Some(job.machine.clearance()),
+        approach: job.machine.clearance,
+        retract: job.machine.retract,
         rotary: Some(job.machine.rotary),
         clamp: None,
         tools: job.tools.iter().filter(|_| job.are_tools_specified).map(duty).collect(),
@@ -47,10 +46,10 @@ fn process_limits(job: &PinHoles) -> ProcessLimits {
 }
 
 /// Returns the hole at the point of the upper half over (r·cos α, r·sin α).
-fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, ReferenceError> {
+fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, FileError> {
     let azimuth = Deg(spec.azimuth);
     let under = Point3::new(spec.radius * azimuth.cos(), 0.0, spec.radius * azimuth.sin());
-    let missed = || ReferenceError {
+    let missed = || FileError {
         line: None,
         message: format!("hole '{}': a line at radius {} misses the surface", spec.id, spec.radius),
     };
@@ -73,8 +72,17 @@ fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, ReferenceError> 
 mod tests {
     use super::*;
 
-    fn wanted(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleSpec {
-        HoleSpec { id: "h".into(), radius, azimuth, axis, diameter: 6.0, depth: 15.0, tools: vec![1] }
+    fn spec(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleSpec {
+        HoleSpec {
+            id: "h".into(),
+            radius,
+            azimuth,
+            axis,
+            diameter: 6.0,
+            depth: 15.0,
+            named_tools: None,
+            tools: vec![1],
+        }
     }
 
     fn near(found: [f64; 3], expected: [f64; 3]) {
@@ -86,7 +94,7 @@ mod tests {
     fn at_the_pole_the_normal_is_the_axis() {
         for b in [50.0, 100.0, 300.0] {
             let surface = Surface::Ellipsoid { a: 100.0, b };
-            let hole = pin_hole(&surface, &wanted(0.0, 77.0, AxisDirection::Normal)).unwrap();
+            let hole = pin_hole(&surface, &spec(0.0, 77.0, AxisDirection::Normal)).unwrap();
             near(hole.entry, [0.0, b, 0.0]);
             near(hole.axis, [0.0, 1.0, 0.0]);
         }
@@ -95,7 +103,7 @@ mod tests {
     #[test]
     fn at_the_equator_the_normal_is_radial() {
         let surface = Surface::Ellipsoid { a: 100.0, b: 60.0 };
-        let hole = pin_hole(&surface, &wanted(100.0, 450.0, AxisDirection::Normal)).unwrap();
+        let hole = pin_hole(&surface, &spec(100.0, 450.0, AxisDirection::Normal)).unwrap();
         let off = hole.entry[1].abs().max((hole.entry[2] - 100.0).abs()).max(hole.axis[0].abs());
         assert!(off < 1e-5, "{hole:?}");
         assert!((hole.axis[2] - 1.0).abs() < 1e-9);
@@ -106,11 +114,11 @@ mod tests {
     #[test]
     fn an_ellipse_worked_by_hand() {
         let surface = Surface::Ellipsoid { a: 5.0, b: 4.0 };
-        let hole = pin_hole(&surface, &wanted(3.0, -90.0, AxisDirection::Normal)).unwrap();
+        let hole = pin_hole(&surface, &spec(3.0, -90.0, AxisDirection::Normal)).unwrap();
         near(hole.entry, [0.0, 3.2, -3.0]);
         let size = (2.4f64 * 2.4 + 16.0).sqrt();
         near(hole.axis, [0.0, 4.0 / size, -2.4 / size]);
-        let axial = pin_hole(&surface, &wanted(3.0, 270.0, AxisDirection::Axial)).unwrap();
+        let axial = pin_hole(&surface, &spec(3.0, 270.0, AxisDirection::Axial)).unwrap();
         near(axial.entry, [0.0, 3.2, -3.0]);
         near(axial.axis, [0.0, 1.0, 0.0]);
     }
@@ -119,7 +127,7 @@ mod tests {
     fn on_a_sphere_the_normal_points_from_the_centre() {
         let surface = Surface::Ellipsoid { a: 500.0, b: 500.0 };
         for (radius, azimuth) in [(1e-6, 10.0), (300.0, -200.0), (485.0, 359.999)] {
-            let hole = pin_hole(&surface, &wanted(radius, azimuth, AxisDirection::Normal)).unwrap();
+            let hole = pin_hole(&surface, &spec(radius, azimuth, AxisDirection::Normal)).unwrap();
             near(hole.axis, hole.entry.map(|v| v / 500.0));
         }
     }

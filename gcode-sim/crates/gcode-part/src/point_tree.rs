@@ -168,7 +168,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_tree_finds_what_looking_at_all_of_them_finds(
+        fn the_tree_agrees_with_a_search_of_all_points(
             points in prop::collection::vec((-9i32..9, -9i32..9, -9i32..9), 1..60),
             (x, y, z, r) in (-9.0..9.0, -9.0..9.0, -9.0..9.0, 0.0..6.0),
         ) {

@@ -1,6 +1,7 @@
 //! Tooth bottom of a burr as a body of revolution: distances, normals and meridians.
 use nalgebra::{Point3, Unit, Vector2, Vector3};
 
+use super::surface::bisect;
 use crate::job::{BurrShape, Nose};
 use gcode_lang::units::Deg;
 
@@ -31,12 +32,8 @@ impl Profile {
                 // A circle centred on the axis touches the large one from inside where the distance of the
                 // centres is the difference of the radii; bisection along the axis.
                 let inside = |x: f64| (Vector2::new(x, 0.0) - first.centre).norm() + small < large;
-                let (mut near, mut far) = (0.0, -large);
-                for _ in 0..200 {
-                    let middle = (near + far) / 2.0;
-                    if inside(middle) { near = middle } else { far = middle }
-                }
-                [first, Circle { centre: Vector2::new(near, 0.0), radius: small }]
+                let aside = bisect(0.0, large, |aside| !inside(-aside));
+                [first, Circle { centre: Vector2::new(-aside, 0.0), radius: small }]
             }
         };
         Self { radius, arcs }
@@ -169,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn right_hand_is_the_way_a_screw_goes() {
+    fn right_hand_is_the_direction_of_a_screw() {
         let profile = Profile::new(&shape(Nose::Ball));
         let (tip, around) = profile.directions(&Point3::new(5.0, -6.0, 0.0));
         assert!((tip + Vector3::x()).norm() < 1e-12, "{tip}");

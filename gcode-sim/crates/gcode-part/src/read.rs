@@ -5,24 +5,15 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::hole::{Hole, HoleList, Unit};
+use crate::reader::FileError;
 
-/// Reason for which a reference is unusable: one sentence with the location and the remedy.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}{message}", match line { Some(n) => format!("line {n}: "), None => String::new() })]
-pub struct ReferenceError {
-    /// Line in the text, from 1; `None` if the error concerns the whole text.
-    pub line: Option<usize>,
-    /// The sentence, without the line.
-    pub message: String,
-}
-
-fn error(line: Option<usize>, message: impl Into<String>) -> ReferenceError {
-    ReferenceError { line, message: message.into() }
+fn error(line: Option<usize>, message: impl Into<String>) -> FileError {
+    FileError { line, message: message.into() }
 }
 
 const COLUMNS: [&str; 9] = ["id", "x", "y", "z", "i", "j", "k", "depth", "diameter"];
 
-pub(super) fn json(text: &str) -> Result<HoleList, ReferenceError> {
+pub(super) fn json(text: &str) -> Result<HoleList, FileError> {
     serde_json::from_str(text).map_err(|e| {
         let message = e.to_string();
         let message = message.split(" at line ").next().unwrap_or_default();
@@ -44,7 +35,7 @@ pub(super) fn has_semicolons(text: &str) -> bool {
     1 < columns.len() && columns.iter().any(|name| COLUMNS.contains(name))
 }
 
-pub(super) fn csv(text: &str) -> Result<HoleList, ReferenceError> {
+pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
     let column = |name: &str| header.iter().position(|h| h == name);
@@ -86,7 +77,7 @@ pub(super) fn csv(text: &str) -> Result<HoleList, ReferenceError> {
     Ok(HoleList { unit: Unit::Mm, holes })
 }
 
-fn csv_error(e: &csv::Error) -> ReferenceError {
+fn csv_error(e: &csv::Error) -> FileError {
     let line = e.position().map(|p| p.line() as usize);
     match e.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
@@ -97,7 +88,7 @@ fn csv_error(e: &csv::Error) -> ReferenceError {
 }
 
 /// Returns the holes with an id each and axes normalised to length 1, or the first error.
-pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, ReferenceError> {
+pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, FileError> {
     let mut ids = BTreeMap::new();
     for (index, hole) in holes.iter_mut().enumerate() {
         check(hole, index).map_err(|message| error(None, message))?;
@@ -146,8 +137,7 @@ fn check(hole: &Hole, index: usize) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::nominal::NominalPart;
-    use super::super::reference::Reference;
+    use super::super::nominal::{NominalPart, Reference};
     use super::*;
 
     const HOLE: &str =
@@ -162,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn json_and_csv_say_the_same() {
+    fn json_and_csv_give_the_same_holes() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\r\n1, 1, 2, 3, 0, 0.6, 0.8, 5,\r\n";
         assert_eq!(NominalPart::parse(HOLE).unwrap(), NominalPart::parse(csv).unwrap());
     }
@@ -181,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_meant_is_refused_with_its_place() {
+    fn an_implausible_entry_is_refused_with_its_place() {
         let row = |row: &str| format!("id,x,y,z,i,j,k,depth,diameter\n0,0,0,0,0,1,0,5,6\n{row}\n");
         let cases = [
             (row("1,0,0,zero,0,1,0,5,6"), "line 3: column 'z' is 'zero': a number"),

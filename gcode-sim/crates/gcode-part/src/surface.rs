@@ -196,7 +196,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sphere_is_left_where_pythagoras_says() {
+    fn a_line_leaves_a_sphere_by_pythagoras() {
         let sphere = Surface::Ellipsoid { a: 5.0, b: 5.0 };
         let up = Vector3::y_axis();
         let exit = sphere.exit(&Point3::new(3.0, -80.0, 0.0), &up).unwrap();
@@ -271,8 +271,8 @@ mod tests {
             let (from, to) = (Point3::new(ends[0], ends[1], ends[2]), Point3::new(ends[3], ends[4], ends[5]));
             let r = a * libm::cos(latitude);
             let body = Point3::new(r * libm::cos(azimuth), b * libm::sin(latitude), r * libm::sin(azimuth));
-            let way: Point3<f64> = from + (to - from) * t;
-            prop_assert!(surface.clearance(&from, &to) <= (way - body).norm() + 1e-9);
+            let on_travel: Point3<f64> = from + (to - from) * t;
+            prop_assert!(surface.clearance(&from, &to) <= (on_travel - body).norm() + 1e-9);
         }
 
         /// A line through a point of the surface at a given latitude leaves the body there.

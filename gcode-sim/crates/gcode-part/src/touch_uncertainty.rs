@@ -1,7 +1,7 @@
 //! Uncertainty of a run-out: the covariance of the least squares that determine shift and tilt.
 use nalgebra::{Point3, SMatrix, SVector, Vector3};
 
-use super::surface::Surface;
+use super::surface::{Surface, bisect};
 use gcode_lang::units::Deg;
 
 /// Ratio of a result's deviation to a touch's noise above which the fit counts as degenerate.
@@ -66,10 +66,11 @@ impl TouchPlan {
         }
         let inverse = normal.try_inverse().ok_or(FitError::Degenerate)?;
         let found = (inverse * spread * inverse).diagonal().map(f64::sqrt);
-        let told = found.iter().all(|deviation| *deviation < MAX_FACTOR);
+        let is_determined = found.iter().all(|deviation| *deviation < MAX_FACTOR);
         let angle = |index: usize| found[index] / lever * 180.0 / std::f64::consts::PI;
-        let passed = FitUncertainty { shift: [found[0], found[1], found[2]], tilt: [angle(3), angle(4)] };
-        told.then_some(passed).ok_or(FitError::Degenerate)
+        let uncertainty =
+            FitUncertainty { shift: [found[0], found[1], found[2]], tilt: [angle(3), angle(4)] };
+        is_determined.then_some(uncertainty).ok_or(FitError::Degenerate)
     }
 
     fn lever(&self) -> f64 {
@@ -86,17 +87,12 @@ impl TouchPlan {
         while far(outside).distance < self.radius {
             outside *= 2.0;
         }
-        let mut inside = 0.0;
-        if far(inside).distance > self.radius {
+        if far(0.0).distance > self.radius {
             return None;
         }
-        for _ in 0..60 {
-            let middle = (inside + outside) / 2.0;
-            let place = if far(middle).distance < self.radius { &mut inside } else { &mut outside };
-            *place = middle;
-        }
-        let normal = far(outside).normal;
-        Some((outside, normal.x, normal.y))
+        let touching = bisect(0.0, outside, |x| self.radius <= far(x).distance);
+        let normal = far(touching).normal;
+        Some((touching, normal.x, normal.y))
     }
 }
 
@@ -148,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_the_same_readings_is_not_told_apart() {
+    fn unknowns_with_the_same_readings_are_degenerate() {
         let alike = Err(FitError::Degenerate);
         let petal = || (0..11).map(|n| -25.0 + 5.0 * f64::from(n));
         assert_eq!(

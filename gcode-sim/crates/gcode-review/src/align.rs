@@ -1,42 +1,89 @@
-//! Which step of one run is which of the other, so that one inserted move doesn't make all that follow different.
+//! Alignment of the steps of two runs, so that one inserted move does not make all later ones different.
 //!
-//! First the longest common sequence of steps that do the same (E. Myers, *An O(ND) Difference Algorithm and Its
-//! Variations*); in the gaps between them moves that go the same way from another point; in what is left the pairs
-//! whose ends lie nearest to one another.
+//! Three stages: the longest common sequence of equal steps (E. Myers, *An O(ND) Difference Algorithm and Its
+//! Variations*); in the gaps between them moves with equal displacements; then the pairs with the nearest end
+//! points.
+use super::record::{BlockLocation, Record};
 use super::steps::{Step, StepKind, difference};
-use gcode_lang::motion::MAX_AXES;
+use gcode_lang::motion::{Axes, MAX_AXES};
 
-/// A step of the old run, of the new one, or one of each that belong together.
+/// A step of one run, or a pair of steps, one of each run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepPair {
     Same(usize, usize),
-    /// The same step, done differently.
+    /// A pair that differs.
     Changed(usize, usize),
     Lost(usize),
     Added(usize),
 }
 
 impl StepPair {
-    /// The numbers of the steps, old and new.
-    pub(super) fn sides(self) -> (Option<usize>, Option<usize>) {
+    /// Returns the numbers of the steps, old and new.
+    pub(super) fn sides(self) -> [Option<usize>; 2] {
         match self {
-            Self::Same(i, j) | Self::Changed(i, j) => (Some(i), Some(j)),
-            Self::Lost(i) => (Some(i), None),
-            Self::Added(j) => (None, Some(j)),
+            Self::Same(i, j) | Self::Changed(i, j) => [Some(i), Some(j)],
+            Self::Lost(i) => [Some(i), None],
+            Self::Added(j) => [None, Some(j)],
         }
+    }
+
+    /// Returns true if one run alone makes the step.
+    pub(super) fn is_unpaired(self) -> bool {
+        matches!(self, Self::Lost(_) | Self::Added(_))
     }
 }
 
-/// Beyond so many lost and added steps the search isn't for the fewest any more: it goes on piece by piece.
+/// Two records, and which step of one is which of the other.
+#[derive(Clone, Copy)]
+pub(super) struct Alignment<'a> {
+    pub records: [&'a Record; 2],
+    pub links: &'a [StepPair],
+    /// Largest deviation that is no difference, mm or degrees.
+    pub tolerance: f64,
+}
+
+impl<'a> Alignment<'a> {
+    pub(super) fn axes(&self) -> &'a Axes {
+        &self.records[0].axes
+    }
+
+    /// Returns the steps by their numbers, old and new.
+    pub(super) fn steps(&self, numbers: [Option<usize>; 2]) -> [Option<&'a Step>; 2] {
+        [0, 1].map(|side| Some(&self.records[side].steps[numbers[side]?]))
+    }
+
+    /// Returns the blocks of steps by their numbers, old and new.
+    pub(super) fn blocks(&self, numbers: [Option<usize>; 2]) -> [Option<&'a BlockLocation>; 2] {
+        [0, 1].map(|side| Some(self.records[side].block(numbers[side]?)))
+    }
+
+    /// Returns the step of a link; the old one of two.
+    pub(super) fn step(&self, link: StepPair) -> Option<&'a Step> {
+        let [old, new] = self.steps(link.sides());
+        old.or(new)
+    }
+
+    /// Iterates over the numbers of paired steps, old and new.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.links.iter().filter_map(|link| {
+            let [i, j] = link.sides();
+            i.zip(j)
+        })
+    }
+}
+
+/// Largest number of lost and added steps of a search for the fewest; beyond it the search continues piece by
+/// piece.
 const MOST_EDITS: usize = 1_000;
 
-/// So many lost and added steps of each piece: those of some dozens of holes.
+/// Number of lost and added steps of each piece: those of some dozens of holes.
 const EDITS_AHEAD: usize = 200;
 
-/// Gaps up to this many possible pairs are searched for the nearest ends; in larger ones the steps are paired in order.
+/// Largest number of possible pairs of a gap that is searched for the nearest end points; larger gaps are paired in
+/// order.
 const MOST_PAIRS: usize = 10_000;
 
-/// As [`align`]; where one of them alone stops (old, new), the other one's steps behind that are lost or added.
+/// Aligns like [`align`]; if one run alone stops (old, new), later steps of the other are lost or added.
 pub(super) fn align_until_stop(
     old: &[Step],
     new: &[Step],
@@ -55,8 +102,8 @@ pub(super) fn align_until_stop(
     links
 }
 
-/// How far a longer run is compared with one of `short` steps that stops: to the first place that loses and adds the fewest, and
-/// so many steps more as the short one has that are none of its.
+/// Returns the number of steps of a longer run that are compared with one of `short` steps that stops: up to the
+/// first end with the fewest edits, and the rest of the short run.
 fn reach(long: usize, short: usize, same: impl Fn(usize, usize) -> bool) -> usize {
     let ends = |x: usize, y: usize| y == short || x == long;
     let Ok(pairs) = search((long, short), MOST_EDITS, &same, ends) else { return long };
@@ -64,8 +111,8 @@ fn reach(long: usize, short: usize, same: impl Fn(usize, usize) -> bool) -> usiz
     (behind + short - last).min(long)
 }
 
-/// All steps of both runs, in an order that keeps both: with the fewest lost and added, or tool by tool where that loses
-/// and adds no more.
+/// Returns all steps of both runs in an order that keeps both, with the fewest lost and added; tool by tool if that
+/// adds none.
 pub(super) fn align(old: &[Step], new: &[Step], tolerance: f64) -> Vec<StepPair> {
     let whole = [(old.len(), new.len())];
     let mut links = between((old, new), &whole, tolerance);
@@ -88,7 +135,7 @@ fn tool_changes(steps: &[Step]) -> Vec<usize> {
     (0..steps.len()).filter(|step| matches!(steps[*step].kind, StepKind::Tool(_))).collect()
 }
 
-/// How many steps are lost and added; a tool change counts for three, so that moves go with their tool.
+/// Counts lost and added steps; a tool change counts as three, so that moves stay with their tool.
 fn edits(links: &[StepPair], (old, new): (&[Step], &[Step])) -> usize {
     let of = |step: &Step| if matches!(step.kind, StepKind::Tool(_)) { 3 } else { 1 };
     let each = |link: &StepPair| match *link {
@@ -100,7 +147,7 @@ fn edits(links: &[StepPair], (old, new): (&[Step], &[Step])) -> usize {
     links.iter().map(each).sum()
 }
 
-/// Links the steps from stop to stop, each of which is the same in both; the last one is where both end.
+/// Links the steps from stop to stop, each a pair of equal steps; the last one is where both end.
 fn between((old, new): (&[Step], &[Step]), stops: &[(usize, usize)], tolerance: f64) -> Vec<StepPair> {
     let mut links = Vec::with_capacity(old.len().max(new.len()));
     let (mut i, mut j) = (0, 0);
@@ -121,8 +168,8 @@ fn between((old, new): (&[Step], &[Step]), stops: &[(usize, usize)], tolerance: 
     links
 }
 
-/// Where something else has gone past a move, the move is the one that stays: a stop that comes later is one, and no
-/// move is lost.
+/// Pairs a move that is lost and added on either side of one equal command: the command is the one that is
+/// reordered.
 fn keep_moves_paired((old, new): (&[Step], &[Step]), tolerance: f64, links: &mut [StepPair]) {
     for first in 0..links.len() {
         let is_other = |link: &StepPair| matches!(link, StepPair::Same(i, _) if !old[*i].is_move());
@@ -133,13 +180,11 @@ fn keep_moves_paired((old, new): (&[Step], &[Step]), tolerance: f64, links: &mut
             _ => continue,
         };
         let is_move = old[i].is_move() && old[i].is_same(&new[j], tolerance);
-        // More than one between them would be more entries than it saves.
+        // With more than one command between them, more steps would lose their pair than gain one.
         let StepPair::Same(other_i, other_j) = links[first + 1] else { continue };
-        // A move of a pass that comes or goes stays with it, and so does the tool.
+        // A tool change after an unpaired step keeps its pair.
         let is_of_pass = matches!(old[other_i].kind, StepKind::Tool(_))
-            && first
-                .checked_sub(1)
-                .is_some_and(|before| matches!(links[before], StepPair::Lost(_) | StepPair::Added(_)));
+            && first.checked_sub(1).is_some_and(|before| links[before].is_unpaired());
         if !is_move || between != 1 || is_of_pass {
             continue;
         }
@@ -155,7 +200,7 @@ fn keep_moves_paired((old, new): (&[Step], &[Step]), tolerance: f64, links: &mut
 
 type Side<'a> = (&'a [Step], std::ops::Range<usize>);
 
-/// Links the steps between two that are the same.
+/// Links the steps between two equal pairs.
 fn align_gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64, links: &mut Vec<StepPair>) {
     let (first_i, first_j) = (range_i.start, range_j.start);
     let parallel = common(range_i.len(), range_j.len(), |i, j| {
@@ -166,7 +211,7 @@ fn align_gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64,
     for (to_i, to_j) in parallel.into_iter().chain(ends).map(|(i, j)| (first_i + i, first_j + j)) {
         let first = links.len();
         nearest((old, i..to_i), (new, j..to_j), links);
-        // Where too much is different for the search, what is the same comes here as well.
+        // Beyond the limits of the search equal steps are found here.
         for link in &mut links[first..] {
             if let StepPair::Changed(i, j) = *link
                 && old[i].is_same(&new[j], tolerance)
@@ -181,14 +226,14 @@ fn align_gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64,
     }
 }
 
-/// Links what is left: as many pairs as possible, of these the ones whose ends lie nearest.
+/// Links the remaining steps: as many pairs as possible, with the nearest end points.
 fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<StepPair>) {
     let (rows, columns) = (range_i.len(), range_j.len());
     if rows == columns || rows == 0 || columns == 0 || rows * columns > MOST_PAIRS {
         in_order((old, range_i), (new, range_j), links);
         return;
     }
-    // cost[r][c]: the best that can be done with the steps from r and c on. Fewer pairs are worse than any distance.
+    // cost[r][c] is the least cost of the steps from r and c on. An unpaired step costs more than any distance.
     let unpaired = 1e12;
     let width = columns + 1;
     let mut cost = vec![0.0; (rows + 1) * width];
@@ -224,11 +269,11 @@ fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<S
     }
 }
 
-/// Pairs steps of one category as they come.
+/// Pairs steps of one kind of change as they come.
 fn in_order((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<StepPair>) {
     let (mut i, mut j) = (range_i.start, range_j.start);
     while i < range_i.end && j < range_j.end {
-        if old[i].kind.category() == new[j].kind.category() {
+        if old[i].kind.change() == new[j].kind.change() {
             links.push(StepPair::Changed(i, j));
             (i, j) = (i + 1, j + 1);
         } else if range_i.end - i >= range_j.end - j {
@@ -243,9 +288,9 @@ fn in_order((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<
     links.extend((j..range_j.end).map(StepPair::Added));
 }
 
-/// How far apart two steps end, of one category; a rapid is no likely pair of a feed.
+/// Returns how far apart two steps of one kind of change end; a rapid is no likely pair of a feed.
 fn step_distance(a: &Step, b: &Step) -> Option<f64> {
-    if a.kind.category() != b.kind.category() {
+    if a.kind.change() != b.kind.change() {
         return None;
     }
     let way = difference(&a.to, &b.to);
@@ -254,8 +299,8 @@ fn step_distance(a: &Step, b: &Step) -> Option<f64> {
     Some(distance + if other_kind { 1e3 } else { 0.0 })
 }
 
-/// The longest common sequence of two lists of these lengths, as pairs of places; where that takes more than
-/// [`MOST_EDITS`], a long one.
+/// Returns the longest common sequence of two lists of these lengths as pairs of indices; a long one if there are
+/// more than [`MOST_EDITS`] edits.
 pub(super) fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
     let shorter = old.min(new);
     let before = (0..shorter).take_while(|k| same(*k, *k)).count();
@@ -270,10 +315,11 @@ pub(super) fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool
     pairs
 }
 
-/// Pairs of places that are the same.
+/// Pairs of equal indices.
 type Pairs = Vec<(usize, usize)>;
 
-/// Of two lists that take too many edits each piece ends where [`EDITS_AHEAD`] edits lead the farthest.
+/// Searches piece by piece if there are too many edits; each piece ends at the farthest point of [`EDITS_AHEAD`]
+/// edits.
 fn longest_or_long(rows: usize, columns: usize, same: impl Fn(usize, usize) -> bool) -> Pairs {
     let ends = |x: usize, y: usize| x == rows && y == columns;
     if let Ok(pairs) = search((rows, columns), MOST_EDITS, &same, ends) {
@@ -291,8 +337,11 @@ fn longest_or_long(rows: usize, columns: usize, same: impl Fn(usize, usize) -> b
     all
 }
 
-/// Myers' greedy search: for every number of edits up to `most` the farthest point on each diagonal, to the first that is
-/// an end; else to the one that is the farthest of all, and where that is.
+/// Searches like Myers: for every number of edits up to `most` the farthest point on each diagonal, up to the first
+/// end.
+///
+/// # Errors
+/// The pairs up to the farthest point of all, and that point, if no end is in reach.
 fn search(
     (rows, columns): (usize, usize),
     most: usize,
@@ -330,7 +379,7 @@ fn search(
     Err((trace(&history[..by], reached.0 as isize, reached.1 as isize), reached))
 }
 
-/// Walks back through the farthest points and collects the diagonal steps.
+/// Collects the diagonal steps on the way back through the farthest points.
 fn trace(history: &[Vec<isize>], n: isize, m: isize) -> Vec<(usize, usize)> {
     let mut pairs = Vec::new();
     let (mut x, mut y) = (n, m);
@@ -392,7 +441,7 @@ mod tests {
         assert_eq!(pairs(&"a".repeat(1500), &"b".repeat(1500)), []);
     }
 
-    /// By the quadratic table of every textbook.
+    /// Length of the longest common sequence by dynamic programming.
     fn longest(a: &[u8], b: &[u8]) -> usize {
         let mut table = vec![vec![0; b.len() + 1]; a.len() + 1];
         for i in 0..a.len() {
@@ -404,7 +453,7 @@ mod tests {
         table[a.len()][b.len()]
     }
 
-    /// What a run does behind the place where the other one stops isn't held against anything.
+    /// Steps of a run after the stop of the other are not compared.
     #[test]
     fn a_run_that_stops_is_compared_up_to_there() {
         let reach = |long: &str, short: &str| {

@@ -1,20 +1,15 @@
-//! Where in the new revision a reader looks for what is gone.
-use super::align::StepPair;
+//! The place of a removed block in the new revision.
+use super::align::Alignment;
 use super::change::Change;
-use super::record::{BlockLocation, Record};
 
-/// Of a change that only the old revision has a block of, the block of the new one that is done next to it.
-pub(super) fn set_anchor(change: &mut Change, old: &Record, new: &Record, links: &[StepPair]) {
-    if let (Some(was), None) = (&change.old, &change.new) {
-        change.anchor = find_anchor(was, old, new, links);
-    }
-}
-
-/// The block before it that is still there, else the one behind it.
-fn find_anchor(was: &BlockLocation, old: &Record, new: &Record, links: &[StepPair]) -> Option<BlockLocation> {
-    let is_it = |link: &StepPair| link.sides().0.is_some_and(|i| old.places[old.steps[i].place] == *was);
-    let at = links.iter().position(is_it)?;
-    let mut sides = links[..at].iter().rev().chain(&links[at..]).map(|link| link.sides());
-    let step = sides.find_map(|(i, j)| i.and(j))?;
-    new.places.get(new.steps[step].place).cloned()
+/// Gives a change that only the old revision has a block of its neighbouring block in the new one: the block before
+/// it that is still there, else the one after it.
+pub(super) fn set_anchor(change: &mut Change, alignment: &Alignment<'_>) {
+    let (Some(was), None) = (&change.old, &change.new) else { return };
+    let [old, new] = alignment.records;
+    let is_it = |[i, _]: &[Option<usize>; 2]| i.is_some_and(|i| old.block(i) == was);
+    let sides: Vec<[Option<usize>; 2]> = alignment.links.iter().map(|link| link.sides()).collect();
+    let Some(at) = sides.iter().position(is_it) else { return };
+    let step = sides[..at].iter().rev().chain(&sides[at..]).find_map(|[i, j]| i.and(*j));
+    change.anchor = step.map(|step| new.block(step).clone());
 }

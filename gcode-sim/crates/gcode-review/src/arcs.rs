@@ -1,10 +1,10 @@
-//! What is different about an arc besides where it ends: its sense, its radius, where its centre is.
+//! Differences of arcs in their direction, radius and centre.
 use super::steps::{ROUNDED, Step};
 use gcode_lang::motion::PlanarArc;
 use gcode_lang::units::Deg;
 
-/// In words, unless it goes with how far the arc's ends have moved: I, J and K count from where it begins, R is the distance
-/// of its centre, and the parallels of one arc have one centre.
+/// Describes the difference of two arcs, unless it follows from a shift of their ends: I, J and K count from the
+/// start, R is the distance of the centre, and parallel arcs have one centre.
 pub(super) fn reshaped(
     (old, a): (&Step, &PlanarArc),
     (new, b): (&Step, &PlanarArc),
@@ -39,7 +39,7 @@ pub(super) fn reshaped(
     ))
 }
 
-/// Where an arc begins and ends.
+/// Returns start and end of an arc relative to its centre.
 fn seen_from_centre(step: &Step, arc: &PlanarArc) -> [(f64, f64); 2] {
     let (x, y) = (step.at[arc.plane.0] - arc.centre.0, step.at[arc.plane.1] - arc.centre.1);
     let back = Deg(-arc.sweep.0);
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use gcode_lang::motion::Position;
 
-    /// From (10, 0) by R10 about 0 0 to (0, 10), moved by `x`; with what `other` makes of the arc.
+    /// An arc from (10, 0) about (0, 0) to (0, 10), shifted by `x` and changed by `other`.
     fn arc(x: f64, other: impl Fn(&mut PlanarArc)) -> (Step, PlanarArc) {
         let mut arc = PlanarArc { plane: (0, 1), centre: (x, 0.0), sweep: Deg(90.0) };
         other(&mut arc);
@@ -62,33 +62,36 @@ mod tests {
         (Step { kind, from, to, at: to, place: 0, set_by: None, condition: 0 }, arc)
     }
 
-    fn told(x: f64, other: impl Fn(&mut PlanarArc)) -> bool {
+    fn differs(x: f64, other: impl Fn(&mut PlanarArc)) -> bool {
         let (was, is) = (arc(0.0, |_| ()), arc(x, other));
         reshaped((&was.0, &was.1), (&is.0, &is.1), x != 0.0, 0.001).is_some()
     }
 
     #[test]
     fn an_arc_that_is_moved_as_a_whole_is_the_same() {
-        assert!(!told(0.0, |_| ()) && !told(0.01, |_| ()) && !told(300.0, |_| ()));
+        assert!(!differs(0.0, |_| ()) && !differs(0.01, |_| ()) && !differs(300.0, |_| ()));
     }
 
     #[test]
-    fn sense_side_and_centre_are_told_whatever_else_moves() {
+    fn sense_side_and_centre_differ_at_any_shift() {
         for x in [0.0, 0.01, 300.0] {
             // About (10, 10) from (10, 0) to (0, 10): G02, and by R-10 the long way about (0, 0).
             assert!(
-                told(x, |arc| *arc = PlanarArc { centre: (10.0 + x, 10.0), sweep: Deg(-90.0), ..*arc }),
+                differs(x, |arc| *arc = PlanarArc { centre: (10.0 + x, 10.0), sweep: Deg(-90.0), ..*arc }),
                 "{x}"
             );
-            assert!(told(x, |arc| arc.sweep = Deg(-270.0)), "{x}");
+            assert!(differs(x, |arc| arc.sweep = Deg(-270.0)), "{x}");
             assert!(
-                told(x, |arc| *arc = PlanarArc { centre: (10.0 + x, 10.0), sweep: Deg(270.0), ..*arc }),
+                differs(x, |arc| *arc = PlanarArc { centre: (10.0 + x, 10.0), sweep: Deg(270.0), ..*arc }),
                 "{x}"
             );
             // R12: its centre is on the line between the ends' middle and the old one, √(144 − 50) from the middle.
             let centre = 5.0 - (94.0_f64 / 2.0).sqrt();
             let sweep = Deg(2.0 * Deg::asin(50.0_f64.sqrt() / 12.0).0);
-            assert!(told(x, |arc| *arc = PlanarArc { centre: (centre + x, centre), sweep, ..*arc }), "{x}");
+            assert!(
+                differs(x, |arc| *arc = PlanarArc { centre: (centre + x, centre), sweep, ..*arc }),
+                "{x}"
+            );
         }
     }
 }

@@ -1,79 +1,34 @@
-//! What a difference is called, what it says, and where it comes from.
+//! Entries of a comparison: what an edit does, with its code, its sentence and its blocks.
 use std::borrow::Cow;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::record::BlockLocation;
+use gcode_lang::diag::FindingKind;
 
-/// What a change can be called, in the order of their sections in docs/changes.md.
-pub const CODES: [&str; 42] = [
-    "outcome",
-    "program",
-    "start",
-    "hole-moved",
-    "hole-tilted",
-    "hole-depth",
-    "hole-diameter",
-    "hole-tool",
-    "hole-pass",
-    "hole-order",
-    "hole-lost",
-    "hole-added",
-    "move-shifted",
-    "move-added",
-    "move-lost",
-    "move-kind",
-    "move-arc",
-    "move-order",
-    "feed",
-    "dwell",
-    "tool",
-    "tool-length",
-    "cutter-side",
-    "work-system",
-    "cycle",
-    "return-level",
-    "path-mode",
-    "spindle",
-    "coolant",
-    "m-code",
-    "g-code",
-    "block-skip",
-    "switch",
-    "stop",
-    "output",
-    "variable",
-    "mode",
-    "work-offset",
-    "tool-offset",
-    "parameter",
-    "signal",
-    "counter",
-];
-
-/// One entry: what an edit does to the part or the control, what matters most of it first.
+/// Entry of one edit: its effects on part and control, the one with the highest precedence first.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
-    /// Its code: docs/changes.md has a section for each.
+    /// Code of the first effect, see docs/changes.md.
     pub code: Cow<'static, str>,
-    /// The difference with numbers and units, a complete sentence.
+    /// Difference with numbers and units.
     pub message: String,
-    /// The first block of the old revision that has it, if any.
+    /// First block of the old revision that has the difference.
     pub old: Option<BlockLocation>,
-    /// … and of the new one.
+    /// First block of the new revision.
     pub new: Option<BlockLocation>,
     /// For a removed block, the neighbouring block of the new revision.
     #[serde(rename = "near", default, skip_serializing_if = "Option::is_none")]
     pub anchor: Option<BlockLocation>,
-    /// What else the same edit does.
+    /// Other effects of the same edit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub also: Vec<Effect>,
 }
 
 impl Change {
-    /// The code and the message of the headline and of all that stands beside it.
+    /// Iterates over code and message of all effects, the headline first.
     pub fn effects(&self) -> impl Iterator<Item = (&str, &str)> {
         let also = self.also.iter().map(|effect| (&*effect.code, effect.message.as_str()));
         std::iter::once((&*self.code, self.message.as_str())).chain(also)
@@ -87,36 +42,44 @@ impl From<Effect> for Change {
     }
 }
 
-/// One thing that is different.
+/// One effect of an edit.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Effect {
-    /// What it is called: docs/changes.md has a section for each.
+    /// Code, see docs/changes.md.
     pub code: Cow<'static, str>,
-    /// What is different, with numbers and units; makes sense alone.
+    /// Difference with numbers and units, understandable alone.
     pub message: String,
-    /// The first block of the old revision that does it, where there is one.
+    /// First block of the old revision that has the effect.
     pub old: Option<BlockLocation>,
-    /// … and of the new one.
+    /// First block of the new revision.
     pub new: Option<BlockLocation>,
 }
 
 impl Effect {
-    pub(super) fn new(code: &'static str, message: impl Into<String>) -> Self {
-        debug_assert!(CODES.contains(&code), "{code}");
-        Self { code: code.into(), message: message.into(), old: None, new: None }
-    }
-
-    pub(super) fn with_old(self, place: Option<&BlockLocation>) -> Self {
-        Self { old: place.cloned(), ..self }
-    }
-
-    pub(super) fn with_new(self, place: Option<&BlockLocation>) -> Self {
-        Self { new: place.cloned(), ..self }
+    /// Creates an effect with its first block in the old and in the new revision.
+    pub(super) fn new(
+        kind: &'static FindingKind,
+        message: impl Into<String>,
+        [old, new]: [Option<&BlockLocation>; 2],
+    ) -> Self {
+        Self { code: kind.code.into(), message: message.into(), old: old.cloned(), new: new.cloned() }
     }
 }
 
-/// `1, 2, 5`; long lists are cut.
+/// Puts items with equal keys together, in the order of the first of each.
+pub(super) fn grouped<K: PartialEq, T>(items: impl IntoIterator<Item = (K, T)>) -> Vec<(K, Vec<T>)> {
+    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
+    for (key, item) in items {
+        match groups.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, all)) => all.push(item),
+            None => groups.push((key, vec![item])),
+        }
+    }
+    groups
+}
+
+/// Formats a list as `1, 2, 5`; a long one ends with the number of further items.
 pub(super) fn listed(names: &[String]) -> String {
     const SHOWN: usize = 6;
     if names.len() <= SHOWN {

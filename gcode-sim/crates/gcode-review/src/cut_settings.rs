@@ -1,19 +1,19 @@
-//! What a cut that is made at another time is made with: tool, modes, feed, spindle and coolant are those of that time.
+//! Conditions of a cut that is made at another time: tool, modal codes, feed, spindle and coolant.
 use std::collections::BTreeMap;
 
+use super::align::Alignment;
 use super::descriptions::short;
 use super::modal_conditions::ModalAspect;
 use super::record::Record;
 use super::steps::StepKind;
 use super::tool_setup::CutState;
 
-/// For cuts that both revisions make, by their steps, in words how each of them is made otherwise now; nothing where
-/// it isn't.
+/// Returns for each cut that both revisions make how its conditions differ, in words; `None` if they are equal.
 pub(super) fn changed_cut_settings(
-    old: &Record,
-    new: &Record,
+    alignment: &Alignment<'_>,
     cuts: &[(usize, usize)],
 ) -> Vec<Option<String>> {
+    let [old, new] = alignment.records;
     let is_named = CutState::is_named(old, new);
     let before = states(old, cuts.iter().map(|(i, _)| *i), is_named);
     let now = states(new, cuts.iter().map(|(_, j)| *j), is_named);
@@ -25,42 +25,41 @@ pub(super) fn changed_cut_settings(
         {
             texts.push(format!("T{is} instead of T{was}"));
         }
-        let words = |aspect| (old.under(*i).word(aspect), new.under(*j).word(aspect));
-        let words = ModalAspect::ALL.into_iter().map(words).filter(|(was, is)| was.text != is.text);
-        let words = words.filter(|(was, is)| !was.text.is_empty() && !is.text.is_empty());
-        texts.extend(words.map(|(was, is)| format!("{} instead of {}", is.text, was.text)));
+        for aspect in ModalAspect::ALL {
+            let [was, is] = [old.under(*i), new.under(*j)].map(|under| &under.word(aspect).text);
+            if was != is && !was.is_empty() && !is.is_empty() {
+                texts.push(format!("{is} instead of {was}"));
+            }
+        }
         if let (Some(was), Some(is)) = (old.steps[*i].kind.rate(), new.steps[*j].kind.rate())
             && (was - is).abs() > 1e-6 * was.abs().max(is.abs())
         {
             texts.push(format!("F{} instead of F{}", short(is), short(was)));
         }
-        let others = was.others(is).map(|[whether, was, is]| format!("{whether}{is} instead of {was}"));
-        texts.extend(others);
+        texts.extend(was.others(is).map(|[whether, was, is]| format!("{whether}{is} instead of {was}")));
         (!texts.is_empty()).then(|| format!("with {}", texts.join(", ")))
     };
     cuts.iter().map(of).collect()
 }
 
-/// The tool in the spindle and what is in force at some steps.
+/// Returns the tool in the spindle and the state at some steps, by their numbers.
 fn states(
     record: &Record,
     steps: impl Iterator<Item = usize>,
     is_named: bool,
 ) -> BTreeMap<usize, (Option<u32>, CutState)> {
-    let mut wanted: Vec<usize> = steps.collect();
-    wanted.sort_unstable();
-    let (mut state, mut tool) = (CutState::default(), None);
-    let mut done = 0;
-    let mut states = BTreeMap::new();
-    for step in wanted {
-        for (number, step) in record.steps.iter().enumerate().take(step).skip(done) {
-            state.follow(&step.kind, number, is_named);
-            if let StepKind::Tool(number) = step.kind {
-                tool = Some(number);
+    let mut states: BTreeMap<usize, (Option<u32>, CutState)> =
+        steps.map(|step| (step, Default::default())).collect();
+    let (mut now, mut done) = ((None, CutState::default()), 0);
+    for (end, state) in &mut states {
+        for (number, step) in record.steps.iter().enumerate().take(*end).skip(done) {
+            now.1.follow(&step.kind, number, is_named);
+            if let StepKind::Tool(tool) = step.kind {
+                now.0 = Some(tool);
             }
         }
-        done = done.max(step);
-        states.insert(step, (tool, state.clone()));
+        done = *end;
+        state.clone_from(&now);
     }
     states
 }

@@ -1,26 +1,8 @@
-//! What steps, places and distances are called in an entry.
-use super::steps::{Category, Step, StepKind, UnsimulatedKind, difference};
+//! Words for steps, points and distances in an entry.
+use super::steps::{Step, StepKind, UnsimulatedKind, difference};
 use gcode_lang::motion::{Axes, Position, SpindleDirection, StopKind};
 
-/// What a change of such a step is called.
-pub(super) fn code(kind: &StepKind) -> &'static str {
-    match kind.category() {
-        Category::Move => "move",
-        Category::Dwell => "dwell",
-        Category::Tool | Category::Silent(UnsimulatedKind::Tool) => "tool",
-        Category::Length => "tool-length",
-        Category::Spindle | Category::Silent(UnsimulatedKind::Speed) => "spindle",
-        Category::Coolant => "coolant",
-        Category::Auxiliary | Category::Silent(UnsimulatedKind::MCode) => "m-code",
-        Category::Stop => "stop",
-        Category::Silent(UnsimulatedKind::Skip) => "block-skip",
-        Category::Silent(UnsimulatedKind::Path) => "path-mode",
-        Category::Silent(UnsimulatedKind::GCode) => "g-code",
-        Category::Silent(UnsimulatedKind::Switch) => "switch",
-        Category::Silent(UnsimulatedKind::Signal) => "signal",
-    }
-}
-
+/// Describes a command, or names a move.
 pub(super) fn describe(kind: &StepKind, axes: &Axes) -> String {
     match kind {
         StepKind::Dwell(seconds) => format!("a dwell of {seconds} s"),
@@ -49,7 +31,7 @@ pub(super) fn describe(kind: &StepKind, axes: &Axes) -> String {
     }
 }
 
-/// Where a move ends, in machine coordinates without the tool's length.
+/// Formats the end point of the axes that a move moves, in machine coordinates.
 pub(super) fn point(step: &Step, axes: &Axes) -> String {
     let way = difference(&step.to, &step.from);
     let moving: Vec<String> = axes
@@ -60,17 +42,17 @@ pub(super) fn point(step: &Step, axes: &Axes) -> String {
     if moving.is_empty() { "its start point".to_owned() } else { moving.join(" ") }
 }
 
-/// The axes whose values are beyond `least`.
+/// Formats the axes whose values exceed `least`.
 pub(super) fn coordinates(values: &Position, axes: &Axes, least: f64, signed: bool) -> String {
     let far = axes.iter().filter(|(axis, _)| values[*axis].abs() > least);
-    let told = far.map(|(axis, letter)| match signed {
+    let shown = far.map(|(axis, letter)| match signed {
         true => format!("{letter} {:+.4}", values[axis]),
         false => format!("{letter} {:.4}", values[axis]),
     });
-    told.collect::<Vec<_>>().join(" ")
+    shown.collect::<Vec<_>>().join(" ")
 }
 
-/// A feed without digits nobody can set.
+/// Rounds a feed to four decimals.
 pub(super) fn short(rate: f64) -> f64 {
     (rate * 1e4).round() / 1e4
 }

@@ -1,78 +1,107 @@
-//! Differences that say the same, counted as one effect of an edit.
+//! Equal differences, counted as one effect of an edit.
 use std::collections::BTreeMap;
 
+use super::align::Alignment;
 use super::change::Effect;
-use super::descriptions::{code, coordinates, describe, point, short};
-use super::differences::{Difference, DifferenceKind};
-use super::edits::Edits;
+use super::descriptions::{coordinates, describe, point, short};
+use super::differences::{Difference, StepDifference};
+use super::edits::{Causes, Edits};
 use super::entries::CausedEffect;
-use super::record::Record;
+use super::hole_groups::named;
+use super::kinds;
+use super::modal_conditions::ModalAspect;
 use super::redundant_commands::is_speed_alone;
-use super::steps::{Step, StepKind, near};
+use super::steps::{StepKind, difference, near, with_article};
+use gcode_lang::diag::FindingKind;
 use gcode_lang::motion::{MAX_AXES, Position};
 
-/// Differences that say the same, or that one edit makes of moves.
+/// Differences with one sentence, or those that one edit makes of moves.
 struct Group {
-    code: &'static str,
-    /// What is different, without how often.
+    kind: &'static FindingKind,
+    /// The difference without its count.
     text: String,
-    /// What it is that is different, "move", "dwell", and how often; of moves that end elsewhere each kind.
+    /// Names of the steps that differ, and the number of each.
     counts: Vec<(&'static str, usize)>,
-    /// The others say other numbers than the first.
+    /// Others have other numbers than the first.
     varies: bool,
     numbers: Numbers,
-    /// Its edits, and whether its blocks are of one of them.
+    /// Numbers of its edits, and whether its blocks are part of them.
     causes: Vec<usize>,
     is_direct: bool,
-    /// The blocks of the first, by their numbers in the records.
+    /// Numbers of the first blocks in the records.
     places: [Option<usize>; 2],
 }
 
-/// What a group counts besides.
+/// Numbers that a group collects.
 #[derive(PartialEq)]
 enum Numbers {
     None,
-    /// By how much each axis ends elsewhere at most, without signs; and whether the machine stands where it stood everywhere.
+    /// Largest deviation of each axis, and whether all machine positions are unchanged.
     Shift {
         most: Position,
         is_compensated: bool,
     },
-    /// How many times as fast a move is, at least and at most.
+    /// Smallest and largest ratio of feeds.
     Factor(f64, f64),
-    /// The spindle's speed before and now.
+    /// Spindle speeds before and now.
     Speeds(f64, f64),
+    /// Moves under another condition by their numbers in the old run, and the first in the new run.
+    Moves(ModalAspect, Vec<usize>, usize),
 }
 
-/// So many shifts of one edit are told one by one; more than that are one, by up to the largest.
+/// More shifts of one edit than this are one effect, by up to the largest.
 const MOST_SHIFTS: usize = 4;
 
-/// All groups, in the order in which they first came up.
+/// All groups, in the order of their first differences.
 pub(super) struct Effects<'a> {
     all: Vec<Group>,
     by_text: BTreeMap<(&'static str, String), usize>,
     by_places: BTreeMap<(&'static str, [Option<usize>; 2]), usize>,
-    records: [&'a Record; 2],
+    alignment: Alignment<'a>,
     edits: &'a Edits,
-    tolerance: f64,
 }
 
 impl<'a> Effects<'a> {
-    pub(super) fn new(records: [&'a Record; 2], edits: &'a Edits, tolerance: f64) -> Self {
+    /// Returns the effects of differences with their edits. Differences of steps are grouped by their sentences;
+    /// feeds, speeds and unpaired moves by their blocks as well.
+    pub(super) fn of(
+        differences: Vec<Difference>,
+        alignment: Alignment<'a>,
+        edits: &'a Edits,
+    ) -> Vec<CausedEffect> {
+        let causes = Causes::new(edits, alignment.records);
         let (by_text, by_places) = Default::default();
-        Self { all: Vec::new(), by_text, by_places, records, edits, tolerance }
+        let mut groups = Self { all: Vec::new(), by_text, by_places, alignment, edits };
+        let mut effects: Vec<CausedEffect> = Vec::new();
+        let mut of_steps = None;
+        for difference in differences {
+            match difference {
+                Difference::Run(effect) => effects.push((causes.of(&effect), effect)),
+                Difference::Holes(holes) => effects.push((causes.of_holes(&holes), holes.effect)),
+                Difference::Step(kind, steps) => {
+                    of_steps = of_steps.or(Some(effects.len()));
+                    groups.add(&kind, steps);
+                }
+            }
+        }
+        groups.join_shifts();
+        let effect = |group: &Group| {
+            let effect = Effect::new(group.kind, groups.message(group), groups.blocks(group.places));
+            (group.causes.clone(), effect)
+        };
+        let place = of_steps.unwrap_or(effects.len());
+        effects.splice(place..place, groups.all.iter().map(effect));
+        effects
     }
 
-    /// Counts a difference with those that say the same; feeds, speeds, and moves of one run alone, with those of their blocks.
-    pub(super) fn add(&mut self, difference: &Difference) {
-        let group = self.group(difference);
-        let (text, places) = ((group.code, group.text.clone()), (group.code, group.places));
-        let is_of_block = matches!(group.code, "feed" | "move-added" | "move-lost")
-            || matches!(group.numbers, Numbers::Speeds(..));
+    fn add(&mut self, kind: &StepDifference, steps: [Option<usize>; 2]) {
+        let group = self.group(kind, steps);
+        let is_speed = matches!(group.numbers, Numbers::Speeds(..));
+        let is_of_block = ["feed", "move-added", "move-lost"].contains(&group.kind.code) || is_speed;
+        let (text, places) = ((group.kind.code, group.text.clone()), (group.kind.code, group.places));
         let of_block = || {
             let known = *self.by_places.get(&places).filter(|_| is_of_block)?;
-            let is_alike =
-                !matches!(group.numbers, Numbers::Speeds(..)) || self.all[known].numbers == group.numbers;
-            is_alike.then_some(known)
+            (!is_speed || self.all[known].numbers == group.numbers).then_some(known)
         };
         let known = self.by_text.get(&text).copied().or_else(of_block);
         let number = known.unwrap_or(self.all.len());
@@ -84,98 +113,108 @@ impl<'a> Effects<'a> {
         }
     }
 
-    /// A group of one difference.
-    fn group(&self, Difference { kind, steps }: &Difference) -> Group {
-        let [old, new] = self.records;
-        let (was, is) = (steps[0].map(|i| &old.steps[i]), steps[1].map(|j| &new.steps[j]));
+    /// Returns the group of one difference.
+    fn group(&self, kind: &StepDifference, steps: [Option<usize>; 2]) -> Group {
+        let Alignment { records, tolerance, .. } = self.alignment;
+        let axes = self.alignment.axes();
+        let [was, is] = self.alignment.steps(steps);
+        let Some(step) = was.or(is) else { unreachable!("a difference has a step") };
         let mut numbers = Numbers::None;
-        let Some(step) = is.or(was) else { unreachable!("a difference has a step") };
         let mut what = step.kind.name();
-        let (code, text) = match (kind, was, is) {
-            (DifferenceKind::EndPoint(way), ..) => {
-                let is_compensated =
-                    was.zip(is).is_some_and(|(was, is)| near(&was.at, &is.at, self.tolerance));
-                let mut most = *way;
-                (0..MAX_AXES).for_each(|axis| most[axis] = way[axis].abs());
+        let mut places = [was, is].map(|step| step.map(|step| step.place));
+        let change = || step.kind.change().unwrap_or(&kinds::MOVE_SHIFTED);
+        let (kind, text) = match (kind, was.zip(is)) {
+            (StepDifference::Condition(aspect), _) => {
+                let words = [0, 1].map(|side| Some(records[side].under(steps[side]?).word(*aspect)));
+                let [before, now] = words.map(|word| word.map_or("", |word| &word.text));
+                let name = if *aspect == ModalAspect::Cycle { "cycle " } else { "" };
+                places = words.map(|word| word?.place);
+                numbers = Numbers::Moves(*aspect, steps[0].into_iter().collect(), steps[1].unwrap_or(0));
+                (aspect.row().1, format!("{name}{now} instead of {before}"))
+            }
+            (StepDifference::EndPoint(shift), both) => {
+                what = is.unwrap_or(step).kind.name();
+                let is_compensated = both.is_some_and(|(was, is)| near(&was.at, &is.at, tolerance));
+                let most = Position(shift.0.map(f64::abs));
                 numbers = Numbers::Shift { most, is_compensated };
-                ("move-shifted", coordinates(way, &old.axes, self.tolerance, true))
+                (&kinds::MOVE_SHIFTED, coordinates(shift, axes, tolerance, true))
             }
-            (DifferenceKind::MoveKind, Some(was), Some(is)) => {
+            (StepDifference::MoveKind, Some((was, is))) => {
                 what = "move";
-                ("move-kind", format!("{} instead of {}", is.kind.one(), was.kind.one()))
+                (&kinds::MOVE_KIND, format!("{} instead of {}", is.kind.one(), was.kind.one()))
             }
-            (DifferenceKind::ArcShape(text), ..) => ("move-arc", text.clone()),
-            (DifferenceKind::Feed { was, is }, ..) => {
+            (StepDifference::ArcShape(text), _) => {
+                what = is.unwrap_or(step).kind.name();
+                (&kinds::MOVE_ARC, text.clone())
+            }
+            (StepDifference::Feed { was, is }, _) => {
                 what = "move";
                 numbers = Numbers::Factor(is / was, is / was);
-                ("feed", format!("feed F{} instead of F{}", short(*is), short(*was)))
+                (&kinds::FEED, format!("feed F{} instead of F{}", short(*is), short(*was)))
             }
-            (DifferenceKind::Shifted(word), Some(was), _) => {
-                let command = self.called(0, steps[0]).unwrap_or_default();
-                what = was.kind.name();
-                (code(&was.kind), format!("{command} is executed {word} than before"))
+            (StepDifference::Shifted(word), _) => {
+                (change(), format!("{} is executed {word} than before", self.called(steps)))
             }
-            (_, Some(was), Some(is)) => {
-                what = was.kind.name();
-                if let DifferenceKind::Speed { was, is } = kind {
+            (_, Some((was, is))) => {
+                if let StepDifference::Speed { was, is } = kind {
                     numbers = Numbers::Speeds(*was, *is);
                 }
-                let [is, before] = [is, was].map(|step| describe(&step.kind, &old.axes));
-                (code(&was.kind), format!("{is} instead of {before}"))
+                let [is, before] = [is, was].map(|step| describe(&step.kind, axes));
+                (change(), format!("{is} instead of {before}"))
             }
-            (_, was, _) => {
-                let is_lost = was.is_some();
-                let whether = if is_lost { "is removed" } else { "is added" };
+            (_, None) => {
+                let (whether, of_moves) = match was {
+                    Some(_) => ("is removed", &kinds::MOVE_LOST),
+                    None => ("is added", &kinds::MOVE_ADDED),
+                };
                 if step.is_move() {
                     what = "move";
-                    let code = if is_lost { "move-lost" } else { "move-added" };
-                    (code, format!("{} to {} {whether}", step.kind.one(), point(step, &old.axes)))
+                    (of_moves, format!("{} to {} {whether}", step.kind.one(), point(step, axes)))
                 } else {
-                    let command = if is_lost { self.called(0, steps[0]) } else { self.called(1, steps[1]) };
-                    (code(&step.kind), format!("{} {whether}", command.unwrap_or_default()))
+                    (change(), format!("{} {whether}", self.called(steps)))
                 }
             }
         };
-        let is_paired = was.is_some() && is.is_some();
-        let is_set =
-            matches!(numbers, Numbers::Factor(..) | Numbers::Speeds(..)) || code == "tool" && is_paired;
-        let place = |step: &Step| if is_set { step.editable_at() } else { step.place };
-        let places = [was.map(place), is.map(place)];
-        let blocks = [0, 1].map(|side| places[side].and_then(|place| self.records[side].places.get(place)));
-        let causes = self.edits.cause(blocks, *steps).into_iter().collect();
-        let is_direct = self.edits.is_single() || self.edits.of(blocks).is_some();
-        Group { code, text, counts: vec![(what, 1)], varies: false, numbers, causes, is_direct, places }
+        let is_tool = kind == &kinds::TOOL && was.is_some() && is.is_some();
+        if matches!(numbers, Numbers::Factor(..) | Numbers::Speeds(..)) || is_tool {
+            places = [was, is].map(|step| step.map(|step| step.editable_at()));
+        }
+        let mut causes = self.edits.cause(self.blocks(places), steps);
+        let mut is_direct = self.edits.is_single() || self.edits.of(self.blocks(places)).is_some();
+        if let Numbers::Moves(..) = numbers {
+            let set = self.edits.of(self.blocks(places));
+            causes = set.or_else(|| self.edits.cause(self.alignment.blocks(steps), steps));
+            is_direct = false;
+        }
+        let causes = causes.into_iter().collect();
+        Group { kind, text, counts: vec![(what, 1)], varies: false, numbers, causes, is_direct, places }
     }
 
-    /// What a command says: where the spindle turns already, its speed alone.
-    fn called(&self, side: usize, step: Option<usize>) -> Option<String> {
-        let (record, step) = (self.records[side], step?);
-        Some(match record.steps[step].kind {
-            StepKind::Spindle(_, speed) if is_speed_alone(&record.steps, step) => format!("S{speed}"),
-            ref kind => describe(kind, &self.records[0].axes),
-        })
+    fn blocks(&self, places: [Option<usize>; 2]) -> [Option<&'a super::record::BlockLocation>; 2] {
+        [0, 1].map(|side| self.alignment.records[side].places.get(places[side]?))
     }
 
-    pub(super) fn finish(mut self) -> Vec<CausedEffect> {
-        self.join_shifts();
-        let effect = |group: &Group| {
-            let [old, new] = [0, 1].map(|side| self.records[side].places.get(group.places[side]?));
-            Effect::new(group.code, self.message(group)).with_old(old).with_new(new)
-        };
-        self.all.iter().map(|group| (group.causes.clone(), effect(group))).collect()
+    /// Describes a command of either run; if the spindle turns already, its speed alone.
+    fn called(&self, steps: [Option<usize>; 2]) -> String {
+        let side = usize::from(steps[0].is_none());
+        let (steps, step) = (&self.alignment.records[side].steps, steps[side].unwrap_or(0));
+        match &steps[step].kind {
+            StepKind::Spindle(_, speed) if is_speed_alone(steps, step) => format!("S{speed}"),
+            kind => describe(kind, self.alignment.axes()),
+        }
     }
 
-    /// Makes one of many shifts that come from one edit, or of the same blocks where none is theirs.
+    /// Joins many shifts of one edit, or of the same blocks if no edit contains them.
     fn join_shifts(&mut self) {
         let mut alike: BTreeMap<_, Vec<usize>> = BTreeMap::new();
-        for (number, group) in self.all.iter().enumerate().filter(|(_, group)| group.code == "move-shifted") {
+        let shifts = self.all.iter().enumerate().filter(|(_, group)| group.kind == &kinds::MOVE_SHIFTED);
+        for (number, group) in shifts {
             let places = if group.is_direct { [None, None] } else { group.places };
             let edit = group.causes.first().filter(|_| group.is_direct).copied();
             alike.entry((edit, places)).or_default().push(number);
         }
-        alike.retain(|_, numbers| MOST_SHIFTS < numbers.len());
-        let into: BTreeMap<usize, usize> = alike
-            .into_values()
+        let many = alike.into_values().filter(|numbers| MOST_SHIFTS < numbers.len());
+        let into: BTreeMap<usize, usize> = many
             .flat_map(|numbers| numbers[1..].iter().map(|number| (*number, numbers[0])).collect::<Vec<_>>())
             .collect();
         let mut kept: BTreeMap<usize, Group> = BTreeMap::new();
@@ -190,14 +229,17 @@ impl<'a> Effects<'a> {
 
     fn message(&self, group: &Group) -> String {
         let text = &group.text;
-        let counted = || -> String {
-            let counted: Vec<String> = group.counts.iter().map(|(what, n)| format!("{n} {what}s")).collect();
-            counted.join(", ")
+        let counts = || -> String {
+            let counts: Vec<String> = group.counts.iter().map(|(what, n)| format!("{n} {what}s")).collect();
+            counts.join(", ")
         };
         match (&group.numbers, group.varies, &group.counts[..]) {
+            (Numbers::Moves(aspect, moves, first), ..) => {
+                format!("{text}{}", self.under_condition(*aspect, moves, *first))
+            }
             (Numbers::Shift { most, is_compensated }, varies, counts) => {
-                let most =
-                    || format!("up to {}", coordinates(most, &self.records[0].axes, self.tolerance, false));
+                let Alignment { tolerance, .. } = self.alignment;
+                let most = || format!("up to {}", coordinates(most, self.alignment.axes(), tolerance, false));
                 let by = if varies { most() } else { text.clone() };
                 let as_programmed = if *is_compensated {
                     " as programmed; the machine position is unchanged because of another length offset"
@@ -207,17 +249,59 @@ impl<'a> Effects<'a> {
                 shifted(counts, &format!("{by}{as_programmed}"))
             }
             (Numbers::Factor(least, most), true, _) => {
-                let is_one = (most - least).abs() <= 1e-6 * most.abs();
-                let by = match is_one {
+                let by = match (most - least).abs() <= 1e-6 * most.abs() {
                     true => "the same factor".to_owned(),
                     false => format!("factors of {least:.4} to {most:.4}"),
                 };
-                format!("{text} ({}, all by {by})", counted())
+                format!("{text} ({}, all by {by})", counts())
             }
-            (Numbers::Speeds(was, is), true, _) => format!("S{is} instead of S{was} ({})", counted()),
-            (_, true, _) => format!("{text} ({} of its block)", counted()),
+            (Numbers::Speeds(was, is), true, _) => format!("S{is} instead of S{was} ({})", counts()),
+            (_, true, _) => format!("{text} ({} of its block)", counts()),
             (_, false, [(_, 1)]) => text.clone(),
-            (_, false, _) => format!("{text} ({})", counted()),
+            (_, false, _) => format!("{text} ({})", counts()),
+        }
+    }
+
+    /// Describes the moves that are made under another condition.
+    fn under_condition(&self, aspect: ModalAspect, moves: &[usize], first: usize) -> String {
+        let [old, new] = self.alignment.records;
+        let count = if moves.len() == 1 { "1 move".to_owned() } else { format!("{} moves", moves.len()) };
+        match aspect {
+            ModalAspect::Length => {
+                let offsets =
+                    [&old.steps[moves[0]], &new.steps[first]].map(|step| difference(&step.at, &step.to));
+                let is_zero = |offset| near(offset, &Position::default(), 1e-9);
+                let alike = match (is_zero(&offsets[0]), near(&offsets[0], &offsets[1], 1e-9)) {
+                    (_, false) => "",
+                    (true, true) => ", both 0 here",
+                    (false, true) => ", equal here",
+                };
+                format!("{alike} ({count})")
+            }
+            ModalAspect::Level => {
+                let is_r_level = new.under(first).word(aspect).text == "G99";
+                let level = if is_r_level { "R" } else { "initial" };
+                format!(": the rapids between holes run at the {level} level ({count})")
+            }
+            ModalAspect::Cycle => format!(" ({})", self.holes_of_cycle(moves)),
+            ModalAspect::System | ModalAspect::Cutter | ModalAspect::Path => format!(" ({count})"),
+        }
+    }
+
+    /// Names the holes of the old revision that some moves of a cycle make, or counts them if the cycle makes no
+    /// others.
+    fn holes_of_cycle(&self, moves: &[usize]) -> String {
+        let old = self.alignment.records[0];
+        let cycle = |step: usize| &old.under(step).word(ModalAspect::Cycle).text;
+        let with = |is_it: &dyn Fn(&usize) -> bool| -> Vec<usize> {
+            (0..old.feeds.len()).filter(|hole| old.feeds[*hole].iter().any(is_it)).collect()
+        };
+        let all = with(&|step| cycle(*step) == cycle(moves[0]));
+        let these = with(&|step| moves.binary_search(step).is_ok());
+        match all.len() {
+            _ if !these.is_empty() && these != all => named(&these),
+            1 => "1 hole".to_owned(),
+            n => format!("{n} holes"),
         }
     }
 }
@@ -247,6 +331,7 @@ impl Group {
             (Numbers::Factor(least, most), Numbers::Factor(low, high)) => {
                 (*least, *most) = (least.min(low), most.max(high));
             }
+            (Numbers::Moves(_, moves, _), Numbers::Moves(_, more, _)) => moves.extend(more),
             _ => {}
         }
         for (what, times) in other.counts {
@@ -258,23 +343,18 @@ impl Group {
     }
 }
 
-/// Moves that end elsewhere, by `text`.
+/// Formats that moves end at a different point.
 fn shifted(counts: &[(&'static str, usize)], text: &str) -> String {
     match counts {
-        [(what, 1)] => format!("{} ends at a different point: {text}", one(what)),
-        [(what, n)] => format!("{} ends at a different point: {text} ({n} moves)", one(what)),
+        [(what, 1)] => format!("{} ends at a different point: {text}", with_article(what)),
+        [(what, n)] => format!("{} ends at a different point: {text} ({n} moves)", with_article(what)),
         _ => {
             let each = |(what, n): &(&str, usize)| match n {
-                1 => one(what),
+                1 => with_article(what),
                 _ => format!("{n} {what}s"),
             };
             let each: Vec<String> = counts.iter().map(each).collect();
             format!("moves end at a different point: {text} ({})", each.join(", "))
         }
     }
-}
-
-/// With its article.
-fn one(what: &str) -> String {
-    format!("{} {what}", if what.starts_with('a') { "an" } else { "a" })
 }

@@ -19,7 +19,7 @@ pub(super) enum CommandKind {
 #[serde(deny_unknown_fields)]
 pub(super) struct FirstCommand {
     pub what: CommandKind,
-    /// What is commanded: the group of a mode, `03`, an axis, an offset, `G10 L2 P1 X`.
+    /// Group of a mode, `03`; letter of an axis; name of an offset, `G10 L2 P1 X`.
     pub name: String,
     /// As written in programs.
     pub text: String,

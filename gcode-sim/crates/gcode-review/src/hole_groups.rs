@@ -1,92 +1,82 @@
-//! Holes that changed alike or for one reason, told once.
+//! Holes that changed alike or for one reason, as one effect.
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::cause::Cause;
 use super::change::{Effect, listed};
 use super::descriptions::{coordinates, deeper};
-use super::pass_changes::PassChange;
+use super::kinds;
+use super::pass_changes::{PassChange, describe_pass};
+use super::program_text::Cause;
 use super::steps::near;
+use gcode_lang::diag::FindingKind;
 use gcode_lang::motion::{Axes, Position};
 
-/// All that is different about one hole.
+/// Differences of one hole.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HoleDifference {
-    /// Where it begins, mm.
+    /// Displacement of the entry, mm.
     pub moved: Option<Vector3<f64>>,
-    /// Degrees.
+    /// Angle between the axes, degrees.
     pub tilted: Option<f64>,
-    /// mm.
+    /// Displacement of the bottom along the axis, mm.
     pub deeper: Option<f64>,
-    /// Its diameter and its tools: what they are called, and in words.
-    pub others: Vec<(&'static str, String)>,
-    /// Its passes that end elsewhere and not as the hole does.
-    pub strayed: Vec<PassChange>,
+    /// Differences of its diameter and its tools, in words.
+    pub others: Vec<(&'static FindingKind, String)>,
+    /// Passes that changed, unlike the hole.
+    pub passes: Vec<PassChange>,
 }
 
 impl HoleDifference {
-    /// What the change is called; nothing where nothing is different.
-    pub(super) fn code(&self) -> Option<&'static str> {
-        let place = self.moved.map(|_| "hole-moved").or(self.tilted.map(|_| "hole-tilted"));
-        let place = place.or(self.deeper.map(|_| "hole-depth"));
-        let other = place.or(self.others.first().map(|(code, _)| *code));
-        other.or(self.strayed.first().map(|_| "hole-pass"))
+    /// Returns the kind of the first difference; `None` if there is none.
+    pub(super) fn kind(&self) -> Option<&'static FindingKind> {
+        let place = self.moved.map(|_| &kinds::HOLE_MOVED).or(self.tilted.map(|_| &kinds::HOLE_TILTED));
+        let place = place.or(self.deeper.map(|_| &kinds::HOLE_DEPTH));
+        let other = place.or(self.others.first().map(|(kind, _)| *kind));
+        other.or(self.passes.first().map(|_| &kinds::HOLE_PASS))
     }
 
-    /// It begins or ends elsewhere.
-    pub(super) fn is_elsewhere(&self) -> bool {
+    /// Returns true if the hole begins or ends at another point.
+    pub(super) fn is_displaced(&self) -> bool {
         self.moved.is_some() || self.tilted.is_some() || self.deeper.is_some()
-    }
-
-    fn text(&self, axes: &Axes, tolerance: f64) -> String {
-        let mut parts = Vec::new();
-        parts.extend(self.moved.map(|way| format!("moved by {}", shown(&way))));
-        parts.extend(self.tilted.map(|angle| format!("tilted by {angle:.4}°")));
-        parts.extend(self.deeper.map(|mm| format!("{:.4} mm {}", mm.abs(), deeper(mm))));
-        parts.extend(self.others.iter().map(|(_, text)| text.clone()));
-        parts.extend(self.strayed.iter().map(|pass| pass.text(axes, tolerance)));
-        parts.join(", ")
     }
 }
 
-/// What is different about one or more holes.
+/// An effect on one or more holes.
 pub(super) struct HoleEffect {
     pub effect: Effect,
-    /// The feeds that make it so, by their numbers in either run.
+    /// Feeds that make the difference, by their numbers in the old and the new run.
     pub steps: [Vec<usize>; 2],
-    /// The blocks that have put the tools in, where it is about a tool.
+    /// Blocks that changed the tool, for a difference of a tool.
     pub tools: [Option<usize>; 2],
 }
 
 /// A changed hole, by its number in the old run.
 pub(super) struct ChangedHole {
     pub hole: usize,
-    pub aspects: HoleDifference,
-    /// The feed that makes the difference, before and now: the finishing one, where that isn't as it was.
+    pub difference: HoleDifference,
+    /// Feeds that make the difference, old and new: the finishing ones if their end points differ.
     pub feeds: (usize, usize),
-    /// How far that feed ends from where it ended, in machine coordinates.
+    /// Displacement of the finishing feed's end point, in machine coordinates.
     pub shift: Position,
-    /// The passes that end elsewhere too.
+    /// Passes that end at other points too.
     pub others: Vec<(usize, usize)>,
     pub cause: Cause,
 }
 
-/// Some of them that are one entry.
+/// Holes of one effect, and the text of the first.
 pub(super) struct HoleGroup {
-    /// The first is what the group is known by.
     pub all: Vec<ChangedHole>,
     text: String,
 }
 
-/// Holes that changed by the same numbers, that the machine makes elsewhere by the same, or that have one cause.
+/// Groups holes that changed by the same numbers, by the same displacement of the machine, or by one cause.
 pub(super) fn groups(changed: Vec<ChangedHole>, axes: &Axes, tolerance: f64) -> Vec<HoleGroup> {
     let mut groups: Vec<HoleGroup> = Vec::new();
     for one in changed {
-        let text = one.aspects.text(axes, tolerance);
+        let text = text(std::slice::from_ref(&one), true, axes, tolerance);
         let alike = groups.iter().position(|group| group.text == text);
-        let found = alike.or_else(|| groups.iter().position(|group| group.is_with(&one, tolerance)));
-        match found {
+        match alike.or_else(|| groups.iter().position(|group| is_related(&group.all[0], &one, tolerance))) {
             Some(place) => groups[place].all.push(one),
             None => groups.push(HoleGroup { all: vec![one], text }),
         }
@@ -94,62 +84,71 @@ pub(super) fn groups(changed: Vec<ChangedHole>, axes: &Axes, tolerance: f64) -> 
     groups
 }
 
+/// Returns true if two holes have the same tools and changed passes, and one displacement or one cause.
+fn is_related(first: &ChangedHole, other: &ChangedHole, tolerance: f64) -> bool {
+    let numbers =
+        |one: &ChangedHole| one.difference.passes.iter().map(|pass| pass.number).collect::<Vec<_>>();
+    let is_shifted = (other.difference.is_displaced() || !other.difference.passes.is_empty())
+        && !near(&other.shift, &Position::default(), tolerance)
+        && near(&first.shift, &other.shift, tolerance);
+    first.difference.others == other.difference.others
+        && numbers(first) == numbers(other)
+        && (is_shifted || first.cause == other.cause)
+}
+
 impl HoleGroup {
-    fn is_with(&self, other: &ChangedHole, tolerance: f64) -> bool {
-        let first = &self.all[0];
-        let is_strayed = !other.aspects.strayed.is_empty();
-        let by_the_same = (other.aspects.is_elsewhere() || is_strayed)
-            && !near(&other.shift, &Position::default(), tolerance)
-            && near(&first.shift, &other.shift, tolerance);
-        let numbers =
-            |one: &ChangedHole| one.aspects.strayed.iter().map(PassChange::pass).collect::<Vec<_>>();
-        let is_alike = first.aspects.others == other.aspects.others && numbers(first) == numbers(other);
-        is_alike && (by_the_same || first.cause == other.cause)
+    /// Returns the kind of the effect: that of the difference of its holes that has the highest precedence.
+    pub(super) fn kind(&self) -> &'static FindingKind {
+        let all = self.all.iter().filter_map(|one| one.difference.kind());
+        all.min_by_key(|kind| kinds::precedence(kind.code)).unwrap_or(&kinds::HOLE_MOVED)
     }
 
-    /// The change's name: of all that is different about its holes the first.
-    pub(super) fn code(&self) -> &'static str {
-        let all = ["hole-moved", "hole-tilted", "hole-depth"];
-        let codes: Vec<_> = self.all.iter().filter_map(|one| one.aspects.code()).collect();
-        let place = all.into_iter().find(|code| codes.contains(code));
-        place.or(codes.first().copied()).unwrap_or("hole-moved")
-    }
-
-    /// With all their numbers where these are the same, else the largest of each.
+    /// Formats the numbers of the holes if they are equal, else the largest of each.
     pub(super) fn message(&self, axes: &Axes, tolerance: f64) -> String {
         let holes: Vec<usize> = self.all.iter().map(|one| one.hole).collect();
-        let is_alike = self.all.iter().all(|one| one.aspects.text(axes, tolerance) == self.text);
-        let text = if is_alike { self.text.clone() } else { self.ranges(axes, tolerance) };
-        format!("{}: {text}", named(&holes))
+        let is_it = |one: &ChangedHole| text(std::slice::from_ref(one), true, axes, tolerance) == self.text;
+        let is_alike = self.all.iter().all(is_it);
+        format!("{}: {}", named(&holes), text(&self.all, is_alike, axes, tolerance))
     }
+}
 
-    fn ranges(&self, axes: &Axes, tolerance: f64) -> String {
-        let mut parts = Vec::new();
-        let moved = self.all.iter().filter_map(|one| Some((one.hole, one.aspects.moved?)));
-        if let Some((hole, way)) = moved.max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm())) {
-            let first = &self.all[0].shift;
-            let by_machine = self.all.iter().all(|one| near(&one.shift, first, tolerance));
-            let by = match by_machine {
-                true => format!("by {} of the machine, up to ", coordinates(first, axes, tolerance, true)),
-                false => "by up to ".to_owned(),
-            };
-            parts.push(format!("moved {by}{:.4} mm (hole {}: {})", way.norm(), hole + 1, shown(&way)));
-        }
-        let tilted = self.all.iter().filter_map(|one| one.aspects.tilted);
-        parts.extend(tilted.max_by(f64::total_cmp).map(|angle| format!("tilted by up to {angle:.4}°")));
-        for less in [false, true] {
-            let deepers = self.all.iter().filter_map(|one| one.aspects.deeper);
-            let most = deepers.filter(|mm| (*mm < 0.0) == less).max_by(|a, b| a.abs().total_cmp(&b.abs()));
-            parts.extend(most.map(|mm| format!("up to {:.4} mm {}", mm.abs(), deeper(mm))));
-        }
-        parts.extend(self.all[0].aspects.others.iter().map(|(_, text)| text.clone()));
-        // The same passes have strayed in every hole.
-        for (place, first) in self.all[0].aspects.strayed.iter().enumerate() {
-            let alike = self.all.iter().filter_map(|one| one.aspects.strayed.get(place));
-            parts.push(first.up_to(alike, axes, tolerance));
-        }
-        parts.join(", ")
+/// Formats the differences of holes, with the numbers of the first if all of them are equal, else with the largest.
+fn text(holes: &[ChangedHole], is_alike: bool, axes: &Axes, tolerance: f64) -> String {
+    let up_to = if is_alike { "" } else { "up to " };
+    let differences = || holes.iter().map(|one| &one.difference);
+    let mut parts = Vec::new();
+    let moved = holes.iter().filter_map(|one| Some((one.hole, one.difference.moved?)));
+    if let Some((hole, way)) = moved.max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm())) {
+        let first = &holes[0].shift;
+        parts.push(if is_alike {
+            format!("moved by {}", shown(&way))
+        } else if holes.iter().all(|one| near(&one.shift, first, tolerance)) {
+            let by = coordinates(first, axes, tolerance, true);
+            format!(
+                "moved by {by} of the machine, up to {:.4} mm (hole {}: {})",
+                way.norm(),
+                hole + 1,
+                shown(&way)
+            )
+        } else {
+            format!("moved by up to {:.4} mm (hole {}: {})", way.norm(), hole + 1, shown(&way))
+        });
     }
+    let tilted = differences().filter_map(|one| one.tilted).max_by(f64::total_cmp);
+    parts.extend(tilted.map(|angle| format!("tilted by {up_to}{angle:.4}°")));
+    for is_less in [false, true] {
+        let depths = differences().filter_map(|one| one.deeper).filter(|mm| (*mm < 0.0) == is_less);
+        let most = depths.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        parts.extend(most.map(|mm| format!("{up_to}{:.4} mm {}", mm.abs(), deeper(mm))));
+    }
+    let first = &holes[0].difference;
+    parts.extend(first.others.iter().map(|(_, text)| text.clone()));
+    // All holes have the same changed passes.
+    for place in 0..first.passes.len() {
+        let alike: Vec<&PassChange> = differences().filter_map(|one| one.passes.get(place)).collect();
+        parts.push(describe_pass(&alike, is_alike, axes, tolerance));
+    }
+    parts.join(", ")
 }
 
 fn shown(way: &Vector3<f64>) -> String {
@@ -157,7 +156,7 @@ fn shown(way: &Vector3<f64>) -> String {
     format!("{x:+.4} {y:+.4} {z:+.4} mm")
 }
 
-/// `hole 5`, `holes 1, 2, 5`.
+/// Formats holes as `hole 5`, `holes 1, 2, 5`.
 pub(super) fn named(holes: &[usize]) -> String {
     let names: Vec<String> = holes.iter().map(|hole| (hole + 1).to_string()).collect();
     format!("{} {}", if holes.len() == 1 { "hole" } else { "holes" }, listed(&names))
@@ -168,7 +167,7 @@ pub(super) fn plain(value: f64) -> f64 {
     if value.abs() < 5e-5 { 0.0 } else { value }
 }
 
-/// Runs of holes that follow one another, or that one block makes: `place` tells the block of each.
+/// Returns runs of consecutive holes, or of holes that one block makes; `place` returns the block of each.
 pub(super) fn runs(
     holes: &[usize],
     firsts: &[usize],

@@ -1,136 +1,104 @@
-//! What a program commands first, and what of it moves rely on without: a mode, a place, an offset that it finds as it was left.
-use super::align::StepPair;
-use super::change::Effect;
+//! Commands that the new revision no longer gives before moves of both: modal codes, axis positions and offsets
+//! that it finds as the previous program left them.
+use super::align::{Alignment, StepPair};
+use super::change::{Effect, grouped};
 use super::first_command::{CommandKind, FirstCommand};
+use super::kinds;
 use super::modal_conditions::ModalAspect;
-use super::record::Record;
 use gcode_control::{Modal, modal_code};
 
-/// What the old revision commands before moves that both make, and the new one doesn't.
-pub(super) fn compare(old: &Record, new: &Record, links: &[StepPair]) -> Vec<Effect> {
+/// Returns one effect for each block with such commands.
+pub(super) fn compare(alignment: &Alignment<'_>) -> Vec<Effect> {
+    let [old, new] = alignment.records;
     let (Some(was), Some(is)) = (&old.begun, &new.begun) else { return Vec::new() };
-    let moves = moves_of_both(old, new, links);
-    let mut groups: Vec<MissingCommands<'_>> = Vec::new();
-    for begun in was.iter().filter(|begun| is_power_on_default(begun)) {
-        let later = is.iter().find(|other| (other.what, &other.name) == (begun.what, &begun.name));
+    let moves = moves_of_both(alignment);
+    let missing = was.iter().filter(|command| is_power_on_default(command)).filter_map(|command| {
+        let later = is.iter().find(|other| (other.what, &other.name) == (command.what, &command.name));
         let until = later.map_or(usize::MAX, |later| later.moves);
-        let relies = |pair: &&SharedMove| {
-            begun.moves <= pair.before.0
-                && pair.before.1 < until
-                && !is_already_reported(begun, old, new, pair, links)
+        let is_relying = |pair: &&SharedMove| {
+            command.moves <= pair.before[0]
+                && pair.before[1] < until
+                && !is_already_reported(command, alignment, pair)
         };
-        let relying: Vec<&SharedMove> = moves.iter().filter(relies).collect();
-        let Some(first) = relying.first() else { continue };
-        let of_block = |group: &&mut MissingCommands<'_>| {
-            let known = group.all[0];
-            (known.what, known.place) == (begun.what, begun.place) && group.first.steps == first.steps
-        };
-        match groups.iter_mut().find(of_block) {
-            Some(group) => group.all.push(begun),
-            None => groups.push(MissingCommands { all: vec![begun], first: **first, moves: relying.len() }),
-        }
-    }
-    groups.iter().map(|group| group.change(old, new)).collect()
+        let relying: Vec<&SharedMove> = moves.iter().filter(is_relying).collect();
+        let first = *relying.first()?;
+        Some(((command.what, command.place, first.steps), (command, first, relying.len())))
+    });
+    let effect = |((what, place, steps), all): ((CommandKind, usize, _), Vec<_>)| {
+        let message = message(what, &all);
+        Effect::new(&kinds::START, message, [Some(&old.places[place]), alignment.blocks(steps)[1]])
+    };
+    grouped(missing).into_iter().map(effect).collect()
 }
 
 /// A move that both revisions make.
-#[derive(Clone, Copy)]
 struct SharedMove {
-    /// Its steps.
-    steps: (usize, usize),
-    /// It goes to the same place in the same way.
+    steps: [Option<usize>; 2],
+    /// Both end at the same point and are of the same kind.
     is_same: bool,
-    /// How many moves come before it.
-    before: (usize, usize),
+    /// Numbers of moves before it.
+    before: [usize; 2],
 }
 
-fn moves_of_both(old: &Record, new: &Record, links: &[StepPair]) -> Vec<SharedMove> {
-    let mut before = (0, 0);
+fn moves_of_both(alignment: &Alignment<'_>) -> Vec<SharedMove> {
+    let mut before = [0, 0];
     let mut pairs = Vec::new();
-    for link in links {
-        let (i, j) = link.sides();
-        let is_move =
-            |record: &Record, step: Option<usize>| step.is_some_and(|step| record.steps[step].is_move());
-        let moves = (is_move(old, i), is_move(new, j));
-        if let (Some(i), Some(j), (true, true)) = (i, j, moves) {
-            pairs.push(SharedMove { steps: (i, j), is_same: matches!(link, StepPair::Same(..)), before });
+    for link in alignment.links {
+        let steps = link.sides();
+        let moves = alignment.steps(steps).map(|step| step.is_some_and(|step| step.is_move()));
+        if moves == [true, true] {
+            pairs.push(SharedMove { steps, is_same: matches!(link, StepPair::Same(..)), before });
         }
-        before = (before.0 + usize::from(moves.0), before.1 + usize::from(moves.1));
+        before = [0, 1].map(|side| before[side] + usize::from(moves[side]));
     }
     pairs
 }
 
-/// A mode that a run finds in force by itself: without any other code the moves themselves are others.
-fn is_power_on_default(begun: &FirstCommand) -> bool {
-    let group = begun.name.parse().ok();
-    let found = group.and_then(|group| Modal::default().code(group)).map(modal_code);
-    begun.what != CommandKind::Mode || found.as_ref() == Some(&begun.text)
+/// Returns true unless a modal code differs from that of power-on: without it the moves themselves differ.
+fn is_power_on_default(command: &FirstCommand) -> bool {
+    let group = command.name.parse().ok();
+    let default = group.and_then(|group| Modal::default().code(group)).map(modal_code);
+    command.what != CommandKind::Mode || default.as_ref() == Some(&command.text)
 }
 
-/// Another entry says so: the code in force is another one, or what else the block did is gone.
-fn is_already_reported(
-    begun: &FirstCommand,
-    old: &Record,
-    new: &Record,
-    pair: &SharedMove,
-    links: &[StepPair],
-) -> bool {
-    let (i, j) = pair.steps;
-    match begun.what {
+/// Returns true if another difference reports the command: the active code differs, or another effect of its block
+/// is lost.
+fn is_already_reported(command: &FirstCommand, alignment: &Alignment<'_>, pair: &SharedMove) -> bool {
+    let [old, new] = alignment.records;
+    match command.what {
         CommandKind::Mode => {
-            let of_group = |aspect: &ModalAspect| format!("{:02}", aspect.group()) == begun.name;
+            let of_group = |aspect: &ModalAspect| format!("{:02}", aspect.row().0) == command.name;
+            let [Some(i), Some(j)] = pair.steps else { return false };
             let aspect = ModalAspect::ALL.into_iter().find(of_group);
             aspect.is_some_and(|aspect| old.under(i).word(aspect).text != new.under(j).word(aspect).text)
         }
-        // Where it ends elsewhere, that is told.
         CommandKind::Axis | CommandKind::Offset if !pair.is_same => true,
-        CommandKind::Axis => {
-            let is_of_block =
-                |link: &&StepPair| link.sides().0.is_some_and(|i| old.steps[i].place == begun.place);
-            links.iter().filter(is_of_block).any(|link| !matches!(link, StepPair::Same(..)))
-        }
+        CommandKind::Axis => alignment.links.iter().any(|link| {
+            let is_of_block = link.sides()[0].is_some_and(|i| old.steps[i].place == command.place);
+            is_of_block && !matches!(link, StepPair::Same(..))
+        }),
         CommandKind::Offset => false,
     }
 }
 
-/// What is gone with one block.
-struct MissingCommands<'a> {
-    all: Vec<&'a FirstCommand>,
-    first: SharedMove,
-    moves: usize,
-}
-
-impl MissingCommands<'_> {
-    fn change(&self, old: &Record, new: &Record) -> Effect {
-        let names: Vec<&str> = self.all.iter().map(|begun| begun.text.as_str()).collect();
-        let one = names.len() == 1;
-        let names = match names.as_slice() {
-            [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
-            _ => names.concat(),
-        };
-        let is = if one { "is" } else { "are" };
-        let first = match (self.first.before.0, self.moves) {
-            (0, _) => "the first move".to_owned(),
-            (_, 1) => "1 move".to_owned(),
-            (_, n) => format!("{n} moves"),
-        };
-        let message = match self.all[0].what {
-            CommandKind::Mode => format!(
-                "{names} {is} no longer commanded before {first}: the program now depends on the previous \
-                 program's modes"
-            ),
-            CommandKind::Axis => {
-                format!("{names} {is} no longer positioned before {first}: the start position is undefined")
-            }
-            CommandKind::Offset => {
-                format!(
-                    "{names} {is} no longer written before {first}: the program now depends on the value \
-                     left by the previous program"
-                )
-            }
-        };
-        Effect::new("start", message)
-            .with_old(old.places.get(self.all[0].place))
-            .with_new(new.places.get(new.steps[self.first.steps.1].place))
-    }
+/// Formats the missing commands of one block, each with the first move and the number of moves that rely on it.
+fn message(what: CommandKind, all: &[(&FirstCommand, &SharedMove, usize)]) -> String {
+    let names: Vec<&str> = all.iter().map(|(command, ..)| command.text.as_str()).collect();
+    let names = match names.as_slice() {
+        [before @ .., last] if !before.is_empty() => format!("{} and {last} are", before.join(", ")),
+        _ => format!("{} is", names.concat()),
+    };
+    let first = match (all[0].1.before[0], all[0].2) {
+        (0, _) => "the first move".to_owned(),
+        (_, 1) => "1 move".to_owned(),
+        (_, n) => format!("{n} moves"),
+    };
+    let (verb, result) = match what {
+        CommandKind::Mode => ("commanded", "the program now depends on the previous program's modes"),
+        CommandKind::Axis => ("positioned", "the start position is undefined"),
+        CommandKind::Offset => {
+            ("written", "the program now depends on the value left by the previous program")
+        }
+    };
+    format!("{names} no longer {verb} before {first}: {result}")
 }

@@ -1,8 +1,11 @@
-//! What a move is made under: offsets, compensation, cycle and modes as a program calls them, whatever the tables hold of them.
+//! Modal conditions of a move: offsets, compensation, cycle and modes as a program commands them, without their
+//! values.
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use gcode_control::State;
+use super::kinds;
+use gcode_control::{State, modal_code};
+use gcode_lang::diag::FindingKind;
 use gcode_lang::program::modes::WorkSystem;
 
 /// One kind of modal condition.
@@ -27,65 +30,41 @@ impl ModalAspect {
     pub(super) const ALL: [Self; 6] =
         [Self::System, Self::Length, Self::Cutter, Self::Path, Self::Level, Self::Cycle];
 
-    /// The code of a change of it.
-    pub(super) fn code(self) -> &'static str {
+    /// Returns the group of its G codes, the kind of a change of it, and its name in a list of what a record lacks.
+    pub(super) fn row(self) -> (u32, &'static FindingKind, &'static str) {
         match self {
-            Self::System => "work-system",
-            Self::Length => "tool-length",
-            Self::Cutter => "cutter-side",
-            Self::Path => "path-mode",
-            Self::Level => "return-level",
-            Self::Cycle => "cycle",
-        }
-    }
-
-    /// The group of its G codes.
-    pub(super) fn group(self) -> u32 {
-        match self {
-            Self::System => 14,
-            Self::Length => 8,
-            Self::Cutter => 7,
-            Self::Path => 15,
-            Self::Level => 10,
-            Self::Cycle => 9,
+            Self::System => (14, &kinds::WORK_SYSTEM, "the work offset by its number"),
+            Self::Length => (8, &kinds::TOOL_LENGTH, "tool length offsets by their numbers"),
+            Self::Cutter => (7, &kinds::CUTTER_SIDE, "the cutter's side and D"),
+            Self::Path => (15, &kinds::PATH_MODE, "G61 to G64"),
+            Self::Level => (10, &kinds::RETURN_LEVEL, "G98 and G99"),
+            Self::Cycle => (9, &kinds::CYCLE, "the drilling cycle"),
         }
     }
 
     fn read(self, state: &State) -> String {
         let modal = &state.modal;
-        let group = |number| {
-            let code = modal.code(number).unwrap_or_default();
-            if code.is_multiple_of(10) {
-                format!("G{:02}", code / 10)
-            } else {
-                format!("G{}.{}", code / 10, code % 10)
-            }
-        };
-        let with = |number, off: u32, letter: char, value: u32| match modal.code(number) == Some(off) {
-            true => group(number),
-            false => format!("{} {letter}{value}", group(number)),
-        };
-        match (self, modal.cycle, state.cycle.q) {
-            (Self::System, ..) => match modal.work {
-                WorkSystem::Standard(_) => group(self.group()),
-                WorkSystem::Additional(number) => format!("G54.1 P{number}"),
+        let code = modal.code(self.row().0).unwrap_or_default();
+        let group = modal_code(code);
+        match (self, modal.work, modal.cycle) {
+            (Self::System, WorkSystem::Additional(number), _) => format!("G54.1 P{number}"),
+            (Self::Length, ..) if code != 490 => format!("{group} H{}", state.codes.h),
+            (Self::Cutter, ..) if code != 400 => format!("{group} D{}", state.codes.d),
+            (Self::Level | Self::Cycle, _, None) => String::new(),
+            (Self::Cycle, _, Some(cycle)) if cycle.uses_q() => match state.cycle.q {
+                Some(q) => format!("{group} Q{q}"),
+                None => group,
             },
-            (Self::Length, ..) => with(self.group(), 490, 'H', state.codes.h),
-            (Self::Cutter, ..) => with(self.group(), 400, 'D', state.codes.d),
-            (Self::Path, ..) => group(self.group()),
-            (Self::Level | Self::Cycle, None, _) => String::new(),
-            (Self::Level, Some(_), _) => group(self.group()),
-            (Self::Cycle, Some(cycle), Some(q)) if cycle.uses_q() => format!("{} Q{q}", group(self.group())),
-            (Self::Cycle, Some(_), _) => group(self.group()),
+            _ => group,
         }
     }
 }
 
-/// What is in force while a step is made.
+/// Modal conditions in force at a step, one of each aspect.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ModalConditions(pub [ModalSetting; 6]);
 
-/// One of them as a program writes it, and the block that has put it in force, by its number in the record.
+/// A modal code as written in programs, and the number of the block that set it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ModalSetting {
     /// Empty for none.
@@ -94,7 +73,7 @@ pub(super) struct ModalSetting {
 }
 
 impl ModalConditions {
-    /// Before the first block: no block has put it in force.
+    /// Returns the conditions before the first block; no block has set them.
     pub(super) fn at_power_on() -> Self {
         let state = State::default();
         Self(ModalAspect::ALL.map(|aspect| ModalSetting { text: aspect.read(&state), place: None }))
@@ -108,7 +87,7 @@ impl ModalConditions {
         self.0[aspect as usize] = word;
     }
 
-    /// As a block leaves it: what is as before keeps the block that put it in force.
+    /// Returns the conditions after a block; unchanged ones keep the block that set them.
     pub(super) fn after_block(&self, state: &State, place: usize) -> Self {
         let mut next = self.clone();
         for aspect in ModalAspect::ALL {

@@ -1,59 +1,58 @@
-//! Passes of a hole that end elsewhere though the hole is finished as before, or otherwise than it: a pilot's, a spot drilling's.
+//! Passes of a hole that end at another point while the hole does not move with them: pilots, spot drilling.
 use nalgebra::Point3;
 
-use super::align::common;
-use super::descriptions::coordinates;
-use super::descriptions::deeper;
+use super::align::{Alignment, common};
+use super::descriptions::{coordinates, deeper};
 use super::passes::Passes;
 use super::record::Record;
 use super::steps::{Step, difference, dot, is_as_far_above, near};
-use gcode_lang::motion::{Axes, MAX_AXES, Position};
+use gcode_lang::motion::{Axes, Position};
 
-/// Such a pass.
+/// A pass that changed, unlike its hole.
 #[derive(Clone, Debug)]
 pub(super) struct PassChange {
-    /// Its feed, before and now, by their numbers in either run.
+    /// Its feeds by their numbers in the old and the new run.
     pub steps: (usize, usize),
-    /// How far the feed ends from where it ended, in machine coordinates; nothing where it stays and the hole doesn't.
+    /// Displacement of its end point in machine coordinates; 0 for a pass that stays while the hole moves.
     shift: Position,
-    /// How much of that is along the feed, mm.
-    pub deeper: f64,
-    /// Nothing of it is aside.
+    /// Part of the displacement along the feed, mm.
+    deeper: f64,
+    /// The whole displacement is along the feed.
     is_along: bool,
-    /// The tool's tip ends where it ended: another length makes up for it.
+    /// The tool tip ends at the same point because of another length offset.
     is_compensated: bool,
-    /// Of how many passes which it is, counted from 1, and its tool now.
-    number: (usize, usize),
+    /// Number of the pass, from 1, and number of passes.
+    pub number: (usize, usize),
+    /// Its tool in the new revision.
     tool: Option<u32>,
 }
 
-/// Of a hole that is there before and now, and is `hole_deeper` mm deeper. Its bottom is where its deepest pass ends; all others are
-/// held against what that one does. Of passes that are made once only, others tell.
+/// Returns the changed passes of a hole that both revisions have and that is `hole_deeper` mm deeper. Each pass is
+/// compared with the deepest one, which makes the bottom; passes of one revision alone are differences of its
+/// tools.
 pub(super) fn pass_changes(
-    old: &Record,
-    new: &Record,
-    (hole, other): (usize, usize),
-    passes: &(Passes, Passes),
+    alignment: &Alignment<'_>,
+    passes: &[Passes; 2],
+    [hole, other]: [usize; 2],
     hole_deeper: f64,
-    tolerance: f64,
 ) -> Vec<PassChange> {
-    let (was, is) = (&passes.0.steps[hole], &passes.1.steps[other]);
-    let pairs = paired((was, &passes.0.tools[hole]), (is, &passes.1.tools[other]));
+    let Alignment { records: [old, new], tolerance, .. } = *alignment;
+    let (was, is) = (&passes[0].steps[hole], &passes[1].steps[other]);
+    let pairs = paired((was, &passes[0].tools[hole]), (is, &passes[1].tools[other]));
     let pass = |(i, j): &(usize, usize)| PassPair { before: &old.steps[was[*i]], now: &new.steps[is[*j]] };
     let find = |step: Option<usize>| pairs.iter().find(|(i, _)| Some(was[*i]) == step).map(pass);
     let finish = find(old.feeds[hole].last().copied());
     let deepest = find(deepest(old, hole, tolerance)).or(pairs.last().map(pass));
-    // A hole that is finished where it was isn't moved, wherever its deepest pass is now.
+    // The pass that finishes the hole decides whether it moved, even if the deepest pass did.
     let is_aside = deepest.is_some_and(|deepest| deepest.parts(&deepest.shift()).1 > tolerance);
     let lead = finish.filter(|finish| is_aside && finish.stays(tolerance)).or(deepest);
     let Some(lead) = lead else { return Vec::new() };
     let lead_shift = lead.shift();
     let (lead_along, lead_aside) = lead.parts(&lead_shift);
     let is_moved = lead_aside > tolerance;
-    // A hole is moved as the pass that finishes it.
     let is_apart =
         |finish: PassPair<'_>| finish.parts(&difference(&finish.shift(), &lead_shift)).1 > tolerance;
-    let is_lead_told = !is_moved || !finish.is_some_and(is_apart);
+    let is_lead_explained = !is_moved || !finish.is_some_and(is_apart);
     let mut all = Vec::new();
     for (i, j) in &pairs {
         let pass = pass(&(*i, *j));
@@ -63,13 +62,13 @@ pub(super) fn pass_changes(
                 || (is_moved || lead_along.abs() > tolerance)
                     && is_as_far_above((pass.before, lead.before), (pass.now, lead.now), hole_deeper)
         };
-        let is_told = if std::ptr::eq(pass.before, lead.before) {
-            is_lead_told
+        let is_explained = if std::ptr::eq(pass.before, lead.before) {
+            is_lead_explained
         } else {
-            // A pass on the line of a hole that is deeper now needn't be.
+            // A pass of a hole that only gets deeper may stay.
             !is_moved && pass.stays(tolerance) || is_with_hole()
         };
-        if is_told {
+        if is_explained {
             continue;
         }
         let (along, aside) = pass.parts(&shift);
@@ -81,13 +80,13 @@ pub(super) fn pass_changes(
             is_along: aside <= tolerance,
             is_compensated: tips.is_some_and(|(was, is)| (is - was).norm() <= tolerance),
             number: (*i + 1, was.len()),
-            tool: passes.1.tools[other].get(*j).copied(),
+            tool: passes[1].tools[other].get(*j).copied(),
         });
     }
     all
 }
 
-/// A pass before and now.
+/// A pass in the old and in the new revision.
 #[derive(Clone, Copy)]
 struct PassPair<'a> {
     before: &'a Step,
@@ -95,7 +94,7 @@ struct PassPair<'a> {
 }
 
 impl PassPair<'_> {
-    /// How far it ends from where it ended.
+    /// Returns the displacement of its end point.
     fn shift(self) -> Position {
         difference(&self.now.to, &self.before.to)
     }
@@ -104,13 +103,13 @@ impl PassPair<'_> {
         near(&self.shift(), &Position::default(), tolerance)
     }
 
-    /// How much of a way is along its feed, and how much aside.
+    /// Splits a displacement into its parts along and across the feed.
     fn parts(self, way: &Position) -> (f64, f64) {
         parts(way, self.before)
     }
 }
 
-/// Which pass is which, by their places: in their order, or, where there are more or fewer, those of the same tools.
+/// Pairs passes in their order, or by their tools if their numbers differ.
 fn paired((was, tools): (&[usize], &[u32]), (is, tools_now): (&[usize], &[u32])) -> Vec<(usize, usize)> {
     if was.len() == is.len() {
         return (0..was.len()).map(|pass| (pass, pass)).collect();
@@ -118,7 +117,7 @@ fn paired((was, tools): (&[usize], &[u32]), (is, tools_now): (&[usize], &[u32]))
     common(tools.len(), tools_now.len(), |i, j| tools[i] == tools_now[j])
 }
 
-/// The feed that makes a hole's bottom: the one that finishes it, or one before that goes deeper.
+/// Returns the feed that makes the bottom of a hole: the finishing one, or an earlier one that goes deeper.
 fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
     let (found, feeds) = (&record.holes[hole], &record.feeds[hole]);
     let finish = *feeds.last()?;
@@ -131,74 +130,38 @@ fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
     deeper.map(|(_, step)| step).find(|step| depth(step) > tolerance).copied().or(Some(finish))
 }
 
-/// Where a pass of a hole ends on the part, as far as that is known.
+/// Returns the end point of a pass on the part; `None` if it is unknown.
 fn tip(record: &Record, hole: usize, step: usize) -> Option<Point3<f64>> {
     let (others, feeds) = (&record.holes[hole].earlier_passes, &record.feeds[hole]);
     let place = feeds.iter().position(|feed| *feed == step)?;
     others.get(place).filter(|_| feeds.len() == others.len() + 1).map(|cut| cut.bottom)
 }
 
-/// How much of a way is along a feed, and how much aside.
+/// Splits a displacement into its parts along and across a feed.
 fn parts(way: &Position, feed: &Step) -> (f64, f64) {
     let along = dot(way, &feed.way()) / feed.length().max(f64::MIN_POSITIVE);
     (along, (dot(way, way) - along * along).max(0.0).sqrt())
 }
 
-impl PassChange {
-    /// Which of how many.
-    pub(super) fn pass(&self) -> (usize, usize) {
-        self.number
-    }
-
-    fn name(&self) -> String {
-        let (number, all) = self.number;
-        let by = self.tool.map(|tool| format!(", by T{tool}")).unwrap_or_default();
-        format!("pass {number} of {all}{by},")
-    }
-
-    pub(super) fn text(&self, axes: &Axes, tolerance: f64) -> String {
-        if self.stays(tolerance) {
-            return format!("{} is unchanged", self.name());
-        }
-        if self.is_along {
-            let tip = if self.is_compensated {
-                " as programmed; its tip position is unchanged because of another length offset"
-            } else {
-                ""
-            };
-            return format!("{} {:.4} mm {}{tip}", self.name(), self.deeper.abs(), deeper(self.deeper));
-        }
-        format!(
-            "{} ends at a different point: {}",
-            self.name(),
-            coordinates(&self.shift, axes, tolerance, true)
-        )
-    }
-
-    fn stays(&self, tolerance: f64) -> bool {
-        near(&self.shift, &Position::default(), tolerance)
-    }
-
-    /// The same pass of several holes.
-    pub(super) fn up_to<'a>(
-        &self,
-        alike: impl Iterator<Item = &'a Self>,
-        axes: &Axes,
-        tolerance: f64,
-    ) -> String {
-        let mut most = Position::default();
-        for pass in alike {
-            for axis in 0..MAX_AXES {
-                most[axis] = most[axis].max(pass.shift[axis].abs());
-            }
-        }
-        if near(&most, &Position::default(), tolerance) {
-            return format!("{} is unchanged", self.name());
-        }
-        format!(
-            "{} ends at a different point: up to {}",
-            self.name(),
-            coordinates(&most, axes, tolerance, false)
-        )
+/// Formats a pass that changed in one or more holes, with the numbers of the first if all of them are equal, else
+/// with the largest.
+pub(super) fn describe_pass(all: &[&PassChange], is_alike: bool, axes: &Axes, tolerance: f64) -> String {
+    let PassChange { number: (number, passes), tool, shift, deeper: depth, .. } = all[0];
+    let by = tool.map(|tool| format!(", by T{tool}")).unwrap_or_default();
+    let name = format!("pass {number} of {passes}{by},");
+    let largest = |axis: usize| all.iter().map(|pass| pass.shift[axis].abs()).fold(0.0, f64::max);
+    let most = if is_alike { *shift } else { Position(std::array::from_fn(largest)) };
+    if near(&most, &Position::default(), tolerance) {
+        format!("{name} is unchanged")
+    } else if is_alike && all[0].is_along {
+        let tip = if all[0].is_compensated {
+            " as programmed; its tip position is unchanged because of another length offset"
+        } else {
+            ""
+        };
+        format!("{name} {:.4} mm {}{tip}", depth.abs(), deeper(*depth))
+    } else {
+        let up_to = if is_alike { "" } else { "up to " };
+        format!("{name} ends at a different point: {up_to}{}", coordinates(&most, axes, tolerance, is_alike))
     }
 }

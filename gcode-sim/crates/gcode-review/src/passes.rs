@@ -1,17 +1,17 @@
-//! How often and by which tools a hole is made: all passes on its line, those as well that a tool makes again for nothing.
+//! Passes that make each hole and their tools: all passes on its line, repeated ones as well.
 use super::align::common;
 use super::record::Record;
 use super::steps::StepKind;
 
-/// What makes each hole of a record; nothing for one that only makes another one again.
+/// Passes of each hole of a record; none for a hole that repeats another.
 pub(super) struct Passes {
-    /// The hole itself, or the first one on its line.
+    /// The hole itself, or the one that it repeats.
     first: Vec<usize>,
-    /// The holes that make each one again, in their order.
+    /// Holes that repeat each one, in their order.
     pub again: Vec<Vec<usize>>,
-    /// The steps that cut it, in their order.
+    /// Steps that cut it, in their order.
     pub steps: Vec<Vec<usize>>,
-    /// The tools of these steps; nothing where one has none.
+    /// Tools of these steps; none if one of them is unknown.
     pub tools: Vec<Vec<u32>>,
 }
 
@@ -39,26 +39,26 @@ impl Passes {
         Self { first, again, steps, tools }
     }
 
-    /// The steps that cut some holes.
+    /// Returns the steps that cut some holes.
     pub(super) fn of_holes(&self, holes: &[usize]) -> Vec<usize> {
         holes.iter().flat_map(|hole| self.steps[*hole].iter().copied()).collect()
     }
 
-    /// The holes that aren't others made again.
+    /// Returns the holes that repeat no other.
     pub(super) fn firsts(&self) -> Vec<usize> {
         (0..self.first.len()).filter(|hole| self.first[*hole] == *hole).collect()
     }
 }
 
 impl Record {
-    /// The tools that make each hole, in their order; none where one isn't known, or where it only makes another one
-    /// again.
+    /// Returns the tools of each hole's passes in their order; none if one is unknown, or if the hole repeats
+    /// another.
     pub fn made_by(&self) -> Vec<Vec<u32>> {
         Passes::of(self).tools
     }
 }
 
-/// Which passes are gone and which are new; `None` where as many are made.
+/// Describes lost and added passes; `None` if their number is unchanged or unknown.
 pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
     if was.len() == is.len() || was.is_empty() || is.is_empty() {
         return None;
@@ -87,7 +87,7 @@ pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
     Some(words.join(", "))
 }
 
-/// `T1`, `T1 and T2`, `T1, T2 and T1`; a tool that follows itself is counted, `T1 and T2 (3 times)`.
+/// Formats tools as `T1`, `T1 and T2`, `T1, T2 and T1`; consecutive passes of one tool as `T1 and T2 (3 times)`.
 pub(super) fn in_words(tools: &[u32]) -> String {
     let name = |run: &[u32]| match run {
         [tool] => format!("T{tool}"),

@@ -1,4 +1,4 @@
-//! The way of the tool on the part, move by move: what a drawing is made of.
+//! Path of the tool on the part, move by move, for drawings.
 use std::collections::BTreeSet;
 
 use nalgebra::Point3;
@@ -9,38 +9,38 @@ use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};
 use gcode_lang::motion::{MAX_AXES, PlanarArc, Position, StopKind};
 
-/// A curved way strays from the chords it is drawn with by no more than this, mm.
+/// Largest deviation of a curved path from its chords, mm.
 const CHORD: f64 = 0.05;
 
-/// One move in the part's frame; of a grinder the way of the wheel's contact.
+/// One move in the frame of the part; of a grinder the path of the wheel's contact.
 #[derive(Clone, Debug)]
 pub struct Leg {
-    /// Which step of the record it is.
+    /// Number of the step in the record.
     pub step: usize,
     /// `rapid`, `feed`, `arc` or `probing move`.
     pub kind: &'static str,
-    /// mm/min, of a cut.
+    /// Feed of a cut, mm/min.
     pub feed: Option<f64>,
-    /// It cuts a hole, or comes out of one the way it went in.
+    /// True for a move that cuts a hole, or leaves one along the path of its cut.
     pub is_of_hole: bool,
-    /// Which of [`Record::places`] moves here.
+    /// Index of its block in [`Record::places`].
     pub place: usize,
-    /// From its beginning to its end.
+    /// Points from start to end, mm.
     pub points: Vec<Point3<f64>>,
 }
 
 impl Record {
-    /// The blocks that [`Leg::place`] counts.
+    /// Returns the blocks by their index.
     pub fn places(&self) -> &[BlockLocation] {
         &self.places
     }
 
-    /// How many moves go somewhere.
+    /// Counts the moves.
     pub fn moves(&self) -> usize {
         self.steps.iter().filter(|step| step.is_move()).count()
     }
 
-    /// The first moves, as long as they are no more than `moves` with no more than `points` points in all.
+    /// Returns the first moves, at most `moves` with at most `points` points in all.
     pub fn path(&self, machine: &Machine, moves: usize, points: usize) -> Vec<Leg> {
         let of_holes: BTreeSet<usize> = self.feeds.iter().flatten().copied().collect();
         let mut legs: Vec<Leg> = Vec::new();
@@ -74,12 +74,12 @@ fn leg(index: usize, step: &Step, is_of_hole: bool, points: Vec<Point3<f64>>) ->
     Leg { step: index, kind, feed, is_of_hole, place: step.place, points }
 }
 
-/// It ends where the way before began.
+/// Returns true if a path ends where the path before starts.
 fn is_back(before: &[Point3<f64>], way: &[Point3<f64>]) -> bool {
     before.first().zip(way.last()).is_some_and(|(begin, end)| (begin - end).norm() < 1e-6)
 }
 
-/// What other than an axis changes where the tool is.
+/// Applies a command that changes the position of the tool: tool, length, head angle.
 fn set_up(setup: &mut Setup, kind: &StepKind) {
     match kind {
         StepKind::Tool(number) => setup.tool = Some(*number),
@@ -130,8 +130,8 @@ mod tests {
     }
 
     #[test]
-    fn a_turned_table_turns_the_way_on_the_part() {
-        // B90 brings the part's +z to the machine's +x: on the part the tool at x = 10 stands at z = 10.
+    fn a_turn_of_the_table_turns_the_path_on_the_part() {
+        // B90 turns the part's +z to the machine's +x: the tool at x = 10 is at z = 10 of the part.
         let path = legs("O1\nG0 B90.\nG0 X10.\nG1 X10. Y-2. F100\nM30\n", 10);
         let expected = [("rapid", [0.0; 3]), ("rapid", [0.0, 0.0, 10.0]), ("feed", [0.0, -2.0, 10.0])];
         for ((kind, end), (wanted, point)) in path.iter().zip(expected) {
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_moves_are_followed_than_asked_for() {
+    fn the_path_has_at_most_the_specified_number_of_moves() {
         assert_eq!(legs("O1\nG0 X1.\nX2.\nX3.\nM30\n", 2).len(), 2);
     }
 }

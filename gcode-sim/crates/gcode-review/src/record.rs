@@ -1,4 +1,4 @@
-//! What one revision does, written down: all that two of them are compared by, without the run it came from.
+//! Record of a run: everything by which two revisions are compared, and the run that it comes from.
 use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,10 +7,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::first_command::FirstCommand;
+use super::kinds;
 use super::modal_conditions::ModalConditions;
-use super::recorder::{EndCause, ExecutedBlocks, FirstExecutions, MOST_STEPS, Recorder, SharedRecorder};
+use super::recorder::{ExecutedBlocks, MOST_STEPS, Recorder, SharedRecorder};
 use super::steps::{Step, StepKind};
-use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue, mode_name};
+use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue};
 use gcode_inspect::holes::DrilledHole;
 use gcode_lang::alarm::kinds::{LIMIT, PS0076};
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -20,30 +21,31 @@ use gcode_lang::source::{Sources, Span};
 use gcode_part::Surface;
 use gcode_session::{Request, Run, SessionError, Simulation};
 
-/// What one revision does.
+/// Steps, holes and final state of one revision.
 #[derive(Clone, Debug)]
 pub struct Record {
     pub(super) axes: Axes,
     pub(super) steps: Vec<Step>,
-    /// In the order in which they are begun.
+    /// In the order of their first feeds.
     pub(super) holes: Vec<DrilledHole>,
-    /// The steps that cut each hole, the finishing one last.
+    /// Steps that cut each hole, the finishing one last.
     pub(super) feeds: Vec<Vec<usize>>,
-    /// Holes that a stop leaves unfinished: their depth and their tools aren't known.
+    /// Holes that a stop leaves unfinished: their depth and their tools are unknown.
     pub(super) unfinished: BTreeSet<usize>,
-    /// The blocks that the steps come from: [`Step::place`] counts them.
+    /// Blocks by their numbers, such as [`Step::place`].
     pub(super) places: Vec<BlockLocation>,
-    /// What is in force while steps are made: [`Step::condition`] counts them.
+    /// Modal conditions by their numbers, [`Step::condition`].
     pub(super) conditions: Vec<ModalConditions>,
-    /// What the program commands, each at its first time; `None` where nobody has written that down.
+    /// First commands of the program; `None` in accepted results that do not have them.
     pub(super) begun: Option<Vec<FirstCommand>>,
-    /// The main program's name as a control shows it.
+    /// Name of the main program as a control shows it.
     pub(super) program: Option<String>,
     pub(super) ending: EndState,
-    /// What was read; nothing of what was read from a file.
+    /// Texts of the programs; `None` in a record from a file.
     pub(super) sources: Option<Sources>,
-    /// When the run first executed each block; nothing of what was read from a file.
-    pub(super) reached: FirstExecutions,
+    /// Executed blocks; empty in a record from a file.
+    pub(super) executed: ExecutedBlocks,
+    /// Totals of the run.
     pub totals: Totals,
 }
 
@@ -51,9 +53,13 @@ pub struct Record {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlockLocation {
+    /// Name of the program.
     pub program: String,
+    /// Line in its file, from 1.
     pub line: u32,
+    /// Text of the block.
     pub block: String,
+    /// Calls that led to the block, innermost first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub calls: Vec<Self>,
 }
@@ -62,9 +68,13 @@ pub struct BlockLocation {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Totals {
+    /// Number of holes, repeated ones as well.
     pub holes: usize,
+    /// Number of moves.
     pub moves: u64,
+    /// Number of executed blocks.
     pub blocks: u64,
+    /// Duration of the run, s.
     pub seconds: f64,
 }
 
@@ -99,14 +109,14 @@ pub(super) struct ResidualEntry {
 /// A run with its record.
 #[derive(Debug)]
 pub struct Revision {
+    /// The run, its holes and its findings.
     pub simulation: Simulation,
+    /// The record of the run.
     pub record: Record,
-    pub(super) done: ExecutedBlocks,
 }
 
 impl Revision {
-    /// Executes a program and writes down what it does.
-    /// With the part's surface known, motion inside it is seen as well.
+    /// Runs a program and records its steps; with the surface of the part, motion inside it is a finding.
     pub fn of(
         request: &Request,
         library: &mut impl Library,
@@ -115,29 +125,28 @@ impl Revision {
         Self::observed(request, library, surface, &mut ())
     }
 
-    /// As [`Revision::of`], with somebody who looks on from block to block.
+    /// Runs a program like [`Revision::of`], with an observer of its blocks.
     pub fn observed(
         request: &Request,
         library: &mut impl Library,
         surface: Option<Surface>,
-        watcher: &mut impl Observer,
+        observer: &mut impl Observer,
     ) -> Result<Self, SessionError> {
         let recorder = RefCell::new(Recorder::default());
-        let (mut told, mut beside) =
-            (SharedRecorder(&recorder), ObserverPair(SharedRecorder(&recorder), watcher));
+        let (mut sink, mut both) =
+            (SharedRecorder(&recorder), ObserverPair(SharedRecorder(&recorder), observer));
         let mut simulation =
-            gcode_session::simulate_observed(request, library, surface, &mut told, &mut beside)?;
-        let mut recorder = recorder.into_inner();
-        if recorder.too_many {
+            gcode_session::simulate_observed(request, library, surface, &mut sink, &mut both)?;
+        let recorder = recorder.into_inner();
+        if recorder.is_truncated {
             let message = format!("more than {MOST_STEPS} moves: later ones are not compared");
             simulation.extracted.findings.push(Diagnostic::new(&LIMIT, message));
         }
-        let done = std::mem::take(&mut recorder.done);
         let record = record(&simulation, recorder);
-        Ok(Self { simulation, record, done })
+        Ok(Self { simulation, record })
     }
 
-    /// The files of the programs, by the names that [`BlockLocation`] gives them; those that stand for one file only.
+    /// Returns the file of each program by its name in a [`BlockLocation`]; names of several files are left out.
     pub fn files(&self) -> BTreeMap<String, String> {
         let memory = self.simulation.run.control.memory();
         let mut files: BTreeMap<String, Option<String>> = BTreeMap::new();
@@ -151,18 +160,18 @@ impl Revision {
         files.into_iter().filter_map(|(program, file)| Some((program, file?))).collect()
     }
 
-    /// The run was cut off by a limit: what lies behind it isn't in the record.
+    /// Returns true if a limit ended the run, so that the record is incomplete.
     pub fn is_cut_off(&self) -> bool {
         self.stopped().any(|finding| finding.kind == &LIMIT)
     }
 
-    /// Why the run stopped before its end, or can't be compared to its end.
+    /// Iterates over the alarms and limits that stopped the run or its record.
     pub fn stopped(&self) -> impl Iterator<Item = &Diagnostic> {
         self.simulation.extracted.findings.iter().filter(|finding| finding.severity == Severity::Alarm)
     }
 }
 
-/// Two that look on.
+/// Two observers of one run.
 struct ObserverPair<A, B>(A, B);
 
 impl<A: Observer, B: Observer> Observer for ObserverPair<A, B> {
@@ -178,36 +187,20 @@ impl<A: Observer, B: Observer> Observer for ObserverPair<A, B> {
 }
 
 fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
-    recorder.forget_taken_up();
+    recorder.forget_used();
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
-    let Recorder {
-        mut steps,
-        places,
-        mut conditions,
-        mut set,
-        assigned,
-        written,
-        begun,
-        reached,
-        last,
-        end,
-        ..
-    } = recorder;
+    let ending = ending(run, &recorder);
+    let Recorder { mut steps, places, mut conditions, begun, executed, .. } = recorder;
     let mut begun: Vec<FirstCommand> = begun.into_values().collect();
     if conditions.is_empty() {
         conditions.push(ModalConditions::default());
     }
     let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
-    let named = words.filter_map(|word| word.place.as_mut()).chain(set.values_mut());
+    let named = words.filter_map(|word| word.place.as_mut());
     let named = named.chain(begun.iter_mut().map(|begun| &mut begun.place));
     let of_steps = steps.iter_mut().flat_map(|step| std::iter::once(&mut step.place).chain(&mut step.set_by));
     let places = resolve(run, &places, of_steps.chain(named));
-    let modes = set.iter().map(|(group, place)| (mode_name(*group), places[*place].clone()));
-    let at = |place: &Backtrace| BlockLocation::of(run, place);
-    let variables = assigned.iter().map(|(number, place)| (format!("#{number}"), at(place)));
-    let tables = written.iter().map(|(name, place)| (name.clone(), at(place)));
-    let by: BTreeMap<String, BlockLocation> = modes.chain(variables).chain(tables).collect();
     Record {
         axes: run.control.settings().axes.clone(),
         totals: Totals {
@@ -216,9 +209,9 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
             blocks: run.control.blocks(),
             seconds: run.control.seconds().0,
         },
-        ending: ending(run, &by, (last.as_ref(), end)),
+        ending,
         sources: Some(run.control.memory().sources().clone()),
-        reached,
+        executed,
         begun: Some(begun),
         program: run.control.memory().programs().first().map(Program::label),
         conditions,
@@ -230,14 +223,14 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     }
 }
 
-/// A pass remembers its block and where the axes stood at its end; that is its step.
+/// Finds the step of each pass by its block and its end point.
 fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
     let key = |block: Span, at: &Position| (block.source, block.start, at.0.map(f64::to_bits));
     let mut steps: BTreeMap<(_, u32, [u64; MAX_AXES]), Vec<usize>> = BTreeMap::new();
     for (index, step) in recorder.steps.iter().enumerate().rev().filter(|(_, step)| step.is_move()) {
         steps.entry(key(recorder.places[step.place].block, &step.at)).or_default().push(index);
     }
-    // The steps stand in reverse, so that the earliest of those that end alike is taken first.
+    // Steps are in reverse, so that `pop` takes the earliest of equal ones.
     let of = |found: &DrilledHole| {
         let passes = found.earlier_passes.iter().map(|cut| key(cut.backtrace.block, &cut.axis_position));
         let all = passes.chain([key(found.backtrace.block, &found.axis_position)]);
@@ -246,7 +239,7 @@ fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
     holes.iter().map(of).collect()
 }
 
-/// Every place once, as people find it.
+/// Returns the location of each block once, and renumbers `named`.
 fn resolve<'a>(
     run: &Run,
     places: &[Backtrace],
@@ -267,14 +260,14 @@ fn resolve<'a>(
 }
 
 impl Record {
-    /// Where the program waited for the operator, in order: the number of the step, and its block.
+    /// Iterates over the operator stops: number of the step, and its block.
     pub fn stops(&self) -> impl Iterator<Item = (usize, &BlockLocation)> {
         let steps = self.steps.iter().enumerate();
         let stops = steps.filter(|(_, step)| matches!(step.kind, StepKind::Stop(..)));
         stops.map(|(number, step)| (number, &self.places[step.place]))
     }
 
-    /// The first steps alone, and the holes that they begin.
+    /// Returns the record of the first steps, and of the holes that they begin.
     pub(super) fn up_to(&self, steps: usize) -> Cow<'_, Self> {
         if steps >= self.steps.len() {
             return Cow::Borrowed(self);
@@ -290,22 +283,27 @@ impl Record {
         Cow::Owned(first)
     }
 
-    /// What is in force while a step is made.
+    /// Returns the block of a step.
+    pub(super) fn block(&self, step: usize) -> &BlockLocation {
+        &self.places[self.steps[step].place]
+    }
+
+    /// Returns the modal conditions of a step.
     pub(super) fn under(&self, step: usize) -> &ModalConditions {
         &self.conditions[self.steps[step].condition]
     }
 
-    /// `end`, `alarm` or `limit`.
+    /// Returns `end`, `alarm` or `limit`.
     pub fn outcome(&self) -> &str {
         &self.ending.outcome
     }
 
-    /// A called program wasn't found: that says more of the folders that were named than of the program.
+    /// Returns true if a called program was not found, probably because its folder is missing in the arguments.
     pub fn lacks_program(&self) -> bool {
         alarm_code(&self.ending.words) == Some(PS0076.code)
     }
 
-    /// How the run ended, in words.
+    /// Returns the end of the run in words.
     pub fn words(&self) -> &str {
         &self.ending.words
     }
@@ -317,6 +315,7 @@ pub fn alarm_code(words: &str) -> Option<&str> {
 }
 
 impl BlockLocation {
+    /// Locates a block of a run and the calls that led to it.
     pub fn of(run: &Run, place: &Backtrace) -> Self {
         let sources = run.control.memory().sources();
         let at = |span| {
@@ -329,64 +328,38 @@ impl BlockLocation {
     }
 }
 
-/// `by` has the blocks that what is left behind comes from, by its name.
-fn ending(
-    run: &Run,
-    by: &BTreeMap<String, BlockLocation>,
-    (last, end): (Option<&Backtrace>, EndCause),
-) -> EndState {
+/// Returns end and final state of a run.
+fn ending(run: &Run, recorder: &Recorder) -> EndState {
     let (outcome, words, stopped) = match &run.outcome {
-        Outcome::End => {
-            let by = match end {
-                EndCause::Code(2) => " by M02",
-                EndCause::Code(_) => "",
-                EndCause::Return => " by M99",
-                EndCause::OfText => " where its text does, without M30",
-            };
-            ("end", format!("the program ends{by}"), last.map(|place| BlockLocation::of(run, place)))
-        }
+        Outcome::End => ("end", format!("the program ends{}", recorder.end), recorder.last.clone()),
         Outcome::Alarm(stopped) => {
             let row = stopped.alarm.row();
-            let place = BlockLocation::of(run, &stopped.backtrace);
-            ("alarm", format!("alarm {} {}", row.code, row.message), Some(place))
+            ("alarm", format!("alarm {} {}", row.code, row.message), Some(stopped.backtrace.clone()))
         }
         Outcome::Limit => {
             let block = run.control.endless_loop().map_or(run.control.backtrace().block, |(_, back)| back);
-            let place = Backtrace { block, calls: CallChain::default() };
-            (
-                "limit",
-                "the program doesn't end within the limits".to_owned(),
-                Some(BlockLocation::of(run, &place)),
-            )
+            let words = "the program doesn't end within the limits".to_owned();
+            ("limit", words, Some(Backtrace { block, calls: CallChain::default() }))
         }
     };
+    let left = run.control.residual_values().into_iter().map(|value: ResidualValue| {
+        let place = recorder.written.get(&value.name).map(|place| BlockLocation::of(run, place));
+        let code = match value.kind {
+            ResidualKind::Variable => &kinds::VARIABLE,
+            ResidualKind::Mode => &kinds::MODE,
+            ResidualKind::WorkOffset => &kinds::WORK_OFFSET,
+            ResidualKind::ToolOffset => &kinds::TOOL_OFFSET,
+            ResidualKind::Parameter => &kinds::PARAMETER,
+            ResidualKind::Output => &kinds::SIGNAL,
+            ResidualKind::Counter => &kinds::COUNTER,
+        };
+        (value.name, ResidualEntry { code: code.code.to_owned(), value: value.value, place })
+    });
     EndState {
         outcome: outcome.to_owned(),
         words,
-        stopped,
+        stopped: stopped.map(|place| BlockLocation::of(run, &place)),
         output: run.control.output().iter().map(|line| gcode_control::printable(line)).collect(),
-        left: left(run, by),
-    }
-}
-
-/// What the next program finds, by name.
-fn left(run: &Run, by: &BTreeMap<String, BlockLocation>) -> BTreeMap<String, ResidualEntry> {
-    let all = run.control.residual_values().into_iter();
-    let left = |r: ResidualValue| {
-        let place = by.get(&r.name).cloned();
-        (r.name, ResidualEntry { code: code(r.kind).to_owned(), value: r.value, place })
-    };
-    all.map(left).collect()
-}
-
-fn code(kind: ResidualKind) -> &'static str {
-    match kind {
-        ResidualKind::Variable => "variable",
-        ResidualKind::Mode => "mode",
-        ResidualKind::WorkOffset => "work-offset",
-        ResidualKind::ToolOffset => "tool-offset",
-        ResidualKind::Parameter => "parameter",
-        ResidualKind::Output => "signal",
-        ResidualKind::Counter => "counter",
+        left: left.collect(),
     }
 }

@@ -1,43 +1,41 @@
-//! Cuts that are gone in one place and made in another: the same ways at another time.
+//! Cuts that a revision makes earlier or later along the same paths.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::align::StepPair;
-use super::change::Effect;
+use super::align::{Alignment, StepPair};
+use super::change::{Effect, grouped};
 use super::cut_settings::changed_cut_settings;
 use super::descriptions::point;
+use super::kinds;
 use super::record::Record;
 use super::steps::{Step, near};
 use gcode_lang::motion::MAX_AXES;
 
-/// Moves next to one another that the other revision makes at another time, as pairs of steps.
+/// Consecutive moves that the other revision makes at another time, as pairs of steps.
 pub(super) struct MoveRun(Vec<(usize, usize)>);
 
-/// Of so many cuts that are alike the one is looked for with most moves before and behind it.
+/// Number of equal cuts among which the one with the longest run is searched.
 const MOST_ALIKE: usize = 16;
 
-/// Runs of such moves with a cut in each that is of no hole, for holes have an order of their own, on the other side
-/// of cuts that both make. Steps of them that were linked with others are linked no more.
-pub(super) fn displaced(
+/// Returns runs of reordered moves, each with a cut that is of no hole, on the other side of cuts that both make.
+/// Their steps lose other links.
+pub(super) fn reordered_runs(
     links: &mut Vec<StepPair>,
     old: &Record,
     new: &Record,
     tolerance: f64,
 ) -> Vec<MoveRun> {
-    let sides = (
-        RevisionMoves::new(old, links, |link| link.sides().0),
-        RevisionMoves::new(new, links, |link| link.sides().1),
-    );
-    let runs = find(&sides, tolerance);
+    let [was, is] = [(old, 0), (new, 1)].map(|(record, side)| RevisionMoves::new(record, links, side));
+    let runs = find(&was, &is, tolerance);
     let (was, is): (BTreeSet<usize>, BTreeSet<usize>) =
         runs.iter().flat_map(|run| run.0.iter().copied()).unzip();
-    let parted = |link: StepPair| match link {
+    let split = |link: StepPair| match link {
         StepPair::Changed(i, j) if was.contains(&i) || is.contains(&j) => {
             vec![StepPair::Lost(i), StepPair::Added(j)]
         }
         link => vec![link],
     };
     if !runs.is_empty() {
-        *links = std::mem::take(links).into_iter().flat_map(parted).collect();
+        *links = std::mem::take(links).into_iter().flat_map(split).collect();
     }
     runs
 }
@@ -46,17 +44,18 @@ pub(super) fn displaced(
 struct RevisionMoves<'a> {
     steps: &'a [Step],
     moves: Vec<usize>,
-    /// Whether the other revision doesn't make each of them at that time.
+    /// True for each move that the other revision does not make at that time.
     is_free: Vec<bool>,
-    /// How many cuts that both make at that time come before each.
+    /// Number of cuts that both make at that time before each.
     before: Vec<usize>,
-    /// The places of the feeds of holes.
+    /// Indices of the feeds of holes.
     holes: Vec<usize>,
 }
 
 impl<'a> RevisionMoves<'a> {
-    fn new(record: &'a Record, links: &[StepPair], side: impl Fn(&StepPair) -> Option<usize>) -> Self {
-        let moves = links.iter().filter_map(|link| Some((side(link)?, !matches!(link, StepPair::Same(..)))));
+    fn new(record: &'a Record, links: &[StepPair], side: usize) -> Self {
+        let moves =
+            links.iter().filter_map(|link| Some((link.sides()[side]?, !matches!(link, StepPair::Same(..)))));
         let (moves, is_free): (Vec<usize>, Vec<bool>) =
             moves.filter(|(step, _)| record.steps[*step].is_move()).unzip();
         let cuts = moves.iter().zip(&is_free).scan(0, |cuts, (step, is_free)| {
@@ -74,7 +73,7 @@ impl<'a> RevisionMoves<'a> {
         &self.steps[self.moves[place]]
     }
 
-    /// A cut that is none of a hole, nor on the line of the nearest hole's: its pecks, its feed out.
+    /// Returns true for a cut that is neither of a hole nor on the line of the nearest one, such as a peck.
     fn is_cut(&self, place: usize) -> bool {
         let next = self.holes.partition_point(|hole| *hole < place);
         let near = [next.checked_sub(1), Some(next)].into_iter().flatten();
@@ -88,7 +87,7 @@ impl<'a> RevisionMoves<'a> {
     }
 }
 
-fn find((old, new): &(RevisionMoves<'_>, RevisionMoves<'_>), tolerance: f64) -> Vec<MoveRun> {
+fn find(old: &RevisionMoves<'_>, new: &RevisionMoves<'_>, tolerance: f64) -> Vec<MoveRun> {
     let mut alike: BTreeMap<[i64; MAX_AXES], Vec<usize>> = BTreeMap::new();
     new.free_cuts().for_each(|place| alike.entry(about(new.step(place))).or_default().push(place));
     let (mut known, mut known_now) = (BTreeSet::new(), BTreeSet::new());
@@ -118,122 +117,103 @@ fn find((old, new): &(RevisionMoves<'_>, RevisionMoves<'_>), tolerance: f64) -> 
     runs
 }
 
-/// A cut is another one where it begins elsewhere.
+/// Returns true for equal moves; a cut has to start at the same point as well.
 fn is_same(old: &Step, new: &Step, tolerance: f64) -> bool {
     old.is_same(new, tolerance) && (old.is_rapid() || near(&old.from, &new.from, tolerance))
 }
 
-/// Where a step ends, in hundredths; no even value lies between two of them.
+/// Returns the end point of a step in hundredths, offset so that round values are not on a limit.
 fn about(step: &Step) -> [i64; MAX_AXES] {
     std::array::from_fn(|axis| ((step.to[axis] + 0.001_7) * 100.0).floor() as i64)
 }
 
-/// What is told of such runs.
+/// Reordered runs and the rapids beside them.
 pub(super) struct ReorderedCuts<'a> {
     runs: &'a [MoveRun],
-    old: &'a Record,
-    new: &'a Record,
-    /// The moves of all of them, and the rapids that stay beside them.
-    was: BTreeSet<usize>,
-    is: BTreeSet<usize>,
+    alignment: Alignment<'a>,
+    /// Steps of the runs and of the rapids that stay beside them, old and new.
+    steps: [BTreeSet<usize>; 2],
 }
 
 impl<'a> ReorderedCuts<'a> {
-    pub(super) fn new(
-        runs: &'a [MoveRun],
-        links: &[StepPair],
-        (old, new): (&'a Record, &'a Record),
-        tolerance: f64,
-    ) -> Self {
+    pub(super) fn new(runs: &'a [MoveRun], alignment: Alignment<'a>) -> Self {
         let (was, is) = runs.iter().flat_map(|run| run.0.iter().copied()).unzip();
-        let mut displaced = Self { runs, old, new, was, is };
+        let mut cuts = Self { runs, alignment, steps: [was, is] };
         if !runs.is_empty() {
-            displaced.keep_rapids(links, tolerance);
+            cuts.keep_rapids();
         }
-        displaced
+        cuts
     }
 
-    /// A rapid that is gone and one that is new, with nothing between them but what is displaced, are one that stays.
-    fn keep_rapids(&mut self, links: &[StepPair], tolerance: f64) {
-        let (mut gone, mut come): (Vec<usize>, Vec<usize>) = Default::default();
+    /// Adds pairs of a lost and an added rapid that are equal, with nothing but reordered moves between them.
+    fn keep_rapids(&mut self) {
+        let Alignment { links, tolerance, .. } = self.alignment;
+        let mut unpaired = [Vec::new(), Vec::new()];
         for link in links {
-            let (i, j) = link.sides();
-            let is_same = |i: usize, j: usize| self.old.steps[i].is_same(&self.new.steps[j], tolerance);
-            let pair = match *link {
-                _ if self.contains(link) => None,
-                StepPair::Lost(i) if self.old.steps[i].is_rapid() => {
-                    gone.push(i);
-                    come.iter().find(|j| is_same(i, **j)).map(|j| (i, *j))
+            let sides = link.sides();
+            let Some(step) = self.alignment.step(*link).filter(|_| !self.contains(link)) else { continue };
+            if !(link.is_unpaired() && step.is_rapid()) {
+                if step.is_move() {
+                    unpaired = [Vec::new(), Vec::new()];
                 }
-                StepPair::Added(j) if self.new.steps[j].is_rapid() => {
-                    come.push(j);
-                    gone.iter().find(|i| is_same(**i, j)).map(|i| (*i, j))
+                continue;
+            }
+            let side = usize::from(sides[0].is_none());
+            let others = &self.alignment.records[1 - side].steps;
+            let equal =
+                unpaired[1 - side].iter().position(|other: &usize| others[*other].is_same(step, tolerance));
+            let number = sides[side].unwrap_or(0);
+            match equal {
+                Some(place) => {
+                    self.steps[1 - side].insert(unpaired[1 - side].remove(place));
+                    self.steps[side].insert(number);
                 }
-                _ => {
-                    let is_move = i.map(|i| &self.old.steps[i]).or(j.map(|j| &self.new.steps[j]));
-                    if is_move.is_some_and(Step::is_move) {
-                        gone.clear();
-                        come.clear();
-                    }
-                    None
-                }
-            };
-            if let Some((i, j)) = pair {
-                gone.retain(|known| *known != i);
-                come.retain(|known| *known != j);
-                self.was.insert(i);
-                self.is.insert(j);
+                None => unpaired[side].push(number),
             }
         }
     }
 
-    /// Whether a link is of a step that is made at another time.
+    /// Returns true if a link is of a step that is made at another time.
     pub(super) fn contains(&self, link: &StepPair) -> bool {
         match link {
-            StepPair::Lost(i) => self.was.contains(i),
-            StepPair::Added(j) => self.is.contains(j),
+            StepPair::Lost(i) => self.steps[0].contains(i),
+            StepPair::Added(j) => self.steps[1].contains(j),
             StepPair::Same(..) | StepPair::Changed(..) => false,
         }
     }
 
-    /// Whether the next cut behind a step is the same one of a run, before and now: tool, spindle and coolant of
-    /// these moves.
+    /// Returns true if the next cut after two steps is the same one of a run: they set tool, spindle or coolant for
+    /// it.
     pub(super) fn is_before_run(&self, i: usize, j: usize) -> bool {
+        let [old, new] = self.alignment.records;
         let cut =
             |steps: &[Step], from: usize| (from..steps.len()).find(|step| steps[*step].kind.rate().is_some());
-        let cuts = cut(&self.old.steps, i).zip(cut(&self.new.steps, j));
+        let cuts = cut(&old.steps, i).zip(cut(&new.steps, j));
         cuts.is_some_and(|cuts| self.runs.iter().any(|run| run.0.contains(&cuts)))
     }
 
-    /// One entry for all runs that are made otherwise by the same because of their time, or not at all.
-    pub(super) fn effects(&self, links: &[StepPair]) -> Vec<Effect> {
-        let is_cut = |(i, _): &(usize, usize)| self.old.steps[*i].kind.rate().is_some();
+    /// Returns one effect for all runs whose conditions differ alike.
+    pub(super) fn effects(&self) -> Vec<Effect> {
+        let steps = &self.alignment.records[0].steps;
+        let is_cut = |(i, _): &(usize, usize)| steps[*i].kind.rate().is_some();
         let cuts = |run: &MoveRun| run.0.iter().copied().filter(is_cut).collect::<Vec<_>>();
         let all: Vec<(usize, usize)> = self.runs.iter().flat_map(cuts).collect();
-        let mut with = changed_cut_settings(self.old, self.new, &all).into_iter();
-        let mut groups: Vec<(String, Vec<&MoveRun>)> = Vec::new();
-        for run in self.runs {
+        let mut with = changed_cut_settings(&self.alignment, &all).into_iter();
+        let runs = self.runs.iter().map(|run| {
             let mut texts: Vec<String> = with.by_ref().take(cuts(run).len()).flatten().collect();
             texts.dedup();
-            let text: String = texts.iter().map(|text| format!(", {text}")).collect();
-            match groups.iter_mut().find(|(known, _)| *known == text) {
-                Some((_, runs)) => runs.push(run),
-                None => groups.push((text, vec![run])),
-            }
-        }
-        groups.iter().map(|(with, runs)| self.effect(runs, with, links)).collect()
+            (texts.iter().map(|text| format!(", {text}")).collect::<String>(), run)
+        });
+        grouped(runs).iter().map(|(with, runs)| self.effect(runs, with)).collect()
     }
 
-    fn effect(&self, runs: &[&MoveRun], with: &str, links: &[StepPair]) -> Effect {
+    fn effect(&self, runs: &[&MoveRun], with: &str) -> Effect {
         let (i, j) = runs[0].0[0];
-        let (old, new) = (&self.old.steps[i], &self.new.steps[j]);
-        let is_first = |link: &&StepPair| {
-            matches!(link, StepPair::Lost(step) if *step == i)
-                || matches!(link, StepPair::Added(step) if *step == j)
-        };
-        let is_later = matches!(links.iter().find(is_first), Some(StepPair::Lost(_)));
+        let old = &self.alignment.records[0].steps[i];
+        let is_first = |link: &&StepPair| [StepPair::Lost(i), StepPair::Added(j)].contains(link);
+        let is_later = self.alignment.links.iter().find(is_first) == Some(&StepPair::Lost(i));
         let when = if is_later { "later" } else { "earlier" };
-        let one = format!("{} to {}", old.kind.one(), point(old, &self.old.axes));
+        let one = format!("{} to {}", old.kind.one(), point(old, self.alignment.axes()));
         let moves: usize = runs.iter().map(|run| run.0.len()).sum();
         let what = match (runs.len(), moves) {
             (1, 1) => format!("{one} is executed {when} than before"),
@@ -244,8 +224,6 @@ impl<'a> ReorderedCuts<'a> {
                 )
             }
         };
-        Effect::new("move-order", what + with)
-            .with_old(self.old.places.get(old.place))
-            .with_new(self.new.places.get(new.place))
+        Effect::new(&kinds::MOVE_ORDER, what + with, self.alignment.blocks([Some(i), Some(j)]))
     }
 }

@@ -1,25 +1,26 @@
-//! What a machine was told, step by step, in a form that two runs can be compared by.
+//! Steps of a run: moves and commands in a form in which two runs are compared.
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::kinds;
+use gcode_lang::diag::FindingKind;
 use gcode_lang::motion::{MAX_AXES, PlanarArc, Position, SpindleDirection, StopKind};
 
-/// One thing the machine was told.
+/// A move or a command.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     pub kind: StepKind,
-    /// Where the axes stand before and after it, the tool length offset taken out: a longer tool is one difference, not
-    /// one in every move.
+    /// Axis positions before and after it without the tool length offset: a longer tool is one difference, not one
+    /// in every move.
     pub from: Position,
     pub to: Position,
-    /// Where the axes stand after it, in machine coordinates.
+    /// Axis positions after it, in machine coordinates.
     pub at: Position,
-    /// The block it comes from, by its number in the record.
+    /// Number of its block in the record.
     pub place: usize,
-    /// The block that has said the T, the S or the feed that is taken up here, where that is another; nothing of what was read
-    /// from a file.
+    /// Block of the T, S or F word that the step uses, if that is another; `None` in a record from a file.
     pub set_by: Option<usize>,
-    /// What is in force, by its number in the record.
+    /// Number of its modal conditions in the record.
     pub condition: usize,
 }
 
@@ -36,13 +37,13 @@ pub(super) enum StepKind {
     Tool(u32),
     Length(Position),
     Spindle(SpindleDirection, f64),
-    /// On or off, and by which M code; a file may not say by which.
+    /// On or off, and the M code; `None` in files that do not have it.
     Coolant(bool, Option<u32>),
     /// An M code for the machine builder's logic.
     Auxiliary(u32),
-    /// With its text, and the variables that the text names with their values.
+    /// With its text, and the values of the variables that the text names.
     Stop(StopKind, String, Vec<(u32, f64)>),
-    /// What a block says that moves nothing here.
+    /// A command without simulated effect, as written.
     Silent(UnsimulatedKind, String),
 }
 
@@ -69,39 +70,51 @@ pub(super) enum UnsimulatedKind {
     Signal,
 }
 
-/// What can be paired with what.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Category {
-    Move,
-    Dwell,
-    Tool,
-    Length,
-    Spindle,
-    Coolant,
-    Auxiliary,
-    Stop,
-    Silent(UnsimulatedKind),
-}
+/// Name of a step of each kind, its change, and all of them in a list of what a record lacks.
+pub(super) const UNSIMULATED: [(UnsimulatedKind, &str, &FindingKind, &str); 8] = [
+    (UnsimulatedKind::Skip, "block skip", &kinds::BLOCK_SKIP, "block skips"),
+    (UnsimulatedKind::Path, "G code", &kinds::PATH_MODE, "exact stops and look-ahead of single blocks"),
+    (UnsimulatedKind::GCode, "G code", &kinds::G_CODE, "G codes without effect here"),
+    (UnsimulatedKind::MCode, "M code", &kinds::M_CODE, "M codes without effect here"),
+    (UnsimulatedKind::Tool, "tool call", &kinds::TOOL, "T without M06"),
+    (UnsimulatedKind::Speed, "spindle speed", &kinds::SPINDLE, "S without M03 or M04"),
+    (UnsimulatedKind::Switch, "switch", &kinds::SWITCH, "#3003 and #3004"),
+    (UnsimulatedKind::Signal, "output signal", &kinds::SIGNAL, "output signals"),
+];
 
 impl StepKind {
-    pub(super) fn category(&self) -> Category {
+    /// Returns the kind of a change of such a command, which can be paired with all commands of the same; `None`
+    /// for a move.
+    pub(super) fn change(&self) -> Option<&'static FindingKind> {
+        self.names().1
+    }
+
+    /// Returns the name of such a step.
+    pub(super) fn name(&self) -> &'static str {
+        self.names().0
+    }
+
+    fn names(&self) -> (&'static str, Option<&'static FindingKind>) {
         match self {
-            Self::Rapid | Self::Feed(_) | Self::Arc(..) | Self::Probe(_) => Category::Move,
-            Self::Dwell(_) => Category::Dwell,
-            Self::Tool(_) => Category::Tool,
-            Self::Length(_) => Category::Length,
-            Self::Spindle(..) => Category::Spindle,
-            Self::Coolant(..) => Category::Coolant,
-            Self::Auxiliary(_) => Category::Auxiliary,
-            Self::Stop(..) => Category::Stop,
-            Self::Silent(UnsimulatedKind::Tool, _) => Category::Tool,
-            Self::Silent(UnsimulatedKind::Speed, _) => Category::Spindle,
-            Self::Silent(UnsimulatedKind::MCode, _) => Category::Auxiliary,
-            Self::Silent(what, _) => Category::Silent(*what),
+            Self::Rapid => ("rapid", None),
+            Self::Feed(_) => ("feed", None),
+            Self::Arc(..) => ("arc", None),
+            Self::Probe(_) => ("probing move", None),
+            Self::Dwell(_) => ("dwell", Some(&kinds::DWELL)),
+            Self::Tool(_) => ("tool change", Some(&kinds::TOOL)),
+            Self::Length(_) => ("tool length offset", Some(&kinds::TOOL_LENGTH)),
+            Self::Spindle(..) => ("spindle command", Some(&kinds::SPINDLE)),
+            Self::Coolant(..) => ("coolant command", Some(&kinds::COOLANT)),
+            Self::Auxiliary(_) => ("M code", Some(&kinds::M_CODE)),
+            Self::Stop(..) => ("stop", Some(&kinds::STOP)),
+            Self::Silent(what, _) => {
+                let (_, name, kind, _) = UNSIMULATED[*what as usize];
+                (name, Some(kind))
+            }
         }
     }
 
-    /// The feed of a cut.
+    /// Returns the feed of a cut, mm/min.
     pub(super) fn rate(&self) -> Option<f64> {
         match self {
             Self::Feed(rate) | Self::Arc(_, rate) | Self::Probe(rate) => Some(*rate),
@@ -109,52 +122,32 @@ impl StepKind {
         }
     }
 
-    /// With its article.
+    /// Returns the name with its article.
     pub(super) fn one(&self) -> String {
-        let article = if matches!(self, Self::Arc(..)) { "an" } else { "a" };
-        format!("{article} {}", self.name())
-    }
-
-    /// As people say it.
-    pub(super) fn name(&self) -> &'static str {
-        match self {
-            Self::Rapid => "rapid",
-            Self::Feed(_) => "feed",
-            Self::Arc(..) => "arc",
-            Self::Probe(_) => "probing move",
-            Self::Dwell(_) => "dwell",
-            Self::Tool(_) => "tool change",
-            Self::Length(_) => "tool length offset",
-            Self::Spindle(..) => "spindle command",
-            Self::Coolant(..) => "coolant command",
-            Self::Auxiliary(_) => "M code",
-            Self::Stop(..) => "stop",
-            Self::Silent(UnsimulatedKind::Skip, _) => "block skip",
-            Self::Silent(UnsimulatedKind::Path | UnsimulatedKind::GCode, _) => "G code",
-            Self::Silent(UnsimulatedKind::MCode, _) => "M code",
-            Self::Silent(UnsimulatedKind::Tool, _) => "tool call",
-            Self::Silent(UnsimulatedKind::Speed, _) => "spindle speed",
-            Self::Silent(UnsimulatedKind::Switch, _) => "switch",
-            Self::Silent(UnsimulatedKind::Signal, _) => "output signal",
-        }
+        with_article(self.name())
     }
 }
 
+/// Returns a name with its article.
+pub(super) fn with_article(name: &str) -> String {
+    format!("{} {name}", if name.starts_with('a') { "an" } else { "a" })
+}
+
 impl Step {
-    /// The block that a reader changes for another tool, speed or feed.
+    /// Returns the block to edit for another tool, speed or feed.
     pub(super) fn editable_at(&self) -> usize {
         self.set_by.unwrap_or(self.place)
     }
 
     pub(super) fn is_move(&self) -> bool {
-        self.kind.category() == Category::Move
+        self.kind.change().is_none()
     }
 
     pub(super) fn is_rapid(&self) -> bool {
         self.kind == StepKind::Rapid
     }
 
-    /// The same thing done: a move to the same point in the same way, at whatever feed.
+    /// Returns true for the same action: a move of the same kind to the same point, at any feed.
     pub(super) fn is_same(&self, other: &Self, tolerance: f64) -> bool {
         match (&self.kind, &other.kind) {
             (StepKind::Rapid, StepKind::Rapid)
@@ -176,39 +169,39 @@ impl Step {
         }
     }
 
-    /// Two moves that go the same way from wherever they begin.
+    /// Returns true for two moves of the same direction and length.
     pub(super) fn is_parallel(&self, other: &Self, tolerance: f64) -> bool {
         self.is_move() && other.is_move() && near(&self.way(), &other.way(), tolerance)
     }
 
-    /// It ends on the line that `feed` runs along.
+    /// Returns true if the step ends on the line of `feed`.
     pub(super) fn is_on_line_of(&self, feed: &Self) -> bool {
         let (along, aside) = (feed.way(), difference(&self.to, &feed.to));
         let part = dot(&aside, &along) / dot(&along, &along).max(f64::MIN_POSITIVE);
-        // Rounded end points stand this far beside a slanting line.
+        // Rounded end points are this far off an oblique line.
         (0..MAX_AXES).all(|axis| (aside[axis] - part * along[axis]).abs() <= 0.002)
     }
 
-    /// From where it ends to where `other` ends, all axes as equal numbers.
+    /// Returns the distance between the end points of two steps, mm and degrees as equal numbers.
     pub(super) fn distance(&self, other: &Self) -> f64 {
         norm(&difference(&self.to, &other.to))
     }
 
-    /// From where it begins to where it ends.
+    /// Returns the displacement from start to end.
     pub(super) fn way(&self) -> Position {
         difference(&self.to, &self.from)
     }
 
-    /// The length of its way, straight, all axes as equal numbers.
+    /// Returns the straight distance from start to end, mm and degrees as equal numbers.
     pub(super) fn length(&self) -> f64 {
         norm(&self.way())
     }
 }
 
-/// How far rounded end points of moves that go together may be apart, mm or degrees.
+/// Largest deviation of rounded end points of moves that are shifted together, mm or degrees.
 pub(super) const ROUNDED: f64 = 0.0025;
 
-/// Whether a move stands on the line of the hole's feed, as far above the hole's bottom as before.
+/// Returns true if a move ends on the line of the hole's feed, as far above the bottom as before.
 pub(super) fn is_as_far_above(
     (old, feed_old): (&Step, &Step),
     (new, feed_new): (&Step, &Step),
@@ -219,13 +212,13 @@ pub(super) fn is_as_far_above(
     is_on_line && above.abs() <= ROUNDED
 }
 
-/// The same curve about the same centre.
+/// Returns true for the same angle about the same centre.
 pub(super) fn is_same_arc(a: &PlanarArc, b: &PlanarArc, tolerance: f64) -> bool {
     let off = (a.centre.0 - b.centre.0).abs().max((a.centre.1 - b.centre.1).abs());
     a.plane == b.plane && off <= tolerance && (a.sweep.0 - b.sweep.0).abs() <= 1e-3
 }
 
-/// How far each axis of `to` is from that of `from`.
+/// Returns `to` less `from`, axis by axis.
 pub(super) fn difference(to: &Position, from: &Position) -> Position {
     let mut way = Position::default();
     for axis in 0..MAX_AXES {
@@ -238,7 +231,7 @@ fn norm(way: &Position) -> f64 {
     dot(way, way).sqrt()
 }
 
-/// All axes as equal numbers.
+/// Returns the scalar product, mm and degrees as equal numbers.
 pub(super) fn dot(a: &Position, b: &Position) -> f64 {
     (0..MAX_AXES).map(|axis| a[axis] * b[axis]).sum()
 }

@@ -1,4 +1,4 @@
-//! A record as a file: JSON with one step, one block and one hole a line, so that a change of it can be read.
+//! Record as a file: JSON with one step, one block and one hole per line, so that changes of it are readable.
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
@@ -15,15 +15,16 @@ use gcode_inspect::holes::DrilledHole;
 use gcode_lang::motion::{Axes, Backtrace, PlanarArc, Position, SpindleDirection, StopKind};
 use gcode_lang::units::Deg;
 
-/// What a file of this kind begins with; another number is another form of it.
+/// Version of the format.
 const VERSION: u32 = 1;
 
+/// An accepted result: the record of a run as JSON.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AcceptedFile {
     version: u32,
     axes: String,
-    /// The main program's name as a control shows it.
+    /// Name of the main program as a control shows it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     program: Option<String>,
     totals: Totals,
@@ -75,7 +76,7 @@ enum StepLine {
         place: usize,
     },
     Spindle {
-        turning: StoredSpindle,
+        turning: SpindleDirection,
         speed: f64,
         place: usize,
     },
@@ -90,7 +91,7 @@ enum StepLine {
         place: usize,
     },
     Stop {
-        kind: StoredStop,
+        kind: StopKind,
         text: String,
         named: Vec<(u32, f64)>,
         place: usize,
@@ -109,24 +110,6 @@ enum StepLine {
     },
 }
 
-#[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
-enum StoredSpindle {
-    #[serde(rename = "off")]
-    Off,
-    #[serde(rename = "M03")]
-    Clockwise,
-    #[serde(rename = "M04")]
-    Counterclockwise,
-}
-
-#[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
-enum StoredStop {
-    M00,
-    M01,
-    #[serde(rename = "#3006")]
-    Message,
-}
-
 /// A hole in the part's frame, and the steps that cut it.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -142,13 +125,16 @@ struct Hole {
     again: Option<usize>,
 }
 
-/// Why a file of accepted results can't be used.
+/// Reason why an accepted result is not readable.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct StoreError(String);
 
 impl Record {
-    /// The record as a text.
+    /// Writes the record as JSON.
+    ///
+    /// # Errors
+    /// A value that JSON cannot represent.
     pub fn to_json(&self) -> Result<String, StoreError> {
         let mut at = Position::default();
         let mut steps = Vec::with_capacity(self.steps.len());
@@ -189,10 +175,10 @@ impl Record {
         Ok(text)
     }
 
-    /// Reads what [`Record::to_json`] has written.
+    /// Reads the result of [`Record::to_json`].
     ///
     /// # Errors
-    /// What isn't such a text, with the line where it isn't.
+    /// The first invalid value, with its line.
     pub fn from_json(text: &str) -> Result<Self, StoreError> {
         let file: AcceptedFile = serde_json::from_str(text).map_err(|error| StoreError(error.to_string()))?;
         if file.version != VERSION {
@@ -256,7 +242,7 @@ impl Record {
             program,
             ending,
             sources: None,
-            reached: BTreeMap::new(),
+            executed: BTreeMap::new(),
             totals,
         })
     }
@@ -282,29 +268,19 @@ impl Record {
                 StepLine::Length { offset: moved(&self.axes, &Position::default(), offset), place }
             }
             StepKind::Spindle(turning, speed) => {
-                let turning = match turning {
-                    SpindleDirection::Off => StoredSpindle::Off,
-                    SpindleDirection::Clockwise => StoredSpindle::Clockwise,
-                    SpindleDirection::Counterclockwise => StoredSpindle::Counterclockwise,
-                };
-                StepLine::Spindle { turning, speed: *speed, place }
+                StepLine::Spindle { turning: *turning, speed: *speed, place }
             }
             StepKind::Coolant(on, m) => StepLine::Coolant { on: *on, m: *m, place },
             StepKind::Auxiliary(m) => StepLine::Auxiliary { m: *m, place },
             StepKind::Stop(kind, text, named) => {
-                let kind = match kind {
-                    StopKind::M00 => StoredStop::M00,
-                    StopKind::M01 => StoredStop::M01,
-                    StopKind::Message => StoredStop::Message,
-                };
-                StepLine::Stop { kind, text: text.clone(), named: named.clone(), place }
+                StepLine::Stop { kind: *kind, text: text.clone(), named: named.clone(), place }
             }
             StepKind::Silent(what, code) => StepLine::Silent { what: *what, code: code.clone(), place },
         }
     }
 }
 
-/// The axes that stand elsewhere than before.
+/// Returns the positions of the axes that moved.
 fn moved(axes: &Axes, before: &Position, at: &Position) -> BTreeMap<char, f64> {
     let moved = axes.iter().filter(|(axis, _)| before[*axis] != at[*axis]);
     moved.map(|(axis, letter)| (letter, at[axis])).collect()
@@ -314,13 +290,13 @@ fn json(value: &impl Serialize) -> Result<String, StoreError> {
     serde_json::to_string(value).map_err(|error| StoreError(error.to_string()))
 }
 
-/// A list with one element a line.
+/// Writes a list with one element per line.
 fn lines(values: &[impl Serialize]) -> Result<String, StoreError> {
     let all = values.iter().map(json).collect::<Result<Vec<_>, _>>()?;
     Ok(if all.is_empty() { "[]".to_owned() } else { format!("[\n{}\n]", all.join(",\n")) })
 }
 
-/// Follows the axes through the steps of a file.
+/// Reads steps and tracks the axes.
 struct Steps<'a> {
     axes: &'a Axes,
     at: Position,
@@ -329,7 +305,7 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// `None` where the line is no step.
+    /// Reads a line; `None` if it is no step.
     fn step(&mut self, line: StepLine) -> Result<Option<Step>, StoreError> {
         let before = self.at;
         let (kind, place) = match line {
@@ -347,24 +323,10 @@ impl Steps<'_> {
                 self.length = self.put(&offset, Position::default())?;
                 (StepKind::Length(self.length), place)
             }
-            StepLine::Spindle { turning, speed, place } => {
-                let turning = match turning {
-                    StoredSpindle::Off => SpindleDirection::Off,
-                    StoredSpindle::Clockwise => SpindleDirection::Clockwise,
-                    StoredSpindle::Counterclockwise => SpindleDirection::Counterclockwise,
-                };
-                (StepKind::Spindle(turning, speed), place)
-            }
+            StepLine::Spindle { turning, speed, place } => (StepKind::Spindle(turning, speed), place),
             StepLine::Coolant { on, m, place } => (StepKind::Coolant(on, m), place),
             StepLine::Auxiliary { m, place } => (StepKind::Auxiliary(m), place),
-            StepLine::Stop { kind, text, named, place } => {
-                let kind = match kind {
-                    StoredStop::M00 => StopKind::M00,
-                    StoredStop::M01 => StopKind::M01,
-                    StoredStop::Message => StopKind::Message,
-                };
-                (StepKind::Stop(kind, text, named), place)
-            }
+            StepLine::Stop { kind, text, named, place } => (StepKind::Stop(kind, text, named), place),
             StepLine::Silent { what, code, place } => (StepKind::Silent(what, code), place),
             StepLine::Under { what, code, place } => {
                 let mut next = self.conditions.last().cloned().unwrap_or_default();
@@ -411,7 +373,7 @@ impl Hole {
         }
         Ok(DrilledHole {
             entry: Point3::from(self.entry),
-            // Made of length 1 once more it would not be the number that was written.
+            // Normalising again would change the last digits.
             axis: Unit::new_unchecked(axis),
             depth: self.depth,
             diameter: self.diameter,

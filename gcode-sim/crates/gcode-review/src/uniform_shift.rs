@@ -1,15 +1,13 @@
-//! Programs that make the same moves from block to block, all elsewhere by the same: their steps are linked in this
-//! order, though one may end where another did before. A shift by the pitch of holes leads each of them to the place
-//! of the next.
+//! Programs whose moves are all shifted by one displacement: their steps are linked in order, even if a shift by
+//! the pitch of the holes leads each move to the old end point of the next.
 use super::align::{StepPair, align};
-use super::cause::is_same_block;
+use super::program_text::words;
 use super::record::Record;
 use super::steps::{Step, difference, near};
 use gcode_lang::motion::{MAX_AXES, Position};
 
-/// Nothing where `links`, by places, tell the moves of one revision from none of the other, or where the blocks or
-/// the ways are others. Moves that stand at the same places of the machine by another tool length may be of any
-/// blocks.
+/// Returns the links of such a program; `None` if `links` leave no move unpaired on either side, or if blocks or
+/// displacements differ. Moves to unchanged machine positions with another tool length may be of any blocks.
 pub(super) fn pair_shifted_program(
     links: &[StepPair],
     old: &Record,
@@ -28,7 +26,8 @@ pub(super) fn pair_shifted_program(
     if !is_as_many || !both().all(is_kind) {
         return None;
     }
-    let is_block = |(a, b): (&Step, &Step)| is_same_block(&old.places[a.place], &new.places[b.place]);
+    let is_block =
+        |(a, b): (&Step, &Step)| words(&old.places[a.place].block) == words(&new.places[b.place].block);
     let is_at_once = || both().all(|(a, b)| near(&a.at, &b.at, tolerance));
     let is_by_the_same = || both().all(is_block) && is_uniform_shift(both(), tolerance);
     (is_at_once() || is_by_the_same()).then(|| linked(&pairs, old, new, tolerance))
@@ -39,7 +38,7 @@ fn moves(record: &Record) -> impl Iterator<Item = usize> {
     steps.filter(|(_, step)| step.is_move()).map(|(number, _)| number)
 }
 
-/// Each axis ends where it ended, or elsewhere by as much as in all other moves.
+/// Returns true if every axis that is displaced has one displacement in all moves.
 fn is_uniform_shift<'a>(both: impl Iterator<Item = (&'a Step, &'a Step)>, tolerance: f64) -> bool {
     let mut way = Position::default();
     for (old, new) in both {
@@ -58,7 +57,7 @@ fn is_uniform_shift<'a>(both: impl Iterator<Item = (&'a Step, &'a Step)>, tolera
     true
 }
 
-/// Pairs of moves, and what moves nothing between them as usual.
+/// Links pairs of moves, and aligns the commands between them.
 fn linked(pairs: &[(usize, usize)], old: &Record, new: &Record, tolerance: f64) -> Vec<StepPair> {
     let mut links = Vec::with_capacity(old.steps.len());
     let (mut i, mut j) = (0, 0);

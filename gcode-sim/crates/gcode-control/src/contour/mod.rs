@@ -38,17 +38,14 @@ impl Point {
         Self { x, y }
     }
 
-    /// Returns the scalar product.
     pub(crate) fn dot(self, other: Self) -> f64 {
         self.x * other.x + self.y * other.y
     }
 
-    /// Returns the Euclidean length.
     pub(crate) fn norm(self) -> f64 {
         self.dot(self).sqrt()
     }
 
-    /// Returns the unit vector of the same direction.
     pub(crate) fn normalize(self) -> Self {
         self / self.norm()
     }

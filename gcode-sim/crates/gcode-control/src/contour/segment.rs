@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_circle_stays_whole() {
+    fn a_full_circle_stays_full() {
         let (from, centre) = (Point::new(10.0, 0.0), Point::default());
         let circle = Segment::Arc { from, to: from, centre, sweep: Deg(-360.0) };
         let at = circle.parallel_start(-4.0);
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn three_four_five() {
+    fn a_line_and_a_circle_intersect_circles() {
         let circle = Curve::Circle { centre: point(0.0, 0.0), radius: 5.0 };
         let line = Curve::Line { point: point(3.0, -9.0), direction: point(0.0, 1.0) };
         assert_eq!(nearest_crossing(circle, line, point(0.0, 9.0)), Some(point(3.0, 4.0)));
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_apart_does_not_cross() {
+    fn separate_curves_do_not_intersect() {
         let circle = Curve::Circle { centre: point(0.0, 0.0), radius: 1.0 };
         let line = Curve::Line { point: point(2.0, 0.0), direction: point(0.0, 1.0) };
         let parallel = Curve::Line { point: point(3.0, 0.0), direction: point(0.0, -1.0) };

@@ -80,7 +80,6 @@ impl PathMove {
         Some(Self { kind: kind.clone(), segment, backtrace: request.backtrace.clone() })
     }
 
-    /// Returns its end on the programmed path.
     pub(super) fn end_position(&self) -> Position {
         self.kind.end().copied().unwrap_or_default()
     }

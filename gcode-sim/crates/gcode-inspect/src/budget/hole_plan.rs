@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::BudgetError;
 use crate::machine::{HeadKind, LinkMotion, Machine, Setup};
-use crate::verify::position::Deviation;
+use crate::verify::Deviation;
 use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
 use gcode_part::Hole;
@@ -19,33 +19,32 @@ pub(super) struct HolePlan<'h> {
 }
 
 impl<'h> HolePlan<'h> {
-    pub(super) fn new(machine: &Machine, wanted: &'h Hole, clearance: f64) -> Result<Self, BudgetError> {
-        let out_of_reach = || BudgetError::OutOfReach { id: id(wanted) };
-        let (entry, out) = (Point3::from(wanted.entry), Unit::new_normalize(Vector3::from(wanted.axis)));
+    pub(super) fn new(machine: &Machine, nominal: &'h Hole, clearance: f64) -> Result<Self, BudgetError> {
+        let id = nominal.id.clone().unwrap_or_default();
+        Self::find(machine, nominal, clearance).ok_or(BudgetError::OutOfReach { id })
+    }
+
+    fn find(machine: &Machine, nominal: &'h Hole, clearance: f64) -> Option<Self> {
+        let (entry, out) = (Point3::from(nominal.entry), Unit::new_normalize(Vector3::from(nominal.axis)));
         let tool = machine.tools.last().map(|tool| tool.number);
         let mut setup = Setup { tool, ..Setup::default() };
-        let reach = |tip: Point3<f64>, setup: &Setup| machine.inverse(tip, out, setup);
-        let bottom = reach(entry - out.into_inner() * wanted.depth, &setup);
+        let reach =
+            |height: f64, setup: &Setup| machine.inverse(entry + out.into_inner() * height, out, setup);
         // Of the two table positions the program uses the one on the side of +x.
-        let end = bottom.into_iter().reduce(|best, other| if other[0] > best[0] { other } else { best });
-        let end = end.ok_or_else(out_of_reach)?;
+        let ends = reach(-nominal.depth, &setup).into_iter();
+        let end = ends.reduce(|best, other| if other[0] > best[0] { other } else { best })?;
         let direction = machine.part_frame(&end).rotation * out.into_inner();
         if machine.head.is_set_by_hand() {
             setup.head_angle = Some(Deg::atan2(direction.y, direction.x));
         }
-        let starts = reach(entry + out.into_inner() * clearance, &setup);
-        let same = |start: &Position| !machine.table.is_moved(start, &end);
-        let start = starts.into_iter().find(same).ok_or_else(out_of_reach)?;
-        Ok(Self {
-            nominal: wanted,
-            start: round_position(machine, &setup, start),
-            end: round_position(machine, &setup, end),
-            setup,
-        })
+        let start =
+            reach(clearance, &setup).into_iter().find(|start| !machine.table.is_moved(start, &end))?;
+        let [start, end] = [start, end].map(|at| round_position(machine, &setup, at));
+        Some(Self { nominal, start, end, setup })
     }
 
     pub(super) fn id(&self) -> String {
-        id(self.nominal)
+        self.nominal.id.clone().unwrap_or_default()
     }
 
     /// Returns the deviation of the hole that this machine makes; `None` if its axis is across the nominal
@@ -63,10 +62,6 @@ impl<'h> HolePlan<'h> {
     pub(super) fn position_deviation(&self, machine: &Machine) -> f64 {
         self.deviation(machine).map_or(f64::INFINITY, |deviation| deviation.zone_diameter())
     }
-}
-
-fn id(hole: &Hole) -> String {
-    hole.id.clone().unwrap_or_default()
 }
 
 /// Rounds a position as the control does. A head that is an axis is at its rounded angle before the program

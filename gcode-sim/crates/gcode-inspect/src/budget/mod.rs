@@ -17,9 +17,9 @@ use hole_plan::HolePlan;
 pub use shares::ErrorShare;
 pub use statistics::Statistics;
 
+use crate::machine::ErrorSource;
 use crate::machine::Machine;
-use crate::machine::random::RandomStream;
-use crate::machine::sources::ErrorSource;
+use crate::machine::RandomStream;
 use gcode_part::Hole;
 
 /// Limit of the number of samples, 16 bytes of memory each.
@@ -75,62 +75,65 @@ pub struct HoleBudget {
 pub enum BudgetError {
     /// The machine cannot reach the hole along its axis.
     #[error("hole '{id}': the machine cannot reach it along the hole axis")]
-    OutOfReach { id: String },
+    OutOfReach {
+        /// Id of the hole.
+        id: String,
+    },
     /// The errors are too large for a position to be defined.
     #[error("hole '{id}': the errors are so large that no position can be computed")]
-    NoPosition { id: String },
+    NoPosition {
+        /// Id of the hole.
+        id: String,
+    },
 }
 
 /// Draws the samples and judges them. `progress` counts completed samples, for a progress bar.
 ///
 /// # Errors
 /// A hole out of reach, and errors too large for a position.
-pub fn budget(question: &BudgetRequest<'_>, progress: &AtomicUsize) -> Result<Budget, BudgetError> {
-    let planned = question
+pub fn budget(request: &BudgetRequest<'_>, progress: &AtomicUsize) -> Result<Budget, BudgetError> {
+    let planned = request
         .holes
         .iter()
-        .map(|hole| HolePlan::new(question.machine, hole, question.clearance))
+        .map(|hole| HolePlan::new(request.machine, hole, request.clearance))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut phis = vec![0.0; question.samples];
-    let mut worst = vec![0.0; question.samples];
+    let mut phis = vec![0.0; request.samples];
+    let mut worst = vec![0.0; request.samples];
     let mut holes = Vec::with_capacity(planned.len());
     for (index, hole) in planned.iter().enumerate() {
-        sample_hole(question, hole, index, &mut phis, &mut worst, progress);
+        sample_hole(request, hole, index, &mut phis, &mut worst, progress);
         if phis.iter().any(|phi| !phi.is_finite()) {
             return Err(BudgetError::NoPosition { id: hole.id() });
         }
-        let statistics = Statistics::of(&mut phis, question.tolerance);
-        let shares = shares::hole_shares(question, hole);
         holes.push(HoleBudget {
             id: hole.id(),
-            statistics,
-            nominal: hole.position_deviation(question.machine),
-            shares,
+            statistics: Statistics::of(&mut phis, request.tolerance),
+            nominal: hole.position_deviation(request.machine),
+            shares: shares::hole_shares(request, hole),
         });
     }
-    let parts = Statistics::of(&mut worst, question.tolerance);
-    let shares = shares::total_shares(&holes);
-    Ok(Budget { holes, parts, shares })
+    let parts = Statistics::of(&mut worst, request.tolerance);
+    Ok(Budget { parts, shares: shares::total_shares(&holes), holes })
 }
 
 /// Computes the position of one hole in every sample, and updates the worst position of each part.
 fn sample_hole(
-    question: &BudgetRequest<'_>,
+    request: &BudgetRequest<'_>,
     hole: &HolePlan<'_>,
     index: usize,
     phis: &mut [f64],
     worst: &mut [f64],
     progress: &AtomicUsize,
 ) {
-    let length = question.samples.div_ceil(question.threads.get()).max(MIN_SAMPLES_PER_THREAD);
-    let root = RandomStream::new(question.seed);
+    let length = request.samples.div_ceil(request.threads.get()).max(MIN_SAMPLES_PER_THREAD);
+    let root = RandomStream::new(request.seed);
     let draw = |part: usize, phis: &mut [f64], worst: &mut [f64]| {
-        let mut machine = question.machine.clone();
+        let mut machine = request.machine.clone();
         for (offset, (phi, worst)) in phis.iter_mut().zip(worst).enumerate() {
             let of_part = root.branch((part * length + offset) as u64);
-            machine.reset(question.machine);
+            machine.reset(request.machine);
             let of_hole = of_part.branch(HOLE_STREAM + index as u64);
-            for source in question.sources {
+            for source in request.sources {
                 let draw = if source.quantity.is_per_part() { of_part } else { of_hole };
                 source.draw_into(&mut machine, draw);
             }

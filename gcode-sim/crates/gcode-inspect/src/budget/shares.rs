@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use super::hole_plan::HolePlan;
 use super::{BudgetRequest, HoleBudget};
 use crate::machine::Machine;
-use crate::machine::sources::{ErrorSource, Quantity};
+use crate::machine::{ErrorSource, Quantity};
 use gcode_lang::units::Deg;
 
 /// Share of one source.
@@ -20,37 +20,36 @@ pub struct ErrorShare {
     pub share: f64,
 }
 
-/// Returns the shares at that end of the hole where all sources together displace its axis more.
-pub(super) fn hole_shares(question: &BudgetRequest<'_>, hole: &HolePlan<'_>) -> Vec<ErrorShare> {
-    let squares: Vec<[f64; 2]> =
-        question.sources.iter().map(|source| mean_squares(question.machine, hole, source)).collect();
-    let sums = [0, 1].map(|end| squares.iter().map(|ends| ends[end]).sum::<f64>());
-    let end = usize::from(sums[1] > sums[0]);
-    let share = |(source, squares): (&ErrorSource, &[f64; 2])| ErrorShare {
-        source: source.quantity.name(question.machine),
-        displacement: squares[end].sqrt(),
-        share: if sums[end] > 0.0 { squares[end] / sums[end] } else { 0.0 },
-    };
-    question.sources.iter().zip(&squares).map(share).collect()
+impl ErrorShare {
+    /// `square`: square of the displacement; `sum`: sum of the squares of all sources.
+    fn new(source: String, square: f64, sum: f64) -> Self {
+        Self { source, displacement: square.sqrt(), share: if sum > 0.0 { square / sum } else { 0.0 } }
+    }
 }
 
-/// Returns the shares over all holes: the sums of their squares, each at its own worse end; the largest
+/// Returns the shares at that end of the hole where all sources together displace its axis more.
+pub(super) fn hole_shares(request: &BudgetRequest<'_>, hole: &HolePlan<'_>) -> Vec<ErrorShare> {
+    let mean_squares = |source| mean_squares(request.machine, hole, source);
+    let squares: Vec<[f64; 2]> = request.sources.iter().map(mean_squares).collect();
+    let sums = [0, 1].map(|end| squares.iter().map(|ends| ends[end]).sum::<f64>());
+    let end = usize::from(sums[1] > sums[0]);
+    let sources = request.sources.iter().map(|source| source.quantity.name(request.machine));
+    sources.zip(&squares).map(|(source, ends)| ErrorShare::new(source, ends[end], sums[end])).collect()
+}
+
+/// Returns the shares over all holes: the means of their squares, each at its own worse end; the largest
 /// first.
 pub(super) fn total_shares(holes: &[HoleBudget]) -> Vec<ErrorShare> {
     let Some(first) = holes.first() else { return Vec::new() };
     let square = |index: usize| -> f64 {
-        let squares =
-            holes.iter().map(|hole| hole.shares[index].displacement * hole.shares[index].displacement);
-        squares.sum::<f64>() / holes.len() as f64
+        let displacements = holes.iter().map(|hole| hole.shares[index].displacement);
+        displacements.map(|displacement| displacement * displacement).sum::<f64>() / holes.len() as f64
     };
     let squares: Vec<f64> = (0..first.shares.len()).map(square).collect();
     let sum: f64 = squares.iter().sum();
-    let all = first.shares.iter().zip(&squares).map(|(share, square)| ErrorShare {
-        source: share.source.clone(),
-        displacement: square.sqrt(),
-        share: if sum > 0.0 { square / sum } else { 0.0 },
-    });
-    let mut all: Vec<ErrorShare> = all.collect();
+    let shares = first.shares.iter().zip(&squares);
+    let mut all: Vec<ErrorShare> =
+        shares.map(|(share, square)| ErrorShare::new(share.source.clone(), *square, sum)).collect();
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
     all
 }

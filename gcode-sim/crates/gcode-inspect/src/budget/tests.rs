@@ -1,7 +1,7 @@
 //! Budgets with known results: one or two sources, and distributions from tables.
 use super::*;
-use crate::machine::error::Distribution;
-use crate::machine::sources::Quantity;
+use crate::machine::Distribution;
+use crate::machine::Quantity;
 use gcode_lang::units::Deg;
 
 /// Returns an axial hole at azimuth 0 or 180 whose coordinates are whole increments: rounding changes
@@ -17,23 +17,30 @@ fn hole(x: f64) -> Hole {
     }
 }
 
-fn found(holes: &[Hole], sources: &[ErrorSource], samples: usize, threads: usize) -> Budget {
-    let machine = Machine::default();
-    let question = BudgetRequest {
-        machine: &machine,
+fn request<'q>(machine: &'q Machine, holes: &'q [Hole], sources: &'q [ErrorSource]) -> BudgetRequest<'q> {
+    BudgetRequest {
+        machine,
         holes,
         clearance: 2.0,
         sources,
-        samples,
+        samples: N,
         seed: 20_210_115,
-        threads: NonZeroUsize::new(threads).unwrap(),
+        threads: NonZeroUsize::new(2).unwrap(),
         tolerance: 0.1,
-    };
-    budget(&question, &AtomicUsize::new(0)).unwrap()
+    }
 }
 
-fn source(quantity: Quantity, spread: Distribution) -> ErrorSource {
-    ErrorSource { quantity, distribution: spread }
+fn of(request: &BudgetRequest<'_>) -> Budget {
+    budget(request, &AtomicUsize::new(0)).unwrap()
+}
+
+/// Returns the budget of holes on the default machine.
+fn found(holes: &[Hole], sources: &[ErrorSource]) -> Budget {
+    of(&request(&Machine::default(), holes, sources))
+}
+
+fn source(quantity: Quantity, distribution: Distribution) -> ErrorSource {
+    ErrorSource { quantity, distribution }
 }
 
 const N: usize = 60_000;
@@ -50,7 +57,7 @@ fn percentile(found: f64, expected: f64, q: f64, density: f64) {
 fn one_gaussian_axis_gives_the_half_normal_distribution() {
     let sigma = 0.01;
     for x in [300.0, -300.0] {
-        let found = found(&[hole(x)], &[source(Quantity::Linear(0), Distribution::Normal(sigma))], N, 2);
+        let found = found(&[hole(x)], &[source(Quantity::Linear(0), Distribution::Normal(sigma))]);
         let statistics = found.holes[0].statistics;
         let mean = 2.0 * sigma * (2.0 / std::f64::consts::PI).sqrt();
         let error = 2.0 * sigma * (1.0 - 2.0 / std::f64::consts::PI).sqrt() / (N as f64).sqrt();
@@ -76,7 +83,7 @@ fn one_gaussian_axis_gives_the_half_normal_distribution() {
 fn two_gaussian_shifts_give_the_rayleigh_distribution() {
     let sigma = 0.02;
     let sources = [Quantity::Shift(0), Quantity::Shift(2)].map(|q| source(q, Distribution::Normal(sigma)));
-    let found = found(&[hole(300.0), hole(-400.0)], &sources, N, 2);
+    let found = found(&[hole(300.0), hole(-400.0)], &sources);
     for hole in &found.holes {
         let mean = 2.0 * sigma * (std::f64::consts::PI / 2.0).sqrt();
         let error = 2.0 * sigma * (2.0 - std::f64::consts::PI / 2.0).sqrt() / (N as f64).sqrt();
@@ -101,7 +108,7 @@ fn two_gaussian_shifts_give_the_rayleigh_distribution() {
 /// 0 to 0.15.
 #[test]
 fn a_run_out_is_a_position_of_the_same_size() {
-    let found = found(&[hole(300.0)], &[source(Quantity::RunOut, Distribution::Uniform(0.15))], N, 2);
+    let found = found(&[hole(300.0)], &[source(Quantity::RunOut, Distribution::Uniform(0.15))]);
     let statistics = found.holes[0].statistics;
     percentile(statistics.p50, 0.075, 0.5, 1.0 / 0.15);
     percentile(statistics.p95, 0.1425, 0.95, 1.0 / 0.15);
@@ -113,9 +120,9 @@ fn a_run_out_is_a_position_of_the_same_size() {
 /// A head 0.1° beyond its angle, its tip in its nominal position (no pivot, no tool length): the tool is
 /// inclined to the hole, whose mouth is off by 15·tan 0.1°.
 #[test]
-fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
+fn an_error_of_the_head_angle_displaces_the_mouth() {
     for angle in [0.1, -0.1] {
-        let found = found(&[hole(300.0)], &[source(Quantity::Head, Distribution::Fixed(angle))], 1, 1);
+        let found = found(&[hole(300.0)], &[source(Quantity::Head, Distribution::Fixed(angle))]);
         let aside = 15.0 * Deg(0.1).tan();
         assert!((found.holes[0].statistics.max - 2.0 * aside).abs() < 1e-9, "{found:?}");
         assert!((found.shares[0].displacement - aside).abs() < 1e-6);
@@ -124,14 +131,14 @@ fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
 
 /// The sum of the sources' squares is the mean square of the samples, for a hole where one end decides.
 #[test]
-fn the_shares_add_up_to_what_the_samples_show() {
+fn the_squares_of_the_shares_add_up_to_those_of_the_samples() {
     let sources = [
         source(Quantity::Tilt(2), Distribution::Normal(0.002)),
         source(Quantity::Index, Distribution::Uniform(0.002)),
         source(Quantity::Linear(0), Distribution::Normal(0.005)),
         source(Quantity::Centre(0), Distribution::Normal(0.004)),
     ];
-    let found = found(&[hole(-300.0)], &sources, N, 2);
+    let found = found(&[hole(-300.0)], &sources);
     let squares: f64 =
         found.holes[0].shares.iter().map(|share| share.displacement * share.displacement).sum();
     assert!((found.holes[0].shares.iter().map(|share| share.share).sum::<f64>() - 1.0).abs() < 1e-12);
@@ -144,45 +151,29 @@ fn the_shares_add_up_to_what_the_samples_show() {
 }
 
 #[test]
-fn the_same_seed_is_the_same_answer_on_any_number_of_threads() {
+fn a_seed_gives_the_same_result_on_any_number_of_threads() {
     let sources = [
         source(Quantity::RunOut, Distribution::Uniform(0.1)),
         source(Quantity::Linear(0), Distribution::Normal(0.01)),
         source(Quantity::AxisTilt(2), Distribution::Normal(0.01)),
     ];
-    let holes = [hole(300.0), hole(-200.0)];
-    let one = found(&holes, &sources, 10_007, 1);
+    let (machine, holes) = (Machine::default(), [hole(300.0), hole(-200.0)]);
+    let with = |samples, threads| {
+        let threads = NonZeroUsize::new(threads).unwrap();
+        of(&BudgetRequest { samples, threads, ..request(&machine, &holes, &sources) })
+    };
+    let one = with(10_007, 1);
     for threads in [2, 3, 8] {
-        assert_eq!(one, found(&holes, &sources, 10_007, threads));
+        assert_eq!(one, with(10_007, threads));
     }
-    assert_eq!(
-        found(&holes, &sources, 1, 4).holes[0].statistics.share_in_tolerance,
-        1.0,
-        "fewer samples than threads"
-    );
+    assert_eq!(with(1, 4).holes[0].statistics.share_in_tolerance, 1.0, "fewer samples than threads");
 }
 
 #[test]
-fn a_hole_that_the_machine_cannot_reach_is_named() {
-    let machine = Machine::default();
-    let mut sideways = hole(300.0);
-    sideways.axis = [0.0, 0.6, 0.8];
-    let question = BudgetRequest {
-        machine: &Machine {
-            head: crate::machine::Head::new(
-                crate::machine::HeadKind::Fixed(nalgebra::Vector3::z_axis()),
-                0.0,
-            ),
-            ..machine
-        },
-        holes: &[sideways],
-        clearance: 2.0,
-        sources: &[],
-        samples: 1,
-        seed: 0,
-        threads: NonZeroUsize::MIN,
-        tolerance: 0.1,
-    };
-    let told = budget(&question, &AtomicUsize::new(0)).unwrap_err();
-    assert_eq!(told, BudgetError::OutOfReach { id: "1".to_owned() });
+fn a_hole_out_of_reach_is_named() {
+    let head = crate::machine::Head::new(crate::machine::HeadKind::Fixed(nalgebra::Vector3::z_axis()), 0.0);
+    let machine = Machine { head, ..Machine::default() };
+    let holes = [Hole { axis: [0.0, 0.6, 0.8], ..hole(300.0) }];
+    let error = budget(&request(&machine, &holes, &[]), &AtomicUsize::new(0)).unwrap_err();
+    assert_eq!(error, BudgetError::OutOfReach { id: "1".to_owned() });
 }

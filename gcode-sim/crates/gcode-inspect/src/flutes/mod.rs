@@ -1,53 +1,58 @@
-//! Motion → flutes: follows a grinder's wheel on the burr and tells grinding from approach, retract and indexing.
+//! Motion → flutes: follows a grinder's wheel on the burr and separates passes from approach, retract and indexing.
 //!
-//! Feeds that turn A are grinding moves; whatever else moves lies between two passes.
+//! Feeds that rotate A are grinding moves; all other motion lies between two passes.
 mod trace;
 mod wheel_collisions;
 mod wheel_state;
 
 use nalgebra::Point3;
 
-pub use trace::wrap_angle;
 pub use trace::{Sample, Trace, Window};
-pub use wheel_collisions::{CollisionKind, PlungeFeed, WheelCollision};
+pub(crate) use trace::{other_law, wrap_angle};
+pub(crate) use wheel_collisions::{CollisionKind, PlungeFeed, WheelCollision};
 use wheel_collisions::{CollisionTracker, MotionMode, MovedAxes};
 use wheel_state::WheelState;
-pub use wheel_state::{FirstOccurrence, StoppedWheel};
+pub(crate) use wheel_state::{FirstOccurrence, StoppedWheel};
 
 use crate::holes::UnknownWorkZero;
 use crate::holes::work_zero::WorkZeroTracker;
-use crate::machine::path::AxisMotion;
-use crate::machine::{LinkMotion, Machine, Wheel};
+use crate::machine::{AxisMotion, LinkMotion, Machine, Wheel};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, EventKind, EventSink, PlanarArc, Position};
 use gcode_lang::units::{Deg, Rpm};
 use gcode_part::Flutes;
 
-/// More moves than this aren't kept: no burr has so many, but a loop that never ends makes them.
+/// Largest number of moves: an endless loop must not fill the memory.
 const MAX_MOVES: usize = 500_000;
-/// Points are kept of all passes together for so many goes over every wanted flute: no burr is ground in as many, …
+
+/// Passes over each nominal flute for which points are kept.
 const KEPT_PASSES_PER_FLUTE: f64 = 40.0;
-/// … but for so many at least, and never for more than this.
+
+/// Least and largest number of kept points.
 const KEPT_POINTS_RANGE: (f64, f64) = (20_000.0, 1_000_000.0);
-/// So many times as many are computed in all, those between the passes included, and so many at least: turning and going
-/// round between two passes takes more of them than a short flute has.
+
+/// Factor and minimum for the number of computed points. Motion between two passes takes more points than a short flute.
 const COMPUTED_POINTS: (usize, usize) = (4, 400_000);
 
-/// How far apart the points of a pass are, and those between two passes, mm.
+/// Distance of the points of a pass, mm.
 const POINT_SPACING: f64 = 0.05;
+
+/// Distance of the points between two passes, mm.
 const COARSE_POINT_SPACING: f64 = 0.25;
 
-/// What is left of the arithmetic's own rounding, mm.
-pub const ROUNDING_ERROR: f64 = 1e-6;
+/// Rounding error of the arithmetic, mm.
+pub(crate) const ROUNDING_ERROR: f64 = 1e-6;
 
-/// Why flutes can't be followed on a machine.
+/// Reason for which flutes cannot be tracked on a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GrinderError {
+    /// The machine has no wheel.
     #[error(
         "the machine file has no [wheel], which grinds the burr: use the machine.toml next to the program"
     )]
     NoWheel,
+    /// No axis A rotates the burr.
     #[error(
         "the machine file has no axis A that rotates the burr about its own axis (a [[table]] with turns = \"x\")"
     )]
@@ -57,45 +62,49 @@ pub enum GrinderError {
 /// One pass of the wheel, in contact from end to end.
 #[derive(Clone, Debug)]
 pub struct GrindingPass {
+    /// Path of the contact.
     pub trace: Trace,
-    /// Where it begins.
-    pub backtrace: Backtrace,
-    pub moves: usize,
-    /// The least and the greatest angle of the swivelled wheel during the pass, where an axis swivels it.
-    pub head_range: Option<(Deg, Deg)>,
-    /// The first of its moves during which the wheel stood, and the first with M04 in force.
-    pub stopped_wheel: Option<StoppedWheel>,
-    pub reversed_wheel: Option<FirstOccurrence>,
-    /// The speeds of the turning wheel, each from the move on that is the first with it.
-    pub speeds: Vec<(Rpm, FirstOccurrence)>,
+    /// Block of its start.
+    pub(crate) backtrace: Backtrace,
+    /// Number of moves.
+    pub(crate) moves: usize,
+    /// Least and largest angle of the swivelled wheel; `None` if no axis swivels it.
+    pub(crate) head_range: Option<(Deg, Deg)>,
+    /// First move with the wheel stopped.
+    pub(crate) stopped_wheel: Option<StoppedWheel>,
+    /// First move with M04 in force.
+    pub(crate) reversed_wheel: Option<FirstOccurrence>,
+    /// Speeds of the rotating wheel, each with its first move.
+    pub(crate) speeds: Vec<(Rpm, FirstOccurrence)>,
 }
 
-/// What a program does to a burr.
+/// Passes and other contact of the wheel with a burr.
 #[derive(Clone, Debug, Default)]
 pub struct GrindingResult {
+    /// Passes in order.
     pub passes: Vec<GrindingPass>,
-    /// The deepest of each block.
-    pub collisions: Vec<WheelCollision>,
-    /// The feeds into the blank behind which a pass begins.
-    pub plunges: Vec<PlungeFeed>,
-    /// Rapids before the wheel first stood off the blank: where they began nobody knows, and nothing is said of them.
-    pub unchecked_rapids: usize,
-    /// Rapids whose way isn't known because axes are sent to machine coordinates.
-    pub unknown_work_zero: Option<UnknownWorkZero>,
-    /// From the C axis to the end of the burr's cylinder, x and y, as the machine file has it; `None` without a C that turns
-    /// about z.
-    pub offset: Option<[f64; 2]>,
-    /// Which way the axes run, by their letters: 1 or −1.
-    pub signs: Vec<(char, f64)>,
+    /// The deepest collision of each block.
+    pub(crate) collisions: Vec<WheelCollision>,
+    /// Feeds into the blank that lead to a pass.
+    pub(crate) plunges: Vec<PlungeFeed>,
+    /// Number of rapids before the wheel is first off the blank: their start is unknown, and they are not checked.
+    pub(crate) unchecked_rapids: usize,
+    /// Rapids whose path is unknown because axes are in machine coordinates.
+    pub(crate) unknown_work_zero: Option<UnknownWorkZero>,
+    /// End of the burr's cylinder relative to the C axis, x and y, by the machine file; `None` if no C rotates about z.
+    pub(crate) offset: Option<[f64; 2]>,
+    /// Directions of the axes by their letters, 1 or −1.
+    pub(crate) signs: Vec<(char, f64)>,
+    /// Findings about motion.
     pub findings: Vec<Diagnostic>,
 }
 
-/// Listens to a run and follows the contact on the burr.
+/// Sink for the events of a run that tracks the contact on the burr.
 #[derive(Debug)]
 pub struct FluteTracker<'m> {
     machine: &'m Machine,
     wheel: Wheel,
-    /// The axis that turns the burr about itself.
+    /// Axis that rotates the burr about itself.
     burr_axis: AxisIndex,
     flutes: Flutes,
     axis_position: Position,
@@ -106,12 +115,11 @@ pub struct FluteTracker<'m> {
     wheel_state: WheelState,
     work_zero: WorkZeroTracker,
     moves: usize,
-    /// Points kept of passes, and computed at all, and the most that may be.
     kept_points: usize,
     max_kept_points: usize,
     computed_points: usize,
     max_computed_points: usize,
-    /// No more is looked at, and that is told.
+    /// True once a limit is exceeded: later motion is not checked.
     is_full: bool,
 }
 
@@ -119,24 +127,16 @@ impl<'m> FluteTracker<'m> {
     /// Starts with every axis at machine zero.
     ///
     /// # Errors
-    /// A machine without a wheel, or without an A that turns the burr.
+    /// A machine without a wheel, or without an axis A that rotates the burr.
     pub fn new(machine: &'m Machine, flutes: Flutes) -> Result<Self, GrinderError> {
         let wheel = machine.wheel.ok_or(GrinderError::NoWheel)?;
-        let turns = machine.axes.find(b'A').filter(|axis| {
-            let of_axis = |link: &&crate::machine::AxisLink| link.axis == *axis;
-            machine
-                .table
-                .0
-                .iter()
-                .find(of_axis)
-                .is_some_and(|l| matches!(l.motion, LinkMotion::Rotary { .. }))
-        });
+        let burr_axis = machine.axes.find(b'A').filter(|axis| machine.table.rotary_sign(*axis).is_some());
         let most_kept = (KEPT_PASSES_PER_FLUTE * flutes.length() / POINT_SPACING)
             .clamp(KEPT_POINTS_RANGE.0, KEPT_POINTS_RANGE.1) as usize;
         Ok(Self {
             machine,
             wheel,
-            burr_axis: turns.ok_or(GrinderError::NoBurrAxis)?,
+            burr_axis: burr_axis.ok_or(GrinderError::NoBurrAxis)?,
             flutes,
             axis_position: Position::default(),
             moved_axes: MovedAxes::default(),
@@ -158,6 +158,7 @@ impl<'m> FluteTracker<'m> {
         })
     }
 
+    /// Ends the run and returns its passes.
     pub fn finish(mut self) -> GrindingResult {
         self.end_pass();
         self.result.unchecked_rapids = self.collisions.unchecked_rapids;
@@ -171,7 +172,7 @@ impl<'m> FluteTracker<'m> {
         self.result.passes.extend(self.current_pass.take());
     }
 
-    /// Tells once that nothing is looked at from here on.
+    /// Reports a limit; later motion is not checked.
     fn report_limit(&mut self, event: &Event<'_>, what: String) {
         self.is_full = true;
         let finding = Diagnostic::new(&LIMIT, format!("{what}: nothing after this is checked"));
@@ -200,31 +201,26 @@ impl<'m> FluteTracker<'m> {
         let travel = AxisMotion { from: &from, to, arc };
         let grinds = !rapid && from[self.burr_axis] != to[self.burr_axis];
         let apart = if grinds { POINT_SPACING } else { COARSE_POINT_SPACING };
-        let Some(steps) = self.step_count(&travel, apart) else {
-            return self.report_limit(
-                event,
-                format!("more than {} points of the wheel's path", self.max_computed_points),
-            );
-        };
-        if grinds && (self.max_kept_points - self.kept_points) as f64 <= steps {
+        let steps = self.step_count(&travel, apart);
+        if let Some(steps) = steps.filter(|_| grinds)
+            && (self.max_kept_points - self.kept_points) as f64 <= steps
+        {
             let what =
                 format!("more than {} points of passes, one every {POINT_SPACING} mm", self.max_kept_points);
             return self.report_limit(event, what);
         }
-        let Some(path) = self.contact_points(&travel, steps) else {
-            return self.report_limit(
-                event,
-                format!("more than {} points of the wheel's path", self.max_computed_points),
-            );
+        let Some(path) = steps.and_then(|steps| self.contact_points(&travel, steps)) else {
+            let what = format!("more than {} points of the wheel's path", self.max_computed_points);
+            return self.report_limit(event, what);
         };
         if !grinds {
             self.end_pass();
-            let turns = (from[self.burr_axis] != to[self.burr_axis]).then_some(self.result.passes.len());
-            let by = match rapid {
-                true => MotionMode::Rapid { passes_before: turns },
+            let rotates = from[self.burr_axis] != to[self.burr_axis];
+            let mode = match rapid {
+                true => MotionMode::Rapid { passes_before: rotates.then_some(self.result.passes.len()) },
                 false => MotionMode::Feed { seconds: event.seconds.0 },
             };
-            self.collisions.check_motion(&self.flutes, event.backtrace(), by, self.moved_axes, &path);
+            self.collisions.check_motion(&self.flutes, event.backtrace(), mode, self.moved_axes, &path);
             return;
         }
         self.kept_points = self.max_kept_points.min(self.kept_points + path.len());
@@ -250,7 +246,7 @@ impl<'m> FluteTracker<'m> {
         }
     }
 
-    /// A rapid from or to where nobody knows: only an end that is known is looked at.
+    /// Checks the end of a rapid from or to an unknown position, if that end is known.
     fn check_unknown_rapid(&mut self, event: &Event<'_>, (was, is): (u8, u8), to: &Position) {
         self.end_pass();
         self.work_zero.note_rapid(event, was | is);
@@ -266,17 +262,16 @@ impl<'m> FluteTracker<'m> {
         }
     }
 
-    /// Notes which axes move; how far the burr is turned about itself, no depth depends on.
+    /// Records the axes that move; the rotation of the burr about itself changes no depth.
     fn record_moved_axes(&mut self, from: &Position, to: &Position) {
         let axes = self.machine.table.0.iter().map(|link| link.axis).filter(|axis| *axis != self.burr_axis);
         let moved = axes.filter(|axis| from[*axis] != to[*axis]);
         self.moved_axes.0 = moved.fold(self.moved_axes.0, |mask, axis| mask | 1 << axis);
     }
 
-    /// In how many steps a motion is looked at, so that no two points are farther apart than about `apart` mm; `None`
-    /// where telling that takes too many of them.
+    /// Returns the number of steps of about `apart` mm along a motion; `None` if that takes too many points.
     fn step_count(&mut self, travel: &AxisMotion<'_>, apart: f64) -> Option<f64> {
-        // The length is measured first: by points a twelfth of a turn apart, for after whole turns all are in one place.
+        // The length is measured first, with points at most 30° apart: after whole revolutions they would coincide.
         let sweep = travel.arc.map_or(Deg::ZERO, |arc| arc.sweep.abs());
         let turn = self.machine.table.total_rotation(travel.from, travel.to) + sweep;
         let first = self.contact_points(travel, (turn.0 / 30.0).ceil().max(16.0))?;
@@ -284,8 +279,8 @@ impl<'m> FluteTracker<'m> {
         Some((length / apart).ceil().max(4.0))
     }
 
-    /// The contact on the burr in so many steps along a motion, one more if that is odd; `None` where that makes too
-    /// many of them in all.
+    /// Returns the contact on the burr along a motion, in an even number of steps; `None` if that makes too many points in
+    /// all.
     fn contact_points(&mut self, travel: &AxisMotion<'_>, steps: f64) -> Option<Vec<Point3<f64>>> {
         if (self.max_computed_points.saturating_sub(self.computed_points)) as f64 <= steps + 2.0 {
             return None;
@@ -297,7 +292,7 @@ impl<'m> FluteTracker<'m> {
     }
 }
 
-/// From the C axis to the part's origin while all axes stand at 0.
+/// Returns the part's origin relative to the C axis with all axes at 0.
 fn c_axis_offset(machine: &Machine) -> Option<[f64; 2]> {
     let axis = machine.axes.find(b'C')?;
     let link = machine.table.0.iter().find(|link| link.axis == axis)?;
@@ -310,7 +305,7 @@ fn c_axis_offset(machine: &Machine) -> Option<[f64; 2]> {
     }
 }
 
-/// Of the axes that carry the burr, and of the one that swivels the wheel.
+/// Returns the directions of the axes that carry the burr, and of the one that swivels the wheel.
 fn axis_signs(machine: &Machine) -> Vec<(char, f64)> {
     let carry = machine.table.0.iter().map(|link| {
         let (LinkMotion::Rotary { about: along, .. } | LinkMotion::Linear { along }) = &link.motion;
@@ -326,7 +321,7 @@ impl EventSink for FluteTracker<'_> {
             EventKind::Rapid { to } => self.motion(event, true, to, None),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, false, to, Some(arc)),
-            // How far the burr is turned about itself, no depth depends on.
+            // The rotation of the burr about itself changes no depth.
             EventKind::WorkZeroUnknown { axes } => {
                 self.work_zero.apply_event(self.machine, axes & !(1 << self.burr_axis))
             }

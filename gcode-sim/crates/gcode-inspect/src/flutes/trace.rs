@@ -1,4 +1,4 @@
-//! The contact's path on the burr: how far off the surface, how far along and around it, and its direction.
+//! Path of the contact on the burr: distance from the tooth bottom, path along and around the burr, direction.
 use nalgebra::Point3;
 
 use gcode_lang::motion::Backtrace;
@@ -9,60 +9,81 @@ use gcode_part::job::FluteLaw;
 /// One point of the path; lengths in mm.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
+    /// Point in the part's frame.
     pub point: Point3<f64>,
-    /// From the tooth bottom; below 0 inside.
+    /// Distance from the tooth bottom; negative inside.
     pub deviation: f64,
-    /// Polar angle of the surface's normal, from the tip.
+    /// Polar angle of the surface normal, from the tip.
     pub polar: Deg,
-    /// The way from the pass's beginning along the meridian, towards the tip.
+    /// Path along the meridian since the start of the pass, towards the tip.
     pub along: f64,
-    /// The way around the axis; above 0 right-handed with the way along.
-    pub around: f64,
-    /// The way around that the wanted law makes of the way along.
-    pub nominal_around: f64,
+    /// Path around the axis; positive is right-handed with the path along.
+    pub(crate) around: f64,
+    /// Path around by the nominal law, for the actual path along.
+    pub(crate) nominal_around: f64,
     /// The same by the other law.
-    pub other_law_around: f64,
-    /// The angle it has turned about the axis since the pass's beginning, in the sense of `around`.
-    pub turned_angle: Deg,
-    /// The angle about the axis where the pass begins, in the same sense.
-    pub start_azimuth: Deg,
-    /// The contact's own way since the pass's beginning, and the time it took, s.
-    pub path_length: f64,
-    pub seconds: f64,
-    /// Which of [`Trace::places`] moved here.
+    other_law_around: f64,
+    /// Rotation about the axis since the start of the pass, in the sense of `around`.
+    pub(crate) turned_angle: Deg,
+    /// Angle about the axis at the start of the pass, in the same sense.
+    pub(crate) start_azimuth: Deg,
+    /// Length of the path since the start of the pass.
+    pub(crate) path_length: f64,
+    /// Time since the start of the pass.
+    pub(crate) seconds: f64,
+    /// Index of the move in [`Trace::backtraces`].
     move_index: usize,
+}
+
+impl Sample {
+    /// Returns the angle about the axis, continuous along the pass.
+    pub(crate) fn angle(&self) -> Deg {
+        self.start_azimuth + self.turned_angle
+    }
 }
 
 /// The path of one pass.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
+    /// Points in order.
     pub samples: Vec<Sample>,
+    /// Block of each move.
     backtraces: Vec<Backtrace>,
-    /// That all moves so far took.
+    /// Time of all moves so far.
     seconds: f64,
 }
 
-/// The path's direction over a stretch of gauge length.
+/// Direction of the path over a stretch of the gauge length.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<'t> {
+    /// Sample in its middle.
     pub middle: &'t Sample,
-    /// Its first and its last sample, counted from 0.
-    pub ends: [usize; 2],
+    /// First and last sample, counted from 0.
+    pub(crate) ends: [usize; 2],
+    /// Helix angle.
     pub helix: Deg,
+    /// Helix angle by the nominal law.
     pub nominal_helix: Deg,
-    /// What the other law would have.
+    /// Helix angle by the other law.
     pub other_law_helix: Deg,
 }
 
-/// The angle about the axis in the sense of `around`.
+/// Returns the other of the two laws.
+pub(crate) fn other_law(law: FluteLaw) -> FluteLaw {
+    match law {
+        FluteLaw::ConstantHelix => FluteLaw::Published,
+        FluteLaw::Published => FluteLaw::ConstantHelix,
+    }
+}
+
+/// Returns the angle about the axis in the sense of `around`.
 fn azimuth(p: &Point3<f64>) -> Deg {
     Deg::atan2(-p.z, p.y)
 }
 
 impl Trace {
-    /// Goes on along `path`, whose first point is where the trace has come to and whose points are equally far in time.
-    /// Ways along and around are those of the surface's points below the path: how far the path is off says nothing of its
-    /// direction.
+    /// Appends `path`, which begins at the last sample and whose points have equal time steps. Along and around are
+    /// measured on the surface below the path: its height does not change its direction.
     pub(super) fn append(&mut self, flutes: &Flutes, path: &[Point3<f64>], seconds: f64, place: Backtrace) {
         let profile = &flutes.profile;
         let index = self.backtraces.len();
@@ -70,10 +91,7 @@ impl Trace {
         let begun = self.seconds;
         self.seconds += seconds;
         let steps = path.len().saturating_sub(1).max(1) as f64;
-        let other = match flutes.law {
-            FluteLaw::ConstantHelix => FluteLaw::Published,
-            FluteLaw::Published => FluteLaw::ConstantHelix,
-        };
+        let other = other_law(flutes.law);
         let foot = |at: &Point3<f64>| profile.foot(at);
         let mut previous_foot = self.samples.last().map(|last| foot(&last.point));
         for (step, at) in path.iter().enumerate() {
@@ -114,19 +132,37 @@ impl Trace {
         }
     }
 
-    /// The programmed points: where the pass begins, and where each of its moves ends.
-    pub fn programmed_points(&self) -> impl Iterator<Item = &Sample> {
+    /// Returns the programmed points: the start of the pass, and the end of each of its moves.
+    pub(crate) fn programmed_points(&self) -> impl Iterator<Item = &Sample> {
         let ends = self.samples.windows(2).filter(|pair| pair[0].move_index != pair[1].move_index);
         let first = self.samples.first().filter(|_| 1 < self.samples.len());
         first.into_iter().chain(ends.map(|pair| &pair[0])).chain(self.samples.last())
     }
 
-    /// The block that moved to a sample.
-    pub fn backtrace(&self, sample: &Sample) -> &Backtrace {
+    /// Returns the block that moved to a sample.
+    pub(crate) fn backtrace(&self, sample: &Sample) -> &Backtrace {
         &self.backtraces[sample.move_index]
     }
 
-    /// The direction of the path, over every stretch of the gauge's length, or over all of it if it is shorter.
+    /// Sums two values over the steps of each block, for pairs of consecutive samples.
+    pub(crate) fn sum_by_block<'t>(
+        &'t self,
+        pairs: impl Iterator<Item = &'t [Sample]>,
+        values: impl Fn(&Sample, &Sample) -> [f64; 2],
+    ) -> Vec<(&'t Backtrace, [f64; 2])> {
+        let mut blocks: Vec<(&Backtrace, [f64; 2])> = Vec::new();
+        for pair in pairs {
+            let place = self.backtrace(&pair[1]);
+            let [first, second] = values(&pair[0], &pair[1]);
+            match blocks.last_mut().filter(|(last, _)| std::ptr::eq(*last, place)) {
+                Some((_, [sum, other])) => (*sum, *other) = (*sum + first, *other + second),
+                None => blocks.push((place, [first, second])),
+            }
+        }
+        blocks
+    }
+
+    /// Returns the direction of the path over every stretch of the gauge length, or over a whole path that is shorter.
     pub fn windows(&self, gauge: f64) -> impl Iterator<Item = Window<'_>> {
         let length =
             |one: &Sample, other: &Sample| libm::hypot(other.along - one.along, other.around - one.around);
@@ -139,7 +175,7 @@ impl Trace {
                 end += 1;
             }
             let last = &samples[end];
-            // The same flute, whichever way it is ground.
+            // A flute is the same in both directions of grinding.
             let along = last.along - first.along;
             let sense = if along < 0.0 { -1.0 } else { 1.0 };
             let angle = |way: f64| Deg::atan2(way * sense, along.abs());
@@ -153,18 +189,18 @@ impl Trace {
         })
     }
 
-    /// The angle about the axis where the path crosses `x`; `None` where it doesn't.
+    /// Returns the angle about the axis at which the path crosses `x`; `None` if it does not.
     pub fn angle_at(&self, x: f64) -> Option<Deg> {
         let crossing = |pair: &[Sample]| (pair[0].point.x - x) * (pair[1].point.x - x) <= 0.0;
         let pair = self.samples.windows(2).find(|pair| crossing(pair))?;
         let (before, after) = (&pair[0], &pair[1]);
         let way = before.point.x - after.point.x;
         let part = if way == 0.0 { 0.0 } else { (before.point.x - x) / way };
-        Some(before.start_azimuth + before.turned_angle + (after.turned_angle - before.turned_angle) * part)
+        Some(before.angle() + (after.turned_angle - before.turned_angle) * part)
     }
 }
 
-/// The same turn by the shorter way, −180° to 180°.
-pub fn wrap_angle(angle: f64) -> f64 {
+/// Returns the equivalent angle between −180 and 180.
+pub(crate) fn wrap_angle(angle: f64) -> f64 {
     (angle + 180.0).rem_euclid(360.0) - 180.0
 }

@@ -1,5 +1,5 @@
-//! What the wheel does in the blank between two passes: it may go straight in where a pass begins and straight out where
-//! one ends; all else is a dive.
+//! Contact of the wheel with the blank between two passes: straight in where a pass begins, straight out where one ends; all
+//! other contact is a collision.
 use nalgebra::Point3;
 
 use super::ROUNDING_ERROR;
@@ -8,52 +8,52 @@ use crate::holes::per_block::PerBlock;
 use gcode_lang::motion::Backtrace;
 use gcode_part::Flutes;
 
-/// How the wheel came into the burr where no pass was.
+/// Kind of a collision.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CollisionKind {
-    /// In rapid motion.
+pub(crate) enum CollisionKind {
+    /// Rapid motion.
     Rapid,
-    /// In rapid motion along a flute, as a pass would go; which of all passes it is, counted from 1.
+    /// Rapid motion along a flute, in place of a pass; its number among all passes, from 1.
     RapidPass(usize),
-    /// A feed that doesn't turn the burr, below the tooth bottom.
+    /// Feed without rotation of the burr, below the tooth bottom.
     BelowToothBottom,
-    /// A feed that doesn't turn the burr, so far along or around it, mm.
+    /// Feed without rotation of the burr, along or around it by this length, mm.
     Sideways(f64),
-    /// Straight in, where no pass begins.
+    /// Feed straight in where no pass begins.
     PlungeWithoutPass,
-    /// A rapid that ends nearer to the blank than the job's clearance; its depth is below 0.
+    /// Rapid that ends closer to the blank than the job's clearance; its depth is negative.
     LowClearance,
 }
 
-/// Where the wheel came too near between two passes.
+/// A collision, or a clearance that is too small.
 #[derive(Clone, Debug)]
-pub struct WheelCollision {
+pub(crate) struct WheelCollision {
     pub backtrace: Backtrace,
     pub kind: CollisionKind,
-    /// Where on the burr it was deepest, mm.
+    /// Deepest point on the burr, mm.
     pub point: Point3<f64>,
-    /// Where it was nearest: below the tooth bottom if that is what's wrong, else below the blank's surface, mm.
+    /// Largest depth, mm: below the tooth bottom for [`CollisionKind::BelowToothBottom`], else below the blank's surface.
     pub depth: f64,
-    /// How often the block did it; the depth is the greatest.
+    /// Number of occurrences at the block.
     pub count: u64,
-    /// Moves, of a pass in rapid motion that begins at this block more than one.
+    /// Number of moves: several for a pass in rapid motion that begins at this block.
     pub moves: usize,
 }
 
-/// A feed straight into the blank, behind which a pass begins.
+/// A feed straight into the blank that leads to a pass.
 #[derive(Clone, Debug)]
-pub struct PlungeFeed {
+pub(crate) struct PlungeFeed {
     pub backtrace: Backtrace,
-    /// Of the contact, mm/min.
+    /// Speed of the contact, mm/min.
     pub speed: f64,
-    /// Where it ends, on the burr.
+    /// End point on the burr.
     pub point: Point3<f64>,
 }
 
-/// How a motion that is no pass is made.
+/// Mode of a motion that is no pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum MotionMode {
-    /// Where it turns the burr: behind so many passes.
+    /// `passes_before`: number of earlier passes, for a rapid that rotates the burr.
     Rapid {
         passes_before: Option<usize>,
     },
@@ -62,61 +62,62 @@ pub(super) enum MotionMode {
     },
 }
 
-/// A rapid that ended in the cut, reckoned with axes at 0 that hadn't moved.
+/// A rapid that ends in the cut if the axes that have not moved are at 0.
 #[derive(Debug)]
 struct EarlyRapid {
     backtrace: Backtrace,
     depth: DeepestPoint,
-    /// The axes that had moved by its end.
+    /// Axes that have moved by its end.
     moved_axes: MovedAxes,
 }
 
-/// The axes that the contact's place depends on and that have moved since the start, as bits, axis 1 the lowest.
+/// Axes that have moved since the start and move the contact, as bits, axis 1 the lowest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct MovedAxes(pub(super) u32);
 
-/// Motion is straight in or out if it goes no more than this part of its way sideways: 3°.
+/// Largest sideways share of a motion straight in or out: 3°.
 const MAX_SIDEWAYS_RATIO: f64 = 0.05;
 
-/// How deep, mm, and where on the burr.
+/// Depth, mm, and point on the burr.
 #[derive(Clone, Copy, Debug)]
 struct DeepestPoint {
     depth: f64,
     point: Point3<f64>,
 }
 
-/// How the wheel stands.
+/// Position of the wheel relative to the blank.
 #[derive(Clone, Debug, Default)]
 enum WheelPosition {
-    /// Off the blank, or nothing is known.
+    /// Off the blank, or unknown.
     #[default]
     OffBlank,
-    /// Fed straight in here, so far below the blank's surface, and no pass has begun yet.
+    /// Fed straight in, before the pass begins.
     Plunged(DeepestPoint, PlungeFeed),
-    /// In the cut of a pass that began here, or of a dive that is told already.
+    /// In the cut of a pass, or of a reported collision.
     InCut,
 }
 
-/// Looks at every motion between two passes.
+/// Checks the motion between passes.
 #[derive(Debug, Default)]
 pub(super) struct CollisionTracker {
     position: WheelPosition,
     collisions: PerBlock<u8, WheelCollision>,
-    /// The wheel has been off the blank: before that, nobody knows where a rapid began.
+    /// True once the wheel has been off the blank: the start of a rapid before that is unknown.
     has_been_outside: bool,
-    /// Rapids that weren't looked at for that reason.
+    /// Number of rapids not checked for that reason.
     pub(super) unchecked_rapids: usize,
-    /// Those of them that ended in the cut before the first pass began, if the axes stood as is reckoned.
+    /// Those among them that may end in the cut.
     early_rapids: Vec<EarlyRapid>,
-    /// The pass in rapid motion that goes on, in `found`, and how many there were.
+    /// Index in `collisions` of the current pass in rapid motion.
     current_rapid_pass: Option<usize>,
+    /// Number of passes in rapid motion.
     rapid_passes: usize,
     pub(super) plunges: Vec<PlungeFeed>,
 }
 
 impl CollisionTracker {
-    /// A pass goes on, or begins where the wheel stands. An axis that hadn't moved when a rapid ended and hasn't yet stood
-    /// there as it does now, where the flute is reckoned with it.
+    /// Begins or continues a pass. If no axis has moved for the first time since an early rapid, the position of that rapid
+    /// is that of the flute, and it is a collision.
     pub(super) fn enter_cut(&mut self, moved: MovedAxes) {
         for early in std::mem::take(&mut self.early_rapids) {
             if early.moved_axes == moved {
@@ -138,14 +139,14 @@ impl CollisionTracker {
             .collect()
     }
 
-    /// The wheel stood in the blank and no pass began.
+    /// Reports a plunge that no pass follows.
     fn report_plunge_without_pass(&mut self) {
         if let WheelPosition::Plunged(depth, plunge) = std::mem::take(&mut self.position) {
             self.add(plunge.backtrace, CollisionKind::PlungeWithoutPass, depth);
         }
     }
 
-    /// The deepest of each block: a loop makes all of its dives alike.
+    /// Adds a collision; one entry per block and kind has the deepest. Returns its index.
     fn add(&mut self, place: Backtrace, kind: CollisionKind, deepest: DeepestPoint) -> usize {
         let which = match kind {
             CollisionKind::Rapid => 0,
@@ -159,16 +160,16 @@ impl CollisionTracker {
         let first =
             || WheelCollision { backtrace: place.clone(), kind, point: at, depth, count: 0, moves: 0 };
         let (index, entry) = self.collisions.count(place.block, which, first);
-        let dive = &mut entry.value;
-        dive.moves += 1;
-        if dive.depth < depth && !matches!(kind, CollisionKind::RapidPass(_)) {
-            dive.kind = kind;
+        let collision = &mut entry.value;
+        collision.moves += 1;
+        if collision.depth < depth && !matches!(kind, CollisionKind::RapidPass(_)) {
+            collision.kind = kind;
         }
-        dive.deepen(deepest);
+        collision.deepen(deepest);
         index
     }
 
-    /// A rapid that goes along a flute in the blank: a pass begins with it, or goes on. `passes`: those in feed so far.
+    /// Begins or continues a pass in rapid motion after `passes` passes in feed.
     fn rapid_pass(&mut self, place: Backtrace, depth: DeepestPoint, passes: usize) {
         self.position = WheelPosition::InCut;
         if let Some(entry) = self.current_rapid_pass.and_then(|index| self.collisions.get_mut(index)) {
@@ -181,7 +182,7 @@ impl CollisionTracker {
             Some(self.add(place, CollisionKind::RapidPass(passes + self.rapid_passes), depth));
     }
 
-    /// Looks at a motion that is no pass.
+    /// Checks a motion that is no pass.
     pub(super) fn check_motion(
         &mut self,
         flutes: &Flutes,
@@ -209,7 +210,7 @@ impl CollisionTracker {
         let MotionMode::Feed { seconds } = mode else {
             self.report_plunge_without_pass();
             self.position = if motion.ends_in_cut { WheelPosition::InCut } else { WheelPosition::OffBlank };
-            // A rapid that goes straight out of the cut begins on the tooth bottom.
+            // A rapid straight out of the cut starts on the tooth bottom.
             let leaves = motion.is_receding
                 && motion.is_straight
                 && -flutes.surface_tolerance - ROUNDING_ERROR < motion.start_distance;
@@ -242,7 +243,7 @@ impl CollisionTracker {
         } else if !motion.ends_in_cut {
             self.report_plunge_without_pass();
         } else if motion.starts_in_cut && matches!(self.position, WheelPosition::OffBlank) {
-            // Where the program begins in the cut, nobody knows how it came there.
+            // A program that starts in the cut has an unknown approach.
             self.position = WheelPosition::InCut;
         } else if motion.end_distance < motion.start_distance
             && !matches!(self.position, WheelPosition::InCut)
@@ -250,7 +251,7 @@ impl CollisionTracker {
             let length: f64 = path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
             let at = path.last().copied().unwrap_or(motion.deepest_point);
             let here = PlungeFeed { backtrace: place, speed: 60.0 * length / seconds, point: at };
-            // Of more feeds than one the fastest.
+            // Of several feeds the fastest counts.
             let plunge = match std::mem::take(&mut self.position) {
                 WheelPosition::Plunged(_, before) if here.speed <= before.speed => before,
                 WheelPosition::OffBlank | WheelPosition::Plunged(..) | WheelPosition::InCut => here,
@@ -260,23 +261,23 @@ impl CollisionTracker {
     }
 }
 
-/// A motion as the blank sees it.
+/// A motion relative to the blank.
 struct MotionProfile {
     /// Distances from the tooth bottom, mm.
     start_distance: f64,
     end_distance: f64,
     min_distance: f64,
     deepest_point: Point3<f64>,
-    /// Whether it starts and ends in the cut.
+    /// True if it starts and if it ends in the cut.
     starts_in_cut: bool,
     ends_in_cut: bool,
-    /// It goes away from the burr all the time.
+    /// True if it only moves away from the burr.
     is_receding: bool,
-    /// In the cut it goes straight in or out.
+    /// True if it is straight in or out while in the cut.
     is_straight: bool,
-    /// How far it goes along and around the burr in the cut, mm.
+    /// Length along and around the burr while in the cut, mm.
     sideways_length: f64,
-    /// In the cut it goes along the burr, not just around it.
+    /// True if it moves along the burr while in the cut, not only around it.
     is_slanted: bool,
 }
 
@@ -292,7 +293,7 @@ impl MotionProfile {
     fn of(flutes: &Flutes, path: &[Point3<f64>]) -> Self {
         let profile = &flutes.profile;
         let distances: Vec<f64> = path.iter().map(|p| profile.distance(p)).collect();
-        // What is as near to the tooth bottom as a pass may be is in the cut even if no blank stands above it.
+        // Within the tolerance of the tooth bottom the wheel is in the cut even without a blank above it.
         let cut = flutes.tooth_depth.max(flutes.surface_tolerance) - ROUNDING_ERROR;
         let (first, last) = (distances.first().copied(), distances.last().copied());
         let (mut sideways, mut length, mut along) = (0.0, 0.0, 0.0);

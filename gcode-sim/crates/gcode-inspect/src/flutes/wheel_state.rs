@@ -1,26 +1,26 @@
-//! Whether the wheel turns, and which way round, while it grinds.
+//! Rotation of the wheel while it grinds.
 use nalgebra::Point3;
 
 use super::GrindingPass;
 use gcode_lang::motion::{Backtrace, EventKind, SpindleDirection};
 use gcode_lang::units::Rpm;
 
-/// The first move of a pass of which something is so, and where it begins on the burr.
+/// The first move of a pass with some property, and its start on the burr.
 #[derive(Clone, Debug)]
-pub struct FirstOccurrence {
+pub(crate) struct FirstOccurrence {
     pub backtrace: Backtrace,
     pub point: Point3<f64>,
 }
 
-/// Grinding while no M03 or M04 with a speed is in force.
+/// Grinding without M03 or M04 and a speed in force.
 #[derive(Clone, Debug)]
-pub struct StoppedWheel {
+pub(crate) struct StoppedWheel {
     pub first: FirstOccurrence,
-    /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the wheel.
+    /// Last M code of the machine builder since M03, M04 or M05: it may have started the wheel.
     pub builder_code: Option<u32>,
 }
 
-/// What the program has said of the wheel so far.
+/// Modal state of the wheel.
 #[derive(Debug, Default)]
 pub(super) struct WheelState {
     direction: SpindleDirection,
@@ -31,9 +31,9 @@ pub(super) struct WheelState {
 impl WheelState {
     pub(super) fn apply_event(&mut self, kind: &EventKind) {
         match kind {
-            // At S0 it stands.
-            EventKind::Spindle { speed, direction: turning } => {
-                self.direction = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
+            // S0 stops the wheel.
+            EventKind::Spindle { speed, direction } => {
+                self.direction = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *direction };
                 self.speed = *speed;
                 self.builder_code = None;
             }
@@ -42,7 +42,7 @@ impl WheelState {
         }
     }
 
-    /// Notes on a pass how the wheel turns during one of its moves.
+    /// Records the rotation of the wheel during a move of a pass.
     pub(super) fn record(&self, pass: &mut GrindingPass, begun: impl Fn() -> FirstOccurrence) {
         if self.direction != SpindleDirection::Off
             && pass.speeds.last().is_none_or(|(last, _)| *last != self.speed)

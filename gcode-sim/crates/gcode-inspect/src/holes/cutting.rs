@@ -1,39 +1,40 @@
-//! What is in force while a tool cuts: its direction of rotation, S, F and length offset, which the verdict holds against
-//! what the reference says of the tool.
+//! Cutting conditions: what is in force while a tool cuts, by block, for comparison with the reference.
 use super::per_block::PerBlock;
 use gcode_lang::motion::{Backtrace, LengthCompensation, SpindleDirection};
 use gcode_lang::units::{MmPerMin, Rpm};
 
-/// How much strokes cut beyond the ones before them, mm.
+/// Depths that the strokes of a line add to the ones before, mm.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PeckExtent {
-    /// So many strokes cut.
+    /// Number of strokes that cut.
     pub strokes: u32,
-    /// The most that one of them was fed beyond the others, air included.
+    /// Longest advance of a stroke, motion above the part included.
     pub max_fed: f64,
-    /// The most that one of them cut of the part.
+    /// Largest depth of cut of a stroke in the part.
     pub max_cut: f64,
 }
 
-/// How a block feeds a tool into the part.
+/// Conditions under which a block feeds a tool into the part.
 #[derive(Clone, Debug)]
-pub struct CutConditions {
+pub(crate) struct CutConditions {
+    /// Block of the first such cut.
     pub backtrace: Backtrace,
+    /// Tool in the spindle; `None` before the first tool change.
     pub tool: Option<u32>,
     pub compensation: LengthCompensation,
     pub spindle_direction: SpindleDirection,
     pub speed: Rpm,
-    /// The slowest and the fastest of the feeds.
+    /// Slowest and fastest feed.
     pub feed_range: [MmPerMin; 2],
-    /// The most that was cut without a way back, mm.
+    /// Largest depth of cut without a retract, mm.
     pub max_cut: f64,
-    /// Of cuts in several strokes the least by which one went on, each taken by its longest, mm.
+    /// Least peck of the cuts in several strokes, each by its longest stroke, mm; `None` without pecks.
     pub min_peck: Option<f64>,
-    /// How many cuts were made so at that block.
+    /// Number of such cuts at the block.
     pub count: u64,
 }
 
-/// What the program has said so far.
+/// Modal state of the program that concerns cutting.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CuttingState {
     pub tool: Option<u32>,
@@ -42,7 +43,7 @@ pub(super) struct CuttingState {
     pub speed: Rpm,
 }
 
-/// One for each block and what was in force there, in the order in which they came up.
+/// Conditions by block and state, in order of first occurrence.
 #[derive(Debug, Default)]
 pub(super) struct CutConditionsByBlock(PerBlock<[u64; 6], CutConditions>);
 
@@ -51,33 +52,33 @@ impl CutConditionsByBlock {
         &mut self,
         place: &Backtrace,
         state: &CuttingState,
-        feeds: [MmPerMin; 2],
+        feed_range: [MmPerMin; 2],
         pecks: PeckExtent,
     ) {
-        let CuttingState { tool, compensation: by, spindle_direction: turning, speed } = *state;
-        let length = match by {
+        let CuttingState { tool, compensation, spindle_direction, speed } = *state;
+        let length = match compensation {
             LengthCompensation::Off => 0,
             LengthCompensation::Plus(h) => 1 << 32 | u64::from(h),
             LengthCompensation::Minus(h) => 2 << 32 | u64::from(h),
         };
         let tool_key = tool.map_or(u64::MAX, u64::from);
-        let [least, most] = feeds.map(|feed| feed.0.to_bits());
-        let kind = [tool_key, length, turning as u64, speed.0.to_bits(), least, most];
-        let (_, entry) = self.0.count(place.block, kind, || CutConditions {
+        let [min_feed, max_feed] = feed_range.map(|feed| feed.0.to_bits());
+        let key = [tool_key, length, spindle_direction as u64, speed.0.to_bits(), min_feed, max_feed];
+        let (_, entry) = self.0.count(place.block, key, || CutConditions {
             backtrace: place.clone(),
             tool,
-            compensation: by,
-            spindle_direction: turning,
+            compensation,
+            spindle_direction,
             speed,
-            feed_range: feeds,
+            feed_range,
             max_cut: 0.0,
             min_peck: None,
             count: 0,
         });
-        let cutting = &mut entry.value;
-        cutting.max_cut = cutting.max_cut.max(pecks.max_cut);
+        let cut = &mut entry.value;
+        cut.max_cut = cut.max_cut.max(pecks.max_cut);
         if 1 < pecks.strokes {
-            cutting.min_peck = Some(cutting.min_peck.map_or(pecks.max_fed, |least| least.min(pecks.max_fed)));
+            cut.min_peck = Some(cut.min_peck.map_or(pecks.max_fed, |least| least.min(pecks.max_fed)));
         }
     }
 

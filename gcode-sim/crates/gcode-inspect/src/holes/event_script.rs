@@ -1,9 +1,9 @@
-//! For tests: a run written down as events, without a control.
+//! For tests: a run written as events, without a control.
 use gcode_lang::motion::{Axes, Event, EventKind, EventSink, Position, SpindleDirection, StopKind};
 use gcode_lang::source::{SourceId, Span};
 use gcode_lang::units::{MmPerMin, Rpm, Seconds};
 
-/// Events in order; event n stands in line n, counted from 1.
+/// Events in order; event n has line n, from 1.
 #[derive(Clone, Default)]
 pub(crate) struct EventScript {
     position: Position,
@@ -11,10 +11,24 @@ pub(crate) struct EventScript {
 }
 
 impl EventScript {
-    /// A run with the spindle turning.
+    /// Starts a run with the spindle rotating.
     pub(crate) fn new() -> Self {
         Self::default()
             .with(EventKind::Spindle { direction: SpindleDirection::Clockwise, speed: Rpm(1500.0) })
+    }
+
+    /// Appends steps separated by `;`: `tool 1; head 30; rapid X10 B90; feed X5`.
+    pub(crate) fn then(self, steps: &str) -> Self {
+        steps.split(';').fold(self, |script, step| {
+            let (verb, words) = step.trim().split_once(' ').unwrap();
+            match verb {
+                "rapid" => script.rapid(words),
+                "feed" => script.feed(words),
+                "tool" => script.with(EventKind::ToolChange { number: words.parse().unwrap() }),
+                "head" => script.head(words.parse().unwrap()),
+                _ => panic!("{step}"),
+            }
+        })
     }
 
     pub(crate) fn with(mut self, event: EventKind) -> Self {
@@ -30,7 +44,6 @@ impl EventScript {
         self.position
     }
 
-    /// `rapid("X10 B90")`
     pub(crate) fn rapid(mut self, words: &str) -> Self {
         let to = self.move_to(words);
         self.with(EventKind::Rapid { to })
@@ -41,14 +54,13 @@ impl EventScript {
         self.with(EventKind::Feed { to, rate: MmPerMin(10.0) })
     }
 
-    pub(crate) fn tool(self, number: u32) -> Self {
-        self.with(EventKind::ToolChange { number })
+    /// Adds the message that asks the operator to set the head to this angle.
+    pub(crate) fn head(self, angle: f64) -> Self {
+        self.message("SET HEAD TO #140", vec![(140, angle)])
     }
 
-    /// The operator is asked to set the head to this angle.
-    pub(crate) fn head(self, angle: f64) -> Self {
-        let text = "SET HEAD TO #140".to_owned();
-        self.with(EventKind::Stop { kind: StopKind::Message, text, variables: vec![(140, angle)] })
+    pub(crate) fn message(self, text: &str, variables: Vec<(u32, f64)>) -> Self {
+        self.with(EventKind::Stop { kind: StopKind::Message, text: text.to_owned(), variables })
     }
 
     pub(crate) fn emit_to(&self, sink: &mut impl EventSink) {

@@ -1,21 +1,21 @@
-//! Passes → holes: what several tools, or one tool in several goes, cut on one line is one hole.
+//! Passes → holes: all passes on one line, of one tool or several, make one hole.
 use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Unit, Vector3};
 
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position};
+use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
-use gcode_part::Clusters;
-use gcode_part::PointTree;
+use gcode_part::{Clusters, Hole, Origin, PointTree};
 
-/// Passes belong to one hole when one's bottom lies this near the other's line, in mm, …
-const MAX_LINE_OFFSET: f64 = 0.5;
+/// Largest distance of a pass's bottom from the line of another pass of the same hole, mm.
+pub(crate) const MAX_LINE_OFFSET: f64 = 0.5;
 
-/// … and their directions differ by no more than this: 5°.
-const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
+/// Cosine of the largest angle between the directions of passes of one hole: 5°.
+pub(crate) const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
 
-/// A tool was there before when it reaches less than this deeper, in mm.
+/// Least additional depth at which a pass of the same tool cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
 
 /// A feed into the part along one line, in the part's frame.
@@ -23,70 +23,92 @@ const MIN_DEPTH_GAIN: f64 = 0.001;
 pub(super) struct DrillPass {
     pub start: Point3<f64>,
     pub bottom: Point3<f64>,
-    /// The tool's direction out of the part, or the feed's where it isn't known.
+    /// Direction of the tool out of the part; that of the feed if the tool's is unknown.
     pub axis: Unit<Vector3<f64>>,
-    /// The direction of the feed, out of the part.
+    /// Direction of the feed, out of the part.
     pub feed_direction: Unit<Vector3<f64>>,
     pub tool: Option<u32>,
     pub backtrace: Backtrace,
     pub axis_position: Position,
 }
 
-/// A hole the program makes, in the part's frame.
+/// A hole that the program drills, in the part's frame; lengths in mm.
 #[derive(Clone, Debug)]
 pub struct DrilledHole {
-    /// Where the cutting feed of the finishing tool begins, on the hole's axis.
+    /// Point of the axis at which the cutting feed of the finishing tool begins.
     pub entry: Point3<f64>,
-    /// Out of the part.
+    /// Direction out of the part.
     pub axis: Unit<Vector3<f64>>,
-    /// From the entry to the deepest point of any tool.
+    /// Distance from the entry to the deepest point of any tool.
     pub depth: f64,
-    /// Of the finishing tool, where the tool table has it.
+    /// Diameter of the finishing tool; `None` if the tool table lacks it.
     pub diameter: Option<f64>,
+    /// Finishing tool; `None` before the first tool change.
     pub tool: Option<u32>,
-    /// The block that finished it.
+    /// Block of the finishing pass.
     pub backtrace: Backtrace,
-    /// Where the axes stood at the bottom.
+    /// Position of the axes at the bottom.
     pub axis_position: Position,
-    /// The angle between the finishing feed and the tool's axis.
+    /// Angle between the finishing feed and the tool's axis.
     pub tool_axis_deviation: Deg,
-    /// What was cut there besides the finishing pass.
+    /// Passes before the finishing one.
     pub earlier_passes: Vec<EarlierPass>,
-    /// The place in the list of the first hole on this line. A later one with the same is the same hole, drilled
-    /// again by a tool that had been there.
+    /// Index in the list of the first hole on this line. A later one with the same index is this hole drilled again by a
+    /// tool that has cut it before.
     pub first_on_line: usize,
 }
 
-/// A pass of a hole that doesn't finish it.
+/// A pass of a hole before the finishing one.
 #[derive(Clone, Debug)]
 pub struct EarlierPass {
+    /// Deepest point.
     pub bottom: Point3<f64>,
-    /// Out of the part.
+    /// Direction out of the part.
     pub axis: Unit<Vector3<f64>>,
+    /// Tool; `None` before the first tool change.
     pub tool: Option<u32>,
-    /// Of the tool, in mm, where the tool table has it.
+    /// Diameter of the tool, mm; `None` if the tool table lacks it.
     pub diameter: Option<f64>,
+    /// Block of the pass.
     pub backtrace: Backtrace,
-    /// Where the axes stood at the bottom.
+    /// Position of the axes at the bottom.
     pub axis_position: Position,
 }
 
-/// The holes in the order in which their first passes were made.
+impl DrilledHole {
+    /// Returns the deepest point of any tool, on the hole's axis.
+    pub fn bottom(&self) -> Point3<f64> {
+        self.entry - self.axis.into_inner() * self.depth
+    }
+
+    /// Returns the hole in the schema of references, without an id; `locate` names the program and line of a block.
+    pub fn hole(&self, locate: impl Fn(Span) -> (String, u32)) -> Hole {
+        let (program, line) = locate(self.backtrace.block);
+        Hole {
+            id: None,
+            entry: self.entry.coords.into(),
+            axis: self.axis.into_inner().into(),
+            depth: self.depth,
+            diameter: self.diameter,
+            from: Some(Origin { program, line, tool: self.tool }),
+        }
+    }
+}
+
+/// Groups passes to holes, in the order of the first pass of each.
 pub(super) fn group_holes(passes: &[DrillPass], machine: &Machine) -> Vec<DrilledHole> {
     let first = first_on_same_line(passes);
     let mut order: Vec<usize> = (0..passes.len()).collect();
-    // On one line they keep their order.
+    // The sort is stable: passes of one line keep their order.
     order.sort_by_key(|index| first[*index]);
-    let mut found = Vec::with_capacity(passes.len());
-    let mut sorted = PassesOnLine::default();
+    let mut holes = Vec::with_capacity(passes.len());
     for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
-        sorted.refill(line.iter().map(|index| &passes[*index]));
-        push_holes(&sorted, passes[line[0]].axis, machine, &mut found);
+        push_holes(line.iter().map(|index| &passes[*index]), passes[line[0]].axis, machine, &mut holes);
     }
-    found
+    holes
 }
 
-/// For each pass the first one on its line.
+/// Returns for each pass the first one on its line.
 fn first_on_same_line(passes: &[DrillPass]) -> Vec<usize> {
     let tree = PointTree::new(passes.iter().map(|pass| pass.bottom));
     let mut groups = Clusters::new(&tree);
@@ -103,59 +125,36 @@ fn first_on_same_line(passes: &[DrillPass]) -> Vec<usize> {
     groups.representatives()
 }
 
-/// The passes of one line: those that cut, and those of tools that came back for nothing. One is filled again for
-/// each line.
-#[derive(Default)]
-struct PassesOnLine<'p> {
-    cutting: Vec<&'p DrillPass>,
-    repeated: Vec<&'p DrillPass>,
-    /// How low each tool has been.
-    lowest_by_tool: BTreeMap<Option<u32>, f64>,
-}
-
-impl<'p> PassesOnLine<'p> {
-    fn refill(&mut self, passes: impl Iterator<Item = &'p DrillPass>) {
-        self.cutting.clear();
-        self.repeated.clear();
-        self.lowest_by_tool.clear();
-        let mut out = None;
-        for pass in passes {
-            let bottom = pass.bottom.coords.dot(out.get_or_insert(pass.axis));
-            let before = self.lowest_by_tool.entry(pass.tool).or_insert(f64::INFINITY);
-            if bottom < *before - MIN_DEPTH_GAIN {
-                *before = bottom;
-                self.cutting.push(pass);
-            } else {
-                self.repeated.push(pass);
-            }
-        }
-    }
-}
-
-/// One hole, and one more for every time a tool came back for nothing. Heights count along `out`, the first pass's
-/// axis.
-fn push_holes(
-    passes: &PassesOnLine<'_>,
+/// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. Heights count
+/// along `out`, the axis of the first pass.
+fn push_holes<'p>(
+    passes: impl Iterator<Item = &'p DrillPass>,
     out: Unit<Vector3<f64>>,
     machine: &Machine,
-    drilled: &mut Vec<DrilledHole>,
+    holes: &mut Vec<DrilledHole>,
 ) {
-    let first = drilled.len();
+    let first_on_line = holes.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
-    let PassesOnLine { cutting, repeated: again, .. } = passes;
+    let mut lowest_by_tool: BTreeMap<Option<u32>, f64> = BTreeMap::new();
+    let (cutting, repeated): (Vec<&DrillPass>, Vec<&DrillPass>) = passes.partition(|pass| {
+        let lowest = lowest_by_tool.entry(pass.tool).or_insert(f64::INFINITY);
+        let cuts = height(&pass.bottom) < *lowest - MIN_DEPTH_GAIN;
+        if cuts {
+            *lowest = height(&pass.bottom);
+        }
+        cuts
+    });
     let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
-    let finish = finishing_pass(cutting, lowest, height, machine);
-    let diameter = |pass: &DrillPass| machine.diameter_of(pass.tool);
-    let cut = |pass: &&DrillPass| EarlierPass {
+    let finish = finishing_pass(&cutting, lowest, height, machine);
+    let earlier = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(|pass| EarlierPass {
         bottom: pass.bottom,
         axis: pass.axis,
         tool: pass.tool,
-        diameter: diameter(pass),
+        diameter: machine.diameter_of(pass.tool),
         backtrace: pass.backtrace.clone(),
         axis_position: pass.axis_position,
-    };
-    let others = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(cut).collect();
-    let one = |pass: &DrillPass, start: f64, bottom: f64, others: Vec<EarlierPass>| {
+    });
+    let hole = |pass: &DrillPass, start: f64, bottom: f64, earlier_passes: Vec<EarlierPass>| {
         let slope = pass.axis.dot(&out);
         let along =
             |level: f64| pass.bottom + pass.axis.into_inner() * ((level - height(&pass.bottom)) / slope);
@@ -163,24 +162,24 @@ fn push_holes(
             entry: along(start),
             axis: pass.axis,
             depth: (along(start) - along(bottom)).norm(),
-            diameter: diameter(pass),
+            diameter: machine.diameter_of(pass.tool),
             tool: pass.tool,
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
             tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.feed_direction).clamp(-1.0, 1.0)),
-            earlier_passes: others,
-            first_on_line: first,
+            earlier_passes,
+            first_on_line,
         }
     };
     let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
     let start = finishing.map(|pass| height(&pass.start)).fold(f64::NEG_INFINITY, f64::max);
-    drilled.push(one(finish, start, lowest, others));
-    drilled.extend(again.iter().map(|pass| one(pass, height(&pass.start), height(&pass.bottom), Vec::new())));
+    holes.push(hole(finish, start, lowest, earlier.collect()));
+    let again = |pass: &&DrillPass| hole(pass, height(&pass.start), height(&pass.bottom), Vec::new());
+    holes.extend(repeated.iter().map(again));
 }
 
-/// The last pass of the largest tool that goes at least half as deep as the hole; where diameters aren't known, of
-/// the last tool. A countersink is large and shallow and doesn't make the hole, nor does a spot drill, however deep:
-/// a tool behind it goes deeper.
+/// Returns the finishing pass: the last pass of the largest tool that reaches half the depth of the hole, without
+/// diameters of the last tool. A countersink is too shallow; a spot drill, however deep, is followed by a deeper tool.
 fn finishing_pass<'p>(
     cutting: &[&'p DrillPass],
     lowest: f64,

@@ -1,18 +1,15 @@
-//! Motion → holes: follows the tool on the part, sees feeds along one line as passes, and passes as holes.
-use gcode_lang::alarm::kinds::LIMIT;
+//! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
 mod clamping;
 mod clearance;
 mod cutting;
 #[cfg(test)]
 pub(crate) mod event_script;
-mod findings;
 mod group;
 mod length_mismatch;
 mod line;
 mod line_findings;
 mod machine_requests;
 pub(crate) mod per_block;
-mod probing;
 mod rapids;
 pub(crate) mod spindle;
 #[cfg(test)]
@@ -21,24 +18,24 @@ pub(crate) mod work_zero;
 
 use nalgebra::Point3;
 
-pub use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
-pub use cutting::CutConditions;
-use group::DrillPass;
-pub use group::DrilledHole;
-pub use length_mismatch::LengthMismatch;
-use line::{CuttingLine, ToolExit};
-pub use machine_requests::unclear_head;
-pub use work_zero::UnknownWorkZero;
+pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
+pub(crate) use cutting::CutConditions;
+pub use group::{DrilledHole, EarlierPass};
+pub(crate) use group::{MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
+pub(crate) use length_mismatch::LengthMismatch;
+pub(crate) use machine_requests::unclear_head;
+pub(crate) use work_zero::UnknownWorkZero;
 
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
-use self::findings::Findings;
-use self::length_mismatch::LengthMismatches;
-use self::rapids::{CurvedMotion, TOUCH_DEPTH};
+use self::group::DrillPass;
+use self::line::{CuttingLine, ToolExit};
+use self::per_block::Findings;
+use self::rapids::TOUCH_DEPTH;
 use self::work_zero::WorkZeroTracker;
-use crate::machine::path::AxisMotion;
-use crate::machine::{Frame, Machine, Pose, Setup};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, Setup};
+use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
     Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
@@ -46,33 +43,31 @@ use gcode_lang::motion::{
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
-use gcode_part::ProcessLimits;
-use gcode_part::Surface;
-use gcode_part::{Hole, HoleList, Origin, Unit};
+use gcode_part::{HoleList, ProcessLimits, Surface, Unit};
 
-/// More passes than this aren't kept: no part has so many holes, but a loop that never ends drills them, and must not
-/// fill the memory.
+/// Largest number of passes that are kept: an endless loop must not fill the memory.
 const MAX_PASSES: usize = 200_000;
 
-/// What a program does to the part.
+/// Holes that a program drills, and findings about the motion of the tool.
 #[derive(Clone, Debug, Default)]
 pub struct HoleExtraction {
-    /// In the order in which they were begun.
+    /// Holes, in the order in which they are begun.
     pub holes: Vec<DrilledHole>,
+    /// Findings about motion.
     pub findings: Vec<Diagnostic>,
-    /// What passes near the part, where the part's surface is known.
-    pub close_motions: Vec<CloseMotion>,
-    /// What was in force where the tool cut.
-    pub cut_conditions: Vec<CutConditions>,
-    /// Feeds of tools whose lengths aren't those that the control reckons with.
-    pub length_mismatches: Vec<LengthMismatch>,
-    /// Rapids whose way over the part isn't known.
-    pub unknown_work_zero: Option<UnknownWorkZero>,
-    /// What the motion was looked at for.
-    pub process_limits: ProcessLimits,
+    /// Motion near the part; empty if the part's surface is unknown.
+    pub(crate) close_motions: Vec<CloseMotion>,
+    /// Conditions of all cuts.
+    pub(crate) cut_conditions: Vec<CutConditions>,
+    /// Feeds of tools whose length differs from their length offset.
+    pub(crate) length_mismatches: Vec<LengthMismatch>,
+    /// Rapids whose path over the part is unknown; `None` if there are none.
+    pub(crate) unknown_work_zero: Option<UnknownWorkZero>,
+    /// Limits with which the motion was compared.
+    pub(crate) process_limits: ProcessLimits,
 }
 
-/// Listens to a run and collects the holes it makes.
+/// Sink for the events of a run that extracts the holes.
 #[derive(Debug)]
 pub struct HoleExtractor<'m> {
     machine: &'m Machine,
@@ -80,57 +75,55 @@ pub struct HoleExtractor<'m> {
     axis_position: Position,
     setup: Setup,
     cutting_state: CuttingState,
-    /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the spindle.
+    /// Last M code of the machine builder since M03, M04 or M05: it may have started the spindle.
     builder_code: Option<u32>,
     process_limits: ProcessLimits,
     clamp_state: ClampState,
-    /// The part's place while the table stands as it does in `at`.
+    /// Frame of the part at `axis_position`.
     frame: Frame,
-    /// The tool on the part.
+    /// Pose of the tool on the part.
     pose: Pose,
-    /// The tool has been outside the part: what it does before that, nobody knows where it stood.
+    /// True once the tool has been outside the part: its position before that is unknown.
     has_been_outside: bool,
     current_line: Option<Box<CuttingLine>>,
     passes: Vec<DrillPass>,
-    /// As many passes are kept.
     max_passes: usize,
-    /// The first of the passes that were too many.
+    /// First pass beyond `max_passes`.
     first_excess_pass: Option<Backtrace>,
     work_zero: WorkZeroTracker,
     findings: Findings,
     close_motions: CloseMotions,
     cut_conditions: CutConditionsByBlock,
-    length_mismatches: LengthMismatches,
-    /// How many times a probe was sent to the part.
+    length_mismatches: Vec<LengthMismatch>,
+    /// Number of probing moves.
     probe_count: u64,
 }
 
-/// How a motion was asked for.
+/// Kind of a motion.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum MotionKind {
     Rapid,
     Feed,
-    /// Neither cuts nor hurries: a probe looks for its signal.
+    /// A probe moves until its signal; it does not cut.
     Probe,
 }
 
 impl<'m> HoleExtractor<'m> {
     /// Starts with every axis at machine zero.
     pub fn new(machine: &'m Machine) -> Self {
-        let (at, setup) = (Position::default(), Setup::default());
-        let frame = machine.part_frame(&at);
-        let pose = machine.tool_pose(&at, &setup).relative_to(&frame);
+        let (axis_position, setup) = (Position::default(), Setup::default());
+        let frame = machine.part_frame(&axis_position);
         Self {
             machine,
             surface: None,
-            axis_position: at,
+            axis_position,
             setup,
             cutting_state: CuttingState::default(),
             builder_code: None,
             process_limits: ProcessLimits::default(),
             clamp_state: ClampState::default(),
             frame,
-            pose,
+            pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
             has_been_outside: false,
             current_line: None,
             passes: Vec::new(),
@@ -140,30 +133,28 @@ impl<'m> HoleExtractor<'m> {
             findings: Findings::default(),
             close_motions: CloseMotions::default(),
             cut_conditions: CutConditionsByBlock::default(),
-            length_mismatches: LengthMismatches::default(),
+            length_mismatches: Vec::new(),
             probe_count: 0,
         }
     }
 
-    /// With the part's surface known, motion inside it is seen as well.
+    /// Sets the part's surface; motion inside and near it is then checked.
     #[must_use]
     pub fn with_surface(mut self, surface: Option<Surface>) -> Self {
         self.surface = surface;
         self
     }
 
-    /// With what the reference says of how the part is to be worked, the motion is held against that as well.
+    /// Sets the limits of the process with which the motion is compared.
     #[must_use]
-    pub fn with_process_limits(mut self, conduct: &ProcessLimits) -> Self {
-        self.process_limits = conduct.clone();
+    pub fn with_process_limits(mut self, limits: &ProcessLimits) -> Self {
+        self.process_limits = limits.clone();
         self
     }
 
+    /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
-        if let Some(line) = self.current_line.take() {
-            let after = line.curved_exit();
-            self.report_line(line, after, false);
-        }
+        self.end_line(false);
         let mut findings = self.findings.finish();
         findings.extend(self.first_excess_pass.map(|place| {
             let message =
@@ -171,15 +162,22 @@ impl<'m> HoleExtractor<'m> {
             let finding = Diagnostic::new(&LIMIT, message).with_backtrace(place);
             finding.help("check for a loop that never ends; otherwise split the program")
         }));
-        let holes = group::group_holes(&self.passes, self.machine);
         HoleExtraction {
-            holes,
+            holes: group::group_holes(&self.passes, self.machine),
             findings,
             close_motions: self.close_motions.finish(),
             cut_conditions: self.cut_conditions.finish(),
-            length_mismatches: self.length_mismatches.finish(),
+            length_mismatches: self.length_mismatches,
             unknown_work_zero: self.work_zero.finish(self.machine),
             process_limits: self.process_limits,
+        }
+    }
+
+    /// Ends the current line where the tool leaves it along a curve, or is replaced.
+    fn end_line(&mut self, is_feeding: bool) {
+        if let Some(line) = self.current_line.take() {
+            let exit = line.curved_exit();
+            self.report_line(line, exit, is_feeding);
         }
     }
 
@@ -187,8 +185,8 @@ impl<'m> HoleExtractor<'m> {
         for pass in passes {
             if self.passes.len() < self.max_passes {
                 self.passes.push(pass);
-            } else if self.first_excess_pass.is_none() {
-                self.first_excess_pass = Some(pass.backtrace);
+            } else {
+                self.first_excess_pass.get_or_insert(pass.backtrace);
             }
         }
     }
@@ -210,7 +208,9 @@ impl<'m> HoleExtractor<'m> {
         }
         let travel = AxisMotion { from: &from, to, arc };
         if !self.machine.is_straight(&travel) {
-            self.end_line_on_curve(event, kind, &travel);
+            self.end_line(kind == MotionKind::Feed);
+            self.check_curved(event, &travel, kind);
+            self.update_outside();
             return;
         }
         if (self.pose.tip - before.tip).norm() < 1e-9 {
@@ -225,8 +225,8 @@ impl<'m> HoleExtractor<'m> {
         self.update_outside();
     }
 
-    /// Follows a straight motion from `from` on the current line. Where it has left the line, or there is none:
-    /// the point from which it moved freely.
+    /// Follows a straight motion from `from` along the current line. Returns the point from which the tool moved freely;
+    /// `None` if it stays on the line.
     fn update_line(&mut self, event: &Event<'_>, kind: MotionKind, from: Point3<f64>) -> Option<Point3<f64>> {
         let Some(mut line) = self.current_line.take() else { return Some(from) };
         let tip = self.pose.tip;
@@ -265,14 +265,14 @@ impl<'m> HoleExtractor<'m> {
                 self.current_line = Some(line);
                 None
             }
-            after @ (ToolExit::AlongLine | ToolExit::Sideways { .. }) => {
-                if is_spindle_stopped && !line.is_inward() && after != ToolExit::AlongLine {
+            exit @ (ToolExit::AlongLine | ToolExit::Sideways { .. }) => {
+                let is_along = exit == ToolExit::AlongLine;
+                if is_spindle_stopped && !line.is_inward() && !is_along {
                     self.report_back_boring(&line);
                 }
-                let free =
-                    if after == ToolExit::AlongLine { line.start_level_crossing(&from, &tip) } else { from };
-                self.report_line(line, after, kind == MotionKind::Feed);
-                Some(free)
+                let free_from = if is_along { line.start_level_crossing(&from, &tip) } else { from };
+                self.report_line(line, exit, kind == MotionKind::Feed);
+                Some(free_from)
             }
         }
     }
@@ -294,7 +294,7 @@ impl<'m> HoleExtractor<'m> {
         });
     }
 
-    /// How fast a feed inwards is, where it cuts: the way to the part may be fed faster.
+    /// Records the rate of a feed inwards if it cuts; the approach may be faster.
     fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
         let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH_DEPTH));
         if let EventKind::Feed { rate, .. } = event.kind
@@ -302,20 +302,6 @@ impl<'m> HoleExtractor<'m> {
         {
             line.record_feed(*rate);
         }
-    }
-
-    /// The table or the head turns, or an arc: the tool's way on the part is curved.
-    fn end_line_on_curve(&mut self, event: &Event<'_>, kind: MotionKind, travel: &AxisMotion<'_>) {
-        if let Some(line) = self.current_line.take() {
-            let after = line.curved_exit();
-            self.report_line(line, after, kind == MotionKind::Feed);
-        }
-        match kind {
-            MotionKind::Rapid => self.check_curved(event, travel, CurvedMotion::Rapid),
-            MotionKind::Feed => self.check_curved(event, travel, CurvedMotion::Feed),
-            MotionKind::Probe => {}
-        }
-        self.update_outside();
     }
 
     fn update_outside(&mut self) {
@@ -326,24 +312,25 @@ impl<'m> HoleExtractor<'m> {
         }
     }
 
-    /// Something other than an axis changes where the tool is, or which tool it is.
+    /// Applies a change of the tool, its offset or the head, which moves the tip.
     fn update_setup(&mut self, change: impl FnOnce(&mut Setup)) {
         let before = self.setup;
         change(&mut self.setup);
         if self.setup == before {
             return;
         }
-        if let Some(line) = self.current_line.take() {
-            let after = line.curved_exit();
-            self.report_line(line, after, false);
-        }
+        self.end_line(false);
         self.pose = self.machine.tool_pose(&self.axis_position, &self.setup).relative_to(&self.frame);
     }
 }
 
 impl EventSink for HoleExtractor<'_> {
+    /// Returns the probe's signal; `None` without a probe, or without a part that it could touch.
     fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
-        self.probe(feed)
+        let (probe, surface) = (self.machine.probe.as_ref()?, self.surface.as_ref()?);
+        let signal = self.machine.probe(probe, feed, &self.setup, surface, self.probe_count);
+        self.probe_count += 1;
+        Some(signal)
     }
 
     fn event(&mut self, event: &Event<'_>) {
@@ -356,22 +343,22 @@ impl EventSink for HoleExtractor<'_> {
                 self.check_tool_known(event, *number);
                 self.update_setup(|setup| setup.tool = Some(*number));
             }
-            EventKind::ToolLength { offset, compensation: by } => {
+            EventKind::ToolLength { offset, compensation } => {
                 self.update_setup(|setup| setup.offset = *offset);
-                self.cutting_state.compensation = *by;
+                self.cutting_state.compensation = *compensation;
             }
             EventKind::WorkZeroUnknown { axes } => self.work_zero.apply_event(self.machine, *axes),
-            EventKind::Spindle { direction: turning, speed } => {
-                // At S0 it stands.
+            EventKind::Spindle { direction, speed } => {
+                // S0 stops the spindle.
                 let before = self.cutting_state.spindle_direction;
                 self.cutting_state.spindle_direction =
-                    if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
+                    if *speed == Rpm(0.0) { SpindleDirection::Off } else { *direction };
                 self.cutting_state.speed = *speed;
                 self.update_spindle_in_hole(before);
                 self.builder_code = None;
             }
-            EventKind::Stop { kind: StopKind::Message, text, variables: named } => {
-                if let Some(angle) = self.operator_head_angle(event, text, named) {
+            EventKind::Stop { kind: StopKind::Message, text, variables } => {
+                if let Some(angle) = self.operator_head_angle(event, text, variables) {
                     self.update_setup(|setup| setup.head_angle = Some(angle));
                 }
             }
@@ -386,24 +373,9 @@ impl EventSink for HoleExtractor<'_> {
 }
 
 impl HoleExtraction {
-    /// The document that `holes` writes; `locate` names the program and the line of a block.
+    /// Returns the holes as a list; `locate` returns the program and the line of a block.
     pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
-        let holes = self.holes.iter().map(|found| found.hole(&locate)).collect();
+        let holes = self.holes.iter().map(|hole| hole.hole(&locate)).collect();
         HoleList { unit: Unit::Mm, holes }
-    }
-}
-
-impl DrilledHole {
-    /// In the schema that references have too; the program alone gives no id.
-    pub fn hole(&self, locate: impl Fn(Span) -> (String, u32)) -> Hole {
-        let (program, line) = locate(self.backtrace.block);
-        Hole {
-            id: None,
-            entry: self.entry.coords.into(),
-            axis: self.axis.into_inner().into(),
-            depth: self.depth,
-            diameter: self.diameter,
-            from: Some(Origin { program, line, tool: self.tool }),
-        }
     }
 }

@@ -1,17 +1,18 @@
-//! One entry for each block and kind, with how often it came up: a loop does the same at its block over and over.
+//! Entries counted per block and kind: a loop repeats them at its blocks.
 use std::collections::BTreeMap;
 
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, FindingKind};
+use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
 
-/// Entries in the order in which they first came up; `K` tells kinds at one block from one another.
+/// Entries in order of first occurrence; `K` distinguishes kinds at one block.
 #[derive(Clone, Debug)]
 pub(crate) struct PerBlock<K, T> {
     list: Vec<Counted<T>>,
     index: BTreeMap<(u32, u32, K), usize>,
 }
 
-/// What came up, and how often.
+/// An entry and its number of occurrences.
 #[derive(Clone, Debug)]
 pub(crate) struct Counted<T> {
     pub value: T,
@@ -25,7 +26,7 @@ impl<K, T> Default for PerBlock<K, T> {
 }
 
 impl<K: Ord, T> PerBlock<K, T> {
-    /// Counts one more at a block. The first makes the entry; of a later one the caller sees what is there.
+    /// Counts an occurrence at a block; `first` makes the entry. Returns the entry and its index.
     pub(crate) fn count(
         &mut self,
         block: Span,
@@ -51,12 +52,33 @@ impl<K: Ord, T> PerBlock<K, T> {
     }
 }
 
-/// With a note of how often more it came up at its block.
-pub(crate) fn with_repeat_note(finding: Diagnostic, times: u64) -> Diagnostic {
-    match times {
+/// Findings about motion, one per block, code and detail.
+#[derive(Debug, Default)]
+pub(super) struct Findings(PerBlock<(&'static str, u32), Diagnostic>);
+
+impl Findings {
+    /// Makes the finding on its first occurrence; later ones are counted.
+    pub(super) fn add(
+        &mut self,
+        kind: &'static FindingKind,
+        place: &Backtrace,
+        detail: u32,
+        make: impl FnOnce(&'static FindingKind) -> Diagnostic,
+    ) {
+        self.0.count(place.block, (kind.code, detail), || make(kind).with_backtrace(place.clone()));
+    }
+
+    pub(super) fn finish(self) -> Vec<Diagnostic> {
+        self.0.into_entries().map(|entry| with_repeat_note(entry.value, entry.count)).collect()
+    }
+}
+
+/// Adds a note with the number of further occurrences at the block.
+pub(crate) fn with_repeat_note(finding: Diagnostic, count: u64) -> Diagnostic {
+    match count {
         0 | 1 => finding,
         2 => finding.note("once more at the same block"),
-        _ => finding.note(format!("{} more times at the same block", times - 1)),
+        _ => finding.note(format!("{} more times at the same block", count - 1)),
     }
 }
 
@@ -66,7 +88,7 @@ mod tests {
     use gcode_lang::source::SourceId;
 
     #[test]
-    fn a_block_has_one_entry_for_each_kind_in_the_order_of_the_first() {
+    fn a_block_has_one_entry_per_kind_in_order_of_first_occurrence() {
         let block = |start| Span { source: SourceId(0), start, end: start + 1 };
         let mut per = PerBlock::default();
         for (start, kind) in [(9, 'a'), (3, 'a'), (9, 'b'), (9, 'a')] {

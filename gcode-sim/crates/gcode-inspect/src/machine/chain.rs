@@ -26,10 +26,18 @@ pub struct AxisLink {
 /// Motion of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkMotion {
-    /// Right-handed rotation about `about` through `centre`, in degrees.
-    Rotary { about: Unit<Vector3<f64>>, centre: Point3<f64> },
-    /// Translation along `along`, in mm.
-    Linear { along: Unit<Vector3<f64>> },
+    /// Right-handed rotation, in degrees.
+    Rotary {
+        /// Direction of the axis.
+        about: Unit<Vector3<f64>>,
+        /// Point on the axis.
+        centre: Point3<f64>,
+    },
+    /// Translation, in mm.
+    Linear {
+        /// Direction of the axis.
+        along: Unit<Vector3<f64>>,
+    },
 }
 
 /// Returns a right-handed rotation.
@@ -71,21 +79,19 @@ impl Chain {
 
     /// Returns the table of the paper's machine: B, if the control has it, rotates the part about y through
     /// `origin`.
-    pub fn default_table(axes: &Axes, origin: Point3<f64>) -> Self {
+    pub(crate) fn default_table(axes: &Axes, origin: Point3<f64>) -> Self {
         let b = axes.find(b'B').map(|axis| AxisLink::rotary(axis, Vector3::y_axis(), origin, 1.0));
         Self(b.into_iter().collect())
     }
 
     /// Returns X, Y and Z along their own directions, without those that carry the part.
-    pub fn default_slides(axes: &Axes, table: &Chain) -> Self {
+    pub(crate) fn default_slides(axes: &Axes, table: &Chain) -> Self {
         let letters = [(b'X', Vector3::x_axis()), (b'Y', Vector3::y_axis()), (b'Z', Vector3::z_axis())];
-        let found = letters.into_iter().filter_map(|(letter, along)| Some((axes.find(letter)?, along)));
-        Self(
-            found
-                .filter(|(axis, _)| !table.has_axis(*axis))
-                .map(|(axis, along)| AxisLink::linear(axis, along, 1.0))
-                .collect(),
-        )
+        let slide = |(letter, along)| {
+            let axis = axes.find(letter).filter(|axis| !table.has_axis(*axis))?;
+            Some(AxisLink::linear(axis, along, 1.0))
+        };
+        Self(letters.into_iter().filter_map(slide).collect())
     }
 
     /// Returns the transformation from the frame that the chain carries to the frame of its base.
@@ -102,7 +108,7 @@ impl Chain {
     }
 
     /// Returns true if the chain contains the axis.
-    pub fn has_axis(&self, axis: AxisIndex) -> bool {
+    pub(crate) fn has_axis(&self, axis: AxisIndex) -> bool {
         self.0.iter().any(|link| link.axis == axis)
     }
 
@@ -112,7 +118,7 @@ impl Chain {
     }
 
     /// Returns a point on the line of each rotary axis.
-    pub fn rotation_centres(&self) -> impl Iterator<Item = &Point3<f64>> {
+    pub(crate) fn rotation_centres(&self) -> impl Iterator<Item = &Point3<f64>> {
         self.0.iter().filter_map(|link| match &link.motion {
             LinkMotion::Rotary { centre, .. } => Some(centre),
             LinkMotion::Linear { .. } => None,
@@ -120,15 +126,14 @@ impl Chain {
     }
 
     /// Returns the rotary axes of the chain.
-    pub fn rotary_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
+    pub(crate) fn rotary_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
         let turns = self.0.iter().filter(|link| matches!(link.motion, LinkMotion::Rotary { .. }));
         turns.map(|link| link.axis)
     }
 
     /// Returns the sum of the rotations of all rotary axes between two positions.
-    pub fn total_rotation(&self, a: &Position, b: &Position) -> Deg {
-        let turns = self.0.iter().filter(|link| matches!(link.motion, LinkMotion::Rotary { .. }));
-        turns.fold(Deg::ZERO, |sum, link| sum + Deg(b[link.axis] - a[link.axis]).abs())
+    pub(crate) fn total_rotation(&self, a: &Position, b: &Position) -> Deg {
+        self.rotary_axes().fold(Deg::ZERO, |sum, axis| sum + Deg(b[axis] - a[axis]).abs())
     }
 }
 
@@ -137,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_turns_about_its_own_centre() {
+    fn a_table_rotates_about_its_own_centre() {
         let chain = Chain(vec![AxisLink::rotary(0, Vector3::z_axis(), Point3::new(10.0, 0.0, 0.0), 1.0)]);
         let mut at = Position::default();
         at[0] = 90.0;
@@ -147,7 +152,7 @@ mod tests {
 
     /// A grinder's table: the slide carries the table, the table carries the part.
     #[test]
-    fn what_stands_on_a_slide_moves_with_it() {
+    fn a_table_on_a_slide_moves_with_it() {
         let chain = Chain(vec![
             AxisLink::linear(0, Vector3::x_axis(), 1.0),
             AxisLink::rotary(1, Vector3::z_axis(), Point3::origin(), -1.0),

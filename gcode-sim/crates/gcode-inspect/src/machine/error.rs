@@ -24,7 +24,7 @@ impl Distribution {
     }
 
     /// Returns the mean of the squared value.
-    pub fn mean_square(self) -> f64 {
+    pub(crate) fn mean_square(self) -> f64 {
         match self {
             Self::Fixed(value) | Self::Normal(value) => value * value,
             Self::Uniform(most) => most * most / 3.0,
@@ -75,7 +75,7 @@ impl PeriodicError {
     }
 
     /// Returns the error at a position of the axis.
-    pub fn value_at(&self, place: f64) -> f64 {
+    pub(crate) fn value_at(&self, place: f64) -> f64 {
         if self.amplitude == 0.0 {
             return self.level;
         }
@@ -90,7 +90,7 @@ mod tests {
     /// Over 200 000 machines the error at one position has the quartiles of its distribution: ±0.6745 σ, ±
     /// half the range.
     #[test]
-    fn at_every_place_an_error_is_distributed_as_the_file_says() {
+    fn at_every_position_an_error_has_the_distribution_of_the_file() {
         for place in [0.0, 123.456, -900.0] {
             for (spread, quartile) in
                 [(Distribution::Normal(0.01), 0.006_745), (Distribution::Uniform(0.01), 0.005)]

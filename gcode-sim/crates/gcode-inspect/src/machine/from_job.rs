@@ -14,7 +14,7 @@ impl Machine {
         match job {
             Job::PinHoles(job) => {
                 let axes = &nominal.axes;
-                let kind = match job.machine.head.kind {
+                let kind = match job.machine.head.kind() {
                     job::HeadKind::Manual => HeadKind::Manual { start: None },
                     job::HeadKind::Axis(letter) => {
                         HeadKind::Axis { axis: axes.find(letter as u8)?, sign: 1.0, zero: Deg::ZERO }
@@ -34,12 +34,12 @@ impl Machine {
             }
             Job::Honeycomb(job) => {
                 // Z0 of the programs is on the surface of the cylinder.
-                let origin = Point3::new(0.0, 0.0, -job.cylinder.outer / 2.0);
+                let origin = Point3::new(0.0, 0.0, -job.cylinder.outer() / 2.0);
                 let diameter = Some(job.drill.diameter);
                 Some(Self {
                     table: nominal.rotary_table(job.machine.rotary, Vector3::x_axis(), origin)?,
                     head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0),
-                    tools: vec![Tool { number: job.drill.number, length: None, diameter }],
+                    tools: vec![Tool { number: job.drill.number(), length: None, diameter }],
                     part: Placement { origin, ..Placement::default() },
                     ..nominal
                 })
@@ -48,7 +48,7 @@ impl Machine {
             // The programmed point is the centre of the ball; the head does not move.
             Job::Alignment(job) => Some(Self {
                 table: nominal.rotary_table(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
-                probe: Some(Probe::new(job.probe_radius)),
+                probe: Some(Probe::new(job.probe.radius)),
                 ..nominal
             }),
         }

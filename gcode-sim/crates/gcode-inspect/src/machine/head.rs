@@ -25,10 +25,20 @@ pub enum HeadKind {
     Free,
     /// Fixed direction, from the tip to the spindle.
     Fixed(Unit<Vector3<f64>>),
-    /// Set by hand at an operator stop, in the plane of X and Y; `start` is the angle before the first stop.
-    Manual { start: Option<Deg> },
-    /// An axis of the control that tilts the tool in the plane of X and Y; `zero` is the tool's angle at 0.
-    Axis { axis: AxisIndex, sign: f64, zero: Deg },
+    /// Set by hand at an operator stop, in the plane of X and Y.
+    Manual {
+        /// Angle before the first stop.
+        start: Option<Deg>,
+    },
+    /// An axis of the control that tilts the tool in the plane of X and Y.
+    Axis {
+        /// Axis of the control.
+        axis: AxisIndex,
+        /// Direction of a positive command, 1 or −1.
+        sign: f64,
+        /// Angle of the tool with the axis at 0.
+        zero: Deg,
+    },
 }
 
 /// Meaning of a message to the operator for the head.
@@ -78,13 +88,13 @@ impl Head {
     }
 
     /// Returns true if a message to the operator contains the word HEAD.
-    pub fn is_head_message(text: &str) -> bool {
+    fn is_head_message(text: &str) -> bool {
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
         words.any(|word| word.eq_ignore_ascii_case("HEAD"))
     }
 
     /// Returns true if the operator can set the angle; a head of kind free may be such a head.
-    pub fn is_set_by_hand(&self) -> bool {
+    pub(crate) fn is_set_by_hand(&self) -> bool {
         matches!(self.kind, HeadKind::Free | HeadKind::Manual { .. })
     }
 }

@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axial_hole_is_brought_into_the_plane_by_its_place() {
+    fn an_axial_hole_is_brought_into_the_plane_by_its_position() {
         let machine = Machine::default();
         let found = machine.inverse(Point3::new(0.0, 50.0, 80.0), Vector3::y_axis(), &Setup::default());
         let b: Vec<f64> = found.iter().map(|at| at[4]).collect();

@@ -2,28 +2,28 @@
 //!
 //! Forward kinematics is the definition; every other computation has to agree with it.
 mod chain;
-pub(crate) mod error;
+mod error;
 mod file;
 mod from_job;
 mod head;
 mod inverse;
-pub(crate) mod path;
+mod path;
 mod probe;
-pub(crate) mod random;
-pub(crate) mod sources;
+mod random;
+mod sources;
 mod touch;
 mod wheel;
 
 use nalgebra::{IsometryMatrix3, Point3, Translation3, Unit, Vector3};
 
 pub use chain::{AxisLink, Chain, LinkMotion};
-pub use error::Distribution;
-pub use file::error_file;
-pub use file::{ErrorFile, File as MachineFile};
+pub use error::{Distribution, PeriodicError};
+pub use file::{ErrorFile, File as MachineFile, error_file};
 pub use head::{Head, HeadKind, HeadMessage};
 pub use path::AxisMotion;
 pub use probe::Probe;
 pub use random::RandomStream;
+pub use sources::{ErrorSource, Quantity};
 pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};
@@ -164,7 +164,7 @@ impl Machine {
     /// The position of the axes is the head's pivot. The tip is the pivot's distance from the gauge line plus
     /// the tool length away from it, along the tool. If the direction of the tool is unknown, the tip is the
     /// control's own: the position minus the length offset.
-    pub fn tool_pose(&self, at: &Position, setup: &Setup) -> Pose {
+    pub(crate) fn tool_pose(&self, at: &Position, setup: &Setup) -> Pose {
         let carried = self.slides.frame(at) * Point3::origin();
         match self.head.direction(at, setup) {
             Some(axis) => {
@@ -181,28 +181,28 @@ impl Machine {
     }
 
     /// Returns the tool length from the tool table, or else that of the length offset, mm.
-    pub fn tool_length(&self, setup: &Setup) -> f64 {
+    pub(crate) fn tool_length(&self, setup: &Setup) -> f64 {
         let known = self.length_of(setup.tool);
         known.unwrap_or_else(|| self.slides.displacement(&setup.offset).norm())
     }
 
     /// Returns the tool with this number; `None` if the tool table lacks it.
-    pub fn find_tool(&self, number: u32) -> Option<&Tool> {
+    pub(crate) fn find_tool(&self, number: u32) -> Option<&Tool> {
         self.tools.iter().find(|tool| tool.number == number)
     }
 
     /// Returns the length of the tool in the spindle, mm; `None` if the tool or its length is unknown.
-    pub fn length_of(&self, tool: Option<u32>) -> Option<f64> {
+    pub(crate) fn length_of(&self, tool: Option<u32>) -> Option<f64> {
         self.find_tool(tool?)?.length
     }
 
     /// Returns the diameter of the tool in the spindle, mm; `None` if the tool or its diameter is unknown.
-    pub fn diameter_of(&self, tool: Option<u32>) -> Option<f64> {
+    pub(crate) fn diameter_of(&self, tool: Option<u32>) -> Option<f64> {
         self.find_tool(tool?)?.diameter
     }
 
     /// Returns true if the axis moves the tool, the part, the head or the wheel.
-    pub fn is_axis_used(&self, axis: AxisIndex) -> bool {
+    pub(crate) fn is_axis_used(&self, axis: AxisIndex) -> bool {
         let head = matches!(self.head.kind, HeadKind::Axis { axis: head, .. } if head == axis);
         let wheel =
             self.wheel.is_some_and(|wheel| wheel.swivel_axis.is_some_and(|(swivel, _)| swivel == axis));
@@ -212,7 +212,7 @@ impl Machine {
 
 impl Pose {
     /// Returns the pose in the coordinates of `frame`.
-    pub fn relative_to(&self, frame: &Frame) -> Self {
+    pub(crate) fn relative_to(&self, frame: &Frame) -> Self {
         Self {
             tip: frame.inverse_transform_point(&self.tip),
             axis: self.axis.map(|axis| frame.rotation.inverse_transform_unit_vector(&axis)),
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn with_the_sign_turned_round_minus_the_azimuth_does() {
+    fn with_the_opposite_sign_minus_the_azimuth_does() {
         let mut machine = Machine::default();
         machine.table.0[0].sign = -1.0;
         let point = Point3::new(300.0 * Deg(200.0).cos(), 0.0, 300.0 * Deg(200.0).sin());

@@ -63,7 +63,7 @@ impl Machine {
     }
 
     /// Returns true if the tool moves straight on the part: no rotation of table or head, and no arc.
-    pub fn is_straight(&self, travel: &AxisMotion<'_>) -> bool {
+    pub(crate) fn is_straight(&self, travel: &AxisMotion<'_>) -> bool {
         travel.arc.is_none() && self.total_rotation(travel) == Deg::ZERO
     }
 
@@ -80,7 +80,7 @@ impl Machine {
     /// A path p(t) deviates from its chord by at most |p''|·Δt²/8. If table and head rotate by γ in all, the
     /// slides travel b, and no lever is longer than ρ, |p''| is at most γ²·ρ + 2·γ·b. An arc of sweep s and
     /// radius R adds s²·R, and the error of an axis its own curvature.
-    pub fn chord_count(&self, travel: &AxisMotion<'_>, setup: &Setup, tolerance: f64) -> u32 {
+    pub(crate) fn chord_count(&self, travel: &AxisMotion<'_>, setup: &Setup, tolerance: f64) -> u32 {
         let turn = self.total_rotation(travel).to_rad();
         let sweep = travel.arc.map_or(0.0, |arc| arc.sweep.to_rad());
         let waves = self.wave_bend(travel, setup);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_table_makes_a_curve_that_is_followed_to_the_tolerance() {
+    fn the_curve_of_a_rotating_table_is_followed_to_the_tolerance() {
         let machine = Machine::default();
         let (from, mut to) = (Position([700.0, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), Position::default());
         to[0] = 500.0;
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arc_is_followed_to_the_tolerance_too() {
+    fn an_arc_is_followed_to_the_tolerance() {
         let machine = Machine::default();
         let from = Position([10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let arc = PlanarArc { plane: (0, 1), centre: (0.0, 0.0), sweep: Deg(360.0) };

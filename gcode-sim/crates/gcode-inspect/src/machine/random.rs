@@ -59,7 +59,7 @@ mod tests {
     /// Mean, variance, skewness and kurtosis of the standard normal distribution are 0, 1, 0, 3; those of 10⁶
     /// draws are within four standard errors √(1, 2, 6, 24)/1000.
     #[test]
-    fn a_million_normal_draws_have_the_moments_they_should() {
+    fn a_million_normal_draws_have_the_moments_of_the_distribution() {
         let root = RandomStream::new(1);
         let mut sums = [0.0; 4];
         for index in 0..1_000_000 {

@@ -64,7 +64,7 @@ impl Quantity {
 
     /// Returns true for errors of the set-up or of the machine's geometry; the others are drawn anew for each
     /// hole.
-    pub fn is_per_part(self) -> bool {
+    pub(crate) fn is_per_part(self) -> bool {
         !matches!(self, Self::Linear(_) | Self::Index | Self::Head)
     }
 
@@ -85,7 +85,7 @@ impl Quantity {
 
 impl ErrorSource {
     /// Draws an error that is the same at every position of the axes, and adds it to the machine.
-    pub fn draw_into(&self, machine: &mut Machine, draw: RandomStream) {
+    pub(crate) fn draw_into(&self, machine: &mut Machine, draw: RandomStream) {
         let draw = draw.branch(self.quantity.stream_index());
         let direction = if self.quantity == Quantity::RunOut { draw.branch(2).angle() } else { Deg::ZERO };
         machine.add_error(self.quantity, self.distribution.sample(draw), direction);
@@ -93,37 +93,21 @@ impl ErrorSource {
 
     /// Adds the error of one machine, which for an axis is a function of its position.
     pub(super) fn apply_by_position(&self, machine: &mut Machine, drawn: SampleParameters) {
-        let draw = RandomStream::new(drawn.seed).branch(self.quantity.stream_index());
-        match self.quantity {
-            Quantity::Linear(axis) => {
-                machine.set_link_error(axis, PeriodicError::sample(self.distribution, drawn.wave, draw));
-            }
-            Quantity::Index => {
-                if let Some(axis) = machine.rotary_axis() {
-                    machine.set_link_error(axis, PeriodicError::sample(self.distribution, 360.0, draw));
-                }
-            }
-            Quantity::Head => machine.head.error = PeriodicError::sample(self.distribution, 360.0, draw),
-            Quantity::Shift(_)
-            | Quantity::Tilt(_)
-            | Quantity::RunOut
-            | Quantity::Centre(_)
-            | Quantity::AxisTilt(_) => self.draw_into(machine, RandomStream::new(drawn.seed)),
+        let root = RandomStream::new(drawn.seed);
+        if self.quantity.is_per_part() {
+            return self.draw_into(machine, root);
         }
+        let length = if matches!(self.quantity, Quantity::Linear(_)) { drawn.wave } else { 360.0 };
+        let draw = root.branch(self.quantity.stream_index());
+        machine.set_axis_error(self.quantity, PeriodicError::sample(self.distribution, length, draw));
     }
 }
 
 impl Machine {
     /// Returns the one axis that rotates the part; `None` if there are none or several.
-    pub fn rotary_axis(&self) -> Option<AxisIndex> {
-        let mut turns = self
-            .table
-            .0
-            .iter()
-            .filter(|link| matches!(link.motion, LinkMotion::Rotary { .. }))
-            .map(|l| l.axis);
-        let first = turns.next()?;
-        turns.next().is_none().then_some(first)
+    pub(crate) fn rotary_axis(&self) -> Option<AxisIndex> {
+        let mut axes = self.table.rotary_axes();
+        axes.next().filter(|_| axes.next().is_none())
     }
 
     /// Resets the errors to those of `nominal`, a machine of the same arrangement, without allocation.
@@ -143,7 +127,7 @@ impl Machine {
     }
 
     /// Adds an error to the machine; `direction` is that of a run-out, about the rotary axis.
-    pub fn add_error(&mut self, quantity: Quantity, value: f64, direction: Deg) {
+    pub(crate) fn add_error(&mut self, quantity: Quantity, value: f64, direction: Deg) {
         match quantity {
             Quantity::Shift(along) => self.part.shift[along] += value,
             Quantity::Tilt(about) => self.part.tilt[about] = self.part.tilt[about] + Deg(value),
@@ -153,11 +137,8 @@ impl Machine {
                 let aside = chain::rotation_about(about, direction) * across;
                 self.part.shift += aside * (value / 2.0);
             }
-            Quantity::Linear(axis) => self.set_link_error(axis, PeriodicError::constant(value)),
-            Quantity::Index => {
-                if let Some(axis) = self.rotary_axis() {
-                    self.set_link_error(axis, PeriodicError::constant(value));
-                }
+            Quantity::Linear(_) | Quantity::Index | Quantity::Head => {
+                self.set_axis_error(quantity, PeriodicError::constant(value));
             }
             Quantity::Centre(along) => {
                 if let Some((_, centre)) = self.rotary_axis_mut() {
@@ -170,7 +151,6 @@ impl Machine {
                     *about = chain::rotation_about(&line, Deg(value)) * *about;
                 }
             }
-            Quantity::Head => self.head.error = PeriodicError::constant(value),
         }
     }
 
@@ -183,9 +163,23 @@ impl Machine {
         }
     }
 
-    fn set_link_error(&mut self, axis: AxisIndex, error: PeriodicError) {
+    /// Sets the error of an axis or of the head; other quantities have none.
+    fn set_axis_error(&mut self, quantity: Quantity, error: PeriodicError) {
+        let axis = match quantity {
+            Quantity::Linear(axis) => Some(axis),
+            Quantity::Index => self.rotary_axis(),
+            Quantity::Head => {
+                self.head.error = error;
+                None
+            }
+            Quantity::Shift(_)
+            | Quantity::Tilt(_)
+            | Quantity::RunOut
+            | Quantity::Centre(_)
+            | Quantity::AxisTilt(_) => None,
+        };
         let links = self.table.0.iter_mut().chain(&mut self.slides.0);
-        links.filter(|link| link.axis == axis).for_each(|link| link.error = error);
+        links.filter(|link| Some(link.axis) == axis).for_each(|link| link.error = error);
     }
 }
 
@@ -222,7 +216,7 @@ mod tests {
 
     /// The tool is at machine x = 100 each time; the expected values are part coordinates, by hand.
     #[test]
-    fn each_source_moves_the_tool_on_the_part_as_worked_out_by_hand() {
+    fn each_source_moves_the_tool_on_the_part_as_computed_by_hand() {
         // The part is 0.05 farther in x, so the tool is 0.05 less far on it: at B = 0 in x …
         near(tip(&with(Quantity::Shift(0), 0.05), 100.0, 0.0), [99.95, 0.0, 0.0]);
         // … and at B = 180, where the part's +x points to machine −x, at −100 − 0.05.
@@ -247,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_head_angle_that_is_off_moves_the_tip_on_the_pivots_lever() {
+    fn an_error_of_the_head_angle_moves_the_tip_on_the_pivots_lever() {
         let mut machine = with(Quantity::Head, 0.1);
         machine.head.pivot = 200.0;
         let setup = Setup { head_angle: Some(Deg(90.0)), ..Setup::default() };

@@ -28,23 +28,19 @@ impl Machine {
         let (seconds, length) = (feed.seconds.0, feed.rate.0 / 60.0 * feed.seconds.0);
         let noise = probe.noise.sample(RandomStream::new(probe.seed).branch(touches));
         let late = if seconds > 0.0 { probe.delay.0 / seconds + noise / length } else { 0.0 };
-        let noted = (contact + late).max(0.0);
+        let latched = (contact + late).max(0.0);
         let over = if seconds > 0.0 { probe.overrun.0 / seconds } else { 0.0 };
-        let stopped = (noted + over).min(1.0);
+        let stopped = (latched + over).min(1.0);
         let tip = self.forward(&travel.position(stopped), setup).tip;
-        let pushed = probe.radius - surface.nearest(&tip).distance;
-        if pushed > probe.overtravel_limit {
-            return SkipSignal::StylusBroken {
-                stopped,
-                deflection: pushed,
-                overtravel_limit: probe.overtravel_limit,
-            };
-        }
-        // A signal after the end of the block skips nothing.
-        if noted > 1.0 {
-            SkipSignal::Missed
-        } else {
-            SkipSignal::Received { latched: noted, stop_fraction: stopped }
+        let (deflection, overtravel_limit) =
+            (probe.radius - surface.nearest(&tip).distance, probe.overtravel_limit);
+        match () {
+            () if deflection > overtravel_limit => {
+                SkipSignal::StylusBroken { stopped, deflection, overtravel_limit }
+            }
+            // A signal after the end of the block skips nothing.
+            () if latched > 1.0 => SkipSignal::Missed,
+            () => SkipSignal::Received { latched, stop_fraction: stopped },
         }
     }
 
@@ -102,7 +98,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::machine::error::Distribution;
+    use crate::machine::Distribution;
     use gcode_lang::motion::Position;
     use gcode_lang::units::{Deg, MmPerMin, Seconds};
 
@@ -123,7 +119,7 @@ mod tests {
 
     /// Down to the pole from 450 to 350: the centre of a ball of 3 stops at 403, after 47 of 100 mm.
     #[test]
-    fn straight_on_the_pole_and_on_the_equator() {
+    fn contacts_at_the_pole_and_the_equator_are_those_computed_by_hand() {
         let machine = Machine::default();
         near(touch(&machine, at(0.0, 450.0, 0.0, 0.0), at(0.0, 350.0, 0.0, 0.0), 3.0), 0.47);
         near(touch(&machine, at(0.0, -450.0, 0.0, 0.0), at(0.0, -350.0, 0.0, 0.0), 3.0), 0.47);
@@ -134,7 +130,7 @@ mod tests {
 
     /// Past the pole in x at a height that is a tenth of a micrometre too low or too high for a ball of 3 mm.
     #[test]
-    fn what_only_just_touches_is_not_jumped_over() {
+    fn a_grazing_contact_is_found() {
         let machine = Machine::default();
         let pass = |y: f64| touch(&machine, at(-900.0, y, 0.0, 0.0), at(1100.0, y, 0.0, 0.0), 3.0);
         assert_eq!(pass(403.000_1), None);
@@ -148,7 +144,7 @@ mod tests {
     /// 0) of the table moves to machine (40·cos B, ·, −40·sin B), and a sphere round it of 100 + 5 reaches
     /// the ball at (0, 0, −130) when 40² + 130² − 2·40·130·sin B = 105².
     #[test]
-    fn the_table_turns_the_part_into_the_ball() {
+    fn a_rotating_table_brings_the_part_to_the_ball() {
         let sphere = Surface::Ellipsoid { a: 100.0, b: 100.0 };
         let mut machine = Machine::default();
         machine.part.shift.x = 40.0;
@@ -165,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_in_contact_goes_out_freely_and_one_pushed_in_signals_at_once() {
+    fn a_ball_in_contact_leaves_freely_and_a_deflected_one_signals_at_once() {
         let machine = Machine::default();
         let from = |y: f64, to: f64| touch(&machine, at(0.0, y, 0.0, 0.0), at(0.0, to, 0.0, 0.0), 3.0);
         assert_eq!(from(403.0, 450.0), None);
@@ -193,20 +189,17 @@ mod tests {
     }
 
     #[test]
-    fn a_delay_notes_the_position_late_and_an_overrun_stops_later_still() {
+    fn a_delay_latches_the_position_late_and_an_overrun_stops_later() {
         let mut probe = Probe::new(3.0);
         (probe.delay, probe.overrun) = (Seconds(0.02), Seconds(0.05));
-        let SkipSignal::Received { latched: noted, stop_fraction: stopped } = probed(&probe, 0) else {
-            panic!("it touches")
-        };
+        let SkipSignal::Received { latched, stop_fraction } = probed(&probe, 0) else { panic!("it touches") };
         // 0.2 and 0.5 mm beyond the contact at 47 mm.
-        assert!((noted - 0.472).abs() < 1e-9 && (stopped - 0.477).abs() < 1e-9, "{noted} {stopped}");
+        assert!((latched - 0.472).abs() < 1e-9 && (stop_fraction - 0.477).abs() < 1e-9);
         probe.overtravel_limit = 0.6;
-        let SkipSignal::StylusBroken { deflection: pushed, overtravel_limit: give, .. } = probed(&probe, 0)
-        else {
+        let SkipSignal::StylusBroken { deflection, overtravel_limit, .. } = probed(&probe, 0) else {
             panic!("0.7 is more than 0.6")
         };
-        assert!((pushed - 0.7).abs() < 1e-9 && give == 0.6);
+        assert!((deflection - 0.7).abs() < 1e-9 && overtravel_limit == 0.6);
         // A delay beyond the end of the travel: no signal during the block.
         (probe.delay, probe.overtravel_limit) = (Seconds(6.0), f64::INFINITY);
         assert_eq!(probed(&probe, 0), SkipSignal::Missed);
@@ -216,12 +209,12 @@ mod tests {
     fn noise_differs_from_touch_to_touch_and_not_from_run_to_run() {
         let mut probe = Probe::new(3.0);
         probe.noise = Distribution::Uniform(0.01);
-        let noted = |touches: u64| match probed(&probe, touches) {
-            SkipSignal::Received { latched: noted, .. } => noted,
+        let latched = |touches: u64| match probed(&probe, touches) {
+            SkipSignal::Received { latched, .. } => latched,
             other => panic!("{other:?}"),
         };
-        let (first, second) = (noted(0), noted(1));
-        assert!(first != second && first == noted(0));
+        let (first, second) = (latched(0), latched(1));
+        assert!(first != second && first == latched(0));
         assert!([first, second].iter().all(|n| (n - 0.47).abs() <= 1e-4), "0.01 of 100 mm");
     }
 

@@ -1,36 +1,36 @@
-//! Where a stylus' ball is: the places of the axes, and what else decides where the tip stands.
-use crate::machine::{HeadMessage, Machine, Setup};
+//! The ball of a stylus: its axes and set-up during a run.
+use crate::machine::{AxisMotion, HeadMessage, Machine, Setup};
 use gcode_lang::motion::{Event, EventKind, PlanarArc, Position, StopKind};
 
-/// Follows a run from machine zero on.
+/// State of the ball, from machine zero.
 #[derive(Debug, Default)]
 pub(super) struct Ball {
     pub axis_position: Position,
     pub setup: Setup,
 }
 
-/// What an event is to the ball.
+/// Effect of an event on the ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BallUpdate<'e> {
-    /// It has gone.
+    /// The ball moves.
     Moved {
         from: Position,
         to: &'e Position,
         arc: Option<&'e PlanarArc>,
-        by: BallMove,
+        kind: BallMove,
     },
-    /// Another tool, length offset or angle of the head: from here on it stands elsewhere.
+    /// Another tool, length offset or head angle displaces the ball.
     Changed,
-    /// A message about the head from which no angle can be read: the head stays as it is.
+    /// A message about the head without an angle: the head is unchanged.
     Unclear(&'e str),
     Unchanged,
 }
 
-/// How it has gone.
+/// Kind of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BallMove {
     Rapid,
-    /// A move that a probe ends.
+    /// A motion that ends with the probe's signal.
     Probe,
     Feed,
 }
@@ -42,19 +42,11 @@ impl Ball {
             EventKind::Skip { to, .. } => self.move_to(to, None, BallMove::Probe),
             EventKind::Feed { to, .. } => self.move_to(to, None, BallMove::Feed),
             EventKind::Arc { to, arc, .. } => self.move_to(to, Some(arc), BallMove::Feed),
-            EventKind::ToolChange { number } => {
-                self.update_setup(Setup { tool: Some(*number), ..self.setup })
-            }
-            EventKind::ToolLength { offset, .. } => {
-                self.update_setup(Setup { offset: *offset, ..self.setup })
-            }
-            EventKind::Stop { kind: StopKind::Message, text, variables: named }
-                if machine.head.is_set_by_hand() =>
-            {
-                match HeadMessage::parse(text, named) {
-                    HeadMessage::Angle(angle) => {
-                        self.update_setup(Setup { head_angle: Some(angle), ..self.setup })
-                    }
+            EventKind::ToolChange { number } => self.update_setup(|setup| setup.tool = Some(*number)),
+            EventKind::ToolLength { offset, .. } => self.update_setup(|setup| setup.offset = *offset),
+            EventKind::Stop { kind: StopKind::Message, text, variables } if machine.head.is_set_by_hand() => {
+                match HeadMessage::parse(text, variables) {
+                    HeadMessage::Angle(angle) => self.update_setup(|setup| setup.head_angle = Some(angle)),
                     HeadMessage::Unclear => BallUpdate::Unclear(text),
                     HeadMessage::Unrelated => BallUpdate::Unchanged,
                 }
@@ -68,13 +60,30 @@ impl Ball {
         }
     }
 
-    fn move_to<'e>(&mut self, to: &'e Position, arc: Option<&'e PlanarArc>, by: BallMove) -> BallUpdate<'e> {
+    fn move_to<'e>(
+        &mut self,
+        to: &'e Position,
+        arc: Option<&'e PlanarArc>,
+        kind: BallMove,
+    ) -> BallUpdate<'e> {
         let from = std::mem::replace(&mut self.axis_position, *to);
-        BallUpdate::Moved { from, to, arc, by }
+        BallUpdate::Moved { from, to, arc, kind }
     }
 
-    fn update_setup<'e>(&mut self, setup: Setup) -> BallUpdate<'e> {
-        self.setup = setup;
+    fn update_setup<'e>(&mut self, change: impl FnOnce(&mut Setup)) -> BallUpdate<'e> {
+        change(&mut self.setup);
         BallUpdate::Changed
+    }
+
+    /// Returns the chords of a motion from which the ball deviates by at most `tolerance` mm. Each is a function from the
+    /// fraction of the chord to that of the motion.
+    pub(super) fn chords(
+        &self,
+        machine: &Machine,
+        travel: &AxisMotion<'_>,
+        tolerance: f64,
+    ) -> impl Iterator<Item = impl Fn(f64) -> f64 + use<>> + use<> {
+        let steps = machine.chord_count(travel, &self.setup, tolerance);
+        (0..steps).map(move |step| move |t: f64| (f64::from(step) + t) / f64::from(steps))
     }
 }

@@ -1,8 +1,7 @@
-//! Motion → readings: what an edge finder shows whose ball is fed along the part's surface.
+//! Motion → readings: an edge finder whose ball is fed along the part's surface.
 //!
-//! Feeds along the surface are a pass; approach and retract cross it. What is farther away than [`MAX_READING_DISTANCE`] or lies across
-//! has no reading: where the path should have gone on there, that is an error.
-use gcode_lang::alarm::kinds::LIMIT;
+//! Feeds along the surface are passes; approach and retract cross it. A feed more than 5 mm away, or
+//! across the surface, has no reading: within the path that is an error.
 mod ball;
 mod rapids;
 #[cfg(test)]
@@ -11,39 +10,44 @@ mod unread;
 
 use nalgebra::{Point3, Unit};
 
+use self::ball::{Ball, BallMove, BallUpdate};
+use self::unread::{UnreadFeed, UnreadFeeds, UnreadReason};
 use crate::holes::unclear_head;
-use crate::machine::path::AxisMotion;
-use crate::machine::{Machine, Placement};
+use crate::machine::{AxisMotion, Machine, Placement};
+use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, EventSink};
 use gcode_part::Surface;
 
-use self::ball::{Ball, BallMove, BallUpdate};
-use self::unread::{UnreadFeed, UnreadFeeds, UnreadReason};
-
 pub use self::rapids::RapidChecker;
 pub use self::unread::Gap;
 
-/// From how far the ball may stand off the surface, mm: more than any part is misplaced after a coarse alignment.
-pub const MAX_READING_DISTANCE: f64 = 5.0;
-/// A curved way is taken as chords that stray from it by no more than this, mm.
+/// Largest distance of the ball from the surface with a reading, mm: more than the error of a coarse alignment.
+const MAX_READING_DISTANCE: f64 = 5.0;
+
+/// Largest deviation of the path from its chords where it is read, mm.
 const CHORD_TOLERANCE: f64 = 1e-5;
-/// The same where nothing is read, and the way's length and depth are told.
+
+/// Largest deviation of the path from its chords where only its length and depth count, mm.
 const COARSE_CHORD_TOLERANCE: f64 = 0.01;
-/// So many points of each chord are kept, besides the nearest.
-const POINTS_PER_CHORD: u32 = 4;
-/// More points than this aren't kept: no path has so many, but a loop that never ends makes them.
+
+/// Number of readings per chord, besides the nearest point.
+const READINGS_PER_CHORD: u32 = 4;
+
+/// Largest number of readings: an endless loop must not fill the memory.
 const MAX_READINGS: usize = 500_000;
-/// More points than this aren't looked at on feeds that have no reading, which takes some seconds.
+
+/// Largest number of points on feeds without a reading: some seconds of computation.
 const MAX_UNREAD_POINTS: usize = 2_000_000;
-/// The sine of the angle to the surface up to which a feed goes along it: 30°.
+
+/// Sine of the largest angle to the surface of a feed along it: 30°.
 const MAX_RISE: f64 = 0.5;
 
-/// How a feed goes.
+/// Course of a feed.
 enum FeedCourse {
-    /// Along the surface, near to it: it is read.
+    /// Near the surface and along it: it has readings.
     AlongSurface,
-    /// The ball doesn't move against the part.
+    /// The ball does not move relative to the part.
     Stationary,
     Unread(UnreadReason),
 }
@@ -51,63 +55,66 @@ enum FeedCourse {
 /// One point of a pass; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// The way from where the pass begins.
+    /// Length of the path since the start of the pass.
     pub path_length: f64,
-    /// The ball's centre, in the frame of the part as the program believes it to stand.
+    /// Centre of the ball in the frame of the part at its nominal position.
     pub ball_centre: Point3<f64>,
-    /// From the ball to the surface: above 0 there is a gap, below 0 the ball is pushed in.
+    /// Distance from the ball to the surface; negative if the ball is deflected.
     pub value: f64,
-    /// Which of [`ReadingPass::backtraces`] moved here.
+    /// Index of the move in [`ReadingPass::backtraces`].
     pub move_index: usize,
 }
 
-/// A way along the surface.
+/// A path along the surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadingPass {
+    /// Readings in order.
     pub readings: Vec<Reading>,
-    /// The blocks that moved, one for each move.
+    /// Block of each move.
     pub backtraces: Vec<Backtrace>,
 }
 
 impl ReadingPass {
-    /// The least and the greatest reading; `None` of a pass without any.
+    /// Returns the least and the greatest reading; `None` for a pass without readings.
     pub fn extremes(&self) -> Option<(Reading, Reading)> {
         let order = |one: &&Reading, other: &&Reading| one.value.total_cmp(&other.value);
         Some((*self.readings.iter().min_by(order)?, *self.readings.iter().max_by(order)?))
     }
 
-    /// How long the way is.
+    /// Returns the length of the path, mm.
     pub fn length(&self) -> f64 {
         self.readings.last().map_or(0.0, |last| last.path_length)
     }
 }
 
-/// What a program makes an edge finder show.
+/// Readings of an edge finder during a program.
 #[derive(Clone, Debug, Default)]
 pub struct StylusReadings {
+    /// Paths along the surface, in order.
     pub passes: Vec<ReadingPass>,
-    /// Where the path has no reading though it should, in order.
+    /// Stretches of the path without readings, in order.
     pub gaps: Vec<Gap>,
-    /// How many feeds go to the surface, and how many from it; they have no reading.
+    /// Number of feeds to the surface and of feeds from it; they have no readings.
     pub approach_retract_counts: [usize; 2],
+    /// Findings about the path.
     pub findings: Vec<Diagnostic>,
 }
 
-/// Listens to a run and reads the ball.
+/// Sink for the events of a run that reads the ball.
 #[derive(Debug)]
 pub struct Stylus<'m> {
     machine: &'m Machine,
-    /// The same machine with the part where the program believes it to stand.
+    /// The same machine with the part at its nominal position.
     nominal_machine: Machine,
     surface: Surface,
-    /// Of the ball, mm.
+    /// Radius of the ball, mm.
     radius: f64,
     ball: Ball,
     current_pass: Option<ReadingPass>,
     unread_feeds: UnreadFeeds,
     result: StylusReadings,
-    /// Points of passes, and of feeds that have no reading.
     reading_count: usize,
+    /// Points of feeds without a reading.
     unread_points: usize,
 }
 
@@ -129,32 +136,33 @@ impl<'m> Stylus<'m> {
         }
     }
 
+    /// Ends the run and returns its readings.
     pub fn finish(mut self) -> StylusReadings {
         self.end_pass();
         self.unread_feeds.finish(self.result.passes.len());
-        let UnreadFeeds { gaps, approach_retract_counts: ways, mut findings, .. } = self.unread_feeds;
+        let UnreadFeeds { gaps, approach_retract_counts, mut findings, .. } = self.unread_feeds;
         findings.extend(self.result.findings);
-        StylusReadings { gaps, approach_retract_counts: ways, findings, ..self.result }
+        StylusReadings { gaps, approach_retract_counts, findings, ..self.result }
     }
 
     fn end_pass(&mut self) {
         self.result.passes.extend(self.current_pass.take());
     }
 
-    fn motion(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, by: BallMove) {
+    fn motion(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, kind: BallMove) {
         if self.is_full() || (travel.from == travel.to && travel.arc.is_none()) {
             return;
         }
-        if by != BallMove::Feed {
+        if kind != BallMove::Feed {
             self.end_pass();
             return self.unread_feeds.end_path(self.result.passes.len());
         }
         match self.feed_course(travel) {
             FeedCourse::AlongSurface => {}
             FeedCourse::Stationary => return,
-            FeedCourse::Unread(way) => {
+            FeedCourse::Unread(reason) => {
                 self.end_pass();
-                let unread = self.measure_unread(event, travel, way);
+                let unread = self.measure_unread(event, travel, reason);
                 self.unread_feeds.push(unread);
                 return self.report_limit(event);
             }
@@ -170,8 +178,7 @@ impl<'m> Stylus<'m> {
             let reading = self.reading_at(travel, t, &pass);
             pass.readings.push(reading);
         }
-        let added = pass.readings.len() - before;
-        self.reading_count += added;
+        self.reading_count += pass.readings.len() - before;
         self.current_pass = Some(pass);
         self.report_limit(event);
     }
@@ -180,29 +187,40 @@ impl<'m> Stylus<'m> {
         self.reading_count > MAX_READINGS || self.unread_points > MAX_UNREAD_POINTS
     }
 
-    /// Tells it where nothing more is read.
+    /// Reports a limit once it is exceeded.
     fn report_limit(&mut self, event: &Event<'_>) {
-        let message = if self.reading_count > MAX_READINGS {
-            format!("more than {MAX_READINGS} points along the surface: no readings after this")
+        let points = if self.reading_count > MAX_READINGS {
+            format!("{MAX_READINGS} points along the surface")
         } else if self.unread_points > MAX_UNREAD_POINTS {
-            format!("more than {MAX_UNREAD_POINTS} points of feeds without a reading: no readings after this")
+            format!("{MAX_UNREAD_POINTS} points of feeds without a reading")
         } else {
             return;
         };
-        let finding = Diagnostic::new(&LIMIT, message).with_backtrace(event.backtrace());
-        let finding = finding.help("check for a loop that never ends; otherwise split the program");
+        let finding = Diagnostic::new(&LIMIT, format!("more than {points}: no readings after this"))
+            .with_backtrace(event.backtrace())
+            .help("check for a loop that never ends; otherwise split the program");
         self.result.findings.push(finding);
     }
 
-    /// How the ball goes, all the way.
+    /// Returns the centre of the ball after the fraction `t` of a motion, in the part's frame.
+    fn tip(&self, travel: &AxisMotion<'_>, t: f64) -> Point3<f64> {
+        self.machine.forward(&travel.position(t), &self.ball.setup).tip
+    }
+
+    /// Returns the distance of the ball from the surface; negative if it is deflected.
+    fn distance(&self, tip: &Point3<f64>) -> f64 {
+        self.surface.nearest(tip).distance - self.radius
+    }
+
+    /// Returns the course of a feed from its start, middle and end.
     fn feed_course(&self, travel: &AxisMotion<'_>) -> FeedCourse {
-        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
-        // The distance from the surface where it is looked at, and the sine of the angle at which the way leaves it.
+        let tip = |t: f64| self.tip(travel, t);
+        // Whether the ball is near, and the sine of the angle at which it leaves the surface.
         let samples = [0.0, 0.5, 1.0].map(|t| {
-            let (near, here) = (1e-3, tip(t));
-            let back = if t < 1.0 { tip(t + near) - here } else { here - tip(t - near) };
+            let (step, here) = (1e-3, tip(t));
+            let direction = if t < 1.0 { tip(t + step) - here } else { here - tip(t - step) };
             let nearest = self.surface.nearest(&here);
-            let rise = Unit::try_new(back, 1e-12).map(|direction| direction.dot(&nearest.normal));
+            let rise = Unit::try_new(direction, 1e-12).map(|direction| direction.dot(&nearest.normal));
             ((nearest.distance - self.radius).abs() <= MAX_READING_DISTANCE, rise)
         });
         let all = |holds: fn(f64) -> bool| samples.iter().all(|(_, rise)| rise.is_some_and(holds));
@@ -219,68 +237,67 @@ impl<'m> Stylus<'m> {
         }
     }
 
-    /// A feed on which the dial isn't read.
+    /// Returns the length of a feed without readings, and its least and largest distance from the surface.
     fn measure_unread(
         &mut self,
         event: &Event<'_>,
         travel: &AxisMotion<'_>,
         reason: UnreadReason,
     ) -> UnreadFeed {
-        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
-        let far = |tip: &Point3<f64>| self.surface.nearest(tip).distance - self.radius;
-        let steps = self.machine.chord_count(travel, &self.ball.setup, COARSE_CHORD_TOLERANCE);
-        let (mut length, mut last) = (0.0, tip(0.0));
-        let (mut least, mut greatest) = (far(&last), far(&last));
-        for step in 1..=steps {
-            let here = tip(f64::from(step) / f64::from(steps));
-            let between = last + (here - last) * self.surface.nearest_between(&last, &here);
-            length += (here - last).norm();
-            (least, greatest) = (least.min(far(&between)).min(far(&here)), greatest.max(far(&here)));
-            last = here;
-        }
-        self.unread_points += steps as usize;
-        UnreadFeed {
+        let mut last = self.tip(travel, 0.0);
+        let distance = self.distance(&last);
+        let mut feed = UnreadFeed {
             backtrace: event.backtrace(),
             reason,
-            length,
-            min_distance: least,
-            max_distance: greatest,
+            length: 0.0,
+            min_distance: distance,
+            max_distance: distance,
+        };
+        for chord in self.ball.chords(self.machine, travel, COARSE_CHORD_TOLERANCE) {
+            let here = self.tip(travel, chord(1.0));
+            let nearest = last + (here - last) * self.surface.nearest_between(&last, &here);
+            let distance = self.distance(&here);
+            feed.length += (here - last).norm();
+            feed.min_distance = feed.min_distance.min(self.distance(&nearest)).min(distance);
+            feed.max_distance = feed.max_distance.max(distance);
+            last = here;
+            self.unread_points += 1;
         }
+        feed
     }
 
-    /// Where along a motion the ball is read: beyond 0, up to 1.
+    /// Returns the fractions of a motion at which the ball is read, beyond 0 up to 1.
     fn stations(&self, travel: &AxisMotion<'_>) -> Vec<f64> {
-        let steps = self.machine.chord_count(travel, &self.ball.setup, CHORD_TOLERANCE);
-        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let mut stations = Vec::new();
-        for step in 0..steps {
-            let part = |t: f64| (f64::from(step) + t) / f64::from(steps);
-            let nearest = self.surface.nearest_between(&tip(part(0.0)), &tip(part(1.0)));
+        for chord in self.ball.chords(self.machine, travel, CHORD_TOLERANCE) {
+            let [start, end] = [0.0, 1.0].map(|t| self.tip(travel, chord(t)));
+            let nearest = self.surface.nearest_between(&start, &end);
+            let even = (1..=READINGS_PER_CHORD).map(|n| f64::from(n) / f64::from(READINGS_PER_CHORD));
             let mut inside: Vec<f64> =
-                (1..=POINTS_PER_CHORD).map(|n| f64::from(n) / f64::from(POINTS_PER_CHORD)).collect();
-            inside.extend((0.0 < nearest && nearest < 1.0).then_some(nearest));
+                even.chain((0.0 < nearest && nearest < 1.0).then_some(nearest)).collect();
             inside.sort_by(f64::total_cmp);
-            stations.extend(inside.into_iter().map(part));
+            stations.extend(inside.into_iter().map(chord));
         }
         stations
     }
 
     fn reading_at(&self, travel: &AxisMotion<'_>, t: f64, pass: &ReadingPass) -> Reading {
-        let position = travel.position(t);
-        let tip = self.machine.forward(&position, &self.ball.setup).tip;
-        let at = self.nominal_machine.forward(&position, &self.ball.setup).tip;
-        let along =
-            pass.readings.last().map_or(0.0, |last| last.path_length + (at - last.ball_centre).norm());
-        let value = self.surface.nearest(&tip).distance - self.radius;
-        Reading { path_length: along, ball_centre: at, value, move_index: pass.backtraces.len() - 1 }
+        let ball_centre = self.nominal_machine.forward(&travel.position(t), &self.ball.setup).tip;
+        let step = |last: &Reading| last.path_length + (ball_centre - last.ball_centre).norm();
+        Reading {
+            path_length: pass.readings.last().map_or(0.0, step),
+            ball_centre,
+            value: self.distance(&self.tip(travel, t)),
+            move_index: pass.backtraces.len() - 1,
+        }
     }
 }
 
 impl EventSink for Stylus<'_> {
     fn event(&mut self, event: &Event<'_>) {
         match self.ball.apply_event(self.machine, event) {
-            BallUpdate::Moved { from, to, arc, by } => {
-                self.motion(event, &AxisMotion { from: &from, to, arc }, by);
+            BallUpdate::Moved { from, to, arc, kind } => {
+                self.motion(event, &AxisMotion { from: &from, to, arc }, kind);
             }
             BallUpdate::Changed => self.end_pass(),
             BallUpdate::Unclear(text) => {

@@ -1,53 +1,52 @@
-//! Feeds on which no dial is read: the way to the surface and the way from it are none of the path; whatever else isn't
-//! read is missing from it, and is told.
+//! Feeds without readings: approach and retract are no part of the path; other feeds are gaps in it.
 use super::MAX_READING_DISTANCE;
 use crate::findings::{BALL_INTO_PART, PATH_NOT_READ};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 
-/// How a feed that isn't read goes.
+/// Course of a feed without readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum UnreadReason {
-    /// To the surface, steeper than what goes along it.
+    /// To the surface, steeper than a feed along it.
     Approach,
-    /// Away from it, as steeply.
+    /// From the surface, as steep.
     Retract,
-    /// Neither all the way.
+    /// Any other.
     Stray,
 }
 
-/// A feed that isn't read.
+/// A feed without readings; lengths in mm.
 #[derive(Debug)]
 pub(super) struct UnreadFeed {
     pub backtrace: Backtrace,
     pub reason: UnreadReason,
-    /// How long it is, mm.
     pub length: f64,
-    /// The least and the greatest distance of the ball from the surface, mm; below 0 the ball is in the part.
+    /// Least and largest distance of the ball from the surface; negative inside the part.
     pub min_distance: f64,
     pub max_distance: f64,
 }
 
-/// A stretch of the path without a reading.
+/// A stretch of the path without readings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// So many passes come before it.
+    /// Number of passes before it.
     pub passes_before: usize,
+    /// Length, mm.
     pub length: f64,
 }
 
-/// What wasn't read so far.
+/// Feeds without readings so far.
 #[derive(Debug, Default)]
 pub(super) struct UnreadFeeds {
     /// Feeds since the last reading or rapid.
     feeds: Vec<UnreadFeed>,
-    /// Whether anything was read since the last rapid.
+    /// True if there is a reading since the last rapid.
     has_reading: bool,
-    /// Feeds between two rapids on which nothing was read, and the passes before them: whether they are missing from the
-    /// path shows with the next pass, or at the end.
+    /// Feeds between two rapids without any reading, and the number of passes before them: the next pass, or the end,
+    /// shows whether they are gaps.
     pending: Vec<(Vec<UnreadFeed>, usize)>,
     pub gaps: Vec<Gap>,
-    /// Feeds to the surface and feeds from it.
+    /// Number of feeds to the surface and of feeds from it.
     pub approach_retract_counts: [usize; 2],
     pub findings: Vec<Diagnostic>,
 }
@@ -57,78 +56,68 @@ impl UnreadFeeds {
         self.feeds.push(feed);
     }
 
-    /// A feed along the surface begins; so many passes were read before.
+    /// Starts a pass after `passes` others.
     pub(super) fn begin_reading(&mut self, passes: usize) {
-        for (feeds, behind) in std::mem::take(&mut self.pending) {
-            if behind > 0 || has_stray_feed(&feeds) {
-                self.report_gap(&feeds, behind);
-            } else {
-                self.count(&feeds);
-            }
+        for (feeds, before) in std::mem::take(&mut self.pending) {
+            self.settle(&feeds, before, before > 0 || has_stray_feed(&feeds));
         }
         let feeds = std::mem::take(&mut self.feeds);
-        if !self.has_reading
-            && feeds.iter().all(|feed| feed.reason == UnreadReason::Approach && !feed.is_inside())
-        {
-            self.count(&feeds);
-        } else {
-            self.report_gap(&feeds, passes);
-        }
+        let is_approach = |feed: &UnreadFeed| feed.reason == UnreadReason::Approach && !feed.is_inside();
+        self.settle(&feeds, passes, self.has_reading || !feeds.iter().all(is_approach));
         self.has_reading = true;
     }
 
-    /// No feed goes on from here: a rapid, or the end of the program.
+    /// Ends the path at a rapid, or at the end of the program, after `passes` passes.
     pub(super) fn end_path(&mut self, passes: usize) {
         let feeds = std::mem::take(&mut self.feeds);
-        let touched = std::mem::replace(&mut self.has_reading, false);
-        let away = feeds.iter().all(|feed| feed.reason == UnreadReason::Retract);
-        if feeds.iter().any(UnreadFeed::is_inside) || (touched && !away) {
-            self.report_gap(&feeds, passes);
-        } else if touched {
-            self.count(&feeds);
+        let had_reading = std::mem::replace(&mut self.has_reading, false);
+        let is_retract = feeds.iter().all(|feed| feed.reason == UnreadReason::Retract);
+        let is_gap = feeds.iter().any(UnreadFeed::is_inside) || (had_reading && !is_retract);
+        if is_gap || had_reading {
+            self.settle(&feeds, passes, is_gap);
         } else if !feeds.is_empty() {
             self.pending.push((feeds, passes));
         }
     }
 
-    /// The program is at its end; so many passes were read. Where there is a path at all, a feed that goes neither to the
-    /// surface nor from it is missing from it.
+    /// Ends the program after `passes` passes. If there are any, a stray feed is missing from the path.
     pub(super) fn finish(&mut self, passes: usize) {
         self.end_path(passes);
-        for (feeds, behind) in std::mem::take(&mut self.pending) {
-            if passes > 0 && has_stray_feed(&feeds) {
-                self.report_gap(&feeds, behind);
-            } else {
-                self.count(&feeds);
-            }
+        for (feeds, before) in std::mem::take(&mut self.pending) {
+            self.settle(&feeds, before, passes > 0 && has_stray_feed(&feeds));
         }
     }
 
-    fn count(&mut self, feeds: &[UnreadFeed]) {
+    /// Reports feeds after `passes` passes as a gap, or counts them as approach and retract.
+    fn settle(&mut self, feeds: &[UnreadFeed], passes: usize, is_gap: bool) {
+        if is_gap {
+            self.report_gap(feeds, passes);
+            return;
+        }
         for feed in feeds {
             self.approach_retract_counts[usize::from(feed.reason == UnreadReason::Retract)] += 1;
         }
     }
 
-    fn report_gap(&mut self, feeds: &[UnreadFeed], behind: usize) {
+    fn report_gap(&mut self, feeds: &[UnreadFeed], passes_before: usize) {
         let Some(first) = feeds.iter().find(|feed| feed.is_inside()).or(feeds.first()) else { return };
         let length = feeds.iter().map(|feed| feed.length).sum();
-        self.gaps.push(Gap { passes_before: behind, length });
+        self.gaps.push(Gap { passes_before, length });
         let number = match feeds.len() {
-            1 => "1 feed gives no readings over".to_owned(),
-            n => format!("{n} feeds give no readings over"),
+            1 => "1 feed gives",
+            n => &format!("{n} feeds give"),
         };
         let least = feeds.iter().map(|feed| feed.min_distance).fold(f64::INFINITY, f64::min);
         let greatest = feeds.iter().map(|feed| feed.max_distance).fold(f64::NEG_INFINITY, f64::max);
         let finding = if least < -MAX_READING_DISTANCE {
             let message = format!(
-                "the ball is fed into the part: {number} {length:.3} mm, up to {:.3} mm deep",
+                "the ball is fed into the part: {number} no readings over {length:.3} mm, up to {:.3} mm deep",
                 -least
             );
             Diagnostic::new(&BALL_INTO_PART, message)
         } else {
             let message = format!(
-                "{number} {length:.3} mm: up to {:.3} mm off the surface, neither straight to it nor from it",
+                "{number} no readings over {length:.3} mm: up to {:.3} mm off the surface, neither straight to it nor from it",
                 greatest.max(-least)
             );
             Diagnostic::new(&PATH_NOT_READ, message)

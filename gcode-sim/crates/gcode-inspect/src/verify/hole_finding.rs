@@ -1,60 +1,64 @@
-//! What a check has against the holes, and which of it stands behind one sentence about many.
+//! Findings about holes, and findings about many holes that replace them.
 use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::{Backtrace, Call};
 
-/// Something a check has against the holes.
+/// Subject of a finding; holes are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum About {
+    /// Several holes, or the program as a whole.
+    Whole,
+    /// One nominal hole.
+    Nominal(usize),
+    /// One drilled hole that has no nominal hole.
+    Extra(usize),
+    /// The motion of the tool.
+    Motion,
+}
+
+/// A finding of a check on holes.
 #[derive(Clone, Debug)]
-pub struct HoleFinding {
-    /// The wanted hole it is about, counted from 0.
-    pub nominal: Option<usize>,
-    /// The drilled hole that nobody asked for, counted from 0.
-    pub extra: Option<usize>,
+pub(super) struct HoleFinding {
+    pub about: About,
     pub finding: Diagnostic,
-    /// It is about how the tool moved, not about the holes that came of it.
-    pub is_motion: bool,
-    /// Another finding says it of many holes at once: people read that one, the data has both.
+    /// True if a finding about many holes replaces it in the printed list; JSON has both.
     pub is_folded: bool,
 }
 
-impl HoleFinding {
-    /// About many holes, or about none that is known.
-    pub fn unlocated(finding: Diagnostic) -> Self {
-        Self { nominal: None, extra: None, finding, is_motion: false, is_folded: false }
+/// Findings of the checks so far, in printed order.
+#[derive(Debug, Default)]
+pub(super) struct HoleFindings(pub Vec<HoleFinding>);
+
+impl HoleFindings {
+    pub(super) fn add(&mut self, about: About, finding: Diagnostic) {
+        self.0.push(HoleFinding { about, finding, is_folded: false });
     }
 
-    pub fn of_nominal(wanted: usize, finding: Diagnostic) -> Self {
-        Self { nominal: Some(wanted), ..Self::unlocated(finding) }
+    /// Inserts findings about many holes before all others.
+    pub(super) fn put_first(&mut self, findings: impl IntoIterator<Item = Diagnostic>) {
+        let whole = |finding| HoleFinding { about: About::Whole, finding, is_folded: false };
+        self.0.splice(0..0, findings.into_iter().map(whole));
     }
 
-    pub fn of_extra(extra: usize, finding: Diagnostic) -> Self {
-        Self { extra: Some(extra), ..Self::unlocated(finding) }
+    pub(super) fn position(&self, kinds: &[&FindingKind]) -> Option<usize> {
+        self.0.iter().position(|one| kinds.contains(&one.finding.kind))
     }
 
-    /// About how the tool moved.
-    pub fn of_motion(finding: Diagnostic) -> Self {
-        Self { is_motion: true, ..Self::unlocated(finding) }
+    pub(super) fn remove(&mut self, kinds: &[&FindingKind]) {
+        self.0.retain(|one| !kinds.contains(&one.finding.kind));
     }
 
-    pub(super) fn is_one_of(&self, kinds: &[&FindingKind]) -> bool {
-        kinds.contains(&self.finding.kind)
+    /// Folds the findings of these kinds whose subject `is_explained` accepts; returns their number.
+    pub(super) fn fold(&mut self, kinds: &[&FindingKind], is_explained: impl Fn(About) -> bool) -> usize {
+        let mut folded = 0;
+        for one in self.0.iter_mut().filter(|one| !one.is_folded && kinds.contains(&one.finding.kind)) {
+            one.is_folded = is_explained(one.about);
+            folded += usize::from(one.is_folded);
+        }
+        folded
     }
 }
 
-/// Puts those of these codes that `about` speaks of behind another finding; the answer is how many they are.
-pub(super) fn fold(
-    findings: &mut [HoleFinding],
-    kinds: &[&FindingKind],
-    is_concerned: impl Fn(&HoleFinding) -> bool,
-) -> usize {
-    let mut folded = 0;
-    for objection in findings.iter_mut().filter(|o| !o.is_folded && o.is_one_of(kinds) && is_concerned(o)) {
-        objection.is_folded = true;
-        folded += 1;
-    }
-    folded
-}
-
-/// What is said where findings were folded; `None` where there were none.
+/// Returns a note on the folded findings; `None` if their number is 0.
 pub(super) fn folded_note(folded: usize) -> Option<String> {
     match folded {
         0 => None,
@@ -63,16 +67,21 @@ pub(super) fn folded_note(folded: usize) -> Option<String> {
     }
 }
 
-/// What concerns many holes alike is told at the call in the main program, which has the numbers; where it was drilled is
-/// a second place.
-pub(super) fn locate_at_call(finding: Diagnostic, place: &Backtrace) -> Diagnostic {
-    let calls = std::iter::successors(place.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
+/// Completes a finding about many holes: the note on the findings that it replaces, and its place.
+pub(super) fn summary(mut finding: Diagnostic, folded: usize, backtrace: &Backtrace) -> Diagnostic {
+    finding.notes.extend(folded_note(folded));
+    locate_at_call(finding, backtrace)
+}
+
+/// Locates a finding at the outermost call, which has the arguments; the drilling block is a secondary place.
+pub(super) fn locate_at_call(finding: Diagnostic, backtrace: &Backtrace) -> Diagnostic {
+    let calls = std::iter::successors(backtrace.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
     match calls.last() {
         Some(call) => {
             let mut finding = finding.with_backtrace(Backtrace { block: call.calling_block, calls: None });
-            finding.labels.push((place.block, "drilled here".to_owned()));
+            finding.labels.push((backtrace.block, "drilled here".to_owned()));
             finding
         }
-        None => finding.with_backtrace(place.clone()),
+        None => finding.with_backtrace(backtrace.clone()),
     }
 }

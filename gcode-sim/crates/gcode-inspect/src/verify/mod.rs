@@ -1,4 +1,4 @@
-//! Holds the holes a program makes against the wanted ones: which is which, how far off, and whether that will do.
+//! Comparison of the drilled holes with the nominal ones: matching, deviations, findings and the verdict.
 mod causes;
 mod checks;
 mod displacement;
@@ -7,37 +7,42 @@ mod hole_finding;
 mod matching;
 mod neighbours;
 mod not_checked;
-pub(crate) mod position;
+mod position;
 mod rounding;
 mod rows;
 #[cfg(test)]
 mod tests;
 mod verdict;
 
-pub use hole_finding::HoleFinding;
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
+pub use position::Deviation;
 pub use verdict::{Answer, ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
+use self::checks::mirrored::MirrorImage;
+use self::hole_finding::{About, HoleFindings};
 use self::rounding::RoundingDeviation;
+use self::rows::PatternRows;
 use crate::holes::HoleExtraction;
 use crate::machine::Machine;
 use gcode_lang::source::Span;
-use gcode_part::Reference;
+use gcode_part::{Hole, Reference};
+use nalgebra::{Point3, Vector3};
 
-/// What a hole may be off by.
+/// Tolerances of a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
     /// Diameter of the zone in which the axis must lie (ISO 1101), mm.
     pub position: f64,
-    /// Either way, mm.
+    /// Depth, either way, mm.
     pub depth: f64,
-    /// Either way, mm; held against where the finishing tool's diameter is known.
+    /// Diameter, either way, mm; applies where the diameter of the finishing tool is known.
     pub diameter: f64,
 }
 
 impl Tolerances {
-    /// What was asked for goes before what the reference says; without either, the paper's Φ0.1.
+    /// Returns the tolerances of the reference; `specified` overrides its position tolerance. The defaults are Φ0.1 for
+    /// the position, as in the paper, and ±0.1 for the depth.
     pub fn of(reference: &Reference, specified: Option<f64>) -> Self {
         Self {
             position: specified.or(reference.position).unwrap_or(0.1),
@@ -47,15 +52,19 @@ impl Tolerances {
     }
 }
 
-/// What the checks look at.
+/// Input of the checks.
 struct HoleInspection<'a> {
     comparison: Comparison<'a>,
+    /// Rows in which the holes were drilled; `None` without a pattern, with too few rows, and if all holes are in place.
+    rows: Option<PatternRows<'a>>,
+    /// The mirror image of the pattern that was drilled instead of it.
+    mirror_image: Option<MirrorImage>,
     extraction: &'a HoleExtraction,
     reference: &'a Reference,
     machine: &'a Machine,
 }
 
-/// The verdict on a program. `locate` names the program and the line of a block.
+/// Compares the holes of a program with the reference. `locate` returns the program and the line of a block.
 pub fn verify(
     extraction: &HoleExtraction,
     reference: &Reference,
@@ -65,18 +74,32 @@ pub fn verify(
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
-    let inspection = HoleInspection { comparison, extraction, reference, machine };
-    let motion = extraction.findings.iter().cloned();
-    let mut findings: Vec<HoleFinding> = motion.map(HoleFinding::of_motion).collect();
+    let rows = pattern.and_then(|pattern| PatternRows::of(&comparison, pattern));
+    let mirror_image = MirrorImage::of(&comparison);
+    let inspection = HoleInspection { comparison, rows, mirror_image, extraction, reference, machine };
+    let mut findings = HoleFindings::default();
+    for finding in &extraction.findings {
+        findings.add(About::Motion, finding.clone());
+    }
     for check in checks::ALL {
         check(&inspection, &mut findings);
     }
     let comparison = &inspection.comparison;
     let rounding = RoundingDeviation::of(comparison, machine);
-    let mut verdict = verdict::verdict(comparison, &rounding, findings, locate);
+    let mut verdict = verdict::verdict(comparison, &rounding, findings.0, locate);
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
     verdict.not_checked = not_checked::lines(comparison, extraction, reference, machine, locate);
     verdict
+}
+
+/// Returns the nominal bottom of a hole.
+fn bottom(hole: &Hole) -> Point3<f64> {
+    Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth
+}
+
+/// Formats a range of lengths in mm; one number if both ends agree.
+fn format_range(min: f64, max: f64) -> String {
+    if max - min < 0.001 { format!("{max:.3}") } else { format!("{min:.3} to {max:.3}") }
 }

@@ -1,4 +1,4 @@
-//! How far each hole's neighbours stand: in a honeycomb every hole inside has six, all at the pitch.
+//! Distances of neighbouring holes: in a honeycomb every inner hole has six neighbours, all at the pitch.
 use std::cmp::Ordering;
 
 use nalgebra::{Point3, Vector3};
@@ -9,7 +9,7 @@ use super::Comparison;
 use gcode_part::PointTree;
 use gcode_part::{Pattern, azimuth};
 
-/// A hole has so many at most.
+/// Largest number of neighbours of a hole.
 const MAX_NEIGHBOURS: usize = 6;
 
 /// The neighbours of all holes, lengths in mm.
@@ -20,29 +20,34 @@ pub struct Neighbours {
     /// The nominal distance of all neighbours: the pitch with which the pattern closes.
     #[serde(rename = "wanted")]
     pub nominal: f64,
-    /// Number of inner holes that are drilled and have all six neighbours; `with_six_wanted`: their nominal
-    /// number.
+    /// Number of inner holes that are drilled and have all six neighbours.
     pub with_six: usize,
+    /// The nominal number of inner holes.
     #[serde(rename = "with_six_wanted")]
     pub with_six_nominal: usize,
-    /// The two nearest neighbours; `max`: the two farthest.
+    /// The two nearest neighbours.
     pub min: Option<Distance>,
+    /// The two farthest neighbours.
     pub max: Option<Distance>,
 }
 
-/// Between two holes.
+/// Distance of two holes.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Distance {
+    /// Distance in the metric of the pattern.
     pub distance: f64,
     /// The holes by their ids; an extra hole by its position.
     pub between: [String; 2],
 }
 
-/// Of one hole.
+/// Neighbours of one hole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct HoleNeighbours {
+    /// Number of neighbours.
     pub count: usize,
+    /// Distance of the nearest.
     pub min: f64,
+    /// Distance of the farthest.
     pub max: f64,
     #[serde(skip)]
     nearest: usize,
@@ -50,17 +55,17 @@ pub struct HoleNeighbours {
     farthest: usize,
 }
 
-/// For every drilled hole what is round it, in the order of the holes; the summary.
+/// Returns the neighbours of each drilled hole, and the summary.
 pub(super) fn neighbours(
     comparison: &Comparison<'_>,
     pattern: &Pattern,
 ) -> (Vec<Option<HoleNeighbours>>, Neighbours) {
-    let found = comparison.actual.iter().map(|hole| (hole.bottom(), hole.axis.into_inner()));
+    let drilled = comparison.actual.iter().map(|hole| (hole.bottom(), hole.axis.into_inner()));
     let lines: Vec<usize> = comparison.actual.iter().map(|hole| hole.first_on_line).collect();
-    let (around, places) = neighbours_of(found, &lines, pattern);
-    let wanted = comparison.nominal.iter().map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis)));
-    let apart: Vec<usize> = (0..comparison.nominal.len()).collect();
-    let (around_wanted, _) = self::neighbours_of(wanted, &apart, pattern);
+    let (around, places) = neighbours_of(drilled, &lines, pattern);
+    let nominal = comparison.nominal.iter().map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis)));
+    let lines: Vec<usize> = (0..comparison.nominal.len()).collect();
+    let (nominal_around, _) = neighbours_of(nominal, &lines, pattern);
     let mut names = vec![None; comparison.actual.len()];
     for pair in &comparison.pairs {
         names[pair.actual] = Some(comparison.id(pair.nominal));
@@ -72,23 +77,24 @@ pub(super) fn neighbours(
         between: [name(index.min(other)), name(index.max(other))],
     };
     let min = known().min_by(|a, b| a.1.min.total_cmp(&b.1.min));
-    // Of equal ones the first, as for the smallest.
+    // The first of equal ones, as for the minimum.
     let max = known().rev().max_by(|a, b| a.1.max.total_cmp(&b.1.max));
-    let six = |around: &Option<HoleNeighbours>| around.is_some_and(|around| around.count == MAX_NEIGHBOURS);
-    let inner = comparison.pairs.iter().filter(|pair| six(&around_wanted[pair.nominal]));
+    let has_six =
+        |around: &Option<HoleNeighbours>| around.is_some_and(|around| around.count == MAX_NEIGHBOURS);
+    let inner = comparison.pairs.iter().filter(|pair| has_six(&nominal_around[pair.nominal]));
     let summary = Neighbours {
         metric: pattern.metric.name(),
         nominal: pattern.pitch,
-        with_six: inner.filter(|pair| six(&around[pair.actual])).count(),
-        with_six_nominal: around_wanted.iter().filter(|around| six(around)).count(),
+        with_six: inner.filter(|pair| has_six(&around[pair.actual])).count(),
+        with_six_nominal: nominal_around.iter().filter(|around| has_six(around)).count(),
         min: min.map(|(index, around)| distance(index, around.nearest, around.min)),
         max: max.map(|(index, around)| distance(index, around.farthest, around.max)),
     };
     (around, summary)
 }
 
-/// What is round each of the holes, given by a point of the axis and its direction out of the part; `None` for one that
-/// stands alone or misses the cylinder. And where they cross the cylinder. `lines` says which holes are on one line.
+/// Returns the neighbours of each hole, `None` if it has none or misses the cylinder, and its point on the cylinder. A hole
+/// is a point of its axis and the direction out of the part; `lines` is the line of each.
 fn neighbours_of(
     holes: impl Iterator<Item = (Point3<f64>, Vector3<f64>)>,
     lines: &[usize],
@@ -100,9 +106,9 @@ fn neighbours_of(
     let mut near = vec![NearestSix::default(); places.len()];
     let here = thin_crowded_spots(on_cylinder, lines, &places, &mut near);
     let tree = PointTree::new(here.iter().map(|index| places[*index]));
-    // Halfway to those that are no neighbours any more.
+    // Halfway to the next holes after the neighbours.
     let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
-    // No way on the surface is shorter than the straight one: all neighbours are told.
+    // A distance on the surface is not below the straight one: the tree finds all neighbours.
     tree.pairs(reach, &mut |one, other| {
         let (one, other) = (here[one], here[other]);
         let distance = pattern.distance(&places[one], &places[other]);
@@ -114,8 +120,8 @@ fn neighbours_of(
     (near.iter().map(NearestSix::summary).collect(), places)
 }
 
-/// The holes without the eighth and more on one spot: those are nobody's neighbours, and have the first six round them. So as many
-/// as there may be on a spot stay n log n.
+/// Returns the holes without the eighth and later ones at one point: these are no neighbours of others, and have the first
+/// six as theirs. Any number of holes at one point then takes n log n.
 fn thin_crowded_spots(
     mut holes: Vec<usize>,
     lines: &[usize],
@@ -142,7 +148,7 @@ fn thin_crowded_spots(
     kept
 }
 
-/// The neighbours of a hole with their distances: the six nearest, the nearest first, of equally near ones the first.
+/// The six nearest neighbours of a hole and their distances in ascending order, the first of equal ones.
 #[derive(Clone, Copy, Default)]
 struct NearestSix {
     count: usize,
@@ -172,7 +178,7 @@ impl NearestSix {
     }
 }
 
-/// An order in which points on one spot stand together.
+/// Compares points so that equal ones are adjacent.
 fn compare_points(one: &Point3<f64>, other: &Point3<f64>) -> Ordering {
     let along = |axis: usize| one[axis].total_cmp(&other[axis]);
     along(0).then_with(|| along(1)).then_with(|| along(2))
@@ -201,14 +207,14 @@ mod tests {
         bore: 0.0,
     };
 
-    /// A hole of the cylinder: x in mm, its azimuth in degrees.
+    /// Returns a hole of the cylinder: x in mm, azimuth in degrees.
     fn hole(x: f64, azimuth: f64) -> (Point3<f64>, Vector3<f64>) {
         let out = Vector3::new(0.0, Deg(azimuth).sin(), Deg(azimuth).cos());
         (Point3::new(x, 0.0, 0.0) + out * 38.0, out)
     }
 
-    /// All distances, sorted: count, the least and the sixth, and whose they are.
-    fn by_looking_at_all(places: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<HoleNeighbours>> {
+    /// Returns the neighbours by sorting all distances.
+    fn by_comparing_all(places: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<HoleNeighbours>> {
         let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
         let round = |index: usize| {
             let others = (0..places.len()).filter(|other| *other != index);
@@ -223,21 +229,21 @@ mod tests {
         (0..places.len()).map(round).collect()
     }
 
-    /// By hand: of ten holes on a spot each has six at 0; one 5 mm beside them has six of them at 5.
+    /// Each of ten holes at one point has six neighbours at 0; one 5 mm beside them has six of them at 5.
     #[test]
-    fn a_spot_drilled_ten_times_is_six_neighbours() {
+    fn ten_holes_at_one_point_are_six_neighbours() {
         let holes = std::iter::repeat_n(hole(20.0, 30.0), 10).chain([hole(25.0, 30.0), hole(80.0, 30.0)]);
         let (around, _) = neighbours_of(holes, &[[7; 10].as_slice(), &[17, 18]].concat(), &PATTERN);
         let seen: Vec<_> = around.iter().map(|one| one.map(|one| (one.count, one.min, one.max))).collect();
         assert_eq!(seen[..10], [Some((6, 0.0, 0.0)); 10]);
         assert_eq!(seen[10..], [Some((6, 5.0, 5.0)), None]);
         let beside = around[10].unwrap();
-        assert_eq!((beside.nearest, beside.farthest), (0, 5), "of equally near ones the first six");
+        assert_eq!((beside.nearest, beside.farthest), (0, 5), "the first six of equal ones");
     }
 
-    /// Looked at pair by pair, it would be 5·10⁹ of them.
+    /// These are 5·10⁹ pairs.
     #[test]
-    fn a_hundred_thousand_holes_on_one_spot_are_looked_at_at_once() {
+    fn a_hundred_thousand_holes_at_one_point_take_no_pairwise_search() {
         let (around, _) =
             neighbours_of(std::iter::repeat_n(hole(20.0, 30.0), 100_000), &[0; 100_000], &PATTERN);
         assert_eq!(around.len(), 100_000);
@@ -246,7 +252,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_round_a_hole_is_what_looking_at_all_of_them_finds(
+        fn neighbours_are_those_of_a_comparison_with_all_holes(
             spots in prop::collection::btree_map((0i32..5, -3i32..4), 1usize..12, 1..14)
                 .prop_map(Vec::from_iter)
                 .prop_shuffle(),
@@ -260,7 +266,7 @@ mod tests {
                 hole(f64::from(x) * 4.0, f64::from(row) * 6.0)
             });
             let (around, places) = neighbours_of(holes, &lines, &pattern);
-            prop_assert_eq!(around, by_looking_at_all(&places, &pattern));
+            prop_assert_eq!(around, by_comparing_all(&places, &pattern));
         }
     }
 }

@@ -1,27 +1,29 @@
-//! Position as ISO 1101 has it for an axis: the actual axis must lie in a cylinder round the nominal one.
+//! Position tolerance of an axis (ISO 1101): the actual axis lies in a cylinder round the nominal one.
 use nalgebra::{Point3, Unit, Vector3};
 
 use gcode_lang::units::Deg;
 use gcode_part::Hole;
 
-/// An actual hole against a nominal one; lengths in mm, unrounded.
+/// Deviation of an actual hole from a nominal one; lengths in mm, unrounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Where the actual axis crosses the plane through the nominal entry, perpendicular to the nominal axis.
+    /// Intersection of the actual axis with the plane through the nominal entry, perpendicular to the nominal axis.
     pub entry: Point3<f64>,
-    /// Where it crosses the plane of the nominal bottom.
+    /// Intersection with the parallel plane through the nominal bottom.
     pub bottom: Point3<f64>,
-    /// The axes' distance in each of these planes.
+    /// Distance of the axes in the plane of the entry.
     pub at_entry: f64,
+    /// Distance of the axes in the plane of the bottom.
     pub at_bottom: f64,
-    /// From the plane of the nominal entry to the deepest point, less the nominal depth.
+    /// Depth of the deepest point below the plane of the nominal entry, minus the nominal depth.
     pub depth_error: f64,
+    /// Angle between the axes.
     pub tilt: Deg,
 }
 
 impl Deviation {
-    /// `axis` points out of the part through `deepest`, the deepest point any tool reached. `None` for an axis
-    /// that never crosses the planes.
+    /// Returns the deviation of the axis through `deepest`, the deepest point of any tool, out of the part along `axis`;
+    /// `None` for an axis parallel to the planes.
     pub fn new(nominal: &Hole, deepest: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<Self> {
         let (entry, out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
         let end = entry - out * nominal.depth;
@@ -38,12 +40,12 @@ impl Deviation {
             at_entry: (at_entry - entry).norm(),
             at_bottom: (at_end - end).norm(),
             depth_error: (entry - deepest).dot(&out) - nominal.depth,
-            // The sine of a small angle keeps the digits that its cosine loses.
+            // The sine of a small angle has more significant digits than its cosine.
             tilt: Deg::atan2(axis.cross(&out).norm(), slope),
         })
     }
 
-    /// The diameter of the smallest zone that holds the axis: a straight axis is farthest out at one of its ends.
+    /// Returns the diameter of the smallest zone that contains the axis: a straight axis is farthest off at one of its ends.
     pub fn zone_diameter(&self) -> f64 {
         2.0 * self.at_entry.max(self.at_bottom)
     }
@@ -64,9 +66,9 @@ mod tests {
         }
     }
 
-    /// The axis leans by 0.03 in x over 10 in z: through (10.05, 20.04, 20) it passes z = 30 at x = 10.08.
+    /// The axis is inclined by 0.03 in x over 10 in z: through (10.05, 20.04, 20) it passes z = 30 at x = 10.08.
     #[test]
-    fn a_leaning_axis_worked_by_hand() {
+    fn deviations_of_a_tilted_axis_are_those_computed_by_hand() {
         let axis = Unit::new_normalize(Vector3::new(0.03, 0.0, 10.0));
         let found = Deviation::new(&nominal(), &Point3::new(10.05, 20.04, 20.0), &axis).unwrap();
         assert!((found.entry - Point3::new(10.08, 20.04, 30.0)).norm() < 1e-12);
@@ -86,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_across_the_hole_has_no_position() {
+    fn an_axis_perpendicular_to_the_hole_has_no_position() {
         assert!(Deviation::new(&nominal(), &Point3::origin(), &Vector3::x_axis()).is_none());
     }
 }

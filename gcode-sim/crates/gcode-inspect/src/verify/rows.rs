@@ -1,4 +1,6 @@
-//! The rows round a cylinder that the drilled holes stand in: at which azimuth, and where each begins in x.
+//! Rows of drilled holes round a cylinder: the azimuth of each and its start in x.
+use nalgebra::Point3;
+
 use super::Comparison;
 use gcode_lang::units::Deg;
 use gcode_part::{Pattern, azimuth};
@@ -7,120 +9,120 @@ use gcode_part::{Pattern, azimuth};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PatternRow {
     /// 0 to 360.
-    pub(super) azimuth: Deg,
-    /// The least x, mm.
-    pub(super) start: f64,
-    /// The hole there, by its number.
-    pub(super) first: usize,
+    pub azimuth: Deg,
+    /// Least x, mm.
+    pub start: f64,
+    /// Index of the drilled hole at that x.
+    pub first: usize,
 }
 
 /// All rows in the order of their azimuths.
 #[derive(Debug)]
-pub(super) struct PatternRows {
-    pub(super) rows: Vec<PatternRow>,
-    /// From each row to the next, from the last one round to the first.
-    pub(super) gaps: Vec<Deg>,
-    /// The mean of those that are about as large as most: single ones are rounded to the rotary's increment.
-    pub(super) typical_gap: Deg,
-    /// From hole to hole in the first row that has several, mm, as usual; and that row.
-    pub(super) spacing: Option<(f64, PatternRow)>,
+pub(super) struct PatternRows<'a> {
+    pub pattern: &'a Pattern,
+    pub rows: Vec<PatternRow>,
+    /// Gap from each row to the next, the last one to the first.
+    pub gaps: Vec<Deg>,
+    /// Mean of the gaps that differ from most by no more than rounding.
+    pub typical_gap: Deg,
+    /// Typical distance of the holes in the first row with several, mm, and that row.
+    pub spacing: Option<(f64, PatternRow)>,
 }
 
-/// Fewer rows show no order.
+/// Least number of rows that show an order.
 const MIN_ROWS: usize = 4;
 
-impl PatternRows {
-    /// `None` where there are too few to speak of, and where all holes are in their places: what is said of rows only
-    /// explains what is wrong with holes.
-    pub(super) fn of(comparison: &Comparison<'_>, pattern: &Pattern) -> Option<Self> {
+impl<'a> PatternRows<'a> {
+    /// Groups the drilled holes by azimuth. `None` with too few rows, and if all holes are in place: rows only explain
+    /// faults of holes.
+    pub(super) fn of(comparison: &Comparison<'_>, pattern: &'a Pattern) -> Option<Self> {
         if comparison.is_all_in_place() {
             return None;
         }
-        let mut places: Vec<(Deg, f64, usize)> = Vec::with_capacity(comparison.actual.len());
-        for (index, hole) in comparison.actual.iter().enumerate() {
-            // A hole that misses the cylinder is in no row; the others' rows are still told.
-            let Some(at) = pattern.crossing(&hole.bottom(), &hole.axis) else { continue };
-            places.push((Deg(azimuth(&at).0.rem_euclid(360.0)), at.x, index));
-        }
+        // A hole that misses the cylinder is in no row.
+        let place = |index| {
+            let at = comparison.crossing(index)?;
+            Some((full_azimuth(&at), at.x, index))
+        };
+        let mut places: Vec<(Deg, f64, usize)> = (0..comparison.actual.len()).filter_map(place).collect();
         places.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
-        // What is drilled at one angle lies at one angle; a row drilled twice may lie near by.
+        // Holes drilled at one angle have one azimuth; a row drilled twice may be near it.
         let same = pattern.row_angle().0 / 100.0;
-        let mut rows: Vec<PatternRow> = Vec::new();
-        let mut along: Vec<Vec<f64>> = Vec::new();
+        let mut rows: Vec<(PatternRow, Vec<f64>)> = Vec::new();
         let mut last = Deg(f64::NEG_INFINITY);
         for (azimuth, start, first) in places {
             match rows.last_mut() {
-                Some(row) if (azimuth - last).0 <= same => {
-                    along.last_mut().into_iter().for_each(|xs| xs.push(start));
+                Some((row, xs)) if (azimuth - last).0 <= same => {
+                    xs.push(start);
                     if start < row.start {
                         (row.start, row.first) = (start, first);
                     }
                 }
-                _ => {
-                    rows.push(PatternRow { azimuth, start, first });
-                    along.push(vec![start]);
-                }
+                _ => rows.push((PatternRow { azimuth, start, first }, vec![start])),
             }
             last = azimuth;
         }
-        // What is just below 360 belongs to what is at 0.
-        if let (Some(end), Some(begin)) = (rows.last().copied(), rows.first().copied())
-            && rows.len() > 1
+        let (mut rows, mut along): (Vec<PatternRow>, Vec<Vec<f64>>) = rows.into_iter().unzip();
+        // A row just below 360° is the one at 0°.
+        if let [begin, .., end] = rows.as_mut_slice()
             && begin.azimuth.0 + 360.0 - last.0 <= same
         {
-            rows.pop();
             if end.start < begin.start {
-                (rows[0].start, rows[0].first) = (end.start, end.first);
+                (begin.start, begin.first) = (end.start, end.first);
             }
+            rows.pop();
         }
         if rows.len() < MIN_ROWS {
             return None;
         }
-        let round = rows.iter().skip(1).map(|row| row.azimuth).chain([rows[0].azimuth + Deg(360.0)]);
-        let gaps: Vec<Deg> = rows.iter().zip(round).map(|(row, next)| next - row.azimuth).collect();
-        let usual = Deg(typical_mean(gaps.iter().map(|gap| gap.0))?);
-        let several = rows.iter().zip(&mut along).find(|(_, xs)| xs.len() > 2);
-        let spacing = several.and_then(|(row, xs)| {
+        let next = rows.iter().skip(1).map(|row| row.azimuth).chain([rows[0].azimuth + Deg(360.0)]);
+        let gaps: Vec<Deg> = rows.iter().zip(next).map(|(row, next)| next - row.azimuth).collect();
+        let typical_gap = Deg(typical_mean(gaps.iter().map(|gap| gap.0))?);
+        let spacing = rows.iter().zip(&mut along).find(|(_, xs)| xs.len() > 2).and_then(|(row, xs)| {
             xs.sort_by(f64::total_cmp);
             // A hole drilled twice is no neighbour of itself.
             xs.dedup_by(|x, last| *x - *last <= pattern.pitch / 100.0);
-            Some((self::typical_mean(xs.windows(2).map(|pair| pair[1] - pair[0]))?, *row))
+            Some((typical_mean(xs.windows(2).map(|pair| pair[1] - pair[0]))?, *row))
         });
-        Some(Self { rows, gaps, typical_gap: usual, spacing })
+        Some(Self { pattern, rows, gaps, typical_gap, spacing })
     }
 
-    /// Whether most rows stand whole numbers of the usual gap from the first, to so many degrees: single rows that are turned
-    /// change the mean and leave it to fit no other.
-    pub(super) fn is_evenly_spaced(&self, within: Deg) -> bool {
-        let off = |row: &&PatternRow| {
+    /// Returns true if most rows are whole numbers of the typical gap from the first, within a tolerance: rows
+    /// that are rotated one by one have a mean that fits no other.
+    pub(super) fn is_evenly_spaced(&self, tolerance: Deg) -> bool {
+        let is_even = |row: &&PatternRow| {
             let gaps = (row.azimuth - self.rows[0].azimuth).0 / self.typical_gap.0;
-            (gaps - gaps.round()).abs() * self.typical_gap.0 <= within.0
+            (gaps - gaps.round()).abs() * self.typical_gap.0 <= tolerance.0
         };
-        4 * self.rows.len() <= 5 * self.rows.iter().filter(off).count()
+        4 * self.rows.len() <= 5 * self.rows.iter().filter(is_even).count()
     }
 
-    /// Whether every row begins where the first does, where every second one should begin half a pitch later.
-    pub(super) fn is_aligned(&self, pattern: &Pattern) -> bool {
-        let off = |row: &PatternRow| {
-            let pitches = (row.start - self.rows[0].start) / pattern.pitch;
-            (pitches - pitches.round()).abs()
-        };
-        self.rows.iter().all(|row| off(row) < 0.1)
+    /// Returns true if every row begins where the first does; every second one should begin half a pitch later.
+    pub(super) fn is_aligned(&self) -> bool {
+        self.rows.iter().all(|row| {
+            let pitches = (row.start - self.rows[0].start) / self.pattern.pitch;
+            (pitches - pitches.round()).abs() < 0.1
+        })
     }
 
-    /// Whether the rows are those of one group: none begins late, and they stand too far apart for both.
-    pub(super) fn is_single_group(&self, pattern: &Pattern) -> bool {
-        self.is_aligned(pattern) && self.typical_gap.0 > 1.25 * pattern.row_angle().0
+    /// Returns true if the rows are those of one group: all aligned, and too far apart for both groups.
+    pub(super) fn is_single_group(&self) -> bool {
+        self.is_aligned() && self.typical_gap.0 > 1.25 * self.pattern.row_angle().0
     }
 
-    /// From row to row as the pattern wants it, of rows that stand as these do: both groups in turn, or one alone.
-    pub(super) fn nominal_gap(&self, pattern: &Pattern) -> Deg {
-        if self.is_single_group(pattern) { pattern.row_angle() * 2.0 } else { pattern.row_angle() }
+    /// Returns the nominal gap of these rows: of both groups in turn, or of one alone.
+    pub(super) fn nominal_gap(&self) -> Deg {
+        self.pattern.row_angle() * if self.is_single_group() { 2.0 } else { 1.0 }
     }
 }
 
-/// The mean of the numbers that differ from the middle one by no more than rounding makes of them, 2 %; the one that
-/// differs most isn't among them where there are enough, for a small seam is no rounding.
+/// Returns the azimuth of a point, 0 to 360.
+pub(super) fn full_azimuth(p: &Point3<f64>) -> Deg {
+    Deg(azimuth(p).0.rem_euclid(360.0))
+}
+
+/// Returns the mean of the numbers within 2 % of the median, which is what rounding makes of equal ones. With enough
+/// numbers, the one that differs most is left out: a small seam is no rounding.
 fn typical_mean(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
@@ -137,9 +139,9 @@ fn typical_mean(numbers: impl Iterator<Item = f64>) -> Option<f64> {
 mod tests {
     use super::typical_mean;
 
-    /// 360/257/2 = 0.700389 commanded to 0.001: gaps of 0.700 and 0.701, and a seam that isn't usual.
+    /// 360/257/2 = 0.700389 commanded to 0.001: gaps of 0.700 and 0.701, and a seam.
     #[test]
-    fn rounded_gaps_have_the_mean_they_were_made_from() {
+    fn rounded_gaps_have_the_mean_of_the_exact_ones() {
         let angles: Vec<f64> = (0..514).map(|row| (f64::from(row) * 700.389_105).round() / 1000.0).collect();
         let gaps = angles.windows(2).map(|pair| pair[1] - pair[0]).chain([9.9]);
         assert!((typical_mean(gaps).unwrap() - 0.700_389).abs() < 1e-5);

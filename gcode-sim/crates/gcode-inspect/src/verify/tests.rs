@@ -1,4 +1,4 @@
-//! Runs that are right by construction, and runs with one fault each, held against a job's reference.
+//! Runs that are right by construction and runs with one fault each, compared with a job's reference.
 //!
 //! The runs are built from the section's parametric form, (a·cos t, b·sin t) with the tangent (−a·sin t, b·cos t):
 //! neither the reference's search nor any formula of the generator.
@@ -19,27 +19,32 @@ struct Section {
     b: f64,
 }
 
-/// A hole by the parameter t of its place on the section (90° at the pole) and its azimuth.
+/// A hole by its parameter t on the section (90° at the pole) and its azimuth.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct NominalHole {
     t: f64,
     azimuth: f64,
     axial: bool,
 }
 
 impl Section {
-    fn radius(self, place: Place) -> f64 {
+    fn radius(self, place: NominalHole) -> f64 {
         self.a * Deg(place.t).cos()
     }
 
-    /// A point `above` the surface along the hole's axis, and the angle of that axis from x.
-    fn above(self, place: Place, above: f64) -> (f64, f64, Deg) {
+    /// Returns a point `above` the surface along the hole's axis, and the angle of that axis from x.
+    fn above(self, place: NominalHole, above: f64) -> (f64, f64, Deg) {
         let (c, s) = (Deg(place.t).cos(), Deg(place.t).sin());
         let angle = if place.axial { Deg(90.0) } else { Deg::atan2(self.a * s, self.b * c) };
         (self.a * c + above * angle.cos(), self.b * s + above * angle.sin(), angle)
     }
 
-    fn reference(self, places: &[Place]) -> Reference {
+    /// Returns the word for a height above the part with any head.
+    fn high(self) -> String {
+        format!("Y{:.3}", 4.0 * self.a.max(self.b) + 700.0)
+    }
+
+    fn reference(self, places: &[NominalHole]) -> Reference {
         let mut text = format!(
             "family = \"pin-holes\"\n[control]\ndialect = \"fanuc-31i\"\nincrement = \"IS-B\"\n\
              [machine]\nrotary = {{ letter = \"B\", sign = 1 }}\n\
@@ -59,9 +64,9 @@ impl Section {
     }
 }
 
-/// What one hole's moves do; a fault changes a field.
+/// Moves that drill one hole; a fault changes a field.
 #[derive(Clone, Copy)]
-struct Way {
+struct Drilling {
     sign: f64,
     /// Added to every point, machine x y z.
     shift: [f64; 3],
@@ -69,26 +74,31 @@ struct Way {
     lean: f64,
     depth: f64,
     set_head: bool,
+    /// Distance of the programmed point from the tip.
+    reach: f64,
 }
 
-const RIGHT: Way = Way { sign: 1.0, shift: [0.0; 3], lean: 0.0, depth: 15.0, set_head: true };
+const RIGHT: Drilling =
+    Drilling { sign: 1.0, shift: [0.0; 3], lean: 0.0, depth: 15.0, set_head: true, reach: 0.0 };
 
-fn drill(script: EventScript, section: Section, place: Place, way: Way) -> EventScript {
+fn drill(script: EventScript, section: Section, place: NominalHole, drilling: Drilling) -> EventScript {
     let (x, y, angle) = section.above(place, 0.0);
-    let angle = angle + Deg(way.lean);
-    let at = |along: f64| {
-        let (x, y) = (x + along * angle.cos() + way.shift[0], y + along * angle.sin() + way.shift[1]);
+    let angle = angle + Deg(drilling.lean);
+    let at = |height: f64| {
+        let along = height + drilling.reach;
+        let (x, y) =
+            (x + along * angle.cos() + drilling.shift[0], y + along * angle.sin() + drilling.shift[1]);
         format!("X{x:.3} Y{y:.3}")
     };
-    let high = format!("Y{:.3}", 2.0 * section.a.max(section.b) + 100.0);
-    let turn = format!("B{:.3} Z{:.3}", way.sign * place.azimuth, way.shift[2]);
+    let high = section.high();
+    let turn = format!("B{:.3} Z{:.3}", drilling.sign * place.azimuth, drilling.shift[2]);
     let over = at(20.0).split_whitespace().next().unwrap().to_owned();
-    let script = if way.set_head { script.head(angle.0) } else { script };
-    script.rapid(&turn).rapid(&over).rapid(&at(20.0)).feed(&at(-way.depth)).rapid(&at(20.0)).rapid(&high)
+    let script = if drilling.set_head { script.head(angle.0) } else { script };
+    script.rapid(&turn).rapid(&over).rapid(&at(20.0)).feed(&at(-drilling.depth)).rapid(&at(20.0)).rapid(&high)
 }
 
 fn start(section: Section) -> EventScript {
-    EventScript::new().rapid(&format!("Y{:.3}", 2.0 * section.a.max(section.b) + 100.0))
+    EventScript::new().rapid(&section.high())
 }
 
 fn judge(machine: &Machine, reference: &Reference, script: &EventScript) -> Verdict {
@@ -105,8 +115,8 @@ fn codes(verdict: &Verdict) -> Vec<&str> {
 const PAPER: Section = Section { a: 1158.8, b: 724.3 };
 
 /// Five holes: one axial, four normal, on three radii; azimuths beyond 180° and negative.
-fn five() -> Vec<Place> {
-    let place = |t, azimuth, axial| Place { t, azimuth, axial };
+fn five() -> Vec<NominalHole> {
+    let place = |t, azimuth, axial| NominalHole { t, azimuth, axial };
     vec![
         place(70.0, 0.0, true),
         place(50.0, 30.0, false),
@@ -116,15 +126,10 @@ fn five() -> Vec<Place> {
     ]
 }
 
-fn all(way: Way) -> EventScript {
-    five().into_iter().fold(start(PAPER), |script, place| drill(script, PAPER, place, way))
-}
-
-/// All as it should be but for the hole with this number, counted from 0.
-fn all_but(fault: usize, way: Way) -> EventScript {
-    let with = |(index, place)| (place, if index == fault { way } else { RIGHT });
-    let places = five().into_iter().enumerate().map(with);
-    places.fold(start(PAPER), |script, (place, way)| drill(script, PAPER, place, way))
+/// Drills the five holes; `change` returns the drilling of each, counted from 0.
+fn drill_all(change: impl Fn(usize) -> Drilling) -> EventScript {
+    let places = five().into_iter().enumerate();
+    places.fold(start(PAPER), |script, (index, place)| drill(script, PAPER, place, change(index)))
 }
 
 fn verdict_on(script: &EventScript) -> Verdict {
@@ -132,18 +137,12 @@ fn verdict_on(script: &EventScript) -> Verdict {
 }
 
 #[test]
-fn five_right_holes_pass_and_rounding_explains_what_is_left() {
-    let verdict = verdict_on(&all(RIGHT));
+fn five_right_holes_pass_within_the_effect_of_rounding() {
+    let verdict = verdict_on(&drill_all(|_| RIGHT));
     assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
     assert_eq!((verdict.holes.len(), codes(&verdict).len()), (5, 0));
     for hole in &verdict.holes {
-        assert!(
-            hole.position_deviation <= hole.rounding + 1e-9,
-            "{} {} {}",
-            hole.id,
-            hole.position_deviation,
-            hole.rounding
-        );
+        assert!(hole.position_deviation <= hole.rounding + 1e-9, "{hole:?}");
     }
     // Half of 0.001° at the largest radius, 1158.8·cos 30°, is 0.00876 mm; X and Y add half of 0.001 each, sideways.
     let b = 1158.8 * Deg(30.0).cos() * Deg(0.0005).to_rad();
@@ -152,14 +151,14 @@ fn five_right_holes_pass_and_rounding_explains_what_is_left() {
     assert!(verdict.worst_from.unwrap().contains("within the effect of rounding"));
 }
 
-/// One hole at azimuth 0, so that B has nothing to round: X and Y alone, and the head where its angle isn't whole. Half of
+/// One hole at azimuth 0, so that B is not rounded: only X and Y are, and the head if its angle is not whole. Half of
 /// 0.001° over a depth of 15 mm is 15·0.0005·π/180 = 0.000131 mm, at the bottom.
 #[test]
 fn a_head_set_by_hand_has_its_share_of_rounding() {
     let machine = Machine { head: Head::new(HeadKind::Manual { start: None }, 0.0), ..Machine::default() };
-    let share = |axial, machine: &Machine, way| {
-        let place = Place { t: 50.0, azimuth: 0.0, axial };
-        let script = drill(start(PAPER), PAPER, place, way);
+    let share = |axial, machine: &Machine, drilling| {
+        let place = NominalHole { t: 50.0, azimuth: 0.0, axial };
+        let script = drill(start(PAPER), PAPER, place, drilling);
         let verdict = judge(machine, &PAPER.reference(&[place]), &script);
         assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
         let (angle, rounding) = (PAPER.above(place, 0.0).2, verdict.rounding.unwrap());
@@ -170,48 +169,51 @@ fn a_head_set_by_hand_has_its_share_of_rounding() {
     };
     let (more, said) = share(false, &machine, RIGHT);
     assert!((more - 0.000_130_9).abs() < 1e-6 && said.contains("head 0.0001"), "{more} {said}");
-    // As where nothing is known of the head but the angle that the operator was told.
+    // The same for a head of which only the message to the operator is known.
     let (more, said) = share(false, &Machine::default(), RIGHT);
     assert!((more - 0.000_130_9).abs() < 1e-6 && said.contains("head 0.0001"), "{more} {said}");
-    // Whole degrees, and a head that nobody set.
-    for (axial, way) in [(true, RIGHT), (false, Way { set_head: false, ..RIGHT })] {
-        let (more, said) = share(axial, &Machine::default(), way);
+    // Whole degrees, and a head that is not set.
+    for (axial, drilling) in [(true, RIGHT), (false, Drilling { set_head: false, ..RIGHT })] {
+        let (more, said) = share(axial, &Machine::default(), drilling);
         assert!(more.abs() < 1e-6 && !said.contains("head"), "{more} {said}");
     }
 }
 
+/// A tilt of 0.7° over 15 mm is 15·tan 0.7° = 0.1833 mm at the bottom.
 #[test]
-fn a_hole_0_08_mm_aside_fails_by_its_position_alone() {
-    for shift in [[0.08, 0.0, 0.0], [0.0, 0.0, 0.08]] {
-        let verdict = verdict_on(&all_but(0, Way { shift, ..RIGHT }));
-        assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-position"]));
-        assert!(
-            (verdict.holes[0].position_deviation - 0.16).abs() < 0.002,
-            "{}",
-            verdict.holes[0].position_deviation
-        );
-        assert_eq!(verdict.holes.iter().filter(|hole| hole.ok).count(), 4);
-        assert!(verdict.worst_from.unwrap().contains("beyond the effect of rounding"));
+fn a_fault_of_one_hole_is_found_at_that_hole_alone() {
+    let aside = |shift| (0, Drilling { shift, ..RIGHT }, "hole-position", "is out of position: Φ0.1");
+    let depth = |depth, said| (4, Drilling { depth, ..RIGHT }, "hole-depth", said);
+    for (fault, drilling, code, said) in [
+        aside([0.08, 0.0, 0.0]),
+        aside([0.0, 0.0, 0.08]),
+        (2, Drilling { lean: 0.7, ..RIGHT }, "hole-tilted", "is tilted by 0.7"),
+        depth(14.5, "0.500 mm too shallow"),
+        depth(15.2, "0.200 mm too deep"),
+    ] {
+        let verdict = verdict_on(&drill_all(|index| if index == fault { drilling } else { RIGHT }));
+        assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec![code]));
+        let message = &verdict.findings[0].message;
+        assert!(message.contains(said), "{message}");
+        let bad: Vec<usize> = (0..5).filter(|index| !verdict.holes[*index].ok).collect();
+        assert_eq!(bad, [fault]);
+        let hole = &verdict.holes[fault];
+        if code == "hole-position" {
+            assert!((hole.position_deviation - 0.16).abs() < 0.002, "{}", hole.position_deviation);
+            assert!(verdict.worst_from.unwrap().contains("beyond the effect of rounding"));
+        } else if code == "hole-tilted" {
+            assert!((hole.at_bottom - 0.1833).abs() < 0.01 && hole.at_entry < 0.01, "{hole:?}");
+        }
     }
 }
 
-/// 15·tan 0.7° = 0.1833 mm at the bottom.
+/// The feed is right and the head is not: the hole is tilted, and the tool is dragged sideways.
 #[test]
-fn a_hole_that_leans_by_0_7_degrees_fails_by_its_tilt() {
-    let verdict = verdict_on(&all_but(2, Way { lean: 0.7, ..RIGHT }));
-    assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-tilted"]));
-    let hole = &verdict.holes[2];
-    assert!((hole.at_bottom - 0.1833).abs() < 0.01 && hole.at_entry < 0.01, "{hole:?}");
-    assert!(verdict.findings[0].message.contains("is tilted by 0.7"), "{}", verdict.findings[0].message);
-}
-
-/// The feed is right and the head isn't: the hole leans, and the tool was dragged sideways.
-#[test]
-fn a_head_set_wrong_is_told_as_such() {
+fn a_wrong_head_angle_is_a_tilt_and_a_feed_off_the_tool() {
     let mut script = start(PAPER);
     for (index, place) in five().into_iter().enumerate() {
         let angle = PAPER.above(place, 0.0).2 + Deg(if index == 1 { 0.7 } else { 0.0 });
-        script = drill(script.head(angle.0), PAPER, place, Way { set_head: false, ..RIGHT });
+        script = drill(script.head(angle.0), PAPER, place, Drilling { set_head: false, ..RIGHT });
     }
     let verdict = verdict_on(&script);
     assert_eq!(
@@ -221,56 +223,42 @@ fn a_head_set_wrong_is_told_as_such() {
 }
 
 #[test]
-fn the_wrong_sign_of_b_is_named() {
-    let verdict = verdict_on(&all(Way { sign: -1.0, ..RIGHT }));
+fn a_wrong_sign_of_b_is_named() {
+    let script = drill_all(|_| Drilling { sign: -1.0, ..RIGHT });
+    let verdict = verdict_on(&script);
     assert_eq!(verdict.verdict, Answer::Fail);
     assert_eq!(codes(&verdict)[0], "rotary-sign", "{:?}", codes(&verdict));
-    // Holes 2 and 5 stand at azimuths 30° and 330° but on other radii; only the one at azimuth 0 is where it should be.
+    // Holes 2 and 5 are at azimuths 30° and 330° but on other radii; only the one at azimuth 0 is in position.
     assert_eq!((verdict.missing.len(), verdict.extra.len()), (4, 4));
     let mut other = Machine::default();
     other.table.0[0].sign = -1.0;
-    let right = judge(&other, &PAPER.reference(&five()), &all(Way { sign: -1.0, ..RIGHT }));
-    assert_eq!(right.verdict, Answer::Pass, "the same program on the machine it is for");
+    let right = judge(&other, &PAPER.reference(&five()), &script);
+    assert_eq!(right.verdict, Answer::Pass, "the same program on the machine with this sign");
 }
 
 #[test]
-fn a_hole_left_out_is_missing_by_its_id() {
+fn missing_repeated_and_extra_holes_are_named() {
     let script = five()[..4].iter().fold(start(PAPER), |script, place| drill(script, PAPER, *place, RIGHT));
     let verdict = verdict_on(&script);
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-missing"]));
     assert_eq!(verdict.missing, ["5"]);
-}
-
-#[test]
-fn a_hole_drilled_twice_is_extra_and_says_which() {
-    let verdict = verdict_on(&drill(all(RIGHT), PAPER, five()[2], RIGHT));
+    let verdict = verdict_on(&drill(drill_all(|_| RIGHT), PAPER, five()[2], RIGHT));
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-twice"]));
     assert_eq!((verdict.holes.len(), verdict.extra.len()), (5, 1));
     assert_eq!(verdict.extra[0].why, "hole 3 is drilled a second time");
-}
-
-#[test]
-fn a_hole_nobody_asked_for_is_extra() {
-    let place = Place { t: 40.0, azimuth: 12.0, axial: false };
-    let verdict = verdict_on(&drill(all(RIGHT), PAPER, place, RIGHT));
+    let place = NominalHole { t: 40.0, azimuth: 12.0, axial: false };
+    let verdict = verdict_on(&drill(drill_all(|_| RIGHT), PAPER, place, RIGHT));
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-extra"]));
-}
-
-#[test]
-fn too_shallow_and_too_deep_fail_by_the_depth() {
-    for (depth, said) in [(14.5, "0.500 mm too shallow"), (15.2, "0.200 mm too deep")] {
-        let verdict = verdict_on(&all_but(4, Way { depth, ..RIGHT }));
-        assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-depth"]));
-        assert!(verdict.findings[0].message.contains(said), "{}", verdict.findings[0].message);
-    }
 }
 
 #[test]
 fn a_hole_finished_by_the_drill_alone_has_the_wrong_diameter() {
     let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter) };
     let machine = Machine { tools: vec![tool(1, 5.9), tool(2, 6.0)], ..Machine::default() };
-    let by = |number: u32, places: &[Place], script: EventScript| {
-        places.iter().fold(script.tool(number), |script, place| drill(script, PAPER, *place, RIGHT))
+    let by = |number: u32, places: &[NominalHole], script: EventScript| {
+        places
+            .iter()
+            .fold(script.then(&format!("tool {number}")), |script, place| drill(script, PAPER, *place, RIGHT))
     };
     let reference = PAPER.reference(&five());
     let both = by(2, &five(), by(1, &five(), start(PAPER)));
@@ -281,32 +269,32 @@ fn a_hole_finished_by_the_drill_alone_has_the_wrong_diameter() {
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-diameter", "hole-tools"]));
 }
 
-/// A part that stands 0.2 mm off, and one that leans 0.05° about z, on a machine that drills right.
+/// A part 0.2 mm off its position, and one tilted by 0.05° about z, with a right program.
 #[test]
-fn a_misplaced_part_gets_its_holes_in_the_wrong_place() {
+fn a_misplaced_part_gets_displaced_holes() {
     let mut machine = Machine::default();
     machine.part.shift.x = 0.2;
-    let verdict = judge(&machine, &PAPER.reference(&five()), &all(RIGHT));
-    // The part has moved to +x, so the hole at azimuth 0 is 0.2 mm nearer to its axis.
+    let verdict = judge(&machine, &PAPER.reference(&five()), &drill_all(|_| RIGHT));
+    // The part is shifted to +x, so the hole at azimuth 0 is 0.2 mm nearer to its axis.
     assert!((verdict.holes[0].actual.entry[0] - verdict.holes[0].nominal.entry[0] + 0.2).abs() < 0.001);
     assert_eq!(verdict.verdict, Answer::Fail);
     let mut machine = Machine::default();
     machine.part.tilt[2] = Deg(0.05);
-    let verdict = judge(&machine, &PAPER.reference(&five()), &all(RIGHT));
+    let verdict = judge(&machine, &PAPER.reference(&five()), &drill_all(|_| RIGHT));
     assert!((verdict.holes[0].tilt - 0.05).abs() < 1e-6, "{}", verdict.holes[0].tilt);
 }
 
 #[test]
-fn without_any_hole_there_is_no_worst() {
+fn a_run_without_holes_has_no_worst_hole() {
     let verdict = verdict_on(&start(PAPER));
     assert_eq!((verdict.verdict, verdict.worst, verdict.missing.len()), (Answer::Fail, None, 5));
 }
 
-fn places() -> impl Strategy<Value = Vec<Place>> {
-    // 15° apart round the axis, so that no two are one hole; the first one near the pole.
+fn places() -> impl Strategy<Value = Vec<NominalHole>> {
+    // 15° apart round the axis, so that no two are one hole; the first is near the pole.
     let hole = (14.1..86.0, 0.0..9.0, -2i32..=2, any::<bool>());
     prop::collection::vec(hole, 24).prop_map(|holes| {
-        let place = |(index, (t, jitter, turns, axial)): (usize, (f64, f64, i32, bool))| Place {
+        let place = |(index, (t, jitter, turns, axial)): (usize, (f64, f64, i32, bool))| NominalHole {
             t: if index == 0 { 89.9999 } else { t },
             azimuth: 15.0 * index as f64 + jitter + 360.0 * f64::from(turns),
             axial,
@@ -320,7 +308,7 @@ proptest! {
 
     /// Flat and prolate ellipsoids and spheres, both signs, 24 holes from near 0 to 0.97·a, heads of every kind.
     #[test]
-    fn right_runs_pass_with_no_more_error_than_rounding_makes(
+    fn right_runs_pass_within_the_effect_of_rounding(
         (a, ratio) in (150.0..2000.0, prop_oneof![Just(1.0), 0.4..2.5]),
         places in places(),
         negative in any::<bool>(),
@@ -329,9 +317,9 @@ proptest! {
         let section = Section { a, b: a * ratio };
         let reference = section.reference(&places);
         let mut machine = Machine::default();
-        let way = Way { sign: if negative { -1.0 } else { 1.0 }, set_head: manual, ..RIGHT };
-        machine.table.0[0].sign = way.sign;
-        let script = places.iter().fold(start(section), |script, place| drill(script, section, *place, way));
+        let drilling = Drilling { sign: if negative { -1.0 } else { 1.0 }, set_head: manual, ..RIGHT };
+        machine.table.0[0].sign = drilling.sign;
+        let script = places.iter().fold(start(section), |script, place| drill(script, section, *place, drilling));
         let verdict = judge(&machine, &reference, &script);
         prop_assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
         for hole in &verdict.holes {
@@ -341,20 +329,9 @@ proptest! {
         // The same holes with a head that has a pivot and a tool of a length: the pivot point is programmed.
         machine.head = Head::new(HeadKind::Manual { start: None }, pivot);
         machine.tools = vec![Tool { number: 7, length: Some(length), diameter: None }];
-        let reach = pivot + length;
-        let mut script = start(section).tool(7);
-        for place in &places {
-            let (_, _, angle) = section.above(*place, 0.0);
-            let at = |along: f64| {
-                let (x, y, _) = section.above(*place, along + reach);
-                format!("X{x:.3} Y{y:.3}")
-            };
-            let high = format!("Y{:.3}", 4.0 * a.max(section.b) + 700.0);
-            let turn = format!("B{:.3}", way.sign * place.azimuth);
-            let over = at(20.0).split_whitespace().next().unwrap().to_owned();
-            script = script.rapid(&high).head(angle.0).rapid(&turn).rapid(&over);
-            script = script.rapid(&at(20.0)).feed(&at(-15.0)).rapid(&at(20.0));
-        }
+        let drilling = Drilling { reach: pivot + length, set_head: true, ..drilling };
+        let begin = start(section).then("tool 7");
+        let script = places.iter().fold(begin, |script, place| drill(script, section, *place, drilling));
         let verdict = judge(&machine, &reference, &script);
         prop_assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
     }

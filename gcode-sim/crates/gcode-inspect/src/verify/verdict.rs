@@ -1,21 +1,25 @@
-//! The answer: every hole with its numbers, what is missing and what is too many, and why.
+//! The verdict on a program: every hole with its deviations, missing and extra holes, and the findings.
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::rounding::{AxisRounding, RoundingDeviation};
-use super::{Comparison, HoleFinding, HoleNeighbours, Neighbours};
+use super::hole_finding::{About, HoleFinding};
+use super::rounding::RoundingDeviation;
+use super::{Comparison, HoleNeighbours, Neighbours};
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
-use gcode_lang::motion::{Call, CallChain};
+use gcode_lang::motion::CallChain;
 use gcode_lang::source::Span;
 use gcode_part::{Hole, Origin};
 
+/// The result of the checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Answer {
+    /// No finding is an error.
     Pass,
+    /// A finding is an error or an alarm.
     Fail,
 }
 
@@ -28,6 +32,7 @@ pub struct Verdict {
     pub tolerance: f64,
     /// Either way, mm.
     pub depth_tolerance: f64,
+    /// The answer.
     pub verdict: Answer,
     /// The largest phi; null without a hole.
     pub worst: Option<f64>,
@@ -35,15 +40,18 @@ pub struct Verdict {
     pub worst_from: Option<String>,
     /// The largest phi that rounding to the least increment alone can cause at any hole.
     pub rounding: Option<f64>,
+    /// The nominal holes that are drilled.
     pub holes: Vec<HoleVerdict>,
     /// The ids of missing holes.
     pub missing: Vec<String>,
+    /// The drilled holes without a nominal one.
     pub extra: Vec<ExtraHole>,
+    /// All findings.
     pub findings: Vec<Finding>,
     /// The distances of neighbours, for a part where they matter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub neighbours: Option<Neighbours>,
-    /// What the verdict does not cover, in words.
+    /// Sentences on what the verdict does not cover.
     pub not_checked: Vec<String>,
     /// The findings with their places, for people.
     #[serde(skip)]
@@ -53,12 +61,18 @@ pub struct Verdict {
 /// A nominal hole that was drilled.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct HoleVerdict {
+    /// The id in the reference.
     pub id: String,
+    /// Diameter of the smallest zone that contains the axis, mm.
     #[serde(rename = "phi")]
     pub position_deviation: f64,
+    /// Distance of the axes at the entry, mm.
     pub at_entry: f64,
+    /// Distance of the axes at the bottom, mm.
     pub at_bottom: f64,
+    /// Actual minus nominal depth, mm.
     pub depth_error: f64,
+    /// True without an error among the findings.
     pub ok: bool,
     /// Between the axes, degrees.
     pub tilt: f64,
@@ -66,8 +80,11 @@ pub struct HoleVerdict {
     pub out_of_tolerance: f64,
     /// The phi that rounding alone can cause here.
     pub rounding: f64,
+    /// The hole of the reference.
     pub nominal: HoleGeometry,
+    /// The drilled hole.
     pub actual: HoleGeometry,
+    /// The block that finishes it.
     pub from: Origin,
     /// The calls that led to that block, innermost first.
     pub calls: Vec<Origin>,
@@ -76,7 +93,7 @@ pub struct HoleVerdict {
     /// Its neighbours, for a part where they matter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub neighbours: Option<HoleNeighbours>,
-    /// Which of the holes that the program makes it is, counted from 0.
+    /// Index among the drilled holes.
     #[serde(skip)]
     pub drilled_index: usize,
 }
@@ -85,19 +102,25 @@ pub struct HoleVerdict {
 /// entry.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct HoleGeometry {
+    /// Point of the axis at the surface.
     pub entry: [f64; 3],
+    /// Unit vector out of the part.
     pub axis: [f64; 3],
+    /// Diameter, mm; null if unknown.
     pub diameter: Option<f64>,
+    /// Depth, mm.
     pub depth: f64,
 }
 
 /// An extra hole.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ExtraHole {
+    /// The drilled hole.
     #[serde(flatten)]
     pub hole: Hole,
+    /// The reason in words.
     pub why: String,
-    /// Which of the holes that the program makes it is, counted from 0.
+    /// Index among the drilled holes.
     #[serde(skip)]
     pub drilled_index: usize,
 }
@@ -105,17 +128,24 @@ pub struct ExtraHole {
 /// A finding as data.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Finding {
+    /// Row of the code.
     #[serde(skip)]
     pub kind: &'static FindingKind,
+    /// The code, as in `explain`.
     pub code: Cow<'static, str>,
+    /// One of note, warning, error and alarm.
     pub severity: &'static str,
+    /// The fault in one sentence.
     pub message: String,
+    /// The remedy.
     pub help: Option<String>,
+    /// Further facts.
     pub notes: Vec<String>,
     /// The finding is about motion, not about the resulting holes.
     pub from_motion: bool,
     /// The id of the nominal hole.
     pub hole: Option<String>,
+    /// The block of the finding.
     pub from: Option<Origin>,
     /// For a finding on flutes: positions on the part, the worst first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -127,6 +157,7 @@ pub struct Finding {
 pub struct PartPoint {
     /// Counted from 1; null without a pass: a missing flute, a rapid between two of them.
     pub pass: Option<usize>,
+    /// Coordinates x, y, z.
     pub at: [f64; 3],
 }
 
@@ -136,30 +167,63 @@ impl From<&Site> for PartPoint {
     }
 }
 
+/// Makes the verdict of the findings; those about motion come last.
 pub(super) fn verdict(
     comparison: &Comparison<'_>,
     rounding: &RoundingDeviation<'_>,
     mut findings: Vec<HoleFinding>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
-    findings.sort_by_key(|finding| finding.is_motion);
+    findings.sort_by_key(|one| one.about == About::Motion);
     let mut codes_by_hole: Vec<Vec<&'static str>> = vec![Vec::new(); comparison.nominal.len()];
-    let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
-    for HoleFinding { nominal, finding, .. } in findings.iter().filter(|one| failed(&one.finding)) {
-        if let Some(nominal) = *nominal {
-            codes_by_hole[nominal].push(finding.kind.code);
+    let failures = || findings.iter().filter(|one| Severity::Error <= one.finding.severity);
+    for one in failures() {
+        if let About::Nominal(nominal) = one.about {
+            codes_by_hole[nominal].push(one.finding.kind.code);
         }
     }
+    let fails = failures().next().is_some();
     let holes: Vec<HoleVerdict> = comparison
-        .pairs
-        .iter()
+        .matched()
         .zip(&rounding.position_deviations)
-        .map(|(pair, rounding)| {
+        .map(|((pair, nominal, drilled), rounding)| {
+            let (deviation, phi) = (&pair.deviation, pair.deviation.zone_diameter());
             let objections = std::mem::take(&mut codes_by_hole[pair.nominal]);
-            hole_verdict(comparison, pair, *rounding, objections, locate)
+            HoleVerdict {
+                id: comparison.id(pair.nominal).to_owned(),
+                position_deviation: phi,
+                at_entry: deviation.at_entry,
+                at_bottom: deviation.at_bottom,
+                depth_error: deviation.depth_error,
+                ok: objections.is_empty(),
+                tilt: deviation.tilt.0,
+                out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
+                rounding: *rounding,
+                nominal: HoleGeometry {
+                    entry: nominal.entry,
+                    axis: nominal.axis,
+                    diameter: nominal.diameter,
+                    depth: nominal.depth,
+                },
+                actual: HoleGeometry {
+                    entry: deviation.entry.coords.into(),
+                    axis: drilled.axis.into_inner().into(),
+                    diameter: drilled.diameter,
+                    depth: nominal.depth + deviation.depth_error,
+                },
+                from: origin(drilled.backtrace.block, drilled.tool, locate),
+                calls: calls(&drilled.backtrace.calls, locate),
+                objections,
+                neighbours: None,
+                drilled_index: pair.actual,
+            }
         })
         .collect();
-    let fails = findings.iter().any(|one| failed(&one.finding));
+    let extra = |index: &usize| ExtraHole {
+        hole: comparison.actual[*index].hole(locate),
+        why: super::checks::extra::explain(comparison, *index),
+        drilled_index: *index,
+    };
     let worst = (0..holes.len())
         .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
     Verdict {
@@ -171,12 +235,13 @@ pub(super) fn verdict(
         worst_from: worst.map(|index| worst_from(&holes[index], &rounding.axis_shares(index))),
         rounding: rounding.position_deviations.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
-        extra: comparison.extra.iter().map(|index| extra_hole(comparison, *index, locate)).collect(),
+        extra: comparison.extra.iter().map(extra).collect(),
         findings: findings
             .iter()
             .map(|one| {
-                let hole = one.nominal.map(|index| comparison.id(index));
-                finding_of(&one.finding, hole, one.is_motion, locate)
+                let hole =
+                    if let About::Nominal(index) = one.about { Some(comparison.id(index)) } else { None };
+                finding_of(&one.finding, hole, one.about == About::Motion, locate)
             })
             .collect(),
         neighbours: None,
@@ -186,14 +251,13 @@ pub(super) fn verdict(
     }
 }
 
-/// A finding as data, about the wanted hole of this id.
+/// Returns a finding as data, about the nominal hole of this id.
 pub(super) fn finding_of(
     finding: &Diagnostic,
     hole: Option<&str>,
     from_motion: bool,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Finding {
-    let origin = finding.backtrace.as_ref().map(|place| locate(place.block));
     Finding {
         kind: finding.kind,
         code: finding.code(),
@@ -203,26 +267,26 @@ pub(super) fn finding_of(
         notes: finding.notes.clone(),
         from_motion,
         hole: hole.map(str::to_owned),
-        from: origin.map(|(program, line)| Origin { program, line, tool: None }),
+        from: finding.backtrace.as_ref().map(|place| origin(place.block, None, locate)),
         sites: finding.sites.iter().map(Into::into).collect(),
     }
 }
 
 impl Verdict {
-    /// Whether anything but notes is told.
+    /// Returns true if there is a finding above a note.
     pub fn has_findings(&self) -> bool {
         self.diagnostics.iter().any(|finding| Severity::Warning <= finding.severity)
     }
 
-    /// Adds what is told of the program's text, which leaves the answer as it is: before all that it may explain.
+    /// Inserts findings about the program's text before those that they may explain; the verdict stays.
     pub fn add_likely_causes(&mut self, causes: Vec<Diagnostic>, locate: &dyn Fn(Span) -> (String, u32)) {
-        self.findings.splice(0..0, causes.iter().map(|slip| finding_of(slip, None, true, locate)));
+        self.findings.splice(0..0, causes.iter().map(|cause| finding_of(cause, None, true, locate)));
         let alarms =
             self.diagnostics.iter().take_while(|finding| finding.severity == Severity::Alarm).count();
         self.diagnostics.splice(alarms..alarms, limit_per_kind(causes.into_iter()));
     }
 
-    /// Adds what is round each hole, and the summary.
+    /// Adds the neighbours of each hole, by drilled hole, and their summary.
     pub(super) fn set_neighbours(&mut self, (around, summary): (Vec<Option<HoleNeighbours>>, Neighbours)) {
         for hole in &mut self.holes {
             hole.neighbours = around[hole.drilled_index];
@@ -231,7 +295,8 @@ impl Verdict {
     }
 }
 
-/// As many of each kind as people read; the last of them says how many more there are.
+/// Keeps the first findings of each kind, the last of them with a note on the number left out. Alarms come first: what
+/// stopped the run explains the rest.
 pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
     const MAX_SHOWN: usize = 8;
     let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
@@ -245,94 +310,37 @@ pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<
         }
     }
     for (count, last) in kinds.into_values().filter(|(count, _)| MAX_SHOWN < *count) {
-        shown[last]
-            .notes
-            .push(format!("and {} more of this kind; --format json lists them all", count - MAX_SHOWN));
+        let note = format!("and {} more of this kind; --format json lists them all", count - MAX_SHOWN);
+        shown[last].notes.push(note);
     }
-    // What stopped the run explains what else is wrong.
     shown.sort_by_key(|finding| finding.severity != Severity::Alarm);
     shown
 }
 
-fn hole_verdict(
-    comparison: &Comparison<'_>,
-    pair: &super::HolePair,
-    rounding: f64,
-    objections: Vec<&'static str>,
-    locate: &dyn Fn(Span) -> (String, u32),
-) -> HoleVerdict {
-    let (wanted, found, deviation) =
-        (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual], &pair.deviation);
-    let phi = deviation.zone_diameter();
-    let (program, line) = locate(found.backtrace.block);
-    HoleVerdict {
-        id: comparison.id(pair.nominal).to_owned(),
-        position_deviation: phi,
-        at_entry: deviation.at_entry,
-        at_bottom: deviation.at_bottom,
-        depth_error: deviation.depth_error,
-        ok: objections.is_empty(),
-        tilt: deviation.tilt.0,
-        out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
-        rounding,
-        nominal: HoleGeometry {
-            entry: wanted.entry,
-            axis: wanted.axis,
-            diameter: wanted.diameter,
-            depth: wanted.depth,
-        },
-        actual: HoleGeometry {
-            entry: deviation.entry.coords.into(),
-            axis: found.axis.into_inner().into(),
-            diameter: found.diameter,
-            depth: wanted.depth + deviation.depth_error,
-        },
-        from: Origin { program, line, tool: found.tool },
-        calls: calls(&found.backtrace.calls, locate),
-        objections,
-        neighbours: None,
-        drilled_index: pair.actual,
-    }
-}
-
-fn extra_hole(
-    comparison: &Comparison<'_>,
-    index: usize,
-    locate: &dyn Fn(Span) -> (String, u32),
-) -> ExtraHole {
-    let found = &comparison.actual[index];
-    ExtraHole {
-        hole: found.hole(locate),
-        why: super::checks::extra::explain(comparison, index),
-        drilled_index: index,
-    }
-}
-
-/// In one line: which end, how far, and how much of it rounding is to blame for.
-fn worst_from(hole: &HoleVerdict, shares: &[AxisRounding]) -> String {
+/// Describes the worst deviation: the end of the hole, the distance, and the share of rounding.
+fn worst_from(hole: &HoleVerdict, shares: &[(String, f64)]) -> String {
     let (end, off) = match hole.at_bottom > hole.at_entry {
         true => ("bottom", hole.at_bottom),
         false => ("entry", hole.at_entry),
     };
-    let shares: Vec<_> = shares.iter().map(|s| format!("{} {:.4}", s.name(), s.displacement)).collect();
+    let shares: Vec<_> =
+        shares.iter().map(|(name, displacement)| format!("{name} {displacement:.4}")).collect();
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
-    // What can be explained by rounding is compared with room for the arithmetic itself.
-    let blame = match hole.position_deviation <= hole.rounding + 1e-6 {
-        true => "within the effect of rounding",
-        false => "beyond the effect of rounding",
-    };
+    // The margin is for the arithmetic itself.
+    let side = if hole.position_deviation <= hole.rounding + 1e-6 { "within" } else { "beyond" };
     format!(
-        "hole {}, off by {off:.4} mm at its {end}, {blame}; rounding alone causes at most Φ{:.4} there{shares}",
+        "hole {}, off by {off:.4} mm at its {end}, {side} the effect of rounding; rounding alone causes at most Φ{:.4} there{shares}",
         hole.id, hole.rounding
     )
 }
 
-/// The chain of calls, one place each.
+/// Returns the origins of the calls, innermost first.
 fn calls(calls: &CallChain, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<Origin> {
     let chain = std::iter::successors(calls.as_deref(), |call| call.outer_calls.as_deref());
-    let place = |call: &Call| {
-        let (program, line) = locate(call.calling_block);
-        Origin { program, line, tool: None }
-    };
-    chain.map(place).collect()
+    chain.map(|call| origin(call.calling_block, None, locate)).collect()
+}
+
+fn origin(block: Span, tool: Option<u32>, locate: &dyn Fn(Span) -> (String, u32)) -> Origin {
+    let (program, line) = locate(block);
+    Origin { program, line, tool }
 }

@@ -10,7 +10,7 @@ macro_rules! group {
 
         impl $name {
             /// Returns the G code × 10 of the state.
-            pub fn code(self) -> u32 {
+            pub const fn code(self) -> u32 {
                 match self {
                     $(Self::$state => $code,)+
                 }

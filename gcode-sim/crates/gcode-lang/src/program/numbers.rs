@@ -1,6 +1,6 @@
 //! Lowering of blocks of numbers directly from their text.
 use super::g_codes;
-use super::words::{LoweredWord, WordOperand, Words, g_code};
+use super::words::{LoweredWord, WordOperand, Words, g_code, is_call};
 use super::{Op, OpBody, OpKind};
 use crate::source::{SourceId, Span};
 use crate::syntax::{NumberWord, NumberWords};
@@ -39,7 +39,7 @@ fn fill(list: &mut Vec<LoweredWord>, mut numbers: NumberWords<'_>) -> Option<u32
         let lowered_word = |value| LoweredWord { letter, axis: None, comma: false, value, span };
         match letter {
             b'G' => match g_code(number)? {
-                650 | 660 | 661 | 670 => return None,
+                code if is_call(code) => return None,
                 code => list.push(lowered_word(WordOperand::G(code, g_codes::find(code)))),
             },
             b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return None,

@@ -3,9 +3,22 @@ use super::DialectSyntax;
 use super::bytecode::{Bytecode, Instruction, Operand, Slot};
 use super::g_codes::{self, RowLookup};
 use super::lowering::{ExprContext, Lowering};
+use super::modes::ModalCall;
 use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::Span;
 use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};
+
+/// G codes × 10 of calls; those of the modal calls are also their states.
+const MACRO_CALL: u32 = 650;
+const MODAL_CALL: u32 = ModalCall::AfterMoves.code();
+const EVERY_BLOCK_CALL: u32 = ModalCall::EveryBlock.code();
+const MODAL_CALL_END: u32 = ModalCall::Off.code();
+
+/// Returns true for the G code × 10 of a call.
+#[inline]
+pub(super) fn is_call(code: u32) -> bool {
+    matches!(code, MACRO_CALL | MODAL_CALL | EVERY_BLOCK_CALL | MODAL_CALL_END)
+}
 
 /// Words of one block.
 #[derive(Debug, Default)]
@@ -215,7 +228,7 @@ impl Lowering {
         let (mut by_g, mut by_m) = (false, false);
         for word in words.clone() {
             let coded = self.lower_word(word)?;
-            by_g |= matches!(coded.value, WordOperand::G(650 | 660 | 661 | 670, _));
+            by_g |= matches!(coded.value, WordOperand::G(code, _) if is_call(code));
             by_m |= coded.letter == b'M' || matches!(word.value, WordValue::Name(_));
             list.push(coded);
         }
@@ -225,10 +238,10 @@ impl Lowering {
             (true, _) => {}
         }
         const CALLS: [(u32, CallCode); 4] = [
-            (650, CallCode::Macro),
-            (660, CallCode::AfterMoves),
-            (661, CallCode::EveryBlock),
-            (670, CallCode::Cancel),
+            (MACRO_CALL, CallCode::Macro),
+            (MODAL_CALL, CallCode::AfterMoves),
+            (EVERY_BLOCK_CALL, CallCode::EveryBlock),
+            (MODAL_CALL_END, CallCode::Cancel),
         ];
         for (code, kind) in CALLS {
             let is_it = |word: &LoweredWord| matches!(word.value, WordOperand::G(c, _) if c == code);
@@ -330,7 +343,8 @@ fn macro_call<'a>(
                 return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(coded.span));
             }
             (b'L', _) => call.repeats = Some(coded),
-            (b'G', _) if matches!(coded.value, WordOperand::G(650 | 660 | 661, _)) => {
+            (b'G', _) if matches!(coded.value, WordOperand::G(code, _) if is_call(code) && code != MODAL_CALL_END) =>
+            {
                 return Err(Alarm::TwoMacroCalls.located_at(coded.span));
             }
             (b'M', WordValue::Literal(number)) if number.places.is_none() && number.digits == 98 => {

@@ -26,23 +26,18 @@ impl fmt::Display for Thickness {
 
 /// Blocks in equal steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Series {
+pub(crate) struct Series {
     /// Thinnest block.
-    pub first: Thickness,
+    pub(crate) first: Thickness,
     /// Difference between neighbouring blocks.
-    pub step: Thickness,
+    pub(crate) step: Thickness,
     /// Number of blocks, at least 1.
-    pub count: u32,
+    pub(crate) count: u32,
 }
 
 impl Series {
-    /// Returns the thickest block.
-    pub fn last(&self) -> Thickness {
-        Thickness(self.first.0 + self.step.0 * (self.count - 1))
-    }
-
     /// Returns the blocks from the thinnest to the thickest.
-    pub fn blocks(self) -> impl Iterator<Item = Thickness> {
+    pub(crate) fn blocks(self) -> impl Iterator<Item = Thickness> {
         (0..self.count).map(move |n| Thickness(self.first.0 + self.step.0 * n))
     }
 }
@@ -53,7 +48,7 @@ pub struct GaugeSet {
     /// Name in job files.
     pub name: &'static str,
     /// Series from the finest blocks to the thickest; no block is in two of them.
-    pub series: &'static [Series],
+    pub(crate) series: &'static [Series],
 }
 
 /// Returns a series of one block, in half micrometres.
@@ -168,7 +163,7 @@ mod tests {
 
     /// The number in a set's name is the number of its blocks, all different.
     #[test]
-    fn every_set_has_as_many_blocks_as_its_name_says() {
+    fn the_number_in_a_sets_name_is_that_of_its_blocks() {
         for set in GaugeSet::ALL {
             let mut blocks = set.blocks();
             assert_eq!(format!("metric-{}", blocks.len()), set.name);
@@ -201,7 +196,8 @@ mod tests {
             "0.0005",
         ];
         assert_eq!(steps, half);
-        let edges: Vec<_> = set.series.iter().map(|s| format!("{} {}", s.first, s.last())).collect();
+        let edges: Vec<_> =
+            set.series.iter().map(|s| format!("{} {}", s.first, s.blocks().last().unwrap())).collect();
         assert_eq!(edges, ["1.001 1.009", "1.01 1.49", "0.5 9.5", "10 100"]);
     }
 }

@@ -23,17 +23,17 @@ impl GaugeSet {
     /// equally many blocks, the lower; of two equally high ones, the one with the thickest block, then the
     /// thickest second block. The stack is empty for a height below half the thinnest block. A height above
     /// the sum of all blocks gets all of them.
-    pub fn nearest_stack(&self, height: Mm) -> Stack {
+    pub(crate) fn nearest_stack(&self, height: Mm) -> Stack {
         let blocks = self.blocks();
         let grid = self.step().0;
         let steps: Vec<usize> = blocks.iter().map(|block| (block.0 / grid) as usize).collect();
-        let wanted = (height.0 * 2000.0 / f64::from(grid)).max(0.0);
+        let nominal = (height.0 * 2000.0 / f64::from(grid)).max(0.0);
         // The empty stack is nearer than any stack of more than twice the height.
-        let most = steps.iter().sum::<usize>().min((2.0 * wanted) as usize);
+        let most = steps.iter().sum::<usize>().min((2.0 * nominal) as usize);
         let reached = HeightSet::all_heights(&steps, most);
-        let below = (0..=(wanted as usize).min(most)).rev().find(|sum| reached.contains(*sum));
-        let above = (wanted as usize + 1..=most).find(|sum| reached.contains(*sum));
-        let error = |sum: usize| (sum as f64 - wanted).abs();
+        let below = (0..=(nominal as usize).min(most)).rev().find(|sum| reached.contains(*sum));
+        let above = (nominal as usize + 1..=most).find(|sum| reached.contains(*sum));
+        let error = |sum: usize| (sum as f64 - nominal).abs();
         let least = [below, above].into_iter().flatten().map(error).fold(f64::INFINITY, f64::min);
         let nearest: Vec<_> =
             [below, above].into_iter().flatten().filter(|sum| error(*sum) <= least).collect();
@@ -147,7 +147,7 @@ impl HeightSet {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::Series;
+    use super::super::sets::Series;
     use super::*;
 
     fn set(name: &str) -> GaugeSet {

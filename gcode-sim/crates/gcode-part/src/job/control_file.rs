@@ -147,17 +147,17 @@ mod tests {
         assert_eq!(settings.dialect, Dialect::HaasNgc);
         assert!(settings.returns_signed_angles);
         assert_eq!(settings.macro_levels, 4, "the family would have set 9");
-        let mut wanted = Settings::default();
+        let mut expected = Settings::default();
         for (key, value) in
             [("DIALECT", "haas-ngc"), ("NAT", "1"), ("5115", "0.25"), ("MACRO-LEVELS", "4"), ("#1005", "1")]
         {
-            wanted.set(key, value).unwrap();
+            expected.set(key, value).unwrap();
         }
-        assert_eq!(settings, wanted);
+        assert_eq!(settings, expected);
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_its_line() {
+    fn a_refused_key_is_named_with_its_line() {
         for (text, message) in [
             ("NAT = 1\nNATT = 1\n", "line 2: no setting 'NATT': see `gcode-sim settings`"),
             ("NAT = 2\n", "line 1: setting NAT is '2': 0 or 1"),

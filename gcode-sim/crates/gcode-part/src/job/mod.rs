@@ -8,26 +8,28 @@ mod burr;
 pub mod control_file;
 mod honeycomb;
 mod pin_holes;
-mod sections;
 mod sheet;
 
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
-pub use alignment::{Alignment, AlignmentLimits, Chord, EllipsePath, Runout, SineTable};
+pub use alignment::{
+    Alignment, AlignmentLimits, Chord, EllipsePath, Readings, Runout, SineTable, TouchProbe,
+};
 pub use burr::{
     AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm,
 };
-pub use honeycomb::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
+pub use honeycomb::{Clamp, CombMachine, Cylinder, Drill, HolePattern, Honeycomb, Metric, Spacing};
 pub use pin_holes::{
     AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool,
 };
-pub use sheet::FileRates;
 pub use sheet::{AlternativeMachine, Minutes, Rates, SheetInfo};
 
-use crate::reader::{FileError, Reader, Spanned};
+use crate::reader::bounds::{DepthTolerance, KeyRange, PositionTolerance, Retract};
+use crate::reader::{AxisSign, FileError, FileKey, Reader, Spanned, Word, Words};
 use gcode_lang::control::{Dialect, Increment};
 
 /// A job of one of the families.
@@ -43,26 +45,85 @@ pub enum Job {
     Alignment(Alignment),
 }
 
-/// Control of a job's programs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The control of the programs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct JobControl {
-    /// Family of controls.
+    /// The family of controls.
+    #[serde(with = "Word::<Dialect>")]
     pub dialect: Dialect,
-    /// Least input increment.
+    /// The least input increment: IS-A 0.01, IS-B 0.001, IS-C 0.0001 (mm and degrees).
+    #[serde(with = "Word::<Increment>")]
     pub increment: Increment,
 }
 
-/// A rotary table that brings a hole to the plane z = 0 with the command sign · azimuth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The axis that rotates the part: sign · azimuth brings a hole to the plane z = 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Rotary {
-    /// Address letter: A, B or C.
+    /// Its letter.
+    #[serde(with = "Word::<RotaryLetter>")]
     pub letter: char,
-    /// Sign of the command, 1 or −1.
+    /// 1, or -1 if a positive command rotates the part in the opposite direction.
+    #[serde(with = "AxisSign")]
     pub sign: i8,
 }
 
+/// Letters of rotary axes.
+enum RotaryLetter {}
+
+impl Words for RotaryLetter {
+    type Value = char;
+
+    fn all() -> Vec<(&'static str, char)> {
+        vec![("A", 'A'), ("B", 'B'), ("C", 'C')]
+    }
+}
+
+/// Tolerances of the holes.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HoleTolerance {
+    /// Diameter of the tolerance zone of a hole's axis (ISO 1101), mm.
+    #[serde(with = "PositionTolerance")]
+    pub position: f64,
+    /// Tolerance of a hole's depth, either way, mm.
+    #[serde(default = "DepthTolerance::default", with = "DepthTolerance")]
+    pub depth: f64,
+}
+
+/// Height above the surface at which rapid motion becomes feed, mm, unless the job specifies it.
+const CLEARANCE: f64 = 2.0;
+
+/// Returns the retract height, mm: 50, or the clearance if that is more, unless the job specifies it.
+fn retract_height(specified: Option<f64>, clearance: f64) -> f64 {
+    specified.unwrap_or(clearance.max(50.0))
+}
+
+/// Checks that the retract height is not below the clearance.
+fn check_retract(reader: &Reader<'_>, retract: f64, clearance: f64) -> Result<(), FileError> {
+    let most = Retract::MAX;
+    let allowed = format_args!("{clearance} (the clearance) to {most} mm");
+    reader.check((clearance..=most).contains(&retract), "machine.retract", retract, allowed)
+}
+
+/// A job as its file has it.
+trait Family: DeserializeOwned {
+    /// Checks the keys against each other, and completes the job.
+    ///
+    /// # Errors
+    /// Keys that contradict each other, with the line of one of them and the allowed values.
+    fn check(&mut self, reader: &Reader<'_>) -> Result<(), FileError>;
+
+    /// Reads the text of a job.
+    fn read(reader: &Reader<'_>) -> Result<Self, FileError> {
+        let mut job: Self = reader.parse()?;
+        job.check(reader).map(|()| job)
+    }
+}
+
 #[derive(Deserialize)]
-struct Family {
+struct FamilyKey {
     family: Spanned<String>,
 }
 
@@ -78,10 +139,10 @@ impl JsonSchema for JobFile {
         json_schema!({
             "description": "The part, its machine and its control.",
             "oneOf": [
-                generator.subschema_for::<pin_holes::File>(),
-                generator.subschema_for::<honeycomb::File>(),
+                generator.subschema_for::<PinHoles>(),
+                generator.subschema_for::<Honeycomb>(),
                 generator.subschema_for::<burr::File>(),
-                generator.subschema_for::<alignment::File>(),
+                generator.subschema_for::<Alignment>(),
             ],
         })
     }
@@ -98,19 +159,19 @@ impl Job {
     /// values.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let reader = Reader { text };
-        let table: toml::Table = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
-        if !table.contains_key("family") {
+        reader.parse::<toml::Table>()?;
+        if !reader.has("family") {
             return Err(FileError {
                 line: None,
                 message: format!("key 'family' is missing: one of {}", FAMILIES.join(", ")),
             });
         }
-        let Family { family } = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+        let FamilyKey { family } = reader.parse()?;
         match family.as_ref().as_str() {
-            "pin-holes" => pin_holes::parse(&reader).map(Self::PinHoles),
-            "honeycomb" => honeycomb::parse(&reader).map(Self::Honeycomb),
+            "pin-holes" => PinHoles::read(&reader).map(Self::PinHoles),
+            "honeycomb" => Honeycomb::read(&reader).map(Self::Honeycomb),
             "burr" => burr::parse(&reader).map(Self::Burr),
-            "alignment" => alignment::parse(&reader).map(Self::Alignment),
+            "alignment" => Alignment::read(&reader).map(Self::Alignment),
             other => {
                 Err(reader
                     .error(&family, format!("family '{other}' is unknown: one of {}", FAMILIES.join(", "))))
@@ -121,10 +182,10 @@ impl Job {
     /// Returns the height above the surface at which rapid motion becomes feed, mm.
     pub fn clearance(&self) -> f64 {
         match self {
-            Self::PinHoles(job) => job.machine.clearance,
-            Self::Honeycomb(job) => job.machine.clearance,
-            Self::Burr(job) => job.grinder.clearance,
-            Self::Alignment(job) => job.machine.clearance,
+            Self::PinHoles(job) => job.machine.clearance(),
+            Self::Honeycomb(job) => job.machine.clearance(),
+            Self::Burr(job) => job.grinder.clearance(),
+            Self::Alignment(job) => job.machine.clearance(),
         }
     }
 

@@ -2,24 +2,32 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::reader::bounds::{Bounded, DurationMinutes, HourlyRate};
-use crate::reader::{FileError, Reader};
+use crate::reader::bounds::{DurationMinutes, HourlyRate};
+use crate::reader::{FileError, FileKey, Optional, Reader};
 
 /// Additional data for the set-up sheet. Omitted fields are printed empty, for entry by hand.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct SheetInfo {
-    /// Name of the part.
+    /// The part's name.
     pub part: Option<String>,
-    /// Number of the drawing.
+    /// The number of its drawing.
     pub drawing: Option<String>,
-    /// Revision of the drawing.
+    /// The revision of its drawing.
     pub revision: Option<String>,
-    /// Material.
+    /// Its material.
     pub material: Option<String>,
     /// The machine's name in the shop.
     pub machine: Option<String>,
-    /// Times that the simulation cannot determine.
-    pub minutes: Minutes,
+    /// Set-up and alignment of one part, minutes.
+    #[serde(default, with = "Optional::<DurationMinutes>")]
+    setup_minutes: Option<f64>,
+    /// An operator stop, from standstill to start, minutes.
+    #[serde(default, with = "Optional::<DurationMinutes>")]
+    stop_minutes: Option<f64>,
+    /// A tool change, minutes.
+    #[serde(default, with = "Optional::<DurationMinutes>")]
+    tool_change_minutes: Option<f64>,
     /// Machine-hour rates.
     pub rates: Option<Rates>,
 }
@@ -36,27 +44,47 @@ pub struct Minutes {
 }
 
 /// Machine-hour rates of the job's machine and of alternative machines.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Rates {
     /// Printed unchanged.
     pub currency: String,
-    /// Price of a machine hour.
+    /// Price of a machine hour, in that currency.
+    #[serde(with = "HourlyRate")]
     pub rate: f64,
     /// Alternative machines for the part.
+    #[serde(default, rename = "beside")]
     pub alternatives: Vec<AlternativeMachine>,
 }
 
 /// The same part on another machine. Omitted times are equal to those of the job's machine.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct AlternativeMachine {
-    /// Name of the machine in the shop.
+    /// Its name in the shop.
     pub machine: String,
     /// Price of a machine hour, in the same currency.
+    #[serde(with = "HourlyRate")]
     pub rate: f64,
-    /// Time of the program, in minutes.
-    pub run: Option<f64>,
-    /// Manual times on this machine.
-    pub minutes: Minutes,
+    /// The program, minutes.
+    #[serde(default, with = "Optional::<DurationMinutes>")]
+    pub run_minutes: Option<f64>,
+    /// Set-up and alignment of one part, minutes.
+    #[serde(default, with = "Optional::<DurationMinutes>")]
+    pub setup_minutes: Option<f64>,
+    /// An operator stop, from standstill to start, minutes.
+    #[serde(default, with = "Optional::<DurationMinutes>")]
+    pub stop_minutes: Option<f64>,
+    /// A tool change, minutes.
+    #[serde(default, with = "Optional::<DurationMinutes>")]
+    pub tool_change_minutes: Option<f64>,
+}
+
+impl SheetInfo {
+    /// Returns the times that the simulation cannot determine.
+    pub fn minutes(&self) -> Minutes {
+        Minutes { setup: self.setup_minutes, stop: self.stop_minutes, tool_change: self.tool_change_minutes }
+    }
 }
 
 impl Rates {
@@ -65,111 +93,8 @@ impl Rates {
     /// # Errors
     /// A key that is unknown, missing or out of range, with its line and the allowed values.
     pub fn parse(text: &str) -> Result<Self, FileError> {
-        let reader = Reader { text };
-        let file: FileRates = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
-        Ok(file.rates())
+        Reader { text }.parse()
     }
-}
-
-/// What the set-up sheet says of people, time and money. Whatever is left out is filled in by hand.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FileSheet {
-    /// The part's name.
-    part: Option<String>,
-    /// The number of its drawing.
-    drawing: Option<String>,
-    /// The revision of its drawing.
-    revision: Option<String>,
-    /// What it is made of.
-    material: Option<String>,
-    /// The machine's name in the shop.
-    machine: Option<String>,
-    /// Set-up and alignment of one part, minutes.
-    setup_minutes: Option<Bounded<DurationMinutes>>,
-    /// An operator stop, from standstill to start, minutes.
-    stop_minutes: Option<Bounded<DurationMinutes>>,
-    /// A tool change, minutes.
-    tool_change_minutes: Option<Bounded<DurationMinutes>>,
-    /// Machine-hour rates.
-    rates: Option<FileRates>,
-}
-
-/// Machine-hour rates of the job's machine and of alternative machines.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FileRates {
-    /// Printed unchanged.
-    currency: String,
-    /// Price of a machine hour, in that currency.
-    rate: Bounded<HourlyRate>,
-    /// Alternative machines for the part.
-    beside: Option<Vec<FileBeside>>,
-}
-
-/// The same part on another machine. Omitted times are equal to those of the job's machine.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct FileBeside {
-    /// Its name in the shop.
-    machine: String,
-    /// Price of a machine hour, in the same currency.
-    rate: Bounded<HourlyRate>,
-    /// The program, minutes.
-    run_minutes: Option<Bounded<DurationMinutes>>,
-    /// Set-up and alignment of one part, minutes.
-    setup_minutes: Option<Bounded<DurationMinutes>>,
-    /// An operator stop, from standstill to start, minutes.
-    stop_minutes: Option<Bounded<DurationMinutes>>,
-    /// A tool change, minutes.
-    tool_change_minutes: Option<Bounded<DurationMinutes>>,
-}
-
-impl FileSheet {
-    pub(super) fn info(self) -> SheetInfo {
-        SheetInfo {
-            minutes: Minutes {
-                setup: minutes(self.setup_minutes),
-                stop: minutes(self.stop_minutes),
-                tool_change: minutes(self.tool_change_minutes),
-            },
-            rates: self.rates.map(FileRates::rates),
-            part: self.part,
-            drawing: self.drawing,
-            revision: self.revision,
-            material: self.material,
-            machine: self.machine,
-        }
-    }
-}
-
-impl FileRates {
-    fn rates(self) -> Rates {
-        Rates {
-            rate: self.rate.get(),
-            alternatives: self.beside.unwrap_or_default().into_iter().map(FileBeside::machine).collect(),
-            currency: self.currency,
-        }
-    }
-}
-
-impl FileBeside {
-    fn machine(self) -> AlternativeMachine {
-        AlternativeMachine {
-            rate: self.rate.get(),
-            run: minutes(self.run_minutes),
-            minutes: Minutes {
-                setup: minutes(self.setup_minutes),
-                stop: minutes(self.stop_minutes),
-                tool_change: minutes(self.tool_change_minutes),
-            },
-            machine: self.machine,
-        }
-    }
-}
-
-fn minutes(value: Option<Bounded<DurationMinutes>>) -> Option<f64> {
-    value.as_ref().map(Bounded::get)
 }
 
 #[cfg(test)]
@@ -185,33 +110,33 @@ mod tests {
     }
 
     #[test]
-    fn a_job_may_say_nothing() {
+    fn a_sheet_may_be_left_out_or_empty() {
         assert_eq!(words("").unwrap(), SheetInfo::default());
         assert_eq!(words("[sheet]\n").unwrap(), SheetInfo::default());
     }
 
     #[test]
-    fn everything_it_says_is_read() {
+    fn every_key_of_the_sheet_is_read() {
         let words = words(
             "[sheet]\npart = \"Burr <12>\"\nsetup_minutes = 20\nstop_minutes = 0\n[sheet.rates]\ncurrency = \"CNY\"\n\
              rate = 250\n[[sheet.rates.beside]]\nmachine = \"other\"\nrate = 1e3\nrun_minutes = 4.5\n",
         )
         .unwrap();
         assert_eq!((words.part.as_deref(), words.drawing.as_deref()), (Some("Burr <12>"), None));
-        assert_eq!(words.minutes, Minutes { setup: Some(20.0), stop: Some(0.0), tool_change: None });
+        assert_eq!(words.minutes(), Minutes { setup: Some(20.0), stop: Some(0.0), tool_change: None });
         let rates = words.rates.unwrap();
         assert_eq!((rates.currency.as_str(), rates.rate), ("CNY", 250.0));
         let other = AlternativeMachine {
             machine: "other".into(),
             rate: 1000.0,
-            run: Some(4.5),
-            minutes: Minutes::default(),
+            run_minutes: Some(4.5),
+            ..AlternativeMachine::default()
         };
         assert_eq!(rates.alternatives, [other]);
     }
 
     #[test]
-    fn what_cannot_be_used_is_named_with_its_line() {
+    fn a_refused_key_is_named_with_its_line() {
         for (section, message) in [
             ("[sheet]\nname = \"x\"\n", "line 13: key 'sheet.name' is unknown; allowed: part, drawing"),
             (
@@ -228,16 +153,16 @@ mod tests {
                 "line 15: key 'sheet.rates.beside.rate' is missing",
             ),
         ] {
-            let told = words(section).unwrap_err();
-            assert!(told.starts_with(message), "{told}\n{message}");
+            let found = words(section).unwrap_err();
+            assert!(found.starts_with(message), "{found}\n{message}");
         }
     }
 
     #[test]
     fn a_file_of_rates_has_the_same_keys() {
         let text = "currency = \"EUR\"\nrate = 80\n[[beside]]\nmachine = \"5-axis\"\nrate = inf\n";
-        let told = Rates::parse(text).unwrap_err().to_string();
-        assert_eq!(told, "line 5: key 'beside.rate' is inf: 0.01 to 1000000000");
+        let found = Rates::parse(text).unwrap_err().to_string();
+        assert_eq!(found, "line 5: key 'beside.rate' is inf: 0.01 to 1000000000");
         assert_eq!(Rates::parse(&text.replace("inf", "200")).unwrap().alternatives[0].rate, 200.0);
     }
 }

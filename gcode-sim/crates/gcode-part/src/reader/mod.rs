@@ -1,15 +1,20 @@
 //! Reads keys of a TOML file. Every error names the key, its line and the allowed values.
 pub mod bounds;
+mod keys;
 mod wording;
 
-use std::borrow::Cow;
+use std::fmt::Display;
 use std::ops::Range;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::Error;
-use serde::{Deserialize, Deserializer};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use toml::de::{DeTable, DeValue};
 
-/// Reason for which a job or machine file is unusable: one sentence with the key, its line and the allowed
+pub(crate) use keys::OUT_OF_RANGE;
+pub use keys::{AxisSign, Bounded, FileKey, FixedArray, Optional, Section, Word, Words};
+
+/// Reason for which a file is unusable: one sentence with the key or the place, its line and the allowed
 /// values.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", match line { Some(n) => format!("line {n}: "), None => String::new() })]
@@ -21,8 +26,9 @@ pub struct FileError {
 }
 
 /// A value with its location in the text.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
 #[serde(transparent)]
+#[schemars(with = "T", bound = "T: JsonSchema")]
 pub struct Spanned<T>(toml::Spanned<T>);
 
 impl<T> Spanned<T> {
@@ -35,48 +41,6 @@ impl<T> Spanned<T> {
 impl<T> AsRef<T> for Spanned<T> {
     fn as_ref(&self) -> &T {
         self.0.as_ref()
-    }
-}
-
-/// The schema is that of the value alone.
-impl<T: JsonSchema> JsonSchema for Spanned<T> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        T::schema_name()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        T::json_schema(generator)
-    }
-}
-
-/// An array of exactly `N` values; serde's own arrays ignore extra ones silently.
-#[derive(Clone, Debug)]
-pub struct FixedArray<T, const N: usize>(pub [T; N]);
-
-impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for FixedArray<T, N> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let values = Vec::deserialize(deserializer)?;
-        let wrong = |values: Vec<T>| D::Error::invalid_length(values.len(), &format!("{N}").as_str());
-        values.try_into().map(Self).map_err(wrong)
-    }
-}
-
-impl<T: JsonSchema, const N: usize> JsonSchema for FixedArray<T, N> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        format!("{N}_of_{}", T::schema_name()).into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let item = generator.subschema_for::<T>();
-        json_schema!({ "type": "array", "items": item, "minItems": N, "maxItems": N })
     }
 }
 
@@ -97,6 +61,15 @@ impl Reader<'_> {
         self.text.as_bytes()[..offset.min(self.text.len())].iter().filter(|b| **b == b'\n').count() + 1
     }
 
+    /// Deserialises the text.
+    ///
+    /// # Errors
+    /// A syntax error, or a key that is unknown, missing or out of range, with its line and the allowed
+    /// values.
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, FileError> {
+        toml::from_str(self.text).map_err(|error| self.syntax(&error))
+    }
+
     /// Returns the error of the TOML reader in the words of a job file, with its line.
     pub fn syntax(&self, error: &toml::de::Error) -> FileError {
         let line = error.span().map(|s| self.line(s.start));
@@ -106,6 +79,49 @@ impl Reader<'_> {
     /// Returns an error at the line of a value.
     pub fn error<T>(&self, at: &Spanned<T>, message: impl Into<String>) -> FileError {
         FileError { line: Some(self.line(at.span().start)), message: message.into() }
+    }
+
+    /// Returns an error at the value of a key: `hole.2.radius` is in the third `[[hole]]`. Without such a key
+    /// the error concerns the whole file.
+    pub fn error_at(&self, key: &str, message: impl Into<String>) -> FileError {
+        FileError { line: self.find(key).map(|place| self.line(place)), message: message.into() }
+    }
+
+    /// Returns true if the file has the key.
+    pub fn has(&self, key: &str) -> bool {
+        self.find(key).is_some()
+    }
+
+    /// Returns the first byte of the value of a key.
+    fn find(&self, key: &str) -> Option<usize> {
+        let table = DeTable::parse(self.text).ok()?;
+        let mut names = key.split('.');
+        let first = table.get_ref().get(names.next()?)?;
+        let found = names.try_fold(first, |value, name| match value.get_ref() {
+            DeValue::Table(table) => table.get(name),
+            DeValue::Array(all) => all.get(name.parse::<usize>().ok()?),
+            _ => None,
+        });
+        Some(found?.span().start)
+    }
+
+    /// Checks a value whose bounds another key sets.
+    ///
+    /// # Errors
+    /// A value that is not allowed, with the key, which may have an index as in [`Self::error_at`], and
+    /// `allowed`.
+    pub fn check(
+        &self,
+        is_allowed: bool,
+        key: &str,
+        value: impl Display,
+        allowed: impl Display,
+    ) -> Result<(), FileError> {
+        if is_allowed {
+            return Ok(());
+        }
+        let named: Vec<_> = key.split('.').filter(|name| name.parse::<usize>().is_err()).collect();
+        Err(self.error_at(key, format!("key '{}' is {value}: {allowed}", named.join("."))))
     }
 
     /// Returns a finite number for which `within` is true, for bounds that another key sets.

@@ -3,15 +3,13 @@ use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::sections::{Collector, FileHead, FileLinear, FilePart, FileRotary};
+use super::sections::{Collector, FileHead, FileLinear, FilePart, FileRotary, seed};
 use super::spread::{FileSpread, LENGTH};
-use crate::machine::Machine;
-use crate::machine::sources::{ErrorSource, SampleParameters};
+use crate::machine::{ErrorSource, Machine};
 use gcode_part::reader::FileError;
-use gcode_part::reader::bounds::Bounded;
 use gcode_part::reader::{Reader, Spanned};
 
-/// Of a touch probe.
+/// Errors of a touch probe.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProbe {
@@ -26,13 +24,13 @@ struct FileProbe {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileErrors {
-    /// Of the linear axes.
+    /// Errors of the linear axes.
     linear: Option<FileLinear>,
-    /// Of the axis that rotates the part.
+    /// Errors of the axis that rotates the part.
     rotary: Option<FileRotary>,
-    /// Of a head of kind manual or axis.
+    /// Errors of a head of kind manual or axis.
     head: Option<FileHead>,
-    /// Of a touch probe.
+    /// Errors of a touch probe.
     probe: Option<FileProbe>,
 }
 
@@ -40,15 +38,15 @@ pub(super) struct FileErrors {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
-    /// Of the set-up of the part.
+    /// Errors of the set-up of the part.
     part: Option<FilePart>,
-    /// Of the linear axes.
+    /// Errors of the linear axes.
     #[schemars(transform = without_draws)]
     linear: Option<FileLinear>,
-    /// Of the axis that rotates the part.
+    /// Errors of the axis that rotates the part.
     #[schemars(transform = without_draws)]
     rotary: Option<FileRotary>,
-    /// Of a head of kind manual or axis.
+    /// Errors of a head of kind manual or axis.
     #[schemars(transform = without_draws)]
     head: Option<FileHead>,
 }
@@ -59,37 +57,16 @@ fn without_draws(schema: &mut Schema) {
     keys.into_iter().for_each(|keys| keys.retain(|key, _| !["wave", "seed"].contains(&key.as_str())));
 }
 
-fn seed(seed: &Option<Spanned<u64>>) -> u64 {
-    seed.as_ref().map_or(0, |seed| *seed.as_ref())
-}
-
 impl FileErrors {
     /// Draws the errors and adds them to the machine.
     pub(super) fn apply(&self, reader: &Reader<'_>, machine: &mut Machine) -> Result<(), FileError> {
         let nominal = machine.clone();
-        let collect = || Collector { reader, machine: &nominal, prefix: "errors.", sources: Vec::new() };
-        let mut all: Vec<(ErrorSource, SampleParameters)> = Vec::new();
-        let mut keep = |found: Vec<ErrorSource>, seed: u64, wave: f64| {
-            all.extend(found.into_iter().map(|source| (source, SampleParameters { seed, wave })));
-        };
-        if let Some(linear) = &self.linear {
-            let mut collector = collect();
-            collector.linear(linear)?;
-            let wave = linear.wave.as_ref().map_or(500.0, Bounded::get);
-            keep(collector.sources, seed(&linear.seed), wave);
-        }
-        if let Some(rotary) = &self.rotary {
-            let mut collector = collect();
-            collector.rotary(rotary)?;
-            keep(collector.sources, seed(&rotary.seed), 360.0);
-        }
-        if let Some(head) = &self.head {
-            let mut collector = collect();
-            collector.head(head)?;
-            keep(collector.sources, seed(&head.seed), 360.0);
-        }
-        for (source, drawn) in all {
-            source.apply_by_position(machine, drawn);
+        let mut collector = Collector::new(reader, &nominal, "errors.");
+        collector.linear(self.linear.as_ref())?;
+        collector.rotary(self.rotary.as_ref())?;
+        collector.head(self.head.as_ref())?;
+        for (source, parameters) in collector.sources {
+            source.apply_by_position(machine, parameters);
         }
         self.probe(reader, machine)
     }
@@ -113,36 +90,28 @@ impl FileErrors {
 pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<ErrorSource>, FileError> {
     let reader = Reader { text };
     let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
-    let mut collector = Collector { reader: &reader, machine, prefix: "", sources: Vec::new() };
-    if let Some(part) = &file.part {
-        collector.part(part)?;
+    let mut collector = Collector::new(&reader, machine, "");
+    collector.part(file.part.as_ref())?;
+    collector.linear(file.linear.as_ref())?;
+    if let Some(wave) = file.linear.as_ref().and_then(|linear| linear.wave.as_ref()) {
+        let message = "key 'linear.wave' is for a machine file: a budget draws each hole anew";
+        return Err(reader.error(wave, message));
     }
-    if let Some(linear) = &file.linear {
-        collector.linear(linear)?;
-        if let Some(wave) = &linear.wave {
-            let message = "key 'linear.wave' is for a machine file: a budget draws each hole anew";
-            return Err(reader.error(wave, message));
-        }
-    }
-    if let Some(rotary) = &file.rotary {
-        collector.rotary(rotary)?;
-    }
-    if let Some(head) = &file.head {
-        collector.head(head)?;
-    }
+    collector.rotary(file.rotary.as_ref())?;
+    collector.head(file.head.as_ref())?;
     let linear = file.linear.as_ref().and_then(|linear| linear.seed.as_ref());
     let rotary = file.rotary.as_ref().and_then(|rotary| rotary.seed.as_ref());
     let head = file.head.as_ref().and_then(|head| head.seed.as_ref());
     if let Some(seed) = linear.or(rotary).or(head) {
         return Err(reader.error(seed, "key 'seed' is for a machine file: a budget has --seed"));
     }
-    Ok(collector.sources)
+    Ok(collector.sources.into_iter().map(|(source, _)| source).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::error::Distribution;
+    use crate::machine::Distribution;
     use gcode_lang::motion::Position;
 
     #[test]
@@ -193,46 +162,53 @@ seed = 2
     }
 
     #[test]
-    fn what_cannot_be_used_is_named_with_its_line() {
-        let machine = |text: &str| Machine::parse(text).unwrap_err().to_string();
-        let budget = |text: &str| error_file(text, &Machine::default()).unwrap_err().to_string();
-        assert_eq!(
-            machine("[errors.linear]\nx = { normal = -0.1 }\n"),
-            "line 2: key 'errors.linear.x.normal' is -0.1: mm, 100 at most"
-        );
-        assert_eq!(
-            machine("[errors.linear]\n\nx = { normal = 0.1, fixed = 1 }\n"),
-            "line 3: key 'errors.linear.x' needs one of normal (standard deviation), uniform (plus and minus), fixed"
-        );
-        assert_eq!(
-            machine("[errors.part]\nrunout = { normal = 1 }\n"),
-            "line 1: key 'errors.part' is unknown; allowed: linear, rotary, head, probe"
-        );
-        assert_eq!(
-            machine("[errors.head]\nangle = { normal = 1 }\n"),
-            "line 2: key 'errors.head.angle': needs a [head] of kind manual or axis"
-        );
-        assert_eq!(
-            machine("[errors.probe]\nnoise = { normal = 1 }\n"),
-            "line 2: key 'errors.probe.noise' needs a [probe]"
-        );
-        assert_eq!(
-            machine("table = []\n[errors.rotary]\nindex = { normal = 1 }\n"),
-            "line 3: key 'errors.rotary.index': needs exactly one axis that rotates the part; this machine \
-             has none, or several"
-        );
-        assert_eq!(
-            budget("[linear]\nx = { normal = 0.1 }\nseed = 3\n"),
-            "line 3: key 'seed' is for a machine file: a budget has --seed"
-        );
-        assert_eq!(
-            budget("[part]\ntilt.z = { normal = 46 }\n"),
-            "line 2: key 'part.tilt.z.normal' is 46: degrees, 45 at most"
-        );
+    fn an_unusable_key_is_named_with_its_line() {
+        let machine = r#"
+[errors.linear]
+x = { normal = -0.1 }
+=> line 2: key 'errors.linear.x.normal' is -0.1: mm, 100 at most
+
+[errors.linear]
+x = { normal = 0.1, fixed = 1 }
+=> line 2: key 'errors.linear.x' needs one of normal (standard deviation), uniform (plus and minus), fixed
+
+[errors.part]
+runout = { normal = 1 }
+=> line 1: key 'errors.part' is unknown; allowed: linear, rotary, head, probe
+
+[errors.head]
+angle = { normal = 1 }
+=> line 2: key 'errors.head.angle': needs a [head] of kind manual or axis
+
+[errors.probe]
+noise = { normal = 1 }
+=> line 2: key 'errors.probe.noise' needs a [probe]
+
+table = []
+[errors.rotary]
+index = { normal = 1 }
+=> line 3: key 'errors.rotary.index': needs exactly one axis that rotates the part; this machine has none, or several"#;
+        let budget = r#"
+[linear]
+x = { normal = 0.1 }
+seed = 3
+=> line 3: key 'seed' is for a machine file: a budget has --seed
+
+[part]
+tilt.z = { normal = 46 }
+=> line 2: key 'part.tilt.z.normal' is 46: degrees, 45 at most"#;
+        let check = |cases: &str, error: &dyn Fn(&str) -> FileError| {
+            for case in cases.trim().split("\n\n") {
+                let (text, expected) = case.split_once("=> ").unwrap();
+                assert_eq!(error(text).to_string(), expected, "{text}");
+            }
+        };
+        check(machine, &|text| Machine::parse(text).unwrap_err());
+        check(budget, &|text| error_file(text, &Machine::default()).unwrap_err());
     }
 
     #[test]
-    fn a_budget_reads_what_the_set_up_and_the_machine_are_off_by() {
+    fn a_budget_reads_the_errors_of_set_up_and_machine() {
         let text = "[part]\nrunout = { uniform = 0.15 }\nshift.z = { normal = 0.03 }\n[rotary]\nindex = { fixed = 0.001 }\n";
         let found = error_file(text, &Machine::default()).unwrap();
         let names: Vec<_> = found.iter().map(|source| source.quantity.name(&Machine::default())).collect();

@@ -12,7 +12,7 @@ use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::{Angle, Bounded, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
-/// How the tool is inclined.
+/// The head and the inclination of the tool.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = by_kind)]

@@ -41,7 +41,7 @@ pub struct File {
     control: Option<FileControl>,
     /// The axes that carry the part, from the bed outwards.
     table: Option<Vec<FileLink>>,
-    /// How the tool is inclined.
+    /// The head and the inclination of the tool.
     head: Option<FileHead>,
     /// A grinder's wheel, stationary while the table moves the part.
     wheel: Option<FileWheel>,
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_a_file_can_say() {
+    fn every_section_reaches_the_machine() {
         let text = r#"
 [control]
 dialect = "haas-ngc"
@@ -227,18 +227,14 @@ tilt = [0.0, 0.0, 1.0]
     }
 
     #[test]
-    fn a_table_turns_about_the_parts_origin_unless_told_otherwise() {
+    fn a_table_rotates_about_the_parts_origin_by_default() {
         let machine = Machine::parse(&format!("{PAPER}[part]\norigin = [5.0, 6.0, 7.0]\n")).unwrap();
-        let LinkMotion::Rotary { centre, .. } = &machine.table.0[0].motion else { panic!("it turns") };
+        let LinkMotion::Rotary { centre, .. } = &machine.table.0[0].motion else { panic!("a rotary axis") };
         assert_eq!(*centre, Point3::new(5.0, 6.0, 7.0));
     }
 
-    fn refused(text: &str) -> String {
-        Machine::parse(text).unwrap_err().to_string()
-    }
-
     #[test]
-    fn what_is_left_out_is_as_on_the_machine_of_the_paper() {
+    fn keys_left_out_are_those_of_the_machine_of_the_paper() {
         let machine = Machine::parse("[part]\nshift = [0.3, 0, 0]\n").unwrap();
         let part = Placement { shift: Vector3::new(0.3, 0.0, 0.0), ..Placement::default() };
         assert_eq!(machine, Machine { part, ..Machine::default() });
@@ -246,56 +242,69 @@ tilt = [0.0, 0.0, 1.0]
     }
 
     #[test]
-    fn what_cannot_be_used_is_named_with_its_line() {
-        let cases = [
-            (
-                "tables = []\n",
-                "line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, \
-                 part, probe, errors",
-            ),
-            ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: key 'table.sign' is missing"),
-            (
-                "[[table]]\nletter = \"B\"\nturns = \"q\"\nsign = 1\n",
-                "line 3: key 'table.turns' is 'q': one of x, y, z",
-            ),
-            (
-                "[[table]]\nletter = \"B\"\nturns = \"y\"\nsign = 2\n",
-                "line 4: key 'table.sign' is 2: 1 or -1",
-            ),
-            (
-                "[[table]]\nletter = \"V\"\nturns = \"y\"\nsign = 1\n",
-                "line 2: key 'table.letter' is 'V': one of the control's axes XYZABC",
-            ),
-            (
-                "table = []\n[head]\nkind = \"manual\"\npivot = -1.0\n",
-                "line 4: key 'head.pivot' is -1: mm, 0 or more",
-            ),
-            ("table = []\n[head]\nkind = \"axis\"\n", "line 3: kind = \"axis\" needs the key 'head.letter'"),
-            ("[part]\norigin = [1, 2, 3, 4]\n", "line 2: key 'part.origin' has 4 values: 3 are required"),
-            (
-                "[head]\nkind = \"fixed\"\ndirection = [0, 1]\n",
-                "line 3: key 'head.direction' has 2 values: 3 are required",
-            ),
-            (
-                "table = []\n[head]\nkind = \"manual\"\ndirection = [0.0, 1.0, 0.0]\n",
-                "line 4: key 'head.direction' is for kind fixed only",
-            ),
-            (
-                "table = []\n[offsets]\nG53 = { X = 1.0 }\n",
-                "line 2: key 'offsets.G53' is unknown: G54 to G59",
-            ),
-            (
-                "table = []\n[part]\ntilt = [0.0, nan, 0.0]\n",
-                "line 3: key 'part.tilt' is NaN: -360 to 360 degrees",
-            ),
-            (
-                "table = []\n[[tool]]\nnumber = 1\nlength = 5.0\n",
-                "line 4: key 'tool.length' acts along the tool",
-            ),
-        ];
-        for (text, expected) in cases {
-            let found = refused(text);
-            assert!(found.starts_with(expected), "{text:?}\n  says {found:?}\n  not  {expected:?}");
+    fn an_unusable_key_is_named_with_its_line() {
+        let cases = r#"
+tables = []
+=> line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, part, probe, errors
+
+[[table]]
+letter = "B"
+turns = "y"
+=> line 1: key 'table.sign' is missing
+
+[[table]]
+letter = "B"
+turns = "q"
+sign = 1
+=> line 3: key 'table.turns' is 'q': one of x, y, z
+
+[[table]]
+letter = "B"
+turns = "y"
+sign = 2
+=> line 4: key 'table.sign' is 2: 1 or -1
+
+[[table]]
+letter = "V"
+turns = "y"
+sign = 1
+=> line 2: key 'table.letter' is 'V': one of the control's axes XYZABC
+
+head = { kind = "manual", pivot = -1.0 }
+=> line 1: key 'head.pivot' is -1: mm, 0 or more
+
+[head]
+kind = "axis"
+=> line 2: kind = "axis" needs the key 'head.letter'
+
+[part]
+origin = [1, 2, 3, 4]
+=> line 2: key 'part.origin' has 4 values: 3 are required
+
+[head]
+kind = "fixed"
+direction = [0, 1]
+=> line 3: key 'head.direction' has 2 values: 3 are required
+
+[head]
+kind = "manual"
+direction = [0.0, 1.0, 0.0]
+=> line 3: key 'head.direction' is for kind fixed only
+
+[offsets]
+G53 = { X = 1.0 }
+=> line 1: key 'offsets.G53' is unknown: G54 to G59
+
+[part]
+tilt = [0.0, nan, 0.0]
+=> line 2: key 'part.tilt' is NaN: -360 to 360 degrees
+
+tool = [{ number = 1, length = 5.0 }]
+=> line 1: key 'tool.length' acts along the tool"#;
+        for case in cases.trim().split("\n\n") {
+            let (text, expected) = case.split_once("=> ").unwrap();
+            let error = Machine::parse(text).unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{text}{error}\n{expected}");
         }
     }
 }

@@ -10,7 +10,7 @@ use gcode_part::reader::bounds::{Bounded, ProbeDelay, StylusLength};
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileProbe {
-    /// Of the stylus ball, mm; its centre is the tool's tip.
+    /// Radius of the stylus ball, mm; its centre is the tool's tip.
     radius: Bounded<StylusLength>,
     /// Time from the contact until the control latches the position, seconds [default: 0].
     delay: Option<Bounded<ProbeDelay>>,

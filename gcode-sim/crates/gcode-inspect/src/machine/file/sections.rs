@@ -3,9 +3,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::spread::{ANGLE, FileSpread, FileVector, LENGTH, QuantityLimits};
-use crate::machine::sources::{ErrorSource, Quantity};
-use crate::machine::{HeadKind, Machine};
-use gcode_lang::motion::AxisIndex;
+use crate::machine::sources::SampleParameters;
+use crate::machine::{ErrorSource, HeadKind, Machine, Quantity};
 use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::{Bounded, Wavelength};
 use gcode_part::reader::{Reader, Spanned};
@@ -16,72 +15,84 @@ use gcode_part::reader::{Reader, Spanned};
 pub(super) struct FilePart {
     /// Its shift, mm.
     #[schemars(transform = LENGTH.bounds())]
-    pub(super) shift: Option<FileVector>,
+    shift: Option<FileVector>,
     /// Its tilt, degrees.
     #[schemars(transform = ANGLE.bounds())]
-    pub(super) tilt: Option<FileVector>,
+    tilt: Option<FileVector>,
     /// Offset of its axis from the table's, mm, in any direction.
     #[schemars(transform = LENGTH.bounds())]
-    pub(super) runout: Option<Spanned<FileSpread>>,
+    runout: Option<Spanned<FileSpread>>,
 }
 
-/// Of the linear axes.
+/// Errors of the linear axes.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileLinear {
     /// Position error of X, mm.
     #[schemars(transform = LENGTH.bounds())]
-    pub(super) x: Option<Spanned<FileSpread>>,
+    x: Option<Spanned<FileSpread>>,
     /// Position error of Y, mm.
     #[schemars(transform = LENGTH.bounds())]
-    pub(super) y: Option<Spanned<FileSpread>>,
+    y: Option<Spanned<FileSpread>>,
     /// Position error of Z, mm.
     #[schemars(transform = LENGTH.bounds())]
-    pub(super) z: Option<Spanned<FileSpread>>,
+    z: Option<Spanned<FileSpread>>,
     /// Wavelength of the error along the axis, mm [default: 500].
     pub(super) wave: Option<Bounded<Wavelength>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 
-/// Of the axis that rotates the part.
+/// Errors of the axis that rotates the part.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileRotary {
     /// Error of its commanded angle, degrees.
     #[schemars(transform = ANGLE.bounds())]
-    pub(super) index: Option<Spanned<FileSpread>>,
+    index: Option<Spanned<FileSpread>>,
     /// Offset of the axis from its centre, mm.
     #[schemars(transform = LENGTH.bounds())]
-    pub(super) centre: Option<FileVector>,
+    centre: Option<FileVector>,
     /// Tilt of its direction, degrees.
     #[schemars(transform = ANGLE.bounds())]
-    pub(super) tilt: Option<FileVector>,
+    tilt: Option<FileVector>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 
-/// Of a head of kind manual or axis.
+/// Errors of a head of kind manual or axis.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileHead {
     /// Error of its angle, degrees.
     #[schemars(transform = ANGLE.bounds())]
-    pub(super) angle: Option<Spanned<FileSpread>>,
+    angle: Option<Spanned<FileSpread>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 
 /// Collects error sources, and checks that the machine has the parts that they concern.
 pub(super) struct Collector<'r, 'm> {
-    pub(super) reader: &'r Reader<'r>,
-    pub(super) machine: &'m Machine,
+    reader: &'r Reader<'r>,
+    machine: &'m Machine,
     /// Prefix of keys in messages: `errors.` in a machine file.
-    pub(super) prefix: &'static str,
-    pub(super) sources: Vec<ErrorSource>,
+    prefix: &'static str,
+    /// Parameters of the current section.
+    parameters: SampleParameters,
+    pub(super) sources: Vec<(ErrorSource, SampleParameters)>,
 }
 
-impl Collector<'_, '_> {
+/// Returns the seed of a section.
+pub(super) fn seed(seed: &Option<Spanned<u64>>) -> u64 {
+    seed.as_ref().map_or(0, |seed| *seed.as_ref())
+}
+
+impl<'r, 'm> Collector<'r, 'm> {
+    pub(super) fn new(reader: &'r Reader<'r>, machine: &'m Machine, prefix: &'static str) -> Self {
+        let parameters = SampleParameters { seed: 0, wave: 500.0 };
+        Self { reader, machine, prefix, parameters, sources: Vec::new() }
+    }
+
     fn add(
         &mut self,
         key: &str,
@@ -91,11 +102,11 @@ impl Collector<'_, '_> {
     ) -> Result<(), FileError> {
         let Some(spread) = spread else { return Ok(()) };
         let key = format!("{}{key}", self.prefix);
-        let spread_checked = spread.as_ref().check(self.reader, &key, spread.span().start, kind)?;
+        let distribution = spread.as_ref().check(self.reader, &key, spread.span().start, kind)?;
         if let Some(lacking) = self.missing_part(quantity) {
             return Err(self.reader.error(spread, format!("key '{key}': {lacking}")));
         }
-        self.sources.push(ErrorSource { quantity, distribution: spread_checked });
+        self.sources.push((ErrorSource { quantity, distribution }, self.parameters));
         Ok(())
     }
 
@@ -114,19 +125,21 @@ impl Collector<'_, '_> {
         Ok(())
     }
 
-    pub(super) fn part(&mut self, part: &FilePart) -> Result<(), FileError> {
+    pub(super) fn part(&mut self, part: Option<&FilePart>) -> Result<(), FileError> {
+        let Some(part) = part else { return Ok(()) };
         self.add_vector("part.shift", &part.shift, Quantity::Shift, LENGTH)?;
         self.add_vector("part.tilt", &part.tilt, Quantity::Tilt, ANGLE)?;
         self.add("part.runout", &part.runout, Quantity::RunOut, LENGTH)
     }
 
-    pub(super) fn linear(&mut self, linear: &FileLinear) -> Result<(), FileError> {
-        for (letter, spread) in [(b'X', &linear.x), (b'Y', &linear.y), (b'Z', &linear.z)] {
+    pub(super) fn linear(&mut self, linear: Option<&FileLinear>) -> Result<(), FileError> {
+        let Some(linear) = linear else { return Ok(()) };
+        let wave = linear.wave.as_ref().map_or(self.parameters.wave, Bounded::get);
+        self.parameters = SampleParameters { seed: seed(&linear.seed), wave };
+        for (name, spread) in [("x", &linear.x), ("y", &linear.y), ("z", &linear.z)] {
             let Some(written) = spread else { continue };
-            let name = char::from(letter).to_ascii_lowercase();
-            let axis: Option<AxisIndex> =
-                self.machine.axes.find(letter).filter(|axis| self.machine.is_axis_used(*axis));
-            let Some(axis) = axis else {
+            let axis = self.machine.axes.find(name.as_bytes()[0].to_ascii_uppercase());
+            let Some(axis) = axis.filter(|axis| self.machine.is_axis_used(*axis)) else {
                 let message = format!(
                     "key '{}linear.{name}': no linear axis with this letter moves the tool or the part",
                     self.prefix
@@ -138,13 +151,17 @@ impl Collector<'_, '_> {
         Ok(())
     }
 
-    pub(super) fn rotary(&mut self, rotary: &FileRotary) -> Result<(), FileError> {
+    pub(super) fn rotary(&mut self, rotary: Option<&FileRotary>) -> Result<(), FileError> {
+        let Some(rotary) = rotary else { return Ok(()) };
+        self.parameters.seed = seed(&rotary.seed);
         self.add("rotary.index", &rotary.index, Quantity::Index, ANGLE)?;
         self.add_vector("rotary.centre", &rotary.centre, Quantity::Centre, LENGTH)?;
         self.add_vector("rotary.tilt", &rotary.tilt, Quantity::AxisTilt, ANGLE)
     }
 
-    pub(super) fn head(&mut self, head: &FileHead) -> Result<(), FileError> {
+    pub(super) fn head(&mut self, head: Option<&FileHead>) -> Result<(), FileError> {
+        let Some(head) = head else { return Ok(()) };
+        self.parameters.seed = seed(&head.seed);
         self.add("head.angle", &head.angle, Quantity::Head, ANGLE)
     }
 

@@ -4,11 +4,11 @@ use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::machine::error::Distribution;
+use crate::machine::Distribution;
 use gcode_part::reader::FileError;
 use gcode_part::reader::{Reader, Spanned};
 
-/// How an error is distributed: one of the three.
+/// Distribution of an error: one of the three.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("minProperties" = 1, "maxProperties" = 1))]

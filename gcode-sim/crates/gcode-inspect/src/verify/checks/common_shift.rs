@@ -1,230 +1,185 @@
-//! One wrong number makes many holes wrong alike: said once of all of them, instead of hole by hole.
-use nalgebra::{Point3, Vector3};
-
-use super::mirrored::MirrorImage;
-use super::{Comparison, HoleFinding, HoleInspection, explained_by_rows};
+//! One deviation that many holes share because of one wrong number: one finding instead of one for each hole.
+use super::*;
 use crate::findings::{
     HOLE_DEPTH, HOLE_EXTRA, HOLE_MISSING, HOLE_POSITION, HOLE_TILTED, HOLE_TWICE, HOLES_ALIKE, MIRROR_IMAGE,
     ROTARY_SIGN, ROW_ANGLE, ROW_GROUP, ROW_PITCH, ROW_SEAM,
 };
-use crate::machine::Machine;
-use crate::verify::displacement::displacements;
-use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
-use gcode_lang::diag::{Diagnostic, FindingKind};
-use gcode_lang::motion::AxisIndex;
-use gcode_lang::units::Deg;
-use gcode_part::Pattern;
+use crate::verify::displacement::{HoleDisplacement, displacements};
 
-/// Fewer holes are told one by one.
+/// Least number of holes for one finding.
 const MIN_GROUP_SIZE: usize = 3;
 
-/// Depths that differ by less are the same, in mm.
+/// Largest number of groups: more different deviations have no common cause.
+const MAX_GROUPS: usize = 64;
+
+/// Depths that differ by less are equal, mm.
 const SAME_DEPTH: f64 = 0.02;
 
-/// What is found of a single hole in a wrong place.
-const POSITION_KINDS: [&FindingKind; 4] = [&HOLE_POSITION, &HOLE_TILTED, &HOLE_MISSING, &HOLE_EXTRA];
+/// Offsets below this are rounding, mm.
+const MIN_OFFSET: f64 = 0.0005;
 
-/// More different ways to be wrong aren't one fault.
-const MAX_GROUPS: usize = 64;
+/// Findings about the position of a single hole.
+const POSITION_KINDS: [&FindingKind; 4] = [&HOLE_POSITION, &HOLE_TILTED, &HOLE_MISSING, &HOLE_EXTRA];
 
 /// Findings about a whole pattern.
 const PATTERN_KINDS: [&FindingKind; 6] =
     [&ROW_ANGLE, &ROW_PITCH, &ROW_GROUP, &ROW_SEAM, &ROTARY_SIGN, &MIRROR_IMAGE];
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
-    let HoleInspection { comparison, machine, .. } = inspection;
-    // What a whole pattern of rows has wrong is explained by its own checks.
-    let explained = objections.iter().position(|objection| objection.is_one_of(&PATTERN_KINDS));
-    let mut reported = match explained {
-        Some(explained) => {
-            let folded = fold_explained(comparison, objections) + fold_tilted(comparison, objections);
-            objections[explained].finding.notes.extend(folded_note(folded));
-            Vec::new()
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    let comparison = &inspection.comparison;
+    // The checks on rows explain a fault of the whole pattern; its rows may meet, which is no repetition.
+    let (mut reported, repeated) = match findings.position(&PATTERN_KINDS) {
+        Some(explanation) => {
+            let folded = fold_explained(inspection, findings) + fold_tilted(comparison, findings);
+            findings.0[explanation].finding.notes.extend(folded_note(folded));
+            (Vec::new(), None)
         }
         None => {
-            let told = report_common_shifts(comparison, machine, objections);
-            if !told.is_empty() {
-                fold_tilted(comparison, objections);
+            let reported = report_common_shifts(comparison, inspection.machine, findings);
+            if !reported.is_empty() {
+                fold_tilted(comparison, findings);
             }
-            told
+            (reported, report_repeated_set(comparison, findings))
         }
     };
-    reported.extend(report_common_depths(comparison, objections));
-    // Rows that stand wrong may close the circle upon one another: that is no second round.
-    let repeated = if explained.is_none() { report_repeated_set(comparison, objections) } else { None };
-    objections.splice(0..0, reported.into_iter().map(HoleFinding::unlocated));
-    objections.extend(repeated.map(HoleFinding::unlocated));
+    reported.extend(report_common_depths(comparison, findings));
+    findings.put_first(reported);
+    repeated.into_iter().for_each(|finding| findings.add(About::Whole, finding));
 }
 
-/// Puts the places behind what is wrong with the whole, as far as that puts them there.
-fn fold_explained(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> usize {
-    if let Some(mirrored) = MirrorImage::of(comparison) {
-        return fold(objections, &POSITION_KINDS, |objection| {
-            objection.nominal.is_some_and(|wanted| mirrored.nominal[wanted])
-                || objection.extra.is_some_and(|extra| mirrored.actual[extra])
-        });
+/// Folds the findings about positions that follow from the fault of the pattern; returns their number.
+fn fold_explained(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) -> usize {
+    if let Some(image) = &inspection.mirror_image {
+        return findings.fold(&POSITION_KINDS, |about| image.in_place.contains(&about));
     }
-    match comparison.pattern.and_then(|pattern| explained_by_rows::explains(comparison, pattern)) {
-        Some(explains) => fold(objections, &POSITION_KINDS, explains),
+    match explained_by_rows::explains(inspection) {
+        Some(explains) => findings.fold(&POSITION_KINDS, explains),
         None => 0,
     }
 }
 
-/// A hole of a row that is turned is deeper for that alone: its bottom, on its way round the cylinder's axis, sinks below
-/// the plane it should reach.
-fn fold_tilted(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> usize {
+/// Folds depth findings that follow from the tilt: the bottom of a hole in a rotated row sinks below its plane.
+fn fold_tilted(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> usize {
     if comparison.pattern.is_none() {
         return 0;
     }
-    let mut is_tilt_only = vec![false; comparison.nominal.len()];
-    for pair in &comparison.pairs {
-        let bottom = comparison.actual[pair.actual].bottom();
+    let tilted = comparison.matched().filter(|(pair, _, drilled)| {
+        let bottom = drilled.bottom();
         let sinks = libm::hypot(bottom.y, bottom.z) * (1.0 - pair.deviation.tilt.cos());
-        is_tilt_only[pair.nominal] =
-            (pair.deviation.depth_error - sinks).abs() <= comparison.tolerances.depth;
-    }
-    fold(objections, &[&HOLE_DEPTH], |objection| objection.nominal.is_some_and(|wanted| is_tilt_only[wanted]))
+        (pair.deviation.depth_error - sinks).abs() <= comparison.tolerances.depth
+    });
+    let tilted: BTreeSet<About> = tilted.map(|(pair, ..)| About::Nominal(pair.nominal)).collect();
+    findings.fold(&[&HOLE_DEPTH], |about| tilted.contains(&about))
 }
 
-fn report_common_depths(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> Vec<Diagnostic> {
-    let mut has_depth_finding = vec![false; comparison.nominal.len()];
-    for objection in objections.iter().filter(|o| !o.is_folded && o.finding.kind == &HOLE_DEPTH) {
-        objection.nominal.into_iter().for_each(|wanted| has_depth_finding[wanted] = true);
-    }
-    let wrong: Vec<_> = comparison.pairs.iter().filter(|pair| has_depth_finding[pair.nominal]).collect();
-    let groups =
-        groups(&wrong, |a, b| (a.deviation.depth_error - b.deviation.depth_error).abs() < SAME_DEPTH);
-    let mut reported = Vec::new();
-    for group in groups {
-        let error = group[0].deviation.depth_error;
-        let members: Vec<usize> = group.iter().map(|pair| pair.nominal).collect();
-        let is_one = membership(comparison.nominal.len(), &members);
-        let folded = fold(objections, &[&HOLE_DEPTH], |o| o.nominal.is_some_and(|wanted| is_one[wanted]));
-        let by = group.iter().map(|pair| pair.deviation.depth_error.abs());
-        let (least, most) =
-            by.fold((f64::INFINITY, 0.0f64), |(least, most), by| (least.min(by), most.max(by)));
-        let by = match most - least < 0.001 {
-            true => format!("{:.3}", error.abs()),
-            false => format!("{least:.3} to {most:.3}"),
-        };
+fn report_common_depths(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Vec<Diagnostic> {
+    let shown = findings.0.iter().filter(|one| !one.is_folded && one.finding.kind == &HOLE_DEPTH);
+    let shown: BTreeSet<About> = shown.map(|one| one.about).collect();
+    let wrong = comparison.pairs.iter().filter(|pair| shown.contains(&About::Nominal(pair.nominal)));
+    let error = |pair: &HolePair| pair.deviation.depth_error;
+    let report = |group: Vec<&HolePair>| {
+        let (nominal, actual) = group.iter().map(|pair| (pair.nominal, pair.actual)).unzip();
+        let (holes, folded) = fold_group(comparison, findings, &[&HOLE_DEPTH], nominal, actual);
+        let sizes = || group.iter().map(|pair| error(pair).abs());
+        let first = error(group[0]);
         let message = format!(
-            "{}: {by} mm too {} (tolerance ±{})",
-            describe_set(comparison, &members),
-            if error > 0.0 { "deep" } else { "shallow" },
+            "{holes}: {} mm too {} (tolerance ±{})",
+            format_range(sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)),
+            if first > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
         let mut finding = Diagnostic::new(&HOLES_ALIKE, message)
             .help("check the programmed depth, the zero along the tool axis, the tool length and its offset");
-        let wanted = comparison.nominal[group[0].nominal].depth;
-        finding.notes.extend(super::depth::mistaken_factor(wanted, wanted + error).map(str::to_owned));
-        finding.notes.extend(folded_note(folded));
-        reported.push(locate_at_call(finding, &comparison.actual[group[0].actual].backtrace));
-    }
-    reported
+        let nominal = comparison.nominal[group[0].nominal].depth;
+        finding.notes.extend(depth::mistaken_factor(nominal, nominal + first).map(str::to_owned));
+        summary(finding, folded, &comparison.actual[group[0].actual].backtrace)
+    };
+    groups(wrong, |a, b| (error(a) - error(b)).abs() < SAME_DEPTH).into_iter().map(report).collect()
 }
 
 fn report_common_shifts(
     comparison: &Comparison<'_>,
     machine: &Machine,
-    objections: &mut [HoleFinding],
+    findings: &mut HoleFindings,
 ) -> Vec<Diagnostic> {
-    let tolerance = comparison.tolerances.position;
     if comparison.is_all_in_place() {
         return Vec::new();
     }
+    let in_place = comparison.pairs.iter().filter(|pair| comparison.is_in_place(pair));
+    let in_place: BTreeSet<usize> = in_place.map(|pair| pair.nominal).collect();
     let mut wrong = displacements(comparison, machine);
-    let phi: Vec<f64> = position_deviations(comparison);
-    // What is off along the hole alone stands over its place or below it: that is no matter of places.
+    // An offset along the hole alone is no displacement.
     wrong.retain(|off| {
-        let aside = off.rotation.is_some() || 0.0005 <= off.offset.norm();
-        aside && (!off.is_matched || tolerance < phi[off.nominal])
+        let is_displaced = off.rotation.is_some() || MIN_OFFSET <= off.offset.norm();
+        is_displaced && !(off.is_matched && in_place.contains(&off.nominal))
     });
-    let mut reported = Vec::new();
-    for group in groups(&wrong.iter().collect::<Vec<_>>(), |a, b| a.is_same_error(b)) {
-        let members: Vec<usize> = group.iter().map(|off| off.nominal).collect();
-        let drilled: Vec<usize> = group.iter().map(|off| off.actual).collect();
-        let is_wanted = membership(comparison.nominal.len(), &members);
-        let is_drilled = membership(comparison.actual.len(), &drilled);
-        let folded = fold(objections, &POSITION_KINDS, |o| {
-            o.nominal.is_some_and(|wanted| is_wanted[wanted])
-                || o.extra.is_some_and(|extra| is_drilled[extra])
-        });
-        let set = describe_set(comparison, &members);
-        let mut finding = match group[0].rotation {
-            Some((axis, by)) => rotation_finding(&set, machine, axis, by),
-            None => shift_finding(&set, &group[0].offset, comparison.pattern),
+    let report = |group: Vec<&HoleDisplacement>| {
+        let (nominal, actual) = group.iter().map(|off| (off.nominal, off.actual)).unzip();
+        let (holes, folded) = fold_group(comparison, findings, &POSITION_KINDS, nominal, actual);
+        let finding = match group[0].rotation {
+            Some((axis, by)) => {
+                let letter = machine.axes.letter(axis);
+                Diagnostic::new(&HOLES_ALIKE, format!("{holes}: rotated by {letter}{:+.3}°", by.0))
+                    .help(format!("correct {letter} in the program, or its zero in the work offset"))
+            }
+            None => shift_finding(&holes, &group[0].offset, comparison.pattern),
         };
-        finding.notes.extend(folded_note(folded));
-        reported.push(locate_at_call(finding, &comparison.actual[group[0].actual].backtrace));
-    }
-    reported
+        summary(finding, folded, &comparison.actual[group[0].actual].backtrace)
+    };
+    groups(&wrong, HoleDisplacement::is_same_error).into_iter().map(report).collect()
 }
 
-/// A row, or the whole part, that is drilled again.
-fn report_repeated_set(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> Option<Diagnostic> {
-    let repeated = |extra: &usize| Some((*extra, comparison.nominal_on_line_of(*extra)?));
-    let (extras, mut members): (Vec<usize>, Vec<usize>) =
+/// Reports a row, or the whole part, that is drilled again.
+fn report_repeated_set(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Option<Diagnostic> {
+    let repeated = |extra: &usize| Some((comparison.nominal_on_line_of(*extra)?, *extra));
+    let (nominal, actual): (BTreeSet<usize>, Vec<usize>) =
         comparison.extra.iter().filter_map(repeated).unzip();
-    members.sort_unstable();
-    members.dedup();
-    if members.len() < MIN_GROUP_SIZE {
+    if nominal.len() < MIN_GROUP_SIZE {
         return None;
     }
-    let is_again = membership(comparison.actual.len(), &extras);
-    let folded = fold(objections, &[&HOLE_TWICE], |o| o.extra.is_some_and(|extra| is_again[extra]));
-    let set = describe_set(comparison, &members);
-    let mut finding = Diagnostic::new(&HOLE_TWICE, format!("{set}: drilled a second time")).help(
+    let first = &comparison.actual[actual[0]];
+    let nominal = nominal.into_iter().collect();
+    let (holes, folded) = fold_group(comparison, findings, &[&HOLE_TWICE], nominal, actual);
+    let finding = Diagnostic::new(&HOLE_TWICE, format!("{holes}: drilled a second time")).help(
         "remove the second call, or the second iteration of the loop: the same tool drills these holes twice",
     );
-    finding.notes.extend(folded_note(folded));
-    Some(locate_at_call(finding, &comparison.actual[extras[0]].backtrace))
+    Some(summary(finding, folded, &first.backtrace))
 }
 
-fn rotation_finding(set: &str, machine: &Machine, axis: AxisIndex, by: Deg) -> Diagnostic {
-    let letter = machine.axes.letter(axis);
-    Diagnostic::new(&HOLES_ALIKE, format!("{set}: rotated by {letter}{:+.3}°", by.0))
-        .help(format!("correct {letter} in the program, or its zero in the work offset"))
-}
-
-fn shift_finding(set: &str, offset: &Vector3<f64>, pattern: Option<&Pattern>) -> Diagnostic {
-    let axes = [('X', offset.x), ('Y', offset.y), ('Z', offset.z)];
+fn shift_finding(holes: &str, offset: &Vector3<f64>, pattern: Option<&Pattern>) -> Diagnostic {
+    let axes = [('X', offset.x), ('Y', offset.y), ('Z', offset.z)].into_iter();
     let by: Vec<_> = axes
-        .iter()
-        .filter(|(_, by)| 0.0005 <= by.abs())
+        .filter(|(_, by)| MIN_OFFSET <= by.abs())
         .map(|(letter, by)| format!("{letter}{by:+.3}"))
         .collect();
-    // A honeycomb's cylinder lies along x: what goes across that leaves its axis.
-    let off_axis_note = match pattern {
-        Some(_) if libm::hypot(offset.y, offset.z) > 0.0005 => ", off the cylinder axis",
-        _ => "",
-    };
-    Diagnostic::new(&HOLES_ALIKE, format!("{set}: shifted by {}{off_axis_note}", by.join(" "))).help(
+    // The cylinder of a honeycomb lies along x.
+    let is_off_axis = pattern.is_some() && libm::hypot(offset.y, offset.z) > MIN_OFFSET;
+    let off_axis = if is_off_axis { ", off the cylinder axis" } else { "" };
+    Diagnostic::new(&HOLES_ALIKE, format!("{holes}: shifted by {}{off_axis}", by.join(" "))).help(
         "correct the programmed point or the work offset: the shift is actual − nominal along the machine axes",
     )
 }
 
-/// Which of so many these are.
-fn membership(count: usize, members: &[usize]) -> Vec<bool> {
-    let mut is_one = vec![false; count];
-    members.iter().for_each(|member| is_one[*member] = true);
-    is_one
+/// Folds the findings about a group of holes; returns its description and their number.
+fn fold_group(
+    comparison: &Comparison<'_>,
+    findings: &mut HoleFindings,
+    kinds: &[&FindingKind],
+    nominal: Vec<usize>,
+    actual: Vec<usize>,
+) -> (String, usize) {
+    let subjects = nominal.iter().map(|hole| About::Nominal(*hole));
+    let subjects: BTreeSet<About> = subjects.chain(actual.into_iter().map(About::Extra)).collect();
+    let folded = findings.fold(kinds, |about| subjects.contains(&about));
+    (describe_set(comparison, &nominal), folded)
 }
 
-/// Of each wanted hole that was drilled.
-fn position_deviations(comparison: &Comparison<'_>) -> Vec<f64> {
-    let mut phi = vec![0.0; comparison.nominal.len()];
-    for pair in &comparison.pairs {
-        phi[pair.nominal] = pair.deviation.zone_diameter();
-    }
-    phi
-}
-
-/// Those that are like one another, three at least, the largest group first.
-fn groups<'a, T>(all: &[&'a T], is_alike: impl Fn(&T, &T) -> bool) -> Vec<Vec<&'a T>> {
+/// Returns the groups of at least [`MIN_GROUP_SIZE`] that are alike, the largest first.
+fn groups<'a, T>(all: impl IntoIterator<Item = &'a T>, is_alike: impl Fn(&T, &T) -> bool) -> Vec<Vec<&'a T>> {
     let mut groups: Vec<Vec<&'a T>> = Vec::new();
     for one in all {
         match groups.iter().position(|group| is_alike(group[0], one)) {
-            Some(group) => groups[group].push(one),
+            Some(index) => groups[index].push(one),
             None if groups.len() < MAX_GROUPS => groups.push(vec![one]),
             None => {}
         }
@@ -234,26 +189,26 @@ fn groups<'a, T>(all: &[&'a T], is_alike: impl Fn(&T, &T) -> bool) -> Vec<Vec<&'
     groups
 }
 
-/// Which holes these are, in the words of somebody who looks at the part.
+/// Describes a set of nominal holes: all, a row, a group of rows, or their number and the first.
 fn describe_set(comparison: &Comparison<'_>, members: &[usize]) -> String {
     let (count, all) = (members.len(), comparison.nominal.len());
     if count == all {
         return format!("all {count} holes");
     }
     if let Some(pattern) = comparison.pattern {
-        let row = |wanted: usize| pattern.row_of(&Point3::from(comparison.nominal[wanted].entry));
-        let of = |belongs: &dyn Fn(usize) -> bool| (0..all).filter(|wanted| belongs(row(*wanted))).count();
+        let row = |nominal: usize| pattern.row_of(&Point3::from(comparison.nominal[nominal].entry));
         let first = row(members[0]);
+        let total = |is_in: &dyn Fn(usize) -> bool| (0..all).filter(|nominal| is_in(row(*nominal))).count();
         if members.iter().all(|member| row(*member) == first) {
-            let whole = of(&|row| row == first);
+            let whole = total(&|row| row == first);
             return match whole == count {
                 true => format!("row {first} ({count} holes)"),
                 false => format!("{count} of {whole} holes of row {first}"),
             };
         }
-        let group = first % 2;
-        if members.iter().all(|member| row(*member) % 2 == group) && of(&|row| row % 2 == group) == count {
-            return format!("the {} group of rows ({count} holes)", ["first", "second"][group]);
+        let is_in_group = |row: usize| row % 2 == first % 2;
+        if members.iter().all(|member| is_in_group(row(*member))) && total(&is_in_group) == count {
+            return format!("the {} group of rows ({count} holes)", ["first", "second"][first % 2]);
         }
     }
     format!("{count} of {all} holes (first: {})", comparison.id(members[0]))

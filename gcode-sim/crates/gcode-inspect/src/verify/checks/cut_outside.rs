@@ -1,44 +1,35 @@
-//! What is cut before a hole is finished must lie inside the finished hole: the finishing tool doesn't put it back.
-use super::{HoleFinding, HoleInspection};
+//! Earlier passes of a hole lie inside the finished hole: the finishing tool does not restore material.
+use super::*;
 use crate::findings::HOLE_CUT_ASIDE;
-use crate::verify::position::Deviation;
-use gcode_lang::diag::{Diagnostic, Severity};
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    for pair in &comparison.pairs {
-        let (wanted, found) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
-        for cut in &found.earlier_passes {
-            let Some(deviation) = Deviation::new(wanted, &cut.bottom, &cut.axis) else { continue };
+    for (pair, nominal, drilled) in comparison.matched() {
+        for pass in &drilled.earlier_passes {
+            let Some(deviation) = Deviation::new(nominal, &pass.bottom, &pass.axis) else { continue };
             let aside = deviation.zone_diameter() / 2.0;
-            // A smaller tool may stand aside by what the finishing one takes off; a countersink must be in its place.
-            let finished = wanted.diameter.or(found.diameter);
-            let spare =
-                finished.zip(cut.diameter).map_or(0.0, |(large, small)| (large - small).max(0.0) / 2.0);
+            // The finishing tool removes the deviation of a smaller tool; a countersink must be in position.
+            let sizes = nominal.diameter.or(drilled.diameter).zip(pass.diameter);
+            let spare = sizes.map_or(0.0, |(large, small)| (large - small).max(0.0) / 2.0);
             let allowed = spare + comparison.tolerances.position / 2.0;
             if aside <= allowed {
                 continue;
             }
-            let tool = cut.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
+            let tool = pass.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
             let message = format!(
                 "hole {}: an earlier pass{tool} is out of position by {aside:.4} mm, limit \
                  {allowed:.4}",
                 comparison.id(pair.nominal)
             );
-            // Another tool whose size isn't known may be as small as it likes.
-            let unknown = cut.tool != found.tool && cut.diameter.is_none();
-            let finding = match unknown {
-                true => Diagnostic::new(&HOLE_CUT_ASIDE, message)
-                    .with_severity(Severity::Warning)
-                    .help("give the tool diameters in the machine file, so that this can be judged"),
-                false => Diagnostic::new(&HOLE_CUT_ASIDE, message)
-                    .help("correct the point of that pass: material cut outside the hole cannot be restored"),
-            };
-            let finding = finding.with_backtrace(cut.backtrace.clone());
-            objections.push(match unknown {
-                true => HoleFinding::unlocated(finding),
-                false => HoleFinding::of_nominal(pair.nominal, finding),
-            });
+            let finding = Diagnostic::new(&HOLE_CUT_ASIDE, message).with_backtrace(pass.backtrace.clone());
+            // Another tool of unknown diameter may be small enough.
+            if pass.tool != drilled.tool && pass.diameter.is_none() {
+                let help = "give the tool diameters in the machine file, so that this can be judged";
+                findings.add(About::Whole, finding.with_severity(Severity::Warning).help(help));
+            } else {
+                let help = "correct the point of that pass: material cut outside the hole cannot be restored";
+                findings.add(About::Nominal(pair.nominal), finding.help(help));
+            }
         }
     }
 }

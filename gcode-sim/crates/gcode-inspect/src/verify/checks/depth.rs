@@ -1,54 +1,59 @@
-//! Every hole must be as deep as wanted.
-use super::{HoleFinding, HoleInspection};
+//! Depth of each hole.
+use super::*;
 use crate::findings::HOLE_DEPTH;
-use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    for pair in &comparison.pairs {
+    for (pair, nominal, drilled) in comparison.matched() {
         let error = pair.deviation.depth_error;
         if error.abs() <= comparison.tolerances.depth {
             continue;
         }
-        let nominal = comparison.nominal[pair.nominal].depth;
+        let depth = nominal.depth + error;
         let message = format!(
-            "hole {} is {:.3} mm deep, nominal {nominal}: {:.3} mm too {} (tolerance ±{})",
+            "hole {} is {depth:.3} mm deep, nominal {}: {:.3} mm too {} (tolerance ±{})",
             comparison.id(pair.nominal),
-            nominal + error,
+            nominal.depth,
             error.abs(),
             if error > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
-        let mut finding = Diagnostic::new(&HOLE_DEPTH, message)
+        let finding = Diagnostic::new(&HOLE_DEPTH, message)
             .help("check the programmed depth, the tool length and its offset")
-            .with_backtrace(comparison.actual[pair.actual].backtrace.clone());
-        if let Some(note) = mistaken_factor(nominal, nominal + error) {
-            finding = finding.note(note);
-        }
-        objections.push(HoleFinding::of_nominal(pair.nominal, finding));
+            .with_backtrace(drilled.backtrace.clone());
+        let note = mistaken_factor(nominal.depth, depth);
+        findings.add(About::Nominal(pair.nominal), note.into_iter().fold(finding, Diagnostic::note));
     }
 }
 
-/// What a depth that is wrong by a factor comes of: a thousandth of the wanted one, or with the finer increment a
-/// ten-thousandth; inches for millimetres or the other way.
+/// Returns the cause of a depth that is wrong by a factor: a missing decimal point, or inches and millimetres confused.
 pub(super) fn mistaken_factor(nominal: f64, actual: f64) -> Option<&'static str> {
-    let is = |parts: f64| (actual * parts / nominal - 1.0).abs() < 0.01;
-    match () {
-        () if is(1e3) => Some(
+    const CAUSES: [(f64, f64, &str); 4] = [
+        (
+            1e3,
+            0.01,
             "this is a thousandth of the nominal depth: a number without a decimal point counts thousandths here",
         ),
-        () if is(1e4) => Some(
+        (
+            1e4,
+            0.01,
             "this is a ten-thousandth of the nominal depth: a number without a decimal point counts \
              ten-thousandths here",
         ),
-        () if (actual / nominal / 25.4 - 1.0).abs() < 0.001 => Some(
+        (
+            1.0 / 25.4,
+            0.001,
             "this is 25.4 times the nominal depth: millimetres read as inches; check whether G20 is in \
              force instead of G21",
         ),
-        () if (actual * 25.4 / nominal - 1.0).abs() < 0.001 => Some(
+        (
+            25.4,
+            0.001,
             "this is the nominal depth divided by 25.4: inches read as millimetres; check whether G21 is \
              in force instead of G20",
         ),
-        () => None,
-    }
+    ];
+    let is_cause =
+        |(factor, tolerance, _): &&(f64, f64, &str)| (actual * factor / nominal - 1.0).abs() < *tolerance;
+    CAUSES.iter().find(is_cause).map(|(.., words)| *words)
 }

@@ -1,26 +1,20 @@
-//! The tool that finishes a hole must have the hole's diameter, where both are known.
-use super::{HoleFinding, HoleInspection};
+//! Diameter of the tool that finishes each hole, if both diameters are known.
+use super::*;
 use crate::findings::HOLE_DIAMETER;
-use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    for pair in &comparison.pairs {
-        let found = &comparison.actual[pair.actual];
-        let (Some(wanted), Some(actual)) = (comparison.nominal[pair.nominal].diameter, found.diameter) else {
-            continue;
-        };
-        if (actual - wanted).abs() <= comparison.tolerances.diameter {
+    for (pair, hole, drilled) in comparison.matched() {
+        let Some((nominal, actual)) = hole.diameter.zip(drilled.diameter) else { continue };
+        if (actual - nominal).abs() <= comparison.tolerances.diameter {
             continue;
         }
-        let tool = found.tool.map_or(String::new(), |tool| format!(" T{tool}"));
-        let message = format!(
-            "hole {}: the finishing tool{tool} is Φ{actual}, nominal Φ{wanted}",
-            comparison.id(pair.nominal)
-        );
+        let tool = drilled.tool.map_or(String::new(), |tool| format!(" T{tool}"));
+        let id = comparison.id(pair.nominal);
+        let message = format!("hole {id}: the finishing tool{tool} is Φ{actual}, nominal Φ{nominal}");
         let finding = Diagnostic::new(&HOLE_DIAMETER, message)
             .help("finish the hole with the right tool, or correct the tool table")
-            .with_backtrace(found.backtrace.clone());
-        objections.push(HoleFinding::of_nominal(pair.nominal, finding));
+            .with_backtrace(drilled.backtrace.clone());
+        findings.add(About::Nominal(pair.nominal), finding);
     }
 }

@@ -1,66 +1,51 @@
-//! Which holes in a wrong place stand where their rows put them: those are explained by what is wrong with the rows, the
-//! others are told one by one.
-use nalgebra::Point3;
+//! Positions that follow from the rows: a hole that lies where its misplaced row puts it has no fault of its own.
+use super::*;
+use crate::flutes::wrap_angle;
+use crate::verify::rows::{PatternRow, full_azimuth};
 
-use super::{Comparison, HoleFinding};
-use crate::verify::rows::{PatternRow, PatternRows};
-use gcode_lang::units::Deg;
-use gcode_part::{Pattern, azimuth};
-
-/// What rounding to an increment, 0.01 at the coarsest, leaves between a hole and its place in its row, mm and degrees.
+/// Largest distance of a hole from its position in the row due to rounding to 0.01, mm and degrees.
 const ROUNDING_ALLOWANCE: f64 = 0.03;
 
-/// Whether an objection to a place is what the rows make of it.
-pub(super) fn explains<'c>(
-    comparison: &'c Comparison<'c>,
-    pattern: &'c Pattern,
-) -> Option<impl Fn(&HoleFinding) -> bool + 'c> {
-    let rows = PatternRows::of(comparison, pattern)?;
-    let scale = rows.typical_gap.0 / rows.nominal_gap(pattern).0;
+/// Returns a predicate that is true for subjects whose position follows from the rows; `None` without rows.
+pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn(About) -> bool + 'c> {
+    let comparison = &inspection.comparison;
+    let rows = inspection.rows.as_ref()?;
+    let pattern = rows.pattern;
+    let scale = rows.typical_gap.0 / rows.nominal_gap().0;
     let spacing = rows.spacing.map_or(pattern.pitch, |(spacing, _)| spacing);
-    let places: Vec<Option<(Deg, f64)>> = comparison
-        .actual
-        .iter()
-        .map(|hole| {
-            let at = pattern.crossing(&hole.bottom(), &hole.axis)?;
-            Some((Deg(azimuth(&at).0.rem_euclid(360.0)), at.x))
-        })
+    let places: Vec<Option<(Deg, f64)>> = (0..comparison.actual.len())
+        .map(|index| comparison.crossing(index).map(|at| (full_azimuth(&at), at.x)))
         .collect();
     let within = comparison.tolerances.position.max(ROUNDING_ALLOWANCE);
-    let near_row = move |row: &PatternRow, at: Deg, share: f64| {
-        let apart = ((at - row.azimuth).0 + 180.0).rem_euclid(360.0) - 180.0;
-        apart.abs() <= share
+    let is_near =
+        |row: &PatternRow, at: Deg, tolerance: f64| wrap_angle((at - row.azimuth).0).abs() <= tolerance;
+    let actual_of: BTreeMap<usize, usize> =
+        comparison.pairs.iter().map(|pair| (pair.nominal, pair.actual)).collect();
+    let is_on_grid = move |(at, x): (Deg, f64)| {
+        let tolerance = ROUNDING_ALLOWANCE + Deg::atan2(within, pattern.diameter / 2.0).0;
+        rows.rows.iter().filter(|row| is_near(row, at, tolerance)).any(|row| {
+            let steps = (x - row.start) / spacing;
+            (steps - steps.round()).abs() * spacing <= within
+        })
     };
-    let mut found_of = vec![None; comparison.nominal.len()];
-    comparison.pairs.iter().for_each(|pair| found_of[pair.nominal] = Some(pair.actual));
-    Some(move |objection: &HoleFinding| {
-        let drilled = objection.extra.or_else(|| objection.nominal.and_then(|wanted| found_of[wanted]));
-        match (drilled, objection.nominal) {
-            (Some(drilled), _) => places[drilled].is_some_and(|(at, x)| {
-                let steps = |row: &PatternRow| (x - row.start) / spacing;
-                let on_grid = |row: &PatternRow| (steps(row) - steps(row).round()).abs() * spacing <= within;
-                let tolerance = ROUNDING_ALLOWANCE + Deg::atan2(within, pattern.diameter / 2.0).0;
-                rows.rows.iter().filter(|row| near_row(row, at, tolerance)).any(on_grid)
-            }),
-            // The row that stands for this one has its hole there, or ends before it.
-            (None, Some(wanted)) => {
-                let entry = Point3::from(comparison.nominal[wanted].entry);
-                let number = pattern.row_of(&entry);
-                let meant = pattern.row_angle() * (number as f64 * scale);
-                let begins = entry.x % pattern.pitch;
-                let along = ((entry.x - begins) / pattern.pitch).round();
-                let Some(row) = rows.rows.iter().find(|row| near_row(row, meant, rows.typical_gap.0 / 4.0))
-                else {
-                    return true;
-                };
-                let x = row.start + along * spacing;
-                let there = places.iter().flatten().any(|(at, place)| {
-                    near_row(row, *at, rows.typical_gap.0 / 4.0) && (place - x).abs() <= within
-                });
-                // A row that ends right there may end before it.
-                there || pattern.length < x + within
+    Some(move |about: About| match about {
+        About::Extra(actual) => places[actual].is_some_and(is_on_grid),
+        About::Nominal(nominal) => {
+            if let Some(actual) = actual_of.get(&nominal) {
+                return places[*actual].is_some_and(is_on_grid);
             }
-            (None, None) => true,
+            // The row in place of this one has its hole there, or ends before it.
+            let entry = Point3::from(comparison.nominal[nominal].entry);
+            let azimuth = pattern.row_angle() * (pattern.row_of(&entry) as f64 * scale);
+            let tolerance = rows.typical_gap.0 / 4.0;
+            let Some(row) = rows.rows.iter().find(|row| is_near(row, azimuth, tolerance)) else {
+                return true;
+            };
+            let x = row.start + ((entry.x - entry.x % pattern.pitch) / pattern.pitch).round() * spacing;
+            let is_there =
+                |(at, place): &(Deg, f64)| is_near(row, *at, tolerance) && (place - x).abs() <= within;
+            places.iter().flatten().any(is_there) || pattern.length < x + within
         }
+        About::Whole | About::Motion => true,
     })
 }

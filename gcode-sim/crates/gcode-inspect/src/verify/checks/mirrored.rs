@@ -1,101 +1,79 @@
-//! A table that turns the other way than the program believes mirrors the pattern, and so does a mirror image left on: said
-//! once, instead of hole by hole only.
-use nalgebra::Unit;
-
-use super::{Comparison, HoleFinding, HoleInspection};
+//! Mirror image of the pattern: the table rotates in the opposite direction, or a mirror image is left in force.
+use super::*;
 use crate::findings::{MIRROR_IMAGE, ROTARY_SIGN};
-use crate::holes::DrilledHole;
-use crate::machine::{LinkMotion, Machine};
-use crate::verify::HolePair;
-use gcode_lang::diag::Diagnostic;
 
-/// So many of the wanted holes must agree with the mirrored ones.
+/// Least share of the nominal holes that the mirrored ones must match.
 const MIN_AGREEING_SHARE: f64 = 0.8;
 
-/// What is mirrored, and what of it that explains.
-pub(super) struct MirrorImage {
-    /// x, y, z of the part, counted from 0.
+/// A mirror image of the pattern in place of the pattern.
+pub(in crate::verify) struct MirrorImage {
+    /// Negated axis of the part, 0 to 2 for x, y, z.
     axis: usize,
-    /// How many holes are in their places then.
+    /// Number of holes in position after mirroring.
     agreeing: usize,
-    /// Of each wanted hole and of each drilled one whether it is.
-    pub nominal: Vec<bool>,
-    pub actual: Vec<bool>,
+    /// The nominal and the drilled holes among these.
+    pub(super) in_place: BTreeSet<About>,
 }
 
 impl MirrorImage {
-    pub(super) fn of(comparison: &Comparison<'_>) -> Option<Self> {
+    pub(in crate::verify) fn of(comparison: &Comparison<'_>) -> Option<Self> {
         if comparison.missing.is_empty() || comparison.extra.is_empty() {
             return None;
         }
+        let count = |one: &Comparison<'_>| one.pairs.iter().filter(|pair| one.is_in_place(pair)).count();
+        let before = count(comparison);
         [2, 0, 1].into_iter().find_map(|axis| {
-            let turned: Vec<_> = comparison.actual.iter().map(|found| mirror(found, axis)).collect();
+            let mirrored: Vec<_> = comparison.actual.iter().map(|hole| mirror(hole, axis)).collect();
             let compared =
-                Comparison::new(comparison.nominal, &turned, comparison.tolerances, comparison.pattern);
-            // In their zones: a pattern turned round lies near itself in many ways.
-            let agree = count_in_place(&compared);
-            if agree <= count_in_place(comparison)
-                || (agree as f64) < MIN_AGREEING_SHARE * comparison.nominal.len() as f64
+                Comparison::new(comparison.nominal, &mirrored, comparison.tolerances, comparison.pattern);
+            // Only holes in their zones count: a rotated pattern lies near itself in many ways.
+            let agreeing = count(&compared);
+            if agreeing <= before || (agreeing as f64) < MIN_AGREEING_SHARE * comparison.nominal.len() as f64
             {
                 return None;
             }
-            let mut image = Self {
-                axis,
-                agreeing: agree,
-                nominal: vec![false; compared.nominal.len()],
-                actual: vec![false; turned.len()],
-            };
-            for pair in compared.pairs.iter().filter(|pair| is_in_place(&compared, pair)) {
-                image.nominal[pair.nominal] = true;
-                image.actual[pair.actual] = true;
-            }
-            Some(image)
+            let pairs = compared.pairs.iter().filter(|pair| compared.is_in_place(pair));
+            let in_place = pairs.flat_map(|pair| [About::Nominal(pair.nominal), About::Extra(pair.actual)]);
+            Some(Self { axis, agreeing, in_place: in_place.collect() })
         })
     }
 }
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let HoleInspection { comparison, machine, .. } = inspection;
-    let Some(MirrorImage { axis, agreeing: agree, .. }) = MirrorImage::of(comparison) else { return };
-    let name = ["x", "y", "z"][axis];
-    let lie = format!(
-        "the holes are mirrored: with {name} negated, {agree} of {} are in position",
+    let Some(MirrorImage { axis, agreeing, .. }) = &inspection.mirror_image else { return };
+    let fault = format!(
+        "the holes are mirrored: with {} negated, {agreeing} of {} are in position",
+        ["x", "y", "z"][*axis],
         comparison.nominal.len()
     );
-    let finding = match is_wrong_rotation_sign(comparison, machine, axis) {
+    let finding = match is_wrong_rotation_sign(comparison, machine, *axis) {
         true => Diagnostic::new(
             &ROTARY_SIGN,
-            format!("{lie}; the rotary table direction is opposite to the one the program assumes"),
+            format!("{fault}; the rotary table direction is opposite to the one the program assumes"),
         )
         .help("reverse the table's sign in the machine file, or machine.rotary.sign in the job"),
-        false => Diagnostic::new(&MIRROR_IMAGE, format!("{lie}; no rotation of the table has this effect"))
+        false => Diagnostic::new(&MIRROR_IMAGE, format!("{fault}; no rotation of the table has this effect"))
             .help("check for a mirror image (G51.1) left in force, or a wrong sign of a coordinate"),
     };
     let place = comparison.actual[comparison.extra[0]].backtrace.clone();
-    objections.push(HoleFinding::unlocated(finding.with_backtrace(place)));
+    findings.add(About::Whole, finding.with_backtrace(place));
 }
 
-/// Whether a table that turns the other way mirrors the part so: it turned between the holes, and about another axis.
+/// Returns true if the opposite direction of the table mirrors the part so: the table rotates between the holes, about
+/// another axis.
 fn is_wrong_rotation_sign(comparison: &Comparison<'_>, machine: &Machine, axis: usize) -> bool {
     let part = machine.part.frame();
     machine.table.0.iter().any(|link| {
         let LinkMotion::Rotary { about, .. } = &link.motion else { return false };
         let own = part.rotation.inverse_transform_unit_vector(about);
-        let turned = comparison.actual.iter().any(|found| found.axis_position[link.axis] != 0.0);
-        turned && own[axis].abs() < std::f64::consts::FRAC_1_SQRT_2
+        let rotates = comparison.actual.iter().any(|hole| hole.axis_position[link.axis] != 0.0);
+        rotates && own[axis].abs() < std::f64::consts::FRAC_1_SQRT_2
     })
 }
 
-fn is_in_place(comparison: &Comparison<'_>, pair: &HolePair) -> bool {
-    pair.deviation.zone_diameter() <= comparison.tolerances.position
-}
-
-fn count_in_place(comparison: &Comparison<'_>) -> usize {
-    comparison.pairs.iter().filter(|pair| is_in_place(comparison, pair)).count()
-}
-
-fn mirror(found: &DrilledHole, axis: usize) -> DrilledHole {
-    let mut mirrored = found.clone();
+fn mirror(hole: &DrilledHole, axis: usize) -> DrilledHole {
+    let mut mirrored = hole.clone();
     mirrored.entry[axis] = -mirrored.entry[axis];
     let mut out = mirrored.axis.into_inner();
     out[axis] = -out[axis];

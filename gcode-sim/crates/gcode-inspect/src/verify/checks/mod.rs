@@ -1,4 +1,4 @@
-//! The checks: one file each, one line here.
+//! The checks on holes: one file each, one line here. All of them share the imports of this file.
 mod air;
 mod clearance;
 mod common_shift;
@@ -8,7 +8,7 @@ mod depth;
 mod diameter;
 mod explained_by_rows;
 pub(super) mod extra;
-mod mirrored;
+pub(super) mod mirrored;
 mod missing;
 mod overlap;
 mod position;
@@ -25,12 +25,23 @@ mod through;
 mod tool_short;
 mod tools;
 
-use super::{Comparison, HoleFinding, HoleInspection};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// A check adds what it finds; it may fold earlier findings behind its own.
-type Check = fn(&HoleInspection<'_>, &mut Vec<HoleFinding>);
+use nalgebra::{Point3, Unit, Vector3};
 
-/// In the order in which they are made: a check sees the findings of those above it.
+use super::hole_finding::{About, HoleFindings, folded_note, locate_at_call, summary};
+use super::rows::PatternRows;
+use super::{Comparison, Deviation, HoleInspection, HolePair, format_range};
+use crate::holes::DrilledHole;
+use crate::machine::{LinkMotion, Machine};
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
+use gcode_lang::units::Deg;
+use gcode_part::{Hole, Pattern, PointTree, ProcessLimits, Surface};
+
+/// A check adds findings; it may fold earlier ones.
+type Check = fn(&HoleInspection<'_>, &mut HoleFindings);
+
+/// The checks in order: each sees the findings of those above it.
 pub(super) const ALL: &[Check] = &[
     mirrored::check,
     row_group::check,

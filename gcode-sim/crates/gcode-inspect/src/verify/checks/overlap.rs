@@ -1,18 +1,13 @@
-//! Wanted holes that cut into each other, which the drawing may mean: told, not failed. A pattern sees to its own.
-use super::{HoleFinding, HoleInspection};
+//! Nominal holes that overlap: a note, since the drawing may specify it. A pattern is checked with its job.
+use super::*;
 use crate::findings::HOLE_OVERLAP;
-use gcode_lang::diag::Diagnostic;
 use gcode_part::overlaps;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
-    let comparison = &inspection.comparison;
-    if comparison.pattern.is_some() {
-        return;
-    }
-    for overlap in overlaps(comparison.nominal) {
-        let message = overlap.sentence(comparison.nominal);
-        let finding = Diagnostic::new(&HOLE_OVERLAP, message)
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    let Comparison { nominal, pattern: None, .. } = inspection.comparison else { return };
+    for overlap in overlaps(nominal) {
+        let finding = Diagnostic::new(&HOLE_OVERLAP, overlap.sentence(nominal))
             .help("check radius, azimuth and depth of both holes, unless the drawing specifies this");
-        objections.push(HoleFinding::of_nominal(overlap.holes[0], finding));
+        findings.add(About::Nominal(overlap.holes[0]), finding);
     }
 }

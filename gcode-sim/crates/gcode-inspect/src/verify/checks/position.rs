@@ -1,23 +1,17 @@
-//! The axis of every hole must lie in its zone: judged unrounded, told apart by whether it leans or stands aside.
-use super::{Comparison, HoleFinding, HoleInspection};
+//! Position of each hole: its axis lies in the tolerance zone, unrounded. A deviation is a tilt or an offset.
+use super::*;
 use crate::findings::{HOLE_POSITION, HOLE_TILTED};
-use crate::verify::HolePair;
-use gcode_lang::diag::Diagnostic;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    for pair in &comparison.pairs {
-        if pair.deviation.zone_diameter() > comparison.tolerances.position {
-            objections.push(HoleFinding::of_nominal(pair.nominal, finding(comparison, pair)));
-        }
+    for (pair, nominal, drilled) in comparison.matched().filter(|(pair, ..)| !comparison.is_in_place(pair)) {
+        let finding = finding(comparison, pair, nominal).with_backtrace(drilled.backtrace.clone());
+        findings.add(About::Nominal(pair.nominal), finding);
     }
 }
 
-fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
-    let deviation = &pair.deviation;
-    let (wanted, found) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
-    let id = comparison.id(pair.nominal);
-    let leans = deviation.tilt.tan() * wanted.depth;
+fn finding(comparison: &Comparison<'_>, pair: &HolePair, nominal: &Hole) -> Diagnostic {
+    let (deviation, id) = (&pair.deviation, comparison.id(pair.nominal));
     let limits = format!(
         "Φ{:.4}, tolerance Φ{} (axis off by {:.4} mm at the entry, {:.4} mm at the bottom)",
         deviation.zone_diameter(),
@@ -25,19 +19,16 @@ fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
         deviation.at_entry,
         deviation.at_bottom
     );
-    // Leaning alone, over the hole's depth, would already be more than the other half of the zone allows.
-    let finding = if leans > deviation.at_entry.min(deviation.at_bottom)
-        && leans > comparison.tolerances.position / 4.0
-    {
-        Diagnostic::new(&HOLE_TILTED, format!("hole {id} is tilted by {:.3}°: {limits}", deviation.tilt.0))
-            .help("check the head angle, and that the feed runs along the hole")
-    } else {
-        let [x, y, z] = [0, 1, 2].map(|i| deviation.entry[i] - wanted.entry[i]);
-        Diagnostic::new(&HOLE_POSITION, format!("hole {id} is out of position: {limits}"))
-            .note(format!(
-                "actual − nominal at the entry, part coordinates: x {x:+.4}, y {y:+.4}, z {z:+.4} mm"
-            ))
-            .help("correct the programmed point")
-    };
-    finding.with_backtrace(found.backtrace.clone())
+    // Over the hole's depth the tilt alone exceeds what the rest of the zone allows.
+    let lean = deviation.tilt.tan() * nominal.depth;
+    if lean > deviation.at_entry.min(deviation.at_bottom) && lean > comparison.tolerances.position / 4.0 {
+        let message = format!("hole {id} is tilted by {:.3}°: {limits}", deviation.tilt.0);
+        return Diagnostic::new(&HOLE_TILTED, message)
+            .help("check the head angle, and that the feed runs along the hole");
+    }
+    let [x, y, z] = [0, 1, 2].map(|i| deviation.entry[i] - nominal.entry[i]);
+    let note = format!("actual − nominal at the entry, part coordinates: x {x:+.4}, y {y:+.4}, z {z:+.4} mm");
+    Diagnostic::new(&HOLE_POSITION, format!("hole {id} is out of position: {limits}"))
+        .note(note)
+        .help("correct the programmed point")
 }

@@ -1,22 +1,19 @@
-//! In a row the holes stand at the pitch with which the pattern closes: another one is told with what it adds up to.
-use super::{HoleFinding, HoleInspection};
+//! Pitch of the holes in a row of a honeycomb: that with which the pattern closes.
+use super::*;
 use crate::findings::{ROW_ANGLE, ROW_PITCH};
 use crate::verify::causes::describe_causes;
-use crate::verify::hole_finding::locate_at_call;
-use crate::verify::rows::PatternRows;
-use gcode_lang::diag::Diagnostic;
 
-/// Pitches nearer than this, in mm, are the same: holes are rounded to the increment.
+/// Pitches that differ by less are equal, mm: holes are rounded to the increment.
 const PITCH_TOLERANCE: f64 = 0.002;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    let Some(pattern) = comparison.pattern else { return };
-    let Some(rows) = PatternRows::of(comparison, pattern) else { return };
+    let Some(rows) = &inspection.rows else { return };
     let Some((spacing, row)) = rows.spacing else { return };
-    // The pitch that follows from another number of rows is told with their angle.
+    let pattern = rows.pattern;
+    // The finding on the angle names the pitch of another number of rows.
     let follows = (spacing - pattern.closing_pitch(rows.rows.len() as u32)).abs() < PITCH_TOLERANCE;
-    if follows && objections.iter().any(|objection| objection.finding.kind == &ROW_ANGLE) {
+    if follows && findings.position(&[&ROW_ANGLE]).is_some() {
         return;
     }
     let pitches = (pattern.length / pattern.pitch).floor();
@@ -29,19 +26,16 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
          is {sum:.2} mm",
         pattern.pitch
     );
-    let mut finding =
-        locate_at_call(Diagnostic::new(&ROW_PITCH, message), &comparison.actual[row.first].backtrace);
-    if let Some(asked) = pattern.specified_pitch
-        && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
-    {
-        finding = finding.note(format!(
-            "{asked} mm is the specified pitch; the pattern closes round the circumference with {:.4}",
+    let finding = Diagnostic::new(&ROW_PITCH, message)
+        .help("compute the angle from the number of rows that close, then the pitch");
+    let mut finding = locate_at_call(finding, &comparison.actual[row.first].backtrace);
+    let is_nearer = |specified: &f64| (spacing - specified).abs() < (spacing - pattern.pitch).abs();
+    finding.notes.extend(pattern.specified_pitch.filter(is_nearer).map(|specified| {
+        format!(
+            "{specified} mm is the specified pitch; the pattern closes round the circumference with {:.4}",
             pattern.pitch
-        ));
-    }
-    if let Some(causes) = describe_causes(pattern, spacing / pattern.pitch, false) {
-        finding = finding.note(causes);
-    }
-    let finding = finding.help("compute the angle from the number of rows that close, then the pitch");
-    objections.push(HoleFinding::unlocated(finding));
+        )
+    }));
+    finding.notes.extend(describe_causes(pattern, spacing / pattern.pitch, false));
+    findings.add(About::Whole, finding);
 }

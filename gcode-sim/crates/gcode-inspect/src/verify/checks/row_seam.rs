@@ -1,26 +1,23 @@
-//! Round the cylinder the last row stands as far from the first as all others from their next: else there is a seam.
-use super::{HoleFinding, HoleInspection};
+//! Gap between the last row of a honeycomb and the first: equal to the others, or there is a seam.
+use super::*;
 use crate::findings::ROW_SEAM;
-use crate::verify::hole_finding::locate_at_call;
-use crate::verify::rows::PatternRows;
-use gcode_lang::diag::Diagnostic;
 
-/// A gap that differs by less than this part of a row is no seam.
-const SHARE: f64 = 0.05;
+/// Largest deviation of a gap that is no seam, as a fraction of the row angle.
+const TOLERANCE: f64 = 0.05;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
-    let comparison = &inspection.comparison;
-    let Some(pattern) = comparison.pattern else { return };
-    let Some(rows) = PatternRows::of(comparison, pattern) else { return };
-    let odd = |gap: f64| (gap - rows.typical_gap.0).abs() > SHARE * pattern.row_angle().0;
-    let seams: Vec<usize> = (0..rows.gaps.len()).filter(|index| odd(rows.gaps[*index].0)).collect();
-    // Many odd gaps are no seam: there rows are missing, or stand anyhow.
-    let [seam] = seams.as_slice() else { return };
-    let (before, after) = (rows.rows[*seam], rows.rows[(seam + 1) % rows.rows.len()]);
-    let gap = rows.gaps[*seam];
-    // Where rows are missing, the others stand as they should.
-    let steps = (gap.0 / pattern.row_angle().0).round();
-    if 2.0 <= steps && (gap.0 - steps * pattern.row_angle().0).abs() <= SHARE * pattern.row_angle().0 {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    let Some(rows) = &inspection.rows else { return };
+    let pattern = rows.pattern;
+    let row_angle = pattern.row_angle().0;
+    let is_odd = |gap: f64, nominal: f64| (gap - nominal).abs() > TOLERANCE * row_angle;
+    let is_seam = |index: &usize| is_odd(rows.gaps[*index].0, rows.typical_gap.0);
+    // With several odd gaps rows are missing or not evenly spaced.
+    let [seam] = (0..rows.gaps.len()).filter(is_seam).collect::<Vec<_>>()[..] else { return };
+    let (before, after) = (rows.rows[seam], rows.rows[(seam + 1) % rows.rows.len()]);
+    let gap = rows.gaps[seam];
+    // Where rows are missing, the others are in position.
+    let steps = (gap.0 / row_angle).round();
+    if 2.0 <= steps && !is_odd(gap.0, steps * row_angle) {
         return;
     }
     let message = format!(
@@ -36,6 +33,6 @@ pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFi
         "make the angle from row to row divide 360: choose a whole number of rows, then compute the angle, \
          then the pitch",
     );
-    objections
-        .push(HoleFinding::unlocated(locate_at_call(finding, &comparison.actual[before.first].backtrace)));
+    let place = &inspection.comparison.actual[before.first].backtrace;
+    findings.add(About::Whole, locate_at_call(finding, place));
 }

@@ -1,18 +1,15 @@
-//! The rotary turns the same way in the job and in the machine file.
-use nalgebra::{Unit, Vector3};
-
-use super::{HoleFinding, HoleInspection};
+//! Direction of the rotary table: the same in the job and in the machine file.
+use super::*;
 use crate::findings::AXIS_SIGNS;
-use crate::machine::{LinkMotion, Machine};
-use gcode_lang::diag::Diagnostic;
 use gcode_part::Reference;
-use gcode_part::Surface;
 
-/// Of an axis that stands more askew than this to the part's nobody can say which way it turns.
+/// Least cosine between the table's axis and the part's: beyond it the direction is undefined.
 const MIN_ALIGNMENT: f64 = 0.5;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut Vec<HoleFinding>) {
-    findings.extend(finding(inspection.reference, inspection.machine).map(HoleFinding::of_motion));
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    if let Some(finding) = finding(inspection.reference, inspection.machine) {
+        findings.add(About::Motion, finding);
+    }
 }
 
 fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
@@ -21,19 +18,18 @@ fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
         Surface::Ellipsoid { .. } => Vector3::y_axis(),
         Surface::Cylinder { .. } => Vector3::x_axis(),
     };
-    let sign = sign_about(machine, rotary.letter, &about)?;
-    let job = f64::from(rotary.sign);
-    (sign != job).then(|| {
-        let letter = rotary.letter;
-        let message =
-            format!("{letter} has sign {sign} in the machine file and {job} in the job: the directions are opposite");
-        Diagnostic::new(&AXIS_SIGNS, message)
-            .note("the results are for the machine file's direction; programs emitted from the job assume the job's")
-            .help("rotate the part by hand, observe its direction and correct the wrong sign")
-    })
+    let (letter, job) = (rotary.letter, f64::from(rotary.sign));
+    let sign = sign_about(machine, letter, &about).filter(|sign| *sign != job)?;
+    let message = format!(
+        "{letter} has sign {sign} in the machine file and {job} in the job: the directions are opposite"
+    );
+    let finding = Diagnostic::new(&AXIS_SIGNS, message).note(
+        "the results are for the machine file's direction; programs emitted from the job assume the job's",
+    );
+    Some(finding.help("rotate the part by hand, observe its direction and correct the wrong sign"))
 }
 
-/// Which way a positive command turns the part about an axis of its own; `None` where that axis doesn't.
+/// Returns the direction in which a positive command rotates the part about its axis `own`; `None` if it does not.
 fn sign_about(machine: &Machine, letter: char, own: &Unit<Vector3<f64>>) -> Option<f64> {
     let axis = machine.axes.find(letter as u8)?;
     let link = machine.table.0.iter().find(|link| link.axis == axis)?;

@@ -1,55 +1,46 @@
-//! A wanted hole deeper than the part is thick along its axis goes through: the drawing may mean that, so it is told and
-//! leaves the verdict alone. The part may be thinner than its surface says, a shell or cut off, so silence is no proof.
-use nalgebra::{Point3, Unit, Vector3};
-
-use super::{HoleFinding, HoleInspection};
+//! Nominal holes deeper than the part is thick along their axis: a warning, since the drawing may specify a through hole.
+//! The part may be thinner than its surface shows, a shell or cut off: no finding is no proof.
+use super::*;
 use crate::findings::HOLE_THROUGH;
-use crate::verify::hole_finding::folded_note;
-use gcode_lang::diag::Diagnostic;
-use gcode_part::Hole;
-use gcode_part::Surface;
+use crate::verify::bottom;
 
-/// Fewer holes are told one by one.
+/// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
     let Some(surface) = inspection.reference.surface else { return };
-    let thin = |(wanted, hole): (usize, &Hole)| {
-        // What ends inside the part doesn't go through: how thick it is there needn't be asked.
-        if surface.value(&end(hole)) < 0.0 {
-            return None;
-        }
-        let thick = thickness(&surface, hole);
-        (thick < hole.depth).then_some((wanted, thick))
+    let through = |(index, hole): (usize, &Hole)| {
+        // A hole that ends inside the part does not go through it.
+        let is_outside = surface.value(&bottom(hole)) >= 0.0;
+        let thickness = is_outside.then(|| thickness(&surface, hole)).filter(|thick| *thick < hole.depth)?;
+        Some((index, thickness))
     };
-    let through: Vec<(usize, f64)> = comparison.nominal.iter().enumerate().filter_map(thin).collect();
-    let sentence = |which: &str, wanted: usize, thick: f64| {
-        let depth = comparison.nominal[wanted].depth;
+    let through: Vec<(usize, f64)> = comparison.nominal.iter().enumerate().filter_map(through).collect();
+    let finding = |which: &str, (index, thick): (usize, f64)| {
+        let depth = comparison.nominal[index].depth;
         let message =
             format!("{which} through: {depth} mm deep, the part is {thick:.1} mm thick along its axis");
         Diagnostic::new(&HOLE_THROUGH, message)
             .help("check depth, radius and direction, unless the drawing specifies a through hole")
     };
-    let many = MIN_HOLES <= through.len();
-    if let Some((wanted, thick)) = through.first().filter(|_| many) {
-        let (count, all, id) = (through.len(), comparison.nominal.len(), comparison.id(*wanted));
-        let mut finding =
-            sentence(&format!("{count} of {all} holes go through; the first, {id}, goes"), *wanted, *thick);
-        finding.notes.extend(folded_note(count));
-        objections.push(HoleFinding::unlocated(finding));
+    let (count, all) = (through.len(), comparison.nominal.len());
+    let is_summary = MIN_HOLES <= count;
+    if let Some(first) = through.first().filter(|_| is_summary) {
+        let id = comparison.id(first.0);
+        let mut summary =
+            finding(&format!("{count} of {all} holes go through; the first, {id}, goes"), *first);
+        summary.notes.extend(folded_note(count));
+        findings.add(About::Whole, summary);
     }
-    objections.extend(through.into_iter().map(|(wanted, thick)| {
-        let finding = sentence(&format!("hole {} goes", comparison.id(wanted)), wanted, thick);
-        HoleFinding { is_folded: many, ..HoleFinding::of_nominal(wanted, finding) }
-    }));
+    let before = findings.0.len();
+    for one in through {
+        findings.add(About::Nominal(one.0), finding(&format!("hole {} goes", comparison.id(one.0)), one));
+    }
+    findings.0[before..].iter_mut().for_each(|one| one.is_folded = is_summary);
 }
 
-fn end(hole: &Hole) -> Point3<f64> {
-    Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth
-}
-
-/// From the entry, along the axis, to the far side; 0 where the axis only touches the part.
+/// Returns the distance from the entry along the axis to the far side; 0 if the axis only touches the part.
 fn thickness(surface: &Surface, hole: &Hole) -> f64 {
     let entry = Point3::from(hole.entry);
     let into = Unit::new_normalize(-Vector3::from(hole.axis));
@@ -68,7 +59,7 @@ mod tests {
     /// (0.04, 0.05), so n = (4, 5)/√41, and the chord is 2·(p·M·n)/(n·M·n) with M = (1/400, 1/144):
     /// 2·(0.41/√41)/((16/400 + 25/144)/41) = 24.580.
     #[test]
-    fn an_ellipse_worked_by_hand() {
+    fn chords_of_an_ellipse_are_those_computed_by_hand() {
         let surface = Surface::Ellipsoid { a: 20.0, b: 12.0 };
         let s = 41f64.sqrt();
         for sign in [1.0, -1.0] {
@@ -81,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn on_the_rim_there_is_nothing_to_drill_and_a_cylinder_is_as_thick_as_its_diameter() {
+    fn the_rim_has_no_thickness_and_a_cylinder_has_its_diameter() {
         let surface = Surface::Ellipsoid { a: 20.0, b: 12.0 };
         assert!(thick(surface, [20.0, 0.0, 0.0], [0.0, 1.0, 0.0]) < 1e-5);
         let cylinder = Surface::Cylinder { radius: 30.0 };

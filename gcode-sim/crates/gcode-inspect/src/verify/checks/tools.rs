@@ -1,75 +1,57 @@
-//! Holes of one diameter are made by the same tools: where one lacks a tool that most others get, a call was lost.
+//! Tools of holes of one diameter: a hole without a tool that most of the others have lacks a call.
 //!
-//! This needs no tool table, so it sees a lost finishing pass where nothing is known of the tools but their numbers.
-//! Sister tools are no fault, so it warns and leaves the verdict alone.
-use std::collections::BTreeMap;
-
-use super::{HoleFinding, HoleInspection};
+//! The check needs no tool table, so that it finds a missing finishing pass with the numbers of the tools alone. Sister
+//! tools are no fault: it only warns.
+use super::*;
 use crate::findings::HOLE_TOOLS;
-use crate::holes::DrilledHole;
-use gcode_lang::diag::Diagnostic;
 
-/// Fewer holes of one diameter don't show what is usual.
+/// Least number of holes of one diameter.
 const MIN_HOLES: usize = 3;
 
-pub(super) fn check(inspection: &HoleInspection<'_>, objections: &mut Vec<HoleFinding>) {
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    // Diameters are what somebody wrote down: equal ones are equal bits.
-    let mut alike: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
-    for (index, pair) in comparison.pairs.iter().enumerate() {
-        if let Some(diameter) = comparison.nominal[pair.nominal].diameter {
-            alike.entry(diameter.to_bits()).or_default().push(index);
+    // The diameters are those of the drawing: equal ones have equal bits.
+    let mut by_diameter: BTreeMap<u64, Vec<(usize, &DrilledHole)>> = BTreeMap::new();
+    for (pair, nominal, drilled) in comparison.matched() {
+        if let Some(diameter) = nominal.diameter {
+            by_diameter.entry(diameter.to_bits()).or_default().push((pair.nominal, drilled));
         }
     }
-    for (diameter, group) in alike.into_iter().filter(|(_, group)| MIN_HOLES <= group.len()) {
-        let found = |index: &usize| &comparison.actual[comparison.pairs[*index].actual];
-        let Some(usual) = most_common(group.iter().map(|index| tools(found(index)))) else { continue };
-        for index in &group {
-            let cuts = |tool: &u32| tools(found(index)).any(|other| other == *tool);
-            if usual.iter().all(cuts) {
+    for (diameter, group) in by_diameter.into_iter().filter(|(_, group)| MIN_HOLES <= group.len()) {
+        let Some(usual) = most_common(group.iter().map(|(_, drilled)| tools(drilled).collect())) else {
+            continue;
+        };
+        for (nominal, drilled) in group {
+            let own: BTreeSet<u32> = tools(drilled).collect();
+            let lacking: Vec<String> = usual.difference(&own).map(|tool| format!("T{tool}")).collect();
+            if lacking.is_empty() {
                 continue;
             }
-            let lacks: Vec<String> =
-                usual.iter().filter(|tool| !cuts(tool)).map(|tool| format!("T{tool}")).collect();
-            let pair = &comparison.pairs[*index];
             let message = format!(
                 "hole {} is made without {}; most holes of Φ{} are made with it",
-                comparison.id(pair.nominal),
-                lacks.join(", "),
+                comparison.id(nominal),
+                lacking.join(", "),
                 f64::from_bits(diameter)
             );
             let finding = Diagnostic::new(&HOLE_TOOLS, message)
                 .help("check for a missing call")
-                .with_backtrace(comparison.actual[pair.actual].backtrace.clone());
-            objections.push(HoleFinding::of_nominal(pair.nominal, finding));
+                .with_backtrace(drilled.backtrace.clone());
+            findings.add(About::Nominal(nominal), finding);
         }
     }
 }
 
-/// The tools that cut in a hole.
-fn tools(found: &DrilledHole) -> impl Iterator<Item = u32> + '_ {
-    found.earlier_passes.iter().map(|cut| cut.tool).chain([found.tool]).flatten()
+/// Returns the tools that cut a hole.
+fn tools(drilled: &DrilledHole) -> impl Iterator<Item = u32> + '_ {
+    drilled.earlier_passes.iter().map(|pass| pass.tool).chain([drilled.tool]).flatten()
 }
 
-/// The tools, each once, that more than half of the holes get.
-fn most_common<T: IntoIterator<Item = u32>>(holes: impl ExactSizeIterator<Item = T>) -> Option<Vec<u32>> {
+/// Returns the set that more than half of the holes have.
+fn most_common(holes: impl ExactSizeIterator<Item = BTreeSet<u32>>) -> Option<BTreeSet<u32>> {
     let all = holes.len();
-    let mut counts: BTreeMap<Vec<u32>, usize> = BTreeMap::new();
-    let mut set = Vec::new();
-    for hole in holes {
-        set.clear();
-        set.extend(hole);
-        set.sort_unstable();
-        set.dedup();
-        match counts.get_mut(&set) {
-            Some(count) => *count += 1,
-            None => {
-                counts.insert(set.clone(), 1);
-            }
-        }
-    }
-    let (set, count) = counts.into_iter().max_by_key(|(_, count)| *count)?;
-    (all < 2 * count).then_some(set)
+    let mut counts: BTreeMap<BTreeSet<u32>, usize> = BTreeMap::new();
+    holes.for_each(|set| *counts.entry(set).or_default() += 1);
+    counts.into_iter().find(|(_, count)| all < 2 * count).map(|(set, _)| set)
 }
 
 #[cfg(test)]
@@ -77,10 +59,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn usual_is_what_more_than_half_have() {
-        let (both, one) = (vec![1, 2], vec![1]);
+    fn the_usual_tools_are_those_of_more_than_half_of_the_holes() {
+        let (both, one) = (BTreeSet::from([1, 2]), BTreeSet::from([1]));
         assert_eq!(most_common([both.clone(), one.clone(), both.clone()].into_iter()), Some(both.clone()));
         assert_eq!(most_common([both.clone(), one.clone(), both, one].into_iter()), None);
-        assert_eq!(most_common(std::iter::empty::<Vec<u32>>()), None);
+        assert_eq!(most_common(std::iter::empty::<BTreeSet<u32>>()), None);
     }
 }

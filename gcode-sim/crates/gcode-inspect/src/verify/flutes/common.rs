@@ -1,48 +1,45 @@
-//! What all flutes have alike, all along, in another way than is wanted: said once, and as what it is.
+//! Deviations that all flutes share, all along: one finding that names them.
 use super::cause::Cause;
 use crate::flutes::{GrindingPass, ROUNDING_ERROR, Window};
 use gcode_lang::units::Deg;
 use gcode_part::Flutes;
 
-/// What the helix angle is of instead.
+/// Helix angle of all flutes instead of the nominal one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CommonDeviation {
-    /// The other law.
+pub(super) enum CommonDeviation {
+    /// That of the other law.
     OtherLaw,
-    /// The wanted law with another helix angle on the cylinder; of the other sign it is the other hand.
+    /// That of the nominal law with this helix angle on the cylinder; the opposite sign is the other hand.
     OtherHelix(Deg),
-    /// The wanted one on the diameter that the flutes are ground to by so much too high, mm.
+    /// The nominal one on a ground diameter that is too large.
     GroundHigh,
 }
 
-/// In words which way flutes of a helix angle wind.
+/// Returns the hand of flutes with this helix angle.
 pub(super) fn helix_hand(helix: Deg) -> &'static str {
     if helix.0 < 0.0 { "left-hand" } else { "right-hand" }
 }
 
-/// How far above the tooth bottom all passes are alike, where that is more than is allowed, mm.
-pub(super) fn common_height(wanted: &Flutes, passes: &[GrindingPass]) -> Option<f64> {
-    let depths: Option<Vec<f64>> = passes
-        .iter()
-        .map(|pass| {
-            let most = pass.trace.samples.iter().map(|sample| sample.deviation.abs()).fold(0.0, f64::max);
-            match Cause::of(wanted, pass, most) {
-                Cause::Depth(depth) => Some(depth),
-                Cause::BetweenPoints | Cause::Offset(_) | Cause::Other => None,
-            }
-        })
-        .collect();
-    let depths = depths?;
-    let mean = depths.iter().sum::<f64>() / depths.len() as f64;
-    let alike = depths.iter().all(|depth| (depth - mean).abs() <= 0.1 * mean.abs());
-    (alike && wanted.surface_tolerance + ROUNDING_ERROR < mean.abs()).then_some(mean)
+/// Returns the height of all passes above the tooth bottom, mm; `None` if it differs or is within the tolerance.
+pub(super) fn common_height(nominal: &Flutes, passes: &[GrindingPass]) -> Option<f64> {
+    let height = |pass: &GrindingPass| {
+        let most = pass.trace.samples.iter().map(|sample| sample.deviation.abs()).fold(0.0, f64::max);
+        match Cause::of(nominal, pass, most) {
+            Cause::Depth(depth) => Some(depth),
+            Cause::BetweenPoints | Cause::Offset(_) | Cause::Other => None,
+        }
+    };
+    let heights: Vec<f64> = passes.iter().map(height).collect::<Option<_>>()?;
+    let mean = heights.iter().sum::<f64>() / heights.len() as f64;
+    let is_common = heights.iter().all(|height| (height - mean).abs() <= 0.1 * mean.abs());
+    (is_common && nominal.surface_tolerance + ROUNDING_ERROR < mean.abs()).then_some(mean)
 }
 
 impl CommonDeviation {
-    pub(super) fn of(wanted: &Flutes, passes: &[GrindingPass]) -> Option<Self> {
-        let allowed = wanted.helix_tolerance.0;
+    pub(super) fn of(nominal: &Flutes, passes: &[GrindingPass]) -> Option<Self> {
+        let allowed = nominal.helix_tolerance.0;
         let windows: Vec<Window<'_>> =
-            passes.iter().flat_map(|pass| pass.trace.windows(wanted.gauge)).collect();
+            passes.iter().flat_map(|pass| pass.trace.windows(nominal.gauge)).collect();
         let all = |fits: &dyn Fn(&Window<'_>) -> bool| !windows.is_empty() && windows.iter().all(fits);
         if all(&|window| (window.helix - window.nominal_helix).abs().0 <= allowed) {
             return None;
@@ -50,30 +47,29 @@ impl CommonDeviation {
         if all(&|window| (window.helix - window.other_law_helix).abs().0 < 2.0 * allowed) {
             return Some(Self::OtherLaw);
         }
-        if let Some(depth) = common_height(wanted, passes) {
-            // On the cylinder the way around grows with the radius, the way along doesn't; on a ball both do.
-            let radius = wanted.profile.radius();
-            let between = |window: &Window<'_>| {
-                let tan = window.nominal_helix.tan();
-                let other = Deg::atan2(tan * radius, radius + depth);
-                let (low, high) = (window.nominal_helix.0.min(other.0), window.nominal_helix.0.max(other.0));
+        if let Some(height) = common_height(nominal, passes) {
+            // On the cylinder the path around grows with the radius, the path along does not; on a ball both do.
+            let radius = nominal.profile.radius();
+            let is_between = |window: &Window<'_>| {
+                let on_ball = window.nominal_helix;
+                let on_cylinder = Deg::atan2(on_ball.tan() * radius, radius + height);
+                let (low, high) = (on_ball.0.min(on_cylinder.0), on_ball.0.max(on_cylinder.0));
                 (low - allowed..=high + allowed).contains(&window.helix.0)
             };
-            if all(&between) {
+            if all(&is_between) {
                 return Some(Self::GroundHigh);
             }
         }
-        // By both laws the slope grows with the tangent of the angle on the cylinder.
-        let slope = wanted.helix.tan();
-        let mut factors: Vec<f64> =
-            windows.iter().map(|window| window.helix.tan() / window.nominal_helix.tan()).collect();
+        // By both laws the slope is proportional to the tangent of the angle on the cylinder.
+        let ratio = |window: &Window<'_>| window.helix.tan() / window.nominal_helix.tan();
+        let mut factors: Vec<f64> = windows.iter().map(ratio).collect();
         factors.sort_by(f64::total_cmp);
         let factor = factors.get(factors.len() / 2)?;
-        let alike = |window: &Window<'_>| {
+        let helix = Deg::atan2(factor * nominal.helix.tan(), 1.0);
+        let fits = |window: &Window<'_>| {
             (window.helix - Deg::atan2(factor * window.nominal_helix.tan(), 1.0)).abs().0 <= 2.0 * allowed
         };
-        // One flute that is off makes no other angle of all.
-        let helix = Deg::atan2(factor * slope, 1.0);
-        (allowed < (helix - wanted.helix).abs().0 && all(&alike)).then_some(Self::OtherHelix(helix))
+        // A single wrong flute changes the median by less than the tolerance.
+        (allowed < (helix - nominal.helix).abs().0 && all(&fits)).then_some(Self::OtherHelix(helix))
     }
 }

@@ -1,10 +1,10 @@
-//! The least distance between two paths, in a straight line: of the paths themselves, whatever was wanted.
+//! Least straight-line distance of two polylines.
 use std::ops::Range;
 
 use nalgebra::{Point3, Vector3};
 
-/// Between two paths of straight pieces, their ends counted in, and on which piece of the first: of equally near ones the
-/// first; `None` where one has none.
+/// Returns the least distance of two polylines and the segment of the first at which it occurs, the first of equal ones;
+/// `None` if one has no segment.
 pub(super) fn distance(first: &[Point3<f64>], second: &[Point3<f64>]) -> Option<(f64, usize)> {
     let all = |path: &[Point3<f64>]| 0..path.len().saturating_sub(1);
     let mut search = DistanceSearch { paths: [Path::of(first), Path::of(second)], best: None };
@@ -14,7 +14,7 @@ pub(super) fn distance(first: &[Point3<f64>], second: &[Point3<f64>]) -> Option<
     search.best
 }
 
-/// Halves the longer stretch as long as its pieces could be nearer than the nearest so far.
+/// Branch and bound: halves the longer stretch while its lower bound is below the best distance.
 struct DistanceSearch<'p> {
     paths: [Path<'p>; 2],
     best: Option<(f64, usize)>,
@@ -22,12 +22,12 @@ struct DistanceSearch<'p> {
 
 struct Path<'p> {
     points: &'p [Point3<f64>],
-    /// The way along the path to each point.
+    /// Length of the path up to each point.
     lengths: Vec<f64>,
 }
 
 impl DistanceSearch<'_> {
-    /// Of stretches of one piece and more each. Its depth is that of two halvings.
+    /// Searches two stretches of at least one segment each; the recursion depth is that of two halvings.
     fn search(&mut self, stretches: [Range<usize>; 2]) {
         let [one, other] = &stretches;
         if one.len() == 1 && other.len() == 1 {
@@ -58,7 +58,7 @@ impl DistanceSearch<'_> {
         }
     }
 
-    /// No two points of the stretches are nearer to each other.
+    /// Returns a lower bound of the distance of two stretches.
     fn lower_bound(&self, [one, other]: &[Range<usize>; 2]) -> f64 {
         let [first, second] = &self.paths;
         (first.middle(one) - second.middle(other)).norm() - first.reach(one) - second.reach(other)
@@ -67,7 +67,12 @@ impl DistanceSearch<'_> {
 
 impl<'p> Path<'p> {
     fn of(points: &'p [Point3<f64>]) -> Self {
-        Self { points, lengths: lengths(points) }
+        let mut length = 0.0;
+        let steps = points.windows(2).map(|pair| {
+            length += (pair[1] - pair[0]).norm();
+            length
+        });
+        Self { points, lengths: std::iter::once(0.0).chain(steps).collect() }
     }
 
     fn segment(&self, index: usize) -> [Point3<f64>; 2] {
@@ -78,7 +83,7 @@ impl<'p> Path<'p> {
         self.points[Self::halfway(stretch)]
     }
 
-    /// No point of the stretch is farther from its middle.
+    /// Returns an upper bound of the distance of the stretch's points from its middle.
     fn reach(&self, stretch: &Range<usize>) -> f64 {
         let middle = self.lengths[Self::halfway(stretch)];
         (middle - self.lengths[stretch.start]).max(self.lengths[stretch.end] - middle)
@@ -89,17 +94,7 @@ impl<'p> Path<'p> {
     }
 }
 
-/// The way along the path to each point.
-fn lengths(path: &[Point3<f64>]) -> Vec<f64> {
-    let mut way = 0.0;
-    let steps = path.windows(2).map(|pair| {
-        way += (pair[1] - pair[0]).norm();
-        way
-    });
-    std::iter::once(0.0).chain(steps).collect()
-}
-
-/// Between two straight pieces.
+/// Returns the distance of two segments.
 fn segment_distance(one: [Point3<f64>; 2], other: [Point3<f64>; 2]) -> f64 {
     let (u, v, between) = (one[1] - one[0], other[1] - other[0], one[0] - other[0]);
     let ends = [
@@ -112,7 +107,7 @@ fn segment_distance(one: [Point3<f64>; 2], other: [Point3<f64>; 2]) -> f64 {
     line_distance(&u, &v, &between).map_or(nearest_end, |apart| apart.min(nearest_end))
 }
 
-/// Where the common perpendicular of both lines meets both pieces, its length.
+/// Returns the length of the common perpendicular of two lines; `None` if it misses one of the segments.
 fn line_distance(u: &Vector3<f64>, v: &Vector3<f64>, between: &Vector3<f64>) -> Option<f64> {
     let (a, b, c) = (u.dot(u), u.dot(v), v.dot(v));
     let (d, e) = (u.dot(between), v.dot(between));
@@ -144,7 +139,7 @@ mod tests {
 
     /// Crossing 3 above each other; end to end 5 (3, 4) apart; parallel 2 apart.
     #[test]
-    fn between_the_points_too() {
+    fn the_distance_counts_between_the_points_too() {
         let line = path(&[[-10.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [10.0, 0.0, 0.0]]);
         let over = path(&[[1.0, -7.0, 3.0], [1.0, 9.0, 3.0]]);
         assert_eq!(distance(&line, &over), Some((3.0, 1)));
@@ -158,7 +153,7 @@ mod tests {
 
     /// A path that comes near only after a long way and a bend: 0.5 at its third point.
     #[test]
-    fn what_is_skipped_was_farther() {
+    fn the_nearest_point_may_follow_a_bend() {
         let line = path(&[[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]]);
         let bent = path(&[[0.0, 30.0, 0.0], [30.0, 30.0, 0.0], [50.0, 0.5, 0.0], [60.0, 30.0, 0.0]]);
         assert_eq!(distance(&line, &bent), Some((0.5, 0)));
@@ -166,9 +161,9 @@ mod tests {
     }
 
     proptest! {
-        /// Every pair of pieces looked at.
+        /// Compares with all pairs of segments.
         #[test]
-        fn no_pair_of_pieces_is_nearer(
+        fn no_pair_of_segments_is_nearer(
             one in prop::collection::vec(prop::array::uniform3(-5i32..5), 2..24),
             other in prop::collection::vec(prop::array::uniform3(-5i32..5), 2..24),
         ) {

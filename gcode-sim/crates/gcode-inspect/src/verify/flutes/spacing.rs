@@ -1,4 +1,4 @@
-//! The flutes round the burr: which passes are one flute, how evenly they are spaced, how near neighbours come.
+//! Flutes round the burr: passes that are one flute, evenness of the spacing, distance of neighbours.
 use nalgebra::Point3;
 
 use super::path_distance;
@@ -6,62 +6,62 @@ use crate::flutes::{GrindingPass, Sample, wrap_angle};
 use gcode_lang::units::Deg;
 use gcode_part::Flutes;
 
-/// The passes by their place round the burr.
+/// The passes by their position round the burr.
 #[derive(Clone, Debug, Default)]
-pub struct FluteSpacing {
-    /// The distinct flutes in the order of their angle: the first pass of each, counted from 0, and its angle halfway
-    /// along, 0° to 360°.
+pub(super) struct FluteSpacing {
+    /// Distinct flutes in the order of their angles: a pass of each, counted from 0, and its angle halfway along, 0° to
+    /// 360°.
     pub flutes: Vec<(usize, Deg)>,
-    /// Passes that go over a flute that is there already, in the order in which they are ground.
+    /// Passes over a flute that is already ground, in the order of grinding.
     pub repeated: Vec<RepeatedPass>,
-    /// The gap that is most off, of the wanted number of flutes, anywhere along them.
+    /// The gap with the largest error anywhere along the flutes.
     pub worst_gap: Option<Gap>,
-    /// The least distance between the paths of neighbours, in a straight line, mm.
+    /// The least distance between the paths of neighbours.
     pub nearest_approach: Option<NearestApproach>,
 }
 
 /// A pass over a flute that an earlier one has ground; both counted from 0.
 #[derive(Clone, Copy, Debug)]
-pub struct RepeatedPass {
+pub(super) struct RepeatedPass {
     pub pass: usize,
     pub first_pass: usize,
 }
 
-/// Where neighbours come nearest to each other.
+/// The closest points of two neighbours.
 #[derive(Clone, Copy, Debug)]
-pub struct NearestApproach {
-    /// In a straight line, mm.
+pub(super) struct NearestApproach {
+    /// Straight-line distance, mm.
     pub distance: f64,
-    /// One of the two, counted from 0, and the place on it.
+    /// One of the two, counted from 0, and the point on it.
     pub pass: usize,
     pub point: Point3<f64>,
 }
 
-/// From one flute to the next one round the burr, at one place along them.
+/// Gap from one flute to the next round the burr, at one position along them.
 #[derive(Clone, Copy, Debug)]
-pub struct Gap {
-    /// Counted from 0, as in [`FluteSpacing::flutes`].
+pub(super) struct Gap {
+    /// Index in [`FluteSpacing::flutes`].
     pub from_flute: usize,
     pub actual: Deg,
-    /// How far it is from the wanted one.
+    /// Deviation from the nominal gap.
     pub error: Deg,
-    /// Along x, where it is so, and the polar angle there.
+    /// Position along x, and the polar angle there.
     pub x: f64,
     pub polar: Deg,
-    /// Of the two flutes the one that stands farther from its place between all others, which of its samples is there,
-    /// and the first of them that is nearly as far off.
+    /// The flute that is farther off its position between all others; its sample there, and its first sample that is
+    /// nearly as far off.
     pub pass: usize,
     pub sample: usize,
     pub first_sample: usize,
-    /// How far that flute stands from its place; `None` of two flutes, for either may be right.
+    /// Error of that flute's position; `None` of two flutes, of which either may be right.
     pub index_error: Option<Deg>,
 }
 
-/// How far each flute is from the one that is ground before it, where that is always the same.
+/// Step from each flute to the one ground after it, if it is constant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IndexStep {
     pub actual: Deg,
-    /// The nearest one with which flutes would be evenly spaced.
+    /// The nearest step with which flutes are evenly spaced.
     pub nominal: Deg,
     /// The pass after the first step, counted from 0.
     pub pass: usize,
@@ -73,81 +73,74 @@ impl IndexStep {
     }
 }
 
-/// Passes nearer to each other than so many tolerances of a flute's place are rounds over the same flute.
+/// Largest distance of passes over the same flute, in index tolerances.
 pub(super) const SAME_FLUTE: f64 = 2.0;
 
-/// Angles nearer to each other than this are equal, degrees.
+/// Angles that differ by less are equal, degrees.
 const ANGLE_EPSILON: f64 = 1e-6;
 
-/// A flute's angle about the axis by its place along the meridian.
-struct FluteCurve {
-    /// Growing towards the tip, mm.
-    stations: Vec<f64>,
-    angles: Vec<f64>,
-}
+/// A flute's angle about the axis, degrees, by its position along the meridian, mm, ascending towards the tip.
+struct FluteCurve(Vec<(f64, f64)>);
 
 impl FluteSpacing {
-    pub(super) fn of(wanted: &Flutes, passes: &[GrindingPass]) -> Self {
-        let middle = middle_x(wanted);
+    pub(super) fn of(nominal: &Flutes, passes: &[GrindingPass]) -> Self {
+        let middle = middle_x(nominal);
         let angle = |pass: &GrindingPass| {
             let first = pass.trace.samples.first()?;
-            let found = pass.trace.angle_at(middle).unwrap_or(first.start_azimuth);
-            Some(Deg(found.0.rem_euclid(360.0)))
+            let angle = pass.trace.angle_at(middle).unwrap_or(first.start_azimuth);
+            Some(Deg(angle.0.rem_euclid(360.0)))
         };
         let mut all: Vec<(usize, Deg)> =
             passes.iter().enumerate().filter_map(|(index, pass)| Some((index, angle(pass)?))).collect();
         all.sort_by(|one, other| one.1.0.total_cmp(&other.1.0));
-        let mut round = Self::default();
+        let mut spacing = Self::default();
         let mut over: Vec<(usize, usize)> = Vec::new();
         for (pass, angle) in all {
             let same = |other: &(usize, Deg)| {
                 let gap = (angle.0 - other.1.0).rem_euclid(360.0);
-                gap.min(360.0 - gap) <= SAME_FLUTE * wanted.index_tolerance.0
+                gap.min(360.0 - gap) <= SAME_FLUTE * nominal.index_tolerance.0
             };
-            if round.flutes.last().is_some_and(same) {
-                over.push((pass, round.flutes.len() - 1));
-            } else if round.flutes.first().is_some_and(same) {
+            if spacing.flutes.last().is_some_and(same) {
+                over.push((pass, spacing.flutes.len() - 1));
+            } else if spacing.flutes.first().is_some_and(same) {
                 over.push((pass, 0));
             } else {
-                round.flutes.push((pass, angle));
+                spacing.flutes.push((pass, angle));
             }
         }
-        round.repeated = repeated_passes(&round.flutes, &over);
-        round.worst_gap = round.worst_gap_of(wanted, passes);
-        round.nearest_approach = round.find_nearest(passes);
-        round
+        spacing.repeated = repeated_passes(&spacing.flutes, &over);
+        spacing.worst_gap = spacing.worst_gap_of(nominal, passes);
+        spacing.nearest_approach = spacing.find_nearest(passes);
+        spacing
     }
 
-    /// The gap behind every flute at every one of its samples: the worst.
-    fn worst_gap_of(&self, wanted: &Flutes, passes: &[GrindingPass]) -> Option<Gap> {
-        let pitch = 360.0 / f64::from(wanted.count);
-        let courses: Vec<FluteCurve> =
-            self.flutes.iter().map(|(pass, _)| FluteCurve::of(wanted, &passes[*pass])).collect();
-        let count = courses.len();
-        // One flute alone is its own neighbour a whole turn further.
+    /// Returns the worst gap at any sample of any flute.
+    fn worst_gap_of(&self, nominal: &Flutes, passes: &[GrindingPass]) -> Option<Gap> {
+        let pitch = 360.0 / f64::from(nominal.count);
+        let curves: Vec<FluteCurve> =
+            self.flutes.iter().map(|(pass, _)| FluteCurve::of(nominal, &passes[*pass])).collect();
+        let count = curves.len();
+        // A single flute is its own neighbour after a revolution.
         let gap = |here: f64, there: f64| if count == 1 { 360.0 } else { (there - here).rem_euclid(360.0) };
         let mut worst: Option<(Gap, f64)> = None;
         for (flute, (pass, _)) in self.flutes.iter().enumerate() {
             let (before, after) = ((flute + count - 1) % count, (flute + 1) % count);
             for (index, sample) in passes[*pass].trace.samples.iter().enumerate() {
-                let (at, angle) = (station(wanted, sample), (sample.start_azimuth + sample.turned_angle).0);
-                let behind = courses[before].angle_at(at).map(|other| (before, gap(other, angle)));
-                let ahead = courses[after].angle_at(at).map(|other| (flute, gap(angle, other)));
-                for (from, found) in [ahead, behind].into_iter().flatten() {
-                    let off = Deg((found - pitch).abs());
-                    if worst.is_none_or(|(worst, _)| worst.error.0 + ANGLE_EPSILON < off.0) {
-                        let (x, polar) = (sample.point.x, sample.polar);
-                        let (pass, sample, first) = (*pass, index, index);
-                        let found = Deg(found);
+                let (at, angle) = (station(nominal, sample), sample.angle().0);
+                let behind = curves[before].angle_at(at).map(|other| (before, gap(other, angle)));
+                let ahead = curves[after].angle_at(at).map(|other| (flute, gap(angle, other)));
+                for (from_flute, actual) in [ahead, behind].into_iter().flatten() {
+                    let error = Deg((actual - pitch).abs());
+                    if worst.is_none_or(|(worst, _)| worst.error.0 + ANGLE_EPSILON < error.0) {
                         let gap = Gap {
-                            from_flute: from,
-                            actual: found,
-                            error: off,
-                            x,
-                            polar,
-                            pass,
-                            sample,
-                            first_sample: first,
+                            from_flute,
+                            actual: Deg(actual),
+                            error,
+                            x: sample.point.x,
+                            polar: sample.polar,
+                            pass: *pass,
+                            sample: index,
+                            first_sample: index,
                             index_error: None,
                         };
                         worst = Some((gap, at));
@@ -156,15 +149,15 @@ impl FluteSpacing {
             }
         }
         let (mut worst, at) = worst?;
-        // Which of both stands wrong decides whose block is named.
+        // The finding is at the block of the misplaced flute.
         let (from, after) = (worst.from_flute, (worst.from_flute + 1) % count);
-        let (flute, astray) = misplaced_flute(&courses, pitch, at, [from, after], &self.flutes);
+        let (flute, astray) = misplaced_flute(&curves, pitch, at, [from, after], &self.flutes);
         worst.index_error = astray.map(Deg);
         let (other, ahead) = if flute == from { (after, true) } else { (from, false) };
         let samples = &passes[self.flutes[flute].0].trace.samples;
         let off = |sample: &Sample| {
-            let angle = (sample.start_azimuth + sample.turned_angle).0;
-            let there = courses[other].angle_at(station(wanted, sample))?;
+            let angle = sample.angle().0;
+            let there = curves[other].angle_at(station(nominal, sample))?;
             Some((if ahead { gap(angle, there) } else { gap(there, angle) } - pitch).abs())
         };
         let far = |part: f64| {
@@ -177,30 +170,28 @@ impl FluteSpacing {
         Some(worst)
     }
 
-    /// The step from each flute to the one ground after it, of three and more; `None` where it isn't the same.
-    pub(super) fn index_step(&self, wanted: &Flutes) -> Option<IndexStep> {
+    /// Returns the step from each flute to the one ground after it; `None` if it varies, or with fewer than three flutes.
+    pub(super) fn index_step(&self, nominal: &Flutes) -> Option<IndexStep> {
         let mut ground = self.flutes.clone();
         ground.sort_by_key(|(pass, _)| *pass);
         let steps = ground.windows(2).map(|pair| wrap_angle(pair[1].1.0 - pair[0].1.0));
-        let (least, most) = steps.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), step| {
-            (step.min(least), step.max(most))
-        });
-        let pitch = 360.0 / f64::from(wanted.count);
+        let min = steps.clone().fold(f64::INFINITY, f64::min);
+        let max = steps.clone().fold(f64::NEG_INFINITY, f64::max);
+        let pitch = 360.0 / f64::from(nominal.count);
         let mean = steps.sum::<f64>() / ground.len().saturating_sub(1) as f64;
         let step = IndexStep {
             actual: Deg(mean),
             nominal: Deg((mean / pitch).round() * pitch),
             pass: ground.get(1)?.0,
         };
-        (3 <= ground.len() && most - least <= step.error().0 / 2.0).then_some(step)
+        (3 <= ground.len() && max - min <= step.error().0 / 2.0).then_some(step)
     }
 
-    /// Where flutes would have to be so that none is missing, halfway along the burr: so many to a gap as it is wider
-    /// than an even one.
-    pub(super) fn missing_points(&self, wanted: &Flutes) -> Vec<Point3<f64>> {
-        let pitch = 360.0 / f64::from(wanted.count);
-        let outside = Point3::new(middle_x(wanted), -wanted.profile.radius(), 0.0);
-        let foot = wanted.profile.foot(&outside);
+    /// Returns the positions of missing flutes halfway along the burr: evenly spaced in the gaps that are too wide.
+    pub(super) fn missing_points(&self, nominal: &Flutes) -> Vec<Point3<f64>> {
+        let pitch = 360.0 / f64::from(nominal.count);
+        let outside = Point3::new(middle_x(nominal), -nominal.profile.radius(), 0.0);
+        let foot = nominal.profile.foot(&outside);
         let (x, radius) = (foot.x, -foot.y);
         let next = self.flutes.iter().skip(1).map(|(_, angle)| angle.0);
         let ends = next.chain(self.flutes.first().map(|(_, angle)| angle.0 + 360.0));
@@ -233,7 +224,7 @@ impl FluteSpacing {
     }
 }
 
-/// Of each flute all passes but the one that grinds it first. `over`: passes, and over which of the flutes they go.
+/// Returns all passes of each flute but the first. `over`: passes, each with the index of its flute.
 fn repeated_passes(flutes: &[(usize, Deg)], over: &[(usize, usize)]) -> Vec<RepeatedPass> {
     let mut all = Vec::new();
     for (flute, (known, _)) in flutes.iter().enumerate() {
@@ -246,24 +237,24 @@ fn repeated_passes(flutes: &[(usize, Deg)], over: &[(usize, usize)]) -> Vec<Repe
     all
 }
 
-/// Halfway along the flutes, by x.
-fn middle_x(wanted: &Flutes) -> f64 {
-    (wanted.start + wanted.profile.point_at_polar(wanted.tip_angle).x) / 2.0
+/// Returns the x halfway along the flutes.
+fn middle_x(nominal: &Flutes) -> f64 {
+    (nominal.start + nominal.profile.point_at_polar(nominal.tip_angle).x) / 2.0
 }
 
-/// Which of two flutes stands farther from its place between all others, and how far; places are those with which most
-/// agree. Of two flutes in all either may be right: the one ground later is named.
+/// Returns which of two flutes is farther off its position, and its error. Positions are relative to the median of all
+/// flutes; of two flutes in all either may be right, and the one ground later is returned without an error.
 fn misplaced_flute(
-    courses: &[FluteCurve],
+    curves: &[FluteCurve],
     pitch: f64,
     at: f64,
     pair: [usize; 2],
     flutes: &[(usize, Deg)],
 ) -> (usize, Option<f64>) {
     let later = if flutes[pair[0]].0 < flutes[pair[1]].0 { pair[1] } else { pair[0] };
-    let angles = courses.iter().enumerate();
+    let angles = curves.iter().enumerate();
     let all: Vec<(usize, f64)> =
-        angles.filter_map(|(n, course)| Some((n, course.angle_at(at)? - pitch * n as f64))).collect();
+        angles.filter_map(|(n, curve)| Some((n, curve.angle_at(at)? - pitch * n as f64))).collect();
     let Some((_, zero)) = all.first().copied() else { return (later, None) };
     let mut sorted: Vec<f64> = all.iter().map(|(_, phase)| wrap_angle(phase - zero)).collect();
     sorted.sort_by(f64::total_cmp);
@@ -273,55 +264,44 @@ fn misplaced_flute(
         phase.map_or(0.0, f64::abs)
     };
     let [one, other] = pair.map(off);
-    if courses.len() < 3 || (one - other).abs() <= ANGLE_EPSILON {
+    if curves.len() < 3 || (one - other).abs() <= ANGLE_EPSILON {
         return (later, None);
     }
     if other < one { (pair[0], Some(one)) } else { (pair[1], Some(other)) }
 }
 
-/// The way along the meridian from the end of the cylinder, towards the tip: on the nose by the direction of the normal,
-/// which a depth that is off doesn't change.
-fn station(wanted: &Flutes, sample: &Sample) -> f64 {
+/// Returns the path along the meridian from the end of the cylinder towards the tip. On the nose it follows from the
+/// direction of the normal, which an error of the depth does not change.
+fn station(nominal: &Flutes, sample: &Sample) -> f64 {
     if 0.0 < sample.point.x {
         -sample.point.x
     } else {
-        wanted.profile.radius() * (Deg(90.0) - sample.polar).to_rad()
+        nominal.profile.radius() * (Deg(90.0) - sample.polar).to_rad()
     }
 }
 
 impl FluteCurve {
-    /// Stretches that go back are left out.
-    fn of(wanted: &Flutes, pass: &GrindingPass) -> Self {
-        let mut all: Vec<(f64, f64)> = pass
-            .trace
-            .samples
-            .iter()
-            .map(|sample| (station(wanted, sample), (sample.start_azimuth + sample.turned_angle).0))
-            .collect();
-        if all.first().zip(all.last()).is_some_and(|(first, last)| last.0 < first.0) {
-            all.reverse();
+    fn of(nominal: &Flutes, pass: &GrindingPass) -> Self {
+        let point = |sample: &Sample| (station(nominal, sample), sample.angle().0);
+        let mut points: Vec<(f64, f64)> = pass.trace.samples.iter().map(point).collect();
+        if points.first().zip(points.last()).is_some_and(|(first, last)| last.0 < first.0) {
+            points.reverse();
         }
-        let mut course = Self { stations: Vec::new(), angles: Vec::new() };
-        for (place, angle) in all {
-            if course.stations.last().is_none_or(|last| *last < place) {
-                course.stations.push(place);
-                course.angles.push(angle);
-            }
-        }
-        course
+        // Stretches that go back are left out.
+        points.dedup_by(|one, last| one.0 <= last.0);
+        Self(points)
     }
 
-    /// `None` where the flute doesn't come.
-    fn angle_at(&self, place: f64) -> Option<f64> {
-        let (first, last) = (*self.stations.first()?, *self.stations.last()?);
+    /// Returns the angle at a station; `None` beyond the ends of the flute.
+    fn angle_at(&self, station: f64) -> Option<f64> {
         let slack = 1e-6;
-        if place < first - slack || last + slack < place {
+        let (first, last) = (self.0.first()?.0, self.0.last()?.0);
+        if station < first - slack || last + slack < station {
             return None;
         }
-        let after = self.stations.partition_point(|one| *one < place).min(self.stations.len() - 1);
-        let before = after.saturating_sub(1);
-        let way = self.stations[after] - self.stations[before];
-        let part = if way == 0.0 { 0.0 } else { ((place - self.stations[before]) / way).clamp(0.0, 1.0) };
-        Some(self.angles[before] + (self.angles[after] - self.angles[before]) * part)
+        let after = self.0.partition_point(|one| one.0 < station).min(self.0.len() - 1);
+        let ((start, angle), (end, next)) = (self.0[after.saturating_sub(1)], self.0[after]);
+        let part = if end == start { 0.0 } else { ((station - start) / (end - start)).clamp(0.0, 1.0) };
+        Some(angle + (next - angle) * part)
     }
 }

@@ -1,9 +1,9 @@
-//! The answer on flutes: the numbers of the worst place, both laws side by side, and the findings.
+//! The verdict on flutes: the largest deviations, the helix angles by both laws, and the findings.
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Inspection;
-use super::speed::SPEED_TOLERANCE;
+use super::measured_range::SPEED_TOLERANCE;
 use crate::findings::{
     BURR_OFFSET, FLUTE_END, FLUTE_EXTRA, FLUTE_HEAD, FLUTE_HELIX, FLUTE_INDEX, FLUTE_MISSING, FLUTE_SPEED,
     FLUTE_SURFACE, FLUTE_TWICE, FLUTES_MEET, SPINDLE_STOPPED, WHEEL_FEED, WHEEL_INTO_BURR, WHEEL_SPEED,
@@ -21,30 +21,38 @@ use gcode_part::job::FluteLaw;
 pub struct FluteVerdict {
     /// The kind of the numbers.
     pub basis: &'static str,
+    /// The answer.
     pub verdict: Answer,
+    /// Law of the helix angle in the job.
     pub law: &'static str,
     /// Number of flutes ground; repeated passes over a flute do not count.
     pub flutes: usize,
+    /// Number of flutes in the job.
     #[serde(rename = "wanted_flutes")]
     pub nominal_flutes: usize,
     /// The largest distance of the contact from the tooth bottom, between the points too; null without a flute.
     pub surface_deviation: Option<f64>,
     /// Its tolerance: the job's chord error, or that of the command line.
     pub tolerance: f64,
+    /// Least helix angle; null without a flute.
     pub helix_min: Option<f64>,
+    /// Largest helix angle; null without a flute.
     pub helix_max: Option<f64>,
     /// Nominal angle on the cylinder, by the job's law.
     pub helix: f64,
     /// The largest deviation from the job's law.
     pub helix_error: Option<f64>,
+    /// Tolerance of the helix angle, either way.
     pub helix_tolerance: f64,
     /// The length over which a helix angle is measured.
     pub gauge: f64,
     /// The largest deviation of a gap between neighbours from the nominal one.
     pub index_error: Option<f64>,
+    /// Tolerance of a gap, either way.
     pub index_tolerance: f64,
-    /// Of the contact along the flutes, mm/min, over a gauge length.
+    /// Least speed of the contact along the flutes, mm/min, over a gauge length.
     pub speed_min: Option<f64>,
+    /// The largest of these speeds.
     pub speed_max: Option<f64>,
     /// The speed that the job specifies, if it does.
     pub speed: Option<f64>,
@@ -52,24 +60,28 @@ pub struct FluteVerdict {
     pub speed_tolerance: f64,
     /// The least distance between the paths of neighbours, in a straight line.
     pub nearest: Option<f64>,
+    /// Number of grinding passes.
     pub passes: usize,
     /// Grinding moves of all passes.
     pub moves: usize,
     /// Always empty for a burr.
     pub holes: [(); 0],
+    /// Helix angles along a flute.
     pub laws: Vec<LawAngles>,
+    /// All findings.
     pub findings: Vec<Finding>,
-    /// What the verdict does not cover, in words.
+    /// Sentences on what the verdict does not cover.
     pub not_checked: Vec<String>,
-    /// For plots: the helix angle along the flute that is farthest from the law, and which pass that is, counted from 1.
+    /// Helix angle along the flute with the largest error.
     #[serde(skip)]
     pub helix_course: Vec<HelixSample>,
+    /// The pass of that flute, counted from 1.
     #[serde(skip)]
     pub course_pass: usize,
-    /// What neighbours' least distance may be: twice the chord error.
+    /// Least permitted distance of neighbours: twice the chord error.
     #[serde(skip)]
     pub min_nearest: f64,
-    /// The findings with their places, for people.
+    /// The findings with their places, for printing.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -78,31 +90,40 @@ pub struct FluteVerdict {
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 #[schemars(rename = "Law")]
 pub struct LawAngles {
+    /// Polar angle of the surface normal.
     #[serde(rename = "theta")]
     pub polar: f64,
     /// On the flute with the largest deviation from the law; null where it is not measured.
     pub measured: Option<f64>,
+    /// By the law of constant helix angle.
     pub constant_helix: f64,
+    /// By the published law.
     pub published: f64,
 }
 
 /// The result of `reference` for a burr: the nominal flutes, without a program.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct NominalFlutes {
+    /// Unit of all lengths.
     pub unit: &'static str,
     /// Always empty for a burr.
     pub holes: [(); 0],
+    /// Number of flutes.
     pub flutes: u32,
+    /// Law of the helix angle in the job.
     pub law: &'static str,
-    /// Start of the flutes from the end of the cylinder; `pole`: position of the pole along the axis.
+    /// Start of the flutes from the end of the cylinder.
     pub start: f64,
+    /// Position of the pole along the axis.
     pub pole: f64,
+    /// Polar angle at which flutes end, degrees.
     pub tip_angle: f64,
+    /// Helix angles along a flute.
     pub laws: Vec<LawAngles>,
 }
 
 impl FluteVerdict {
-    /// How many flutes there are, and what else is wrong, in one line.
+    /// Returns the number of flutes and the kinds of faults in one line.
     pub fn sentence(&self) -> String {
         let mut text = match self.flutes <= self.nominal_flutes {
             true => format!("{} of {} flutes ground", self.flutes, self.nominal_flutes),
@@ -110,13 +131,13 @@ impl FluteVerdict {
         };
         let mut mentioned: Vec<&str> = Vec::new();
         for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
-            let what = describe_kind(finding.kind).unwrap_or(&finding.code);
-            // The numbers say what is missing and what is too many.
+            let words = describe_kind(finding.kind).unwrap_or(&finding.code);
+            // The numbers show missing and extra flutes.
             let is_counted = [&FLUTE_MISSING, &FLUTE_EXTRA].contains(&finding.kind);
-            if !is_counted && !mentioned.contains(&what) {
-                mentioned.push(what);
+            if !is_counted && !mentioned.contains(&words) {
+                mentioned.push(words);
                 text.push_str(", ");
-                text.push_str(what);
+                text.push_str(words);
             }
         }
         text
@@ -148,16 +169,17 @@ pub fn describe_kind(kind: &FindingKind) -> Option<&'static str> {
 }
 
 impl NominalFlutes {
-    pub fn of(wanted: &Flutes) -> Self {
+    /// Returns the document of the nominal flutes.
+    pub fn of(nominal: &Flutes) -> Self {
         Self {
             unit: "mm",
             holes: [],
-            flutes: wanted.count,
-            law: wanted.law.name(),
-            start: wanted.start,
-            pole: wanted.profile.pole(),
-            tip_angle: wanted.tip_angle.0,
-            laws: law_table(wanted, &[]),
+            flutes: nominal.count,
+            law: nominal.law.name(),
+            start: nominal.start,
+            pole: nominal.profile.pole(),
+            tip_angle: nominal.tip_angle.0,
+            laws: law_table(nominal, &[]),
         }
     }
 }
@@ -165,66 +187,69 @@ impl NominalFlutes {
 /// A measured helix angle.
 #[derive(Clone, Copy, Debug)]
 pub struct HelixSample {
+    /// Polar angle of the surface normal.
     pub polar: Deg,
+    /// Helix angle there.
     pub helix: Deg,
 }
 
 /// The polar angles of the table; the tip angle comes last.
 const TABLE_ANGLES: [f64; 9] = [90.0, 75.0, 60.0, 45.0, 30.0, 20.0, 15.0, 10.0, 5.0];
 
+/// Makes the verdict of the findings.
 pub(super) fn verdict(
     inspection: &Inspection<'_>,
-    measured: bool,
     findings: Vec<Diagnostic>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> FluteVerdict {
-    let (wanted, ground, helix) = (inspection.nominal, inspection.actual, &inspection.helix);
-    let samples = ground.passes.iter().flat_map(|pass| &pass.trace.samples);
+    let (nominal, actual, worst) = (inspection.nominal, inspection.actual, inspection.worst_helix());
+    let (helix, speed) = (inspection.helix.as_ref(), inspection.speed.as_ref());
+    let samples = actual.passes.iter().flat_map(|pass| &pass.trace.samples);
     let fails = findings.iter().any(|finding| Severity::Error <= finding.severity);
-    let gauge = wanted.gauge;
-    let worst_pass = helix.worst.map_or(0, |worst| worst.pass);
-    let along: Vec<HelixSample> = ground.passes.get(worst_pass).map_or(Vec::new(), |pass| {
+    let gauge = nominal.gauge;
+    let worst_pass = worst.map_or(0, |worst| worst.pass);
+    let along: Vec<HelixSample> = actual.passes.get(worst_pass).map_or(Vec::new(), |pass| {
         let angles = |window: Window<'_>| HelixSample { polar: window.middle.polar, helix: window.helix };
         pass.trace.windows(gauge).map(angles).collect()
     });
     FluteVerdict {
         basis: "predicted by simulation, not measured",
         verdict: if fails { Answer::Fail } else { Answer::Pass },
-        law: wanted.law.name(),
+        law: nominal.law.name(),
         flutes: inspection.spacing.flutes.len(),
-        nominal_flutes: wanted.count as usize,
+        nominal_flutes: nominal.count as usize,
         surface_deviation: samples.map(|s| s.deviation.abs()).reduce(f64::max),
-        tolerance: wanted.surface_tolerance,
-        helix_min: measured.then_some(helix.min.0),
-        helix_max: measured.then_some(helix.max.0),
-        helix: wanted.helix.0,
-        helix_error: helix.worst.map(|worst| worst.error().0),
-        helix_tolerance: wanted.helix_tolerance.0,
+        tolerance: nominal.surface_tolerance,
+        helix_min: helix.map(|range| range.min),
+        helix_max: helix.map(|range| range.max),
+        helix: nominal.helix.0,
+        helix_error: worst.map(|worst| worst.error),
+        helix_tolerance: nominal.helix_tolerance.0,
         gauge,
         index_error: inspection.spacing.worst_gap.map(|gap| gap.error.0),
-        index_tolerance: wanted.index_tolerance.0,
-        speed_min: inspection.speed.as_ref().map(|range| range.min),
-        speed_max: inspection.speed.as_ref().map(|range| range.max),
-        speed: wanted.speed,
+        index_tolerance: nominal.index_tolerance.0,
+        speed_min: speed.map(|range| range.min),
+        speed_max: speed.map(|range| range.max),
+        speed: nominal.speed,
         speed_tolerance: SPEED_TOLERANCE,
         nearest: inspection.spacing.nearest_approach.map(|near| near.distance),
-        passes: ground.passes.len(),
-        moves: ground.passes.iter().map(|pass| pass.moves).sum(),
+        passes: actual.passes.len(),
+        moves: actual.passes.iter().map(|pass| pass.moves).sum(),
         holes: [],
-        laws: law_table(wanted, &along),
+        laws: law_table(nominal, &along),
         findings: findings.iter().map(|finding| finding_of(finding, None, false, locate)).collect(),
-        not_checked: not_checked(wanted, ground, locate),
+        not_checked: not_checked(nominal, actual, locate),
         helix_course: along,
         course_pass: worst_pass + 1,
-        min_nearest: 2.0 * wanted.chord_error,
+        min_nearest: 2.0 * nominal.chord_error,
         diagnostics: limit_per_kind(findings.into_iter()),
     }
 }
 
-/// What the verdict says nothing about.
+/// Returns sentences on what the verdict does not cover.
 fn not_checked(
-    wanted: &Flutes,
-    ground: &GrindingResult,
+    nominal: &Flutes,
+    actual: &GrindingResult,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Vec<String> {
     let mut all = vec![
@@ -234,53 +259,46 @@ fn not_checked(
         "the direction of the wheel's swivel B: only its angle is compared with the helix angle".to_owned(),
         "the wheel's direction of rotation: the job does not give it".to_owned(),
     ];
-    if wanted.speed.is_none() {
-        all.push("the speed along the flutes: the job has no program.speed".to_owned());
-    }
-    if wanted.wheel.is_none() {
-        all.push("the wheel's spindle speed: the job has no program.wheel".to_owned());
-    }
-    if wanted.plunge.is_none() {
-        all.push("the wheel's feed into the blank: the job has no program.plunge".to_owned());
-    }
-    if wanted.clearance.is_none() {
-        all.push(
+    let conditions = [
+        (nominal.speed.is_none(), "the speed along the flutes: the job has no program.speed"),
+        (nominal.wheel.is_none(), "the wheel's spindle speed: the job has no program.wheel"),
+        (nominal.plunge.is_none(), "the wheel's feed into the blank: the job has no program.plunge"),
+        (
+            nominal.clearance.is_none(),
             "the distance from the blank where rapid motion ends, except for contact: the job has no \
-             machine.clearance"
-                .to_owned(),
-        );
-    }
-    if ground.offset.is_none() {
-        all.push("the job's c_offset: the machine file has no axis C that rotates about z".to_owned());
-    }
-    let unseen = ground.unchecked_rapids;
-    if 0 < unseen {
-        let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
+             machine.clearance",
+        ),
+        (actual.offset.is_none(), "the job's c_offset: the machine file has no axis C that rotates about z"),
+    ];
+    all.extend(conditions.iter().filter(|(lacks, _)| *lacks).map(|(_, sentence)| (*sentence).to_owned()));
+    let unchecked = actual.unchecked_rapids;
+    if 0 < unchecked {
+        let moves = if unchecked == 1 { "1 move" } else { &format!("{unchecked} moves") };
         all.push(format!(
             "rapid motion up to where the wheel is first clear of the blank ({moves}): the axes' start \
              position is unknown"
         ));
     }
-    all.extend(
-        ground.unknown_work_zero.as_ref().map(|unplaced| unplaced.describe(locate(unplaced.backtrace.block))),
-    );
+    let unknown = actual.unknown_work_zero.as_ref();
+    all.extend(unknown.map(|unknown| unknown.describe(locate(unknown.backtrace.block))));
     all
 }
 
-fn law_table(wanted: &Flutes, along: &[HelixSample]) -> Vec<LawAngles> {
-    let tip = wanted.tip_angle.0;
+/// Returns the table of the laws, with the measured angles.
+fn law_table(nominal: &Flutes, along: &[HelixSample]) -> Vec<LawAngles> {
+    let tip = nominal.tip_angle.0;
     let all = TABLE_ANGLES.into_iter().filter(|polar| tip < *polar).chain([tip]);
     let at = |theta: f64| {
         let near = |one: &&HelixSample, other: &&HelixSample| {
             (one.polar.0 - theta).abs().total_cmp(&(other.polar.0 - theta).abs())
         };
-        // At its end a flute is measured half a gauge before it.
+        // The last window is half a gauge length before the end of the flute.
         let nearest = along.iter().min_by(near).filter(|angles| (angles.polar.0 - theta).abs() < 2.5);
         LawAngles {
             polar: theta,
             measured: nearest.map(|angles| angles.helix.0),
-            constant_helix: wanted.helix_angle(FluteLaw::ConstantHelix, Deg(theta)).0,
-            published: wanted.helix_angle(FluteLaw::Published, Deg(theta)).0,
+            constant_helix: nominal.helix_angle(FluteLaw::ConstantHelix, Deg(theta)).0,
+            published: nominal.helix_angle(FluteLaw::Published, Deg(theta)).0,
         }
     };
     all.map(at).collect()

@@ -1,69 +1,86 @@
 //! The job file of the family `pin-holes`: holes on an ellipsoid of revolution.
-mod file;
 mod tools;
 
-pub(super) use file::{File, FileMachine, FileSurface, parse};
+use std::collections::BTreeSet;
 
-use super::{JobControl, Rotary, SheetInfo};
+use schemars::{JsonSchema, Schema};
+use serde::Deserialize;
+use serde_json::json;
 
-/// Pin holes on an ellipsoid of revolution; lengths in mm, angles in degrees.
-#[derive(Clone, Debug, PartialEq)]
+pub use tools::Tool;
+
+use super::{
+    CLEARANCE, Family, FileError, HoleTolerance, JobControl, Reader, Rotary, RotaryLetter, SheetInfo,
+    check_retract, retract_height,
+};
+use crate::reader::bounds::{Azimuth, CommonVariable, Depth, Length, Radius, Retract, ToolLength};
+use crate::reader::{FileKey, Optional, Word, Words};
+
+/// Pin holes in a surface of revolution: drilled along its axis or its normals.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct PinHoles {
-    /// Control of the programs.
+    /// The kind of part, which decides the other keys.
+    #[serde(rename = "family")]
+    #[schemars(extend("enum" = ["pin-holes"]))]
+    _family: String,
+    /// The control of the programs.
     pub control: JobControl,
-    /// Machine.
+    /// The machine.
     pub machine: PinMachine,
-    /// Surface in which the holes begin.
+    /// The surface that the holes begin in.
     pub surface: Surface,
-    /// Diameter of the tolerance zone.
-    pub position_tolerance: f64,
-    /// Tolerance of a hole's depth, either way.
-    pub depth_tolerance: f64,
-    /// Tools in the order of use.
-    pub tools: Vec<Tool>,
-    /// True if the job specifies the tools; those of the paper do not constrain other programs.
-    pub are_tools_specified: bool,
-    /// Common variables of the macros.
-    pub macros: MacroSettings,
-    /// Holes in the order of drilling.
+    /// Tolerances of the holes.
+    pub tolerance: HoleTolerance,
+    /// The holes, in the order in which they are drilled.
+    #[serde(rename = "hole")]
+    #[schemars(length(min = 1))]
     pub holes: Vec<HoleSpec>,
+    /// The tools in the order of use [default: a drill and an end mill for each diameter].
+    #[serde(rename = "tool", default)]
+    #[schemars(length(min = 1))]
+    pub tools: Vec<Tool>,
+    /// The common variables of the macros.
+    #[serde(rename = "macro", default)]
+    pub macros: MacroSettings,
     /// Additional data for the set-up sheet.
+    #[serde(default)]
     pub sheet: SheetInfo,
+    /// True if the job specifies the tools; those of the paper do not constrain other programs.
+    #[serde(skip)]
+    pub(crate) are_tools_specified: bool,
 }
 
-/// Ellipsoid of revolution about y: (x² + z²)/a² + y²/b² = 1; lengths in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
-    /// Equatorial radius.
-    pub a: f64,
-    /// Polar radius, along the axis of revolution y.
-    pub b: f64,
-}
-
-/// Machine of a pin-hole or alignment job; lengths in mm.
-#[derive(Clone, Debug, PartialEq)]
+/// The machine of a job with a rotary table.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct PinMachine {
-    /// Rotary table.
+    /// The axis that rotates the part.
     pub rotary: Rotary,
-    /// Head that inclines the tool.
+    /// Head that inclines the tool [default: by hand].
+    #[serde(default)]
     pub head: Head,
-    /// Distance from the surface along the hole at which rapid motion becomes feed.
-    pub clearance: f64,
-    /// Distance from the surface along the hole to which the tool retracts before the rotary table rotates.
-    pub retract: f64,
-    /// True if the job specifies the retract height; a default does not constrain other programs.
-    pub is_retract_specified: bool,
-    /// True if the job specifies the clearance.
-    pub is_clearance_specified: bool,
+    /// Distance from the surface where the feed begins, mm [default: 2].
+    #[serde(default, with = "Optional::<Depth>")]
+    pub(crate) clearance: Option<f64>,
+    /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
+    #[serde(default, with = "Optional::<Retract>")]
+    pub(crate) retract: Option<f64>,
 }
 
 /// A head that inclines the tool in the xy plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(transform = letter_goes_with_axis)]
 pub struct Head {
-    /// Manual setting or axis.
-    pub kind: HeadKind,
-    /// Distance from the pivot to the gauge line of the spindle. With `pivot = 0` and tools of length 0 the
-    /// programmed point is the tool's tip, which is set again after each rotation of the head.
+    /// manual: an operator sets it at a stop; axis: an axis of the control.
+    #[serde(rename = "kind", with = "Word::<HeadKind>")]
+    is_axis: bool,
+    /// The axis of a head of kind axis.
+    #[serde(default, with = "Optional::<Word<RotaryLetter>>")]
+    letter: Option<char>,
+    /// From the head's pivot to the spindle's gauge line, mm.
+    #[serde(default = "ToolLength::default", with = "ToolLength")]
     pub pivot: f64,
 }
 
@@ -76,30 +93,53 @@ pub enum HeadKind {
     Axis(char),
 }
 
-/// A tool; lengths in mm.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tool {
-    /// Number of the tool and of its length offset.
-    pub number: u32,
-    /// Diameter.
-    pub diameter: f64,
-    /// Distance from the gauge line of the spindle to the tip.
-    pub length: f64,
-    /// Spindle speed, r/min.
-    pub speed: f64,
-    /// Feed into the hole, mm/min.
-    pub feed: f64,
-    /// Feed out of the hole, mm/min.
-    pub retract_feed: f64,
-    /// Name in messages and on the set-up sheet.
-    pub name: String,
+/// Ellipsoid of revolution about y: (x² + z²)/a² + y²/b² = 1.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Surface {
+    /// An ellipsoid of revolution.
+    #[serde(rename = "kind", with = "Word::<SurfaceKind>")]
+    _kind: SurfaceKind,
+    /// Equatorial radius, mm.
+    #[serde(with = "Length")]
+    pub a: f64,
+    /// Polar radius, mm.
+    #[serde(with = "Length")]
+    pub b: f64,
 }
 
-/// Common variables of the macros.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MacroSettings {
-    /// First of two common variables: the specified head angle, and the set one.
-    pub common: u32,
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum SurfaceKind {
+    Ellipsoid,
+}
+
+/// A hole.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HoleSpec {
+    /// Its name, unique.
+    pub id: String,
+    /// Distance of its entry from the axis of revolution, mm: at most the equatorial radius.
+    #[serde(with = "Radius")]
+    pub radius: f64,
+    /// Azimuth about that axis, degrees.
+    #[serde(with = "Azimuth")]
+    pub azimuth: f64,
+    /// axial: along the axis of revolution; normal: along the surface's normal.
+    #[serde(with = "Word::<AxisDirection>")]
+    pub axis: AxisDirection,
+    /// Diameter, mm.
+    #[serde(with = "Length")]
+    pub diameter: f64,
+    /// From the surface along the axis, mm.
+    #[serde(with = "Depth")]
+    pub depth: f64,
+    /// The numbers of the tools that make it [default: every tool that is not larger than it].
+    #[serde(rename = "tools")]
+    pub(crate) named_tools: Option<Vec<i64>>,
+    /// Numbers of the tools in the order of use; the last one has the hole's diameter.
+    #[serde(skip)]
+    pub tools: Vec<u32>,
 }
 
 /// Direction of a hole's axis.
@@ -111,23 +151,136 @@ pub enum AxisDirection {
     Normal,
 }
 
-/// A hole as the job specifies it; lengths in mm, angles in degrees.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HoleSpec {
-    /// Unique name.
-    pub id: String,
-    /// Distance of the entry from the axis of revolution.
-    pub radius: f64,
-    /// Azimuth about the axis of revolution.
-    pub azimuth: f64,
-    /// Direction of the axis.
-    pub axis: AxisDirection,
-    /// Diameter.
-    pub diameter: f64,
-    /// Depth from the surface along the axis.
-    pub depth: f64,
-    /// Numbers of the tools in the order of use; the last one has the hole's diameter.
-    pub tools: Vec<u32>,
+/// Common variables of the macros.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MacroSettings {
+    /// The first of two common variables: 100 to 198 or 500 to 998.
+    #[serde(with = "CommonVariable")]
+    pub common: u32,
+}
+
+impl Default for MacroSettings {
+    fn default() -> Self {
+        Self { common: CommonVariable::default() }
+    }
+}
+
+impl Words for HeadKind {
+    type Value = bool;
+
+    fn all() -> Vec<(&'static str, bool)> {
+        vec![("manual", false), ("axis", true)]
+    }
+}
+
+impl Words for SurfaceKind {
+    type Value = Self;
+
+    fn all() -> Vec<(&'static str, Self)> {
+        vec![("ellipsoid", Self::Ellipsoid)]
+    }
+}
+
+impl Words for AxisDirection {
+    type Value = Self;
+
+    fn all() -> Vec<(&'static str, Self)> {
+        vec![("axial", Self::Axial), ("normal", Self::Normal)]
+    }
+}
+
+/// Adds the rule that `letter` belongs to a head of kind axis and to no other.
+fn letter_goes_with_axis(schema: &mut Schema) {
+    let of = |kind: &str| json!({ "kind": { "enum": [kind] } });
+    let cases = json!([
+        { "properties": of("axis"), "required": ["letter"] },
+        { "properties": of("manual"), "not": { "required": ["letter"] } },
+    ]);
+    schema.insert("oneOf".to_owned(), cases);
+}
+
+impl Default for Head {
+    fn default() -> Self {
+        Self { is_axis: false, letter: None, pivot: ToolLength::default() }
+    }
+}
+
+impl Head {
+    /// Returns the setting of the head.
+    pub fn kind(&self) -> HeadKind {
+        self.letter.map_or(HeadKind::Manual, HeadKind::Axis)
+    }
+}
+
+impl PinMachine {
+    /// Returns the distance from the surface along the hole at which rapid motion becomes feed, mm.
+    pub fn clearance(&self) -> f64 {
+        self.clearance.unwrap_or(CLEARANCE)
+    }
+
+    /// Returns the distance from the surface along the hole to which the tool retracts before the rotary
+    /// table rotates, mm.
+    pub fn retract(&self) -> f64 {
+        retract_height(self.retract, self.clearance())
+    }
+
+    pub(super) fn check(&self, reader: &Reader<'_>) -> Result<(), FileError> {
+        let key = "machine.head.letter";
+        match (self.head.letter, self.head.is_axis) {
+            (Some(_), false) => {
+                return Err(reader.error_at(key, format!("key '{key}' is for kind = \"axis\" only")));
+            }
+            (None, true) => {
+                let message = format!("kind = \"axis\" needs the key '{key}': A, B or C");
+                return Err(reader.error_at("machine.head.kind", message));
+            }
+            (Some(letter), true) if letter == self.rotary.letter => {
+                let message = format!("key '{key}' is {letter}, the letter of the rotary table");
+                return Err(reader.error_at(key, message));
+            }
+            (Some(_), true) | (None, false) => {}
+        }
+        check_retract(reader, self.retract(), self.clearance())
+    }
+}
+
+impl Family for PinHoles {
+    fn check(&mut self, reader: &Reader<'_>) -> Result<(), FileError> {
+        if self.holes.is_empty() {
+            return Err(FileError { line: None, message: "no holes: add a [[hole]]".into() });
+        }
+        let mut ids = BTreeSet::new();
+        if let Some(index) = self.holes.iter().position(|hole| !ids.insert(&hole.id)) {
+            let message = format!("key 'hole.id': '{}' is used twice", self.holes[index].id);
+            return Err(reader.error_at(&format!("hole.{index}.id"), message));
+        }
+        self.are_tools_specified = reader.has("tool");
+        match self.are_tools_specified {
+            true => self.assign_tools(reader)?,
+            false => self.add_default_tools(reader)?,
+        }
+        for (index, hole) in self.holes.iter().enumerate() {
+            self.surface.check_radius(reader, &format!("hole.{index}.radius"), hole.radius)?;
+        }
+        self.machine.check(reader)
+    }
+}
+
+impl Surface {
+    /// Returns the y of the surface over (x, 0, 0) and the x and y of its normal there.
+    pub(super) fn section(&self, x: f64) -> (f64, [f64; 2]) {
+        let y = self.b * (1.0 - (x / self.a) * (x / self.a)).sqrt();
+        let (across, up) = (x / (self.a * self.a), y / (self.b * self.b));
+        let length = (across * across + up * up).sqrt();
+        (y, [across / length, up / length])
+    }
+
+    /// Checks that a point at this distance from the axis of revolution is on the surface.
+    pub(super) fn check_radius(&self, reader: &Reader<'_>, key: &str, radius: f64) -> Result<(), FileError> {
+        let allowed = format_args!("0 to the equatorial radius a = {} mm", self.a);
+        reader.check((0.0..=self.a).contains(&radius), key, radius, allowed)
+    }
 }
 
 #[cfg(test)]
@@ -136,7 +289,7 @@ mod tests {
     use crate::job::Job;
 
     /// Parses the smallest job with one replacement and returns its error message, or "no error".
-    fn told(from: &str, to: &str) -> String {
+    fn message(from: &str, to: &str) -> String {
         let job = MINIMAL.replace(from, to);
         assert_ne!(job, MINIMAL, "'{from}' is not in the job");
         match Job::parse(&job) {
@@ -203,14 +356,14 @@ depth = 15.0
                  hole, tool, macro, sheet",
             ),
         ] {
-            assert_eq!(told(from, to), message, "{from:?} -> {to:?}");
+            assert_eq!(self::message(from, to), message, "{from:?} -> {to:?}");
         }
     }
 
     proptest::proptest! {
         /// A mistyped job is an error with a message, or a job; never a panic.
         #[test]
-        fn a_mistyped_job_is_told_or_read(place in 0usize..270, gone in 0usize..9, typed in "[ -~\n]{0,4}") {
+        fn a_mistyped_job_is_refused_or_read(place in 0usize..270, gone in 0usize..9, typed in "[ -~\n]{0,4}") {
             let start = place.min(MINIMAL.len());
             let end = (start + gone).min(MINIMAL.len());
             let text = format!("{}{typed}{}", &MINIMAL[..start], &MINIMAL[end..]);

@@ -1,150 +1,132 @@
 //! The tools of a pin-hole job and their assignment to holes.
+use std::collections::BTreeSet;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Tool;
+use super::PinHoles;
 use crate::job::{FileError, Reader};
-use crate::reader::Spanned;
-use crate::reader::bounds::{Bounded, FeedRate, Length, SpindleSpeed, ToolLength, ToolNumber};
+use crate::reader::bounds::{FeedRate, Length, SpindleSpeed, ToolLength, ToolNumber};
+use crate::reader::{FileKey, Optional};
 
 /// A tool.
-#[derive(Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct FileTool {
+pub struct Tool {
     /// Its number, and that of its length offset; unique.
-    number: Bounded<ToolNumber>,
-    /// mm.
-    diameter: Bounded<Length>,
-    /// From the gauge line to the tip, mm [default: 0].
-    length: Option<Bounded<ToolLength>>,
-    /// A whole number of r/min.
-    speed: Bounded<SpindleSpeed>,
-    /// Into the hole, mm/min.
-    feed: Bounded<FeedRate>,
-    /// Out of the hole, mm/min [default: 200, or feed if that is more].
-    retract_feed: Option<Bounded<FeedRate>>,
+    #[serde(with = "ToolNumber")]
+    pub number: u32,
+    /// Diameter, mm.
+    #[serde(with = "Length")]
+    pub diameter: f64,
+    /// Length from the gauge line to the tip, mm.
+    #[serde(default = "ToolLength::default", with = "ToolLength")]
+    pub length: f64,
+    /// Spindle speed, a whole number of r/min.
+    #[serde(with = "SpindleSpeed")]
+    pub speed: f64,
+    /// Feed into the hole, mm/min.
+    #[serde(with = "FeedRate")]
+    pub feed: f64,
+    /// Feed out of the hole, mm/min [default: 200, or feed if that is more].
+    #[serde(default, with = "Optional::<FeedRate>")]
+    retract_feed: Option<f64>,
     /// Its name in messages and on the sheet [default: TOOL and its number].
     name: Option<String>,
 }
 
-/// The keys of a hole that select its tools.
-pub(super) struct HoleToolSpec<'f> {
-    pub(super) id: &'f str,
-    pub(super) diameter: &'f Bounded<Length>,
-    pub(super) tools: Option<&'f Spanned<Vec<i64>>>,
-}
-
-/// Feed into the hole in the paper, mm/min.
-const DEFAULT_FEED: f64 = 10.0;
-/// Feed out of the hole, mm/min; the tool does not cut there.
-const DEFAULT_RETRACT_FEED: f64 = 200.0;
-/// Speed in the paper, r/min.
-const DEFAULT_SPEED: f64 = 1500.0;
-
-impl FileTool {
-    pub(super) fn tool(&self) -> Tool {
-        let (number, feed) = (self.number.get(), self.feed.get());
-        Tool {
-            number: number as u32,
-            diameter: self.diameter.get(),
-            length: self.length.as_ref().map_or(0.0, Bounded::get),
-            speed: self.speed.get(),
-            feed,
-            retract_feed: self.retract_feed.as_ref().map_or(feed.max(DEFAULT_RETRACT_FEED), Bounded::get),
-            name: self.name.clone().unwrap_or_else(|| format!("TOOL {number}")),
-        }
+impl Tool {
+    /// Returns the feed out of the hole, mm/min; the tool does not cut there.
+    pub fn retract_feed(&self) -> f64 {
+        self.retract_feed.unwrap_or(self.feed.max(200.0))
     }
 
-    pub(super) fn number(&self) -> &Bounded<ToolNumber> {
-        &self.number
+    /// Returns the name in messages and on the set-up sheet.
+    pub fn name(&self) -> String {
+        self.name.clone().unwrap_or_else(|| format!("TOOL {}", self.number))
     }
 }
 
-/// Returns the tools of the paper, a pair for each diameter of the job, and the tool numbers of each hole.
-///
-/// The paper uses a drill Φ5.9, then a three-flute end mill Φ6, at 1500 r/min and 10 mm/min along the axis.
-pub(super) fn default_tools(
-    reader: &Reader<'_>,
-    holes: &[HoleToolSpec<'_>],
-) -> Result<(Vec<Tool>, Vec<Vec<u32>>), FileError> {
-    let mut diameters: Vec<f64> = Vec::new();
-    let mut of_holes = Vec::new();
-    for hole in holes {
-        if let Some(tools) = hole.tools {
-            return Err(reader.error(tools, "key 'hole.tools' names tools of [[tool]], but there are none"));
+impl PinHoles {
+    /// Adds the tools of the paper, a pair for each diameter of the job.
+    ///
+    /// The paper uses a drill Φ5.9, then a three-flute end mill Φ6, at 1500 r/min and 10 mm/min along the axis.
+    pub(super) fn add_default_tools(&mut self, reader: &Reader<'_>) -> Result<(), FileError> {
+        let mut diameters: Vec<f64> = Vec::new();
+        for (place, hole) in self.holes.iter_mut().enumerate() {
+            if hole.named_tools.is_some() {
+                let message = "key 'hole.tools' names tools of [[tool]], but there are none";
+                return Err(reader.error_at(&format!("hole.{place}.tools"), message));
+            }
+            let index = diameters.iter().position(|d| *d == hole.diameter).unwrap_or_else(|| {
+                diameters.push(hole.diameter);
+                diameters.len() - 1
+            });
+            let first = 2 * index as u32 + 1;
+            hole.tools = vec![first, first + 1];
         }
-        let diameter = hole.diameter.get();
-        let index = diameters.iter().position(|d| *d == diameter).unwrap_or_else(|| {
-            diameters.push(diameter);
-            diameters.len() - 1
+        let pairs = diameters.iter().zip((1u32..).step_by(2)).flat_map(|(diameter, first)| {
+            // Rounded to tenths of a micrometre, so that 6 gives 5.9 and not 5.8999….
+            let drill = if *diameter > 1.0 { (diameter * 1e4 - 1e3).round() / 1e4 } else { diameter * 0.9 };
+            [tool(first, drill, "DRILL"), tool(first + 1, *diameter, "END MILL")]
         });
-        let first = 2 * index as u32 + 1;
-        of_holes.push(vec![first, first + 1]);
+        self.tools = pairs.collect();
+        Ok(())
     }
-    let tools = diameters.iter().enumerate().flat_map(|(index, diameter)| {
-        let first = 2 * index as u32 + 1;
-        // Rounded to tenths of a micrometre, so that 6 gives 5.9 and not 5.8999….
-        let drill = if *diameter > 1.0 { (diameter * 1e4 - 1e3).round() / 1e4 } else { diameter * 0.9 };
-        [tool(first, drill, "DRILL"), tool(first + 1, *diameter, "END MILL")]
-    });
-    Ok((tools.collect(), of_holes))
+
+    /// Assigns to each hole the tools that it names, else every tool that is not larger than it.
+    ///
+    /// # Errors
+    /// The last tool of a hole has another diameter, which would leave the hole too small or cut it too large.
+    pub(super) fn assign_tools(&mut self, reader: &Reader<'_>) -> Result<(), FileError> {
+        let tools = &self.tools;
+        if tools.is_empty() {
+            return Err(reader.error_at("hole.0.id", "'tool' is empty: remove it, or add a [[tool]]"));
+        }
+        let mut numbers = BTreeSet::new();
+        if let Some(index) = tools.iter().position(|tool| !numbers.insert(tool.number)) {
+            let message = format!("key 'tool.number': {} is used twice", tools[index].number);
+            return Err(reader.error_at(&format!("tool.{index}.number"), message));
+        }
+        for (place, hole) in self.holes.iter_mut().enumerate() {
+            let names = |tool: &Tool, named: &[i64]| named.contains(&i64::from(tool.number));
+            let of_hole: Vec<&Tool> = match &hole.named_tools {
+                Some(named) => {
+                    let is_known = |number: &i64| tools.iter().any(|tool| names(tool, &[*number]));
+                    if let Some(number) = named.iter().find(|number| !is_known(number)) {
+                        let message =
+                            format!("key 'hole.tools' names tool {number}, which is not in [[tool]]");
+                        return Err(reader.error_at(&format!("hole.{place}.tools"), message));
+                    }
+                    tools.iter().filter(|tool| names(tool, named)).collect()
+                }
+                None => tools.iter().filter(|tool| tool.diameter <= hole.diameter).collect(),
+            };
+            let diameter = hole.diameter;
+            let allowed = match of_hole.last() {
+                Some(last) => format!(
+                    "the last tool of hole '{}' is tool {} of diameter {}; add a [[tool]] of diameter \
+                     {diameter} as the last one",
+                    hole.id, last.number, last.diameter
+                ),
+                None => format!("every [[tool]] is larger; add one of diameter {diameter}"),
+            };
+            let is_made = of_hole.last().is_some_and(|last| last.diameter == diameter);
+            reader.check(is_made, &format!("hole.{place}.diameter"), diameter, allowed)?;
+            hole.tools = of_hole.iter().map(|tool| tool.number).collect();
+        }
+        Ok(())
+    }
 }
 
 fn tool(number: u32, diameter: f64, name: &str) -> Tool {
     Tool {
         number,
         diameter,
-        length: 0.0,
-        speed: DEFAULT_SPEED,
-        feed: DEFAULT_FEED,
-        retract_feed: DEFAULT_RETRACT_FEED,
-        name: name.to_owned(),
-    }
-}
-
-/// Returns the tool numbers of each hole: those it names, else every tool that is not larger than it.
-///
-/// # Errors
-/// The last tool of a hole has another diameter, which would leave the hole too small or cut it too large.
-pub(super) fn assign(
-    reader: &Reader<'_>,
-    tools: &[Tool],
-    holes: &[HoleToolSpec<'_>],
-) -> Result<Vec<Vec<u32>>, FileError> {
-    holes.iter().map(|hole| assign_one(reader, tools, hole)).collect()
-}
-
-fn assign_one(reader: &Reader<'_>, tools: &[Tool], hole: &HoleToolSpec<'_>) -> Result<Vec<u32>, FileError> {
-    let diameter = hole.diameter.get();
-    let numbers: Vec<u32> = match hole.tools {
-        Some(named) => {
-            for number in named.as_ref() {
-                if !tools.iter().any(|tool| i64::from(tool.number) == *number) {
-                    let message = format!("key 'hole.tools' names tool {number}, which is not in [[tool]]");
-                    return Err(reader.error(named, message));
-                }
-            }
-            let order = tools.iter().filter(|tool| named.as_ref().contains(&i64::from(tool.number)));
-            order.map(|tool| tool.number).collect()
-        }
-        None => tools.iter().filter(|tool| tool.diameter <= diameter).map(|tool| tool.number).collect(),
-    };
-    let last = numbers.last().and_then(|number| tools.iter().find(|tool| tool.number == *number));
-    match last {
-        Some(tool) if tool.diameter == diameter => Ok(numbers),
-        Some(tool) => Err(reader.error(
-            hole.diameter,
-            format!(
-                "key 'hole.diameter' is {diameter}: the last tool of hole '{}' is tool {} of diameter {}; \
-                 add a [[tool]] of diameter {diameter} as the last one",
-                hole.id, tool.number, tool.diameter
-            ),
-        )),
-        None => Err(reader.error(
-            hole.diameter,
-            format!(
-                "key 'hole.diameter' is {diameter}: every [[tool]] is larger; add one of diameter {diameter}"
-            ),
-        )),
+        length: ToolLength::default(),
+        speed: 1500.0,
+        feed: 10.0,
+        retract_feed: None,
+        name: Some(name.to_owned()),
     }
 }

@@ -1,18 +1,29 @@
-//! Between the passes the wheel's contact stays off the burr: off the blank in rapid motion, and in a feed too but
-//! straight in where a pass begins and straight out where one ends.
-use super::super::Inspection;
+//! Contact of the wheel with the burr between two passes: rapids stay off the blank, feeds lead straight in where a pass
+//! begins and straight out where it ends.
+use super::*;
 use crate::findings::{WHEEL_INTO_BURR, WHEEL_NEAR_BURR};
 use crate::flutes::CollisionKind;
-use gcode_lang::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    for dive in &inspection.actual.collisions {
-        let depth = dive.depth;
-        let message = match dive.kind {
+    for collision in &inspection.actual.collisions {
+        let (depth, again) = (collision.depth, collision.count - 1);
+        let mut kind = &WHEEL_INTO_BURR;
+        let mut help = "move Y clear of the burr first, then rotate A and C";
+        let mut note = (0 < again).then(|| format!("and {again} more of this block"));
+        let message = match collision.kind {
             CollisionKind::Rapid => {
                 format!("rapid motion with the wheel in the blank, {depth:.3} mm below its surface")
             }
             CollisionKind::RapidPass(_) => {
+                help = "grind with G01: G00 stays in force until another motion code";
+                note = match (again, collision.moves - 1) {
+                    (0, 0) => None,
+                    (0, more) => Some(format!("and {more} more moves of this pass")),
+                    (again, more) => Some(format!(
+                        "{} moves of this pass and {again} more that begin at this block",
+                        more + 1
+                    )),
+                };
                 format!(
                     "rapid motion along a flute with the wheel in the blank, {depth:.3} mm below its surface"
                 )
@@ -25,6 +36,8 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                  {depth:.3} mm below the blank surface"
             ),
             CollisionKind::LowClearance => {
+                kind = &WHEEL_NEAR_BURR;
+                help = "end it at machine.clearance from the blank, or correct that in the job";
                 format!(
                     "the rapid ends with the wheel {:.3} mm off the blank; the job specifies {} mm",
                     -depth,
@@ -35,45 +48,10 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 format!("the wheel is fed {depth:.3} mm below the blank surface where no pass begins")
             }
         };
-        let help = match dive.kind {
-            CollisionKind::RapidPass(_) => "grind with G01: G00 stays in force until another motion code",
-            CollisionKind::LowClearance => {
-                "end it at machine.clearance from the blank, or correct that in the job"
-            }
-            CollisionKind::Rapid
-            | CollisionKind::BelowToothBottom
-            | CollisionKind::Sideways(_)
-            | CollisionKind::PlungeWithoutPass => "move Y clear of the burr first, then rotate A and C",
-        };
-        let again = dive.count - 1;
-        let note = match dive.kind {
-            CollisionKind::RapidPass(_) => match again {
-                0 => Some(dive.moves - 1)
-                    .filter(|more| 0 < *more)
-                    .map(|more| format!("and {more} more moves of this pass")),
-                more => Some(format!(
-                    "{} moves of this pass and {more} more that begin at this block",
-                    dive.moves
-                )),
-            },
-            CollisionKind::Rapid
-            | CollisionKind::BelowToothBottom
-            | CollisionKind::Sideways(_)
-            | CollisionKind::PlungeWithoutPass
-            | CollisionKind::LowClearance => (0 < again).then(|| format!("and {again} more of this block")),
-        };
-        let finding = match dive.kind {
-            CollisionKind::LowClearance => Diagnostic::new(&WHEEL_NEAR_BURR, message),
-            CollisionKind::Rapid
-            | CollisionKind::RapidPass(_)
-            | CollisionKind::BelowToothBottom
-            | CollisionKind::Sideways(_)
-            | CollisionKind::PlungeWithoutPass => Diagnostic::new(&WHEEL_INTO_BURR, message),
-        };
-        let finding = finding
+        let finding = Diagnostic::new(kind, message)
             .help(help)
-            .with_backtrace(dive.backtrace.clone())
-            .with_sites([Site::new(None, dive.point)]);
+            .with_backtrace(collision.backtrace.clone())
+            .with_sites([Site::new(None, collision.point)]);
         findings.push(note.into_iter().fold(finding, Diagnostic::note));
     }
 }

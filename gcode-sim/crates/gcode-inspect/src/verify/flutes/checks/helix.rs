@@ -1,100 +1,95 @@
-//! The helix angle along every flute is that of the law asked for.
-use super::super::common::helix_hand;
-use super::super::{CommonDeviation, Inspection};
+//! Helix angle along each flute: that of the job's law.
+use super::super::common::{CommonDeviation, helix_hand};
+use super::*;
 use crate::findings::FLUTE_HELIX;
-use crate::flutes::GrindingPass;
-use gcode_lang::diag::{Diagnostic, Site};
 use gcode_lang::units::Deg;
-use gcode_part::job::FluteLaw;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let tolerance = inspection.nominal.helix_tolerance;
-    let Some(worst) = inspection.helix.worst.filter(|worst| tolerance < worst.error()) else { return };
-    let pass = &inspection.actual.passes[worst.pass];
+    let tolerance = inspection.nominal.helix_tolerance.0;
+    let Some(worst) = inspection.worst_helix().filter(|worst| tolerance < worst.error) else { return };
+    let Some(range) = &inspection.helix else { return };
     let here = format!(
-        "{} has a helix angle of {:.2}° at polar angle {:.1}°, nominal {:.2}° (tolerance ±{}°)",
+        "{} has a helix angle of {:.2}° at polar angle {:.1}°, nominal {:.2}° (tolerance ±{tolerance}°)",
         inspection.pass_name(worst.pass),
-        worst.actual.0,
+        worst.actual,
         worst.polar.0,
-        worst.nominal.0,
-        tolerance.0
+        worst.nominal
     );
-    let mut all: Vec<_> = inspection.helix.worst_by_pass.iter().filter(|w| tolerance < w.error()).collect();
-    let error = |message: String| Diagnostic::new(&FLUTE_HELIX, message);
-    let finding = match common_error(inspection) {
-        Some((message, help)) => describe_heads(inspection)
-            .into_iter()
-            .fold(error(message).note(here).help(help), Diagnostic::note),
+    let mut wrong: Vec<_> = range.worst_by_pass.iter().filter(|worst| tolerance < worst.error).collect();
+    let (finding, note) = match common_error(inspection) {
+        Some((message, help)) => {
+            let finding = Diagnostic::new(&FLUTE_HELIX, message).note(here).help(help);
+            (finding, describe_heads(inspection))
+        }
         None => {
-            let finding =
-                error(here).help("check how A is computed, in degrees, and its sign in the machine file");
-            match all.len() - 1 {
-                0 => finding,
-                more => finding
-                    .note(format!("out of tolerance in {more} more passes; this pass has the largest error")),
-            }
+            let note = (1 < wrong.len()).then(|| {
+                let more = wrong.len() - 1;
+                format!("out of tolerance in {more} more passes; this pass has the largest error")
+            });
+            let help = "check how A is computed, in degrees, and its sign in the machine file";
+            (Diagnostic::new(&FLUTE_HELIX, here).help(help), note)
         }
     };
-    let place = worst.backtrace(&pass.trace, inspection.nominal.gauge).unwrap_or(&pass.backtrace);
-    all.sort_by(|one, other| other.error().0.total_cmp(&one.error().0));
-    let sites = all.into_iter().map(|worst| Site::new(Some(worst.pass), worst.point));
+    let pass = &inspection.actual.passes[worst.pass];
+    let place = worst.helix_backtrace(&pass.trace, inspection.nominal.gauge).unwrap_or(&pass.backtrace);
+    wrong.sort_by(|one, other| other.error.total_cmp(&one.error));
+    let sites = wrong.into_iter().map(|worst| Site::new(Some(worst.pass), worst.point));
+    let finding = note.into_iter().fold(finding, Diagnostic::note);
     findings.push(finding.with_backtrace(place.clone()).with_sites(sites));
 }
 
-/// What all flutes have instead, all along, and what to look at.
+/// Returns the deviation that all flutes share, and the help.
 fn common_error(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
-    let wanted = inspection.nominal;
-    let flutes = match inspection.spacing.flutes.len() {
-        1 => "the flute has".to_owned(),
-        all => format!("all {all} flutes have"),
-    };
+    let nominal = inspection.nominal;
+    let flutes = inspection.all_flutes("have", "has");
     Some(match inspection.common_deviation? {
-        CommonDeviation::OtherLaw => {
-            let other = match wanted.law {
-                FluteLaw::ConstantHelix => FluteLaw::Published,
-                FluteLaw::Published => FluteLaw::ConstantHelix,
-            };
-            let (other, asked) = (other.name(), wanted.law.name());
-            (
-                format!("{flutes} the helix angle of the law '{other}'; the job specifies '{asked}'"),
-                "compute A by the job's law (H of the call)",
-            )
-        }
-        CommonDeviation::OtherHelix(helix) if helix.0 * wanted.helix.0 < 0.0 => (
+        CommonDeviation::OtherLaw => (
+            format!(
+                "{flutes} the helix angle of the law '{}'; the job specifies '{}'",
+                other_law(nominal.law).name(),
+                nominal.law.name()
+            ),
+            "compute A by the job's law (H of the call)",
+        ),
+        CommonDeviation::OtherHelix(helix) if helix.0 * nominal.helix.0 < 0.0 => (
             format!(
                 "{flutes} the wrong hand: {}, with a helix of {:.1}°, nominal {:.1}°, {}",
                 helix_hand(helix),
                 helix.0,
-                wanted.helix.0,
-                helix_hand(wanted.helix)
+                nominal.helix.0,
+                helix_hand(nominal.helix)
             ),
             "check the sign of A, and that of the helix angle in the program: A rotates in the opposite direction",
         ),
         CommonDeviation::OtherHelix(helix) => (
-            format!("{flutes} a helix of {:.1}°, nominal {:.1}°", helix.0, wanted.helix.0),
+            format!("{flutes} a helix of {:.1}°, nominal {:.1}°", helix.0, nominal.helix.0),
             "check the helix angle and the radius that A is computed from, and that A is in degrees",
         ),
         CommonDeviation::GroundHigh => (
-            format!("{flutes} the wrong helix angle on the nominal diameter, nominal {:.1}°", wanted.helix.0),
+            format!(
+                "{flutes} the wrong helix angle on the nominal diameter, nominal {:.1}°",
+                nominal.helix.0
+            ),
             "correct the ground diameter, on which the angle is nominal: see flute-surface",
         ),
     })
 }
 
-/// Where all heads stand at the angle that all flutes have: that they do isn't told by itself.
+/// Returns a note on heads that are set to the angle of the flutes: they have no finding of their own.
 fn describe_heads(inspection: &Inspection<'_>) -> Option<String> {
     let Some(CommonDeviation::OtherHelix(helix)) = inspection.common_deviation else { return None };
     do_heads_match(inspection).then(|| format!("the head B is also set to {:.1}° in all passes", helix.0))
 }
 
-/// Whether every pass has its head at the helix angle that all flutes have instead of the wanted one.
+/// Returns true if every pass has its head at the helix angle of all flutes instead of the nominal one.
 pub(super) fn do_heads_match(inspection: &Inspection<'_>) -> bool {
     let Some(CommonDeviation::OtherHelix(helix)) = inspection.common_deviation else { return false };
     let tolerance = inspection.nominal.helix_tolerance;
-    let there = |angle: Deg| (angle - helix).abs() <= tolerance;
-    let stands = |pass: &GrindingPass| {
-        pass.head_range.is_some_and(|(least, most)| there(least) && there(most) && most.0 - least.0 <= 1e-9)
+    let is_at_helix = |angle: Deg| (angle - helix).abs() <= tolerance;
+    let matches = |pass: &GrindingPass| {
+        let range = pass.head_range;
+        range.is_some_and(|(min, max)| is_at_helix(min) && is_at_helix(max) && max.0 - min.0 <= 1e-9)
     };
-    inspection.helix.worst.is_some_and(|worst| tolerance < worst.error())
-        && inspection.actual.passes.iter().all(stands)
+    inspection.worst_helix().is_some_and(|worst| tolerance.0 < worst.error)
+        && inspection.actual.passes.iter().all(matches)
 }

@@ -1,4 +1,4 @@
-//! The checks on flutes: one file each, one line here.
+//! The checks on flutes: one file each, one line here. All of them share the imports of this file.
 mod count;
 mod dive;
 mod ends;
@@ -14,12 +14,17 @@ mod turning;
 mod twice;
 mod wheel;
 
-use super::Inspection;
-use crate::flutes::{FirstOccurrence, GrindingPass};
-use gcode_lang::diag::{Diagnostic, Site};
+use nalgebra::Point3;
 
+use super::Inspection;
+use crate::flutes::{FirstOccurrence, GrindingPass, Sample, other_law};
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
+use gcode_part::Flutes;
+
+/// A check adds its findings.
 type Check = fn(&Inspection<'_>, &mut Vec<Diagnostic>);
 
+/// The checks, in the order of their findings.
 pub(super) const ALL: &[Check] = &[
     offset::check,
     signs::check,
@@ -37,21 +42,18 @@ pub(super) const ALL: &[Check] = &[
     dive::check,
 ];
 
-/// One finding on all passes that are wrong, in the words of the first: a loop makes every flute wrong alike. `wrong` says
-/// what of a pass is, at which block and where on the burr.
+/// Returns one finding for all passes with a fault, in the words of the first: a loop repeats it in every flute. `fault`
+/// returns the fault of a pass, its block and its point on the burr.
 fn report_passes<'g, T>(
     inspection: &Inspection<'g>,
     fault: impl Fn(&'g GrindingPass) -> Option<(T, FirstOccurrence)>,
     finding: impl FnOnce(T) -> Diagnostic,
 ) -> Option<Diagnostic> {
     let passes = inspection.actual.passes.iter().enumerate();
-    let mut all = passes.filter_map(|(index, pass)| Some((index, fault(pass)?)));
-    let (index, (what, FirstOccurrence { backtrace: place, point: at })) = all.next()?;
-    let others: Vec<Site> = all.map(|(index, (_, begun))| Site::new(Some(index), begun.point)).collect();
-    let finding = finding(what).with_backtrace(place);
-    let finding = match others.len() {
-        0 => finding,
-        more => finding.note(format!("the same applies to {more} more passes")),
-    };
-    Some(finding.with_sites([Site::new(Some(index), at)]).with_sites(others))
+    let mut faults = passes.filter_map(|(index, pass)| Some((index, fault(pass)?)));
+    let (index, (first, FirstOccurrence { backtrace, point })) = faults.next()?;
+    let others: Vec<Site> = faults.map(|(index, (_, at))| Site::new(Some(index), at.point)).collect();
+    let note = (!others.is_empty()).then(|| format!("the same applies to {} more passes", others.len()));
+    let finding = note.into_iter().fold(finding(first).with_backtrace(backtrace), Diagnostic::note);
+    Some(finding.with_sites([Site::new(Some(index), point)]).with_sites(others))
 }

@@ -1,9 +1,8 @@
-//! The job and the machine file agree on where the burr is from the C axis.
-use super::super::Inspection;
+//! Position of the burr relative to the C axis: the same in the job and in the machine file.
+use super::*;
 use crate::findings::BURR_OFFSET;
-use gcode_lang::diag::Diagnostic;
 
-/// Measured no finer than this, mm.
+/// Resolution of the measured position, mm.
 const OFFSET_TOLERANCE: f64 = 1e-4;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -12,11 +11,11 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     if (x - job_x).abs() <= OFFSET_TOLERANCE && (y - job_y).abs() <= OFFSET_TOLERANCE {
         return;
     }
+    // The subtraction of the axis leaves digits beyond these.
+    let [x, y] = [x, y].map(|value| (value * 1e6).round() / 1e6);
     let message = format!(
-        "the end of the burr's cylinder is at X{} Y{} from the C axis in the machine file, X{job_x} \
-         Y{job_y} in the job's c_offset",
-        rounded_mm(x),
-        rounded_mm(y)
+        "the end of the burr's cylinder is at X{x} Y{y} from the C axis in the machine file, X{job_x} \
+         Y{job_y} in the job's c_offset"
     );
     findings.push(
         Diagnostic::new(&BURR_OFFSET, message)
@@ -29,9 +28,4 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                  in the machine file",
             ),
     );
-}
-
-/// Without what the subtraction of the axis leaves.
-fn rounded_mm(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6
 }

@@ -1,50 +1,46 @@
-//! The contact stays on the tooth bottom, between the programmed points too.
-use super::super::Inspection;
+//! Contact on the tooth bottom, between the programmed points too.
 use super::super::cause::Cause;
+use super::*;
 use crate::findings::FLUTE_SURFACE;
-use crate::flutes::{GrindingPass, ROUNDING_ERROR, Sample};
-use gcode_lang::diag::{Diagnostic, Site};
+use crate::flutes::ROUNDING_ERROR;
 
 pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnostic>) {
-    let allowed = inspection.nominal.surface_tolerance;
-    // Of every pass its worst place.
-    let of_pass = |(index, pass): (usize, &'g GrindingPass)| {
-        let worst =
-            pass.trace.samples.iter().max_by(|a, b| a.deviation.abs().total_cmp(&b.deviation.abs()))?;
-        (allowed + ROUNDING_ERROR < worst.deviation.abs()).then_some((index, worst))
+    let tolerance = inspection.nominal.surface_tolerance;
+    let worst_of = |(index, pass): (usize, &'g GrindingPass)| {
+        let samples = pass.trace.samples.iter();
+        let worst = samples.max_by(|a, b| a.deviation.abs().total_cmp(&b.deviation.abs()))?;
+        (tolerance + ROUNDING_ERROR < worst.deviation.abs()).then_some((index, worst))
     };
-    let mut all: Vec<(usize, &Sample)> =
-        inspection.actual.passes.iter().enumerate().filter_map(of_pass).collect();
-    all.sort_by(|a, b| b.1.deviation.abs().total_cmp(&a.1.deviation.abs()));
-    let Some((pass, worst)) = all.first().copied() else { return };
-    let finding = surface_finding(inspection, pass, worst);
-    let pass = &inspection.actual.passes[pass];
-    let sites = all.iter().map(|(pass, sample)| Site::new(Some(*pass), sample.point));
-    findings.push(finding.with_backtrace(pass.trace.backtrace(worst).clone()).with_sites(sites));
+    let passes = &inspection.actual.passes;
+    let mut wrong: Vec<(usize, &Sample)> = passes.iter().enumerate().filter_map(worst_of).collect();
+    wrong.sort_by(|a, b| b.1.deviation.abs().total_cmp(&a.1.deviation.abs()));
+    let Some((pass, worst)) = wrong.first().copied() else { return };
+    let sites = wrong.iter().map(|(pass, sample)| Site::new(Some(*pass), sample.point));
+    let place = passes[pass].trace.backtrace(worst).clone();
+    findings.push(surface_finding(inspection, pass, worst).with_backtrace(place).with_sites(sites));
 }
 
 fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic {
-    let wanted = inspection.nominal;
-    let (allowed, radius) = (wanted.surface_tolerance, wanted.profile.radius());
+    let nominal = inspection.nominal;
+    let (tolerance, radius) = (nominal.surface_tolerance, nominal.profile.radius());
     let error = |message: String| Diagnostic::new(&FLUTE_SURFACE, message);
-    let (side, off) =
-        if worst.deviation < 0.0 { ("below", -worst.deviation) } else { ("above", worst.deviation) };
-    if let Some(depth) = inspection.common_height {
-        let flutes = inspection.flutes_with_verb();
+    let (side, off) = (if worst.deviation < 0.0 { "below" } else { "above" }, worst.deviation.abs());
+    if let Some(height) = inspection.common_height {
         return error(format!(
-            "{flutes} ground to a diameter of {:.3} mm, nominal {:.3} mm: the contact is {:.4} mm {side} \
-             the tooth bottom all along, tolerance {allowed} mm",
-            2.0 * (radius + depth),
+            "{} ground to a diameter of {:.3} mm, nominal {:.3} mm: the contact is {:.4} mm {side} \
+             the tooth bottom all along, tolerance {tolerance} mm",
+            inspection.all_flutes("are", "is"),
+            2.0 * (radius + height),
             2.0 * radius,
-            depth.abs()
+            height.abs()
         ))
         .help("check Y where the wheel is fed into the blank, the work offset in Y, and wheel.contact in the machine file");
     }
     let finding = error(format!(
-        "the contact is {off:.4} mm {side} the tooth bottom at polar angle {:.1}°: tolerance {allowed} mm",
+        "the contact is {off:.4} mm {side} the tooth bottom at polar angle {:.1}°: tolerance {tolerance} mm",
         worst.polar.0
     ));
-    match Cause::of(wanted, &inspection.actual.passes[pass], off) {
+    match Cause::of(nominal, &inspection.actual.passes[pass], off) {
         Cause::BetweenPoints => finding
             .note("the deviation is less than half of this at the programmed points: it arises between them")
             .help("use shorter moves, or a finer increment: the present ones are too coarse for this chord error"),
@@ -56,7 +52,7 @@ fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> 
             ))
             .help("check Y where the wheel is fed into the blank"),
         Cause::Offset([x, y]) => {
-            let [from_x, from_y] = inspection.actual.offset.unwrap_or(wanted.c_offset);
+            let [from_x, from_y] = inspection.actual.offset.unwrap_or(nominal.c_offset);
             finding
                 .note(format!(
                     "the deviation is present at the programmed points too, as if the end of the cylinder \

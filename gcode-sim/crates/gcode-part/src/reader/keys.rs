@@ -1,0 +1,240 @@
+//! Kinds of values of keys: a field names one by `#[serde(with = "…")]`, and its check and its schema follow.
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::Deref;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{DeserializeOwned, Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serializer};
+
+use super::Spanned;
+use gcode_lang::control::{Dialect, Increment};
+
+/// Start of the message for a value that is not allowed; the reader replaces it by the key.
+pub(crate) const OUT_OF_RANGE: &str = "out of range: ";
+
+/// A kind of value that a key takes.
+pub trait FileKey {
+    /// Type of the value.
+    type Value;
+
+    /// Reads and checks a value.
+    ///
+    /// # Errors
+    /// A value that is not allowed, with those that are.
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self::Value, D::Error>;
+
+    /// Writes the value of a key that is left out, for the schema; null if the schema does not state it.
+    ///
+    /// # Errors
+    /// Those of the serialiser.
+    fn serialize<S: Serializer>(_: &Self::Value, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_unit()
+    }
+}
+
+/// A list of words, each with the value that it stands for.
+pub trait Words {
+    /// Type of the values.
+    type Value: Copy;
+
+    /// Returns all words.
+    fn all() -> Vec<(&'static str, Self::Value)>;
+}
+
+/// One word of the list `W`.
+#[derive(Clone, Copy, Debug)]
+pub struct Word<W>(PhantomData<W>);
+
+impl<W: Words> FileKey for Word<W> {
+    type Value = W::Value;
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<W::Value, D::Error> {
+        let written = String::deserialize(deserializer)?;
+        let found = W::all().into_iter().find(|(name, _)| *name == written);
+        found.map(|(_, value)| value).ok_or_else(|| {
+            let names: Vec<_> = W::all().into_iter().map(|(name, _)| name).collect();
+            D::Error::custom(format!("{OUT_OF_RANGE}'{written}': one of {}", names.join(", ")))
+        })
+    }
+}
+
+impl<W: Words> JsonSchema for Word<W> {
+    fn schema_name() -> Cow<'static, str> {
+        "Word".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let names: Vec<_> = W::all().into_iter().map(|(name, _)| name).collect();
+        json_schema!({ "type": "string", "enum": names })
+    }
+}
+
+impl Words for Dialect {
+    type Value = Self;
+
+    fn all() -> Vec<(&'static str, Self)> {
+        Self::ALL.into()
+    }
+}
+
+impl Words for Increment {
+    type Value = Self;
+
+    fn all() -> Vec<(&'static str, Self)> {
+        Self::ALL.into()
+    }
+}
+
+/// 1 or −1: the direction of an axis.
+#[derive(Clone, Copy, Debug)]
+pub enum AxisSign {}
+
+impl AxisSign {
+    /// Returns the sign of an axis that is not reversed.
+    pub(crate) fn default() -> i8 {
+        1
+    }
+}
+
+impl FileKey for AxisSign {
+    type Value = i8;
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<i8, D::Error> {
+        match i64::deserialize(deserializer)? {
+            1 => Ok(1),
+            -1 => Ok(-1),
+            other => Err(D::Error::custom(format!("{OUT_OF_RANGE}{other}: 1 or -1"))),
+        }
+    }
+
+    fn serialize<S: Serializer>(sign: &i8, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_i8(*sign)
+    }
+}
+
+impl JsonSchema for AxisSign {
+    fn schema_name() -> Cow<'static, str> {
+        "Sign".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "integer", "enum": [1, -1] })
+    }
+}
+
+/// A value of a key that may be left out; the field has `default` as well.
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[schemars(with = "K", bound = "K: JsonSchema")]
+pub struct Optional<K>(PhantomData<K>);
+
+impl<K: FileKey> FileKey for Optional<K> {
+    type Value = Option<K::Value>;
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<K::Value>, D::Error> {
+        K::deserialize(deserializer).map(Some)
+    }
+}
+
+/// A table; serde's own structs take a list of their fields as well.
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[schemars(with = "T", bound = "T: JsonSchema")]
+pub struct Section<T>(PhantomData<T>);
+
+impl<T: DeserializeOwned> FileKey for Section<T> {
+    type Value = T;
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+        deserializer.deserialize_map(Self(PhantomData))
+    }
+}
+
+impl<'de, T: DeserializeOwned> Visitor<'de> for Section<T> {
+    type Value = T;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a table")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<T, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(table))
+    }
+}
+
+/// A value of kind `K` with its location in the text.
+pub struct Bounded<K: FileKey>(Spanned<Checked<K>>);
+
+/// A value of kind `K`.
+pub struct Checked<K: FileKey>(K::Value);
+
+impl<'de, K: FileKey> Deserialize<'de> for Checked<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        K::deserialize(deserializer).map(Self)
+    }
+}
+
+impl<'de, K: FileKey> Deserialize<'de> for Bounded<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Spanned::deserialize(deserializer).map(Self)
+    }
+}
+
+impl<K: FileKey<Value: Copy>> Bounded<K> {
+    /// Returns the value.
+    pub fn get(&self) -> K::Value {
+        self.0.as_ref().0
+    }
+}
+
+impl<K: FileKey> Deref for Bounded<K> {
+    type Target = Spanned<Checked<K>>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+/// The schema is that of the value alone; a derived one would have the sentence above as a description.
+impl<K: FileKey + JsonSchema> JsonSchema for Bounded<K> {
+    fn schema_name() -> Cow<'static, str> {
+        K::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        K::json_schema(generator)
+    }
+}
+
+/// An array of exactly `N` values; serde's own arrays ignore extra ones silently.
+#[derive(Clone, Debug)]
+pub struct FixedArray<T, const N: usize>(pub [T; N]);
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for FixedArray<T, N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let values = Vec::deserialize(deserializer)?;
+        let wrong = |values: Vec<T>| D::Error::invalid_length(values.len(), &format!("{N}").as_str());
+        values.try_into().map(Self).map_err(wrong)
+    }
+}
+
+impl<K: FileKey, const N: usize> FileKey for FixedArray<K, N> {
+    type Value = [K::Value; N];
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[K::Value; N], D::Error> {
+        let FixedArray(values) = <FixedArray<Checked<K>, N> as Deserialize>::deserialize(deserializer)?;
+        Ok(values.map(|value| value.0))
+    }
+}
+
+impl<T: JsonSchema, const N: usize> JsonSchema for FixedArray<T, N> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("{N}_of_{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let item = generator.subschema_for::<T>();
+        json_schema!({ "type": "array", "items": item, "minItems": N, "maxItems": N })
+    }
+}
