@@ -11,7 +11,7 @@ use gcode_lang::units::Deg;
 use gcode_part::NominalPart;
 use gcode_session::{Run, simulate};
 use gcode_tests::bench::{Bench, alarm, example, marks, placement, value};
-use gcode_tests::workspace;
+use gcode_tests::{root, workspace};
 
 /// The run-out's result: shift in x and z, tilt about x and z.
 fn found(run: &Run) -> [f64; 4] {
@@ -209,7 +209,8 @@ fn the_set_up_sheet_shims_the_side_that_a_tilt_lowers() {
         let shim = away.y - towards.y;
         assert!((shim - tilt / 0.01 * 0.1745).abs() < 0.001, "{shim}");
     }
-    let sheet = gcode_tests::sheet::html(&example("alignment"), None);
+    let sheet = root().join("sheet/an_alignment_has_its_gauge_blocks/sheet.snap");
+    let sheet = std::fs::read_to_string(sheet).unwrap();
     for words in [
         "#582 above 0: the top leans towards Z+, so shim the side towards Z+.",
         "is 0.1745 mm thick for each 0.01° and metre between the supports in Z",

@@ -1,5 +1,5 @@
-//! What the alignment programs write into the control: nothing that their heads don't name, and whenever RESET comes, nothing
-//! half written that the next program would take for whole.
+//! Variables that the alignment programs write: only those that their heads name, and after a RESET at any block no incomplete set that
+//! the next program would use.
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_control::{Control, Limits, Observer, Outcome};
@@ -94,7 +94,7 @@ impl Observer for States {
 
     fn after_block(&mut self, control: &Control) {
         let now: Vec<_> = control.variables().filter(|(number, _)| (500..600).contains(number)).collect();
-        if !self.0.contains(&now) {
+        if self.0.last() != Some(&now) && !self.0.contains(&now) {
             self.0.push(now);
         }
     }
@@ -122,7 +122,7 @@ fn reset_in_o8230_uses_no_tilt_twice() {
                 None => assert!((value(&next, 586) - wanted).abs() < 1e-9, "{state:?}"),
                 // The tilt is used up, and the table's angle is the new one.
                 Some(3165) => assert!((of(state, 596).unwrap() - new).abs() < 2e-6, "{state:?}"),
-                // Nobody knows the angle.
+                // The angle is unknown.
                 Some(number) => assert_eq!(number, 3169, "{state:?}"),
             }
             met.insert(alarm(&next));
@@ -131,7 +131,7 @@ fn reset_in_o8230_uses_no_tilt_twice() {
     }
 }
 
-/// #585 says that #580 to #584 are those of one pass, #595 that #590 to #594 are.
+/// #585 marks #580 to #584 as those of one pass, #595 marks #590 to #594.
 #[test]
 fn reset_in_o8210_leaves_no_mixture_of_two_parts() {
     let yesterday: Vec<_> = (580..586).chain(590..596).map(|number| (number, 0.25)).collect();
@@ -162,7 +162,7 @@ fn results_are_vacant(state: &[(u32, f64)]) -> bool {
     (580..586).chain(590..596).all(|number| of(state, number).is_none())
 }
 
-/// Of points that were touched and of marks: the next run uses all of them, touches all anew, or moves nothing and says why.
+/// After touched points and after marks the next run uses all of them, touches all anew, or moves nothing and stops with an alarm.
 #[test]
 fn reset_in_o8200_leaves_no_points_that_are_used_in_part_or_twice() {
     let bench = Bench::example("alignment", &[]);
@@ -196,9 +196,9 @@ fn reset_in_o8200_leaves_no_points_that_are_used_in_part_or_twice() {
     }
 }
 
-/// Yesterday's results of both passes are gone from the start, and what a fit has found so far is none.
+/// The results of an earlier run are gone from the start, and an unfinished fit leaves none.
 #[test]
-fn a_run_out_that_is_broken_off_leaves_nothing() {
+fn a_run_out_that_is_broken_off_leaves_no_result() {
     let bench = Bench::example("alignment", &[]);
     let yesterday: Vec<_> = (580..586).chain(590..596).map(|number| (number, 0.25)).collect();
     let off = placement([0.2, 0.0, -0.1], [0.1, 0.0, 0.2]);

@@ -1,4 +1,4 @@
-//! Laws of numbers: expressions against a second way of computing them, words against their digits.
+//! Properties of numbers: expressions compared with a second way of computing them, words with their digits.
 use gcode_tests::expect;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -157,7 +157,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
     #[test]
-    fn an_expression_is_worth_what_two_passes_make_of_it(piece in expression()) {
+    fn an_expression_has_the_value_of_two_passes(piece in expression()) {
         prop_assume!(piece.text.matches('[').count() <= 5);
         match (value(&piece.text), piece.value) {
             (Ok(found), Some(wanted)) => prop_assert_eq!(found, wanted, "{}", piece.text),

@@ -1,5 +1,5 @@
-//! `test` on folders: with links nothing is run twice, nothing without end, and a link to nothing is no case that holds; of several
-//! folders the merged shards are the whole run.
+//! `test` on folders: links lead to no case twice and to no endless walk, and a broken link is no case that passes; the merged shards of
+//! several folders are the whole run.
 #![cfg(unix)]
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -39,7 +39,7 @@ fn a_case_behind_a_link_is_run() {
 }
 
 #[test]
-fn a_link_to_nothing_is_told() {
+fn a_broken_link_is_reported() {
     let place = collection();
     let program = place.path().join("parts/plate/O0300.nc");
     std::fs::remove_file(&program).unwrap();
@@ -67,7 +67,7 @@ fn a_link_to_nothing_is_told() {
 }
 
 #[test]
-fn accepted_results_behind_a_broken_link_are_told() {
+fn accepted_results_behind_a_broken_link_are_refused() {
     let place = collection();
     let accepted = place.path().join("parts/plate/accepted.json");
     std::fs::remove_file(&accepted).unwrap();

@@ -1,4 +1,4 @@
-//! `check` on what stands in this repository: nothing to find in macros and examples, a page and a case for each rule.
+//! `check` on the programs of this repository: no finding in macros and examples, a case for each rule.
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Severity;
 use gcode_lang::program::NoLibrary;
@@ -25,7 +25,7 @@ fn macros_and_examples_have_no_findings() {
         let mut folders = Folders::new(&path, &beside).unwrap();
         let bytes = std::fs::read(&path).unwrap();
         let checked = check(path.display().to_string(), bytes, &Settings::default(), &mut folders);
-        // What a clamp's M code does only the machine's builder knows: that is told, as a note.
+        // The effect of a clamp's M code is the machine builder's: a note.
         let faults = checked.findings.iter().filter(|f| Severity::Note < f.severity);
         assert_eq!(faults.map(|f| &f.message).collect::<Vec<_>>(), [""; 0], "{}", path.display());
         seen += 1;
@@ -56,29 +56,29 @@ fn a_fault_put_into_an_example_is_found() {
             "doubled-n: N370 is already defined in line 64: a search finds one of the two",
         ),
     ];
-    for (right, wrong, told) in faults {
+    for (right, wrong, found) in faults {
         let spoilt = text.replacen(right, wrong, 1);
         assert_ne!(spoilt, text, "{right}");
         let mut folders = Folders::new(&path, &[]).unwrap();
         let checked = check("O8100.nc", spoilt.into_bytes(), &Settings::default(), &mut folders);
-        assert_eq!(messages(&checked), [told]);
+        assert_eq!(messages(&checked), [found]);
     }
 }
 
 #[test]
 fn every_rule_has_a_case() {
     let suite = workspace().join("tests/suite/check");
-    let mut told = String::new();
+    let mut found = String::new();
     for entry in std::fs::read_dir(suite).unwrap() {
-        told += &std::fs::read_to_string(entry.unwrap().path().join("findings.snap")).unwrap();
+        found += &std::fs::read_to_string(entry.unwrap().path().join("findings.snap")).unwrap();
     }
     for rule in ALL {
-        let finds = [" error ", " warning "].iter().any(|s| told.contains(&format!("{s}{}:", rule.kind)));
+        let finds = [" error ", " warning "].iter().any(|s| found.contains(&format!("{s}{}:", rule.kind)));
         assert!(finds, "no case in tests/suite/check finds {}", rule.kind);
     }
 }
 
-/// Whatever stands in a file, it can be checked; the cases of the suite hold every kind of fault.
+/// Every file can be checked; the cases of the suite have every kind of fault.
 #[test]
 fn every_program_of_the_suite_can_be_checked() {
     for path in files_below(&workspace().join("tests/suite"), "nc") {

@@ -1,4 +1,4 @@
-//! What is checked in is what the generator writes: the resident macros and the examples' programs.
+//! The resident macros and the examples' programs in the repository are those that the generator writes.
 use std::path::Path;
 
 use gcode_gen::families;
@@ -83,7 +83,7 @@ fn every_alarm_of_a_program_has_its_remedy() {
 }
 
 #[test]
-fn the_examples_hold_what_emit_writes() {
+fn the_examples_have_the_files_that_emit_writes() {
     let mut examples = 0;
     let mut folders: Vec<_> =
         std::fs::read_dir(workspace().join("examples")).unwrap().map(|e| e.unwrap().path()).collect();

@@ -110,7 +110,7 @@ fn a_chord_of_the_right_length_may_join_the_wrong_points() {
 }
 
 /// The reading at both ends of the ellipse for each way in which a part can stand wrong: as the simulator follows it, and as
-/// −(n·s) − δ·(x·n_y − y·n_x) says. In z, about x and about y there is no first order.
+/// −(n·s) − δ·(x·n_y − y·n_x) gives. In z, about x and about y there is no first order.
 #[test]
 fn the_ellipse_shows_three_of_six_misplacements() {
     let (bench, job) = example();

@@ -1,5 +1,5 @@
-//! docs/ci.md is true: in a scratch repository its hook refuses a changed macro with the message that stands there, and
-//! takes it once accepted; the commands of its workflow do what its page says.
+//! The page docs/ci.md in a scratch repository: its hook refuses a changed macro with the page's message and takes it once accepted; the
+//! commands of its workflow have the page's results.
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -58,7 +58,7 @@ fn repository() -> tempfile::TempDir {
     repository
 }
 
-/// A commit is refused with exit code 1; what was said of it.
+/// The messages of a commit, which must be refused with exit code 1.
 #[cfg(unix)]
 fn refused(commit: Output, place: &Path) -> String {
     assert_eq!(commit.status.code(), Some(1), "{commit:?}");
@@ -71,18 +71,18 @@ const COMMIT: [&str; 5] = ["commit", "--quiet", "-a", "-m", "Row moved"];
 
 #[cfg(unix)]
 #[test]
-fn the_hook_refuses_what_it_cannot_test() {
+fn the_hook_refuses_a_commit_that_it_cannot_test() {
     let repository = repository();
     let place = repository.path();
     move_the_row(place);
-    let said = refused(git_with(others(), place, &COMMIT), place);
-    assert_eq!(said, "commit refused: gcode-sim is not on the PATH, so nothing was tested\n");
+    let messages = refused(git_with(others(), place, &COMMIT), place);
+    assert_eq!(messages, "commit refused: gcode-sim is not on the PATH, so nothing was tested\n");
 
     std::fs::write(place.join("parts/plate/control.toml"), "nonsense = 1\n").unwrap();
     git(place, &["add", "--all"]);
-    let said = refused(git(place, &COMMIT), place);
-    assert!(said.starts_with("refused  plate: ") && said.contains("nonsense"), "{said}");
-    let last = said.lines().last().unwrap();
+    let messages = refused(git(place, &COMMIT), place);
+    assert!(messages.starts_with("refused  plate: ") && messages.contains("nonsense"), "{messages}");
+    let last = messages.lines().last().unwrap();
     assert_eq!(
         last,
         "commit refused: not every case could be tested (exit code 2); mend what is named above"
@@ -103,9 +103,9 @@ fn the_hook_refuses_a_changed_macro_with_the_message_of_the_page() {
 
     let refused = git(place, &COMMIT);
     assert_eq!(refused.status.code(), Some(1));
-    let said = [refused.stdout, refused.stderr].concat();
-    let said = String::from_utf8(said).unwrap();
-    assert!(page().contains(&format!("```text\n{said}```")), "docs/ci.md shows something else than\n{said}");
+    let messages = [refused.stdout, refused.stderr].concat();
+    let messages = String::from_utf8(messages).unwrap();
+    assert!(page().contains(&format!("```text\n{messages}```")), "docs/ci.md doesn't show\n{messages}");
 
     run_line("gcode-sim test parts --lib macros --accept", place);
     let taken = git(place, &COMMIT);
@@ -117,7 +117,7 @@ fn the_hook_refuses_a_changed_macro_with_the_message_of_the_page() {
 /// One branch changes the macro and accepts it, the other has a new program that calls it: either holds alone.
 #[cfg(unix)]
 #[test]
-fn the_hook_refuses_a_merge_of_what_holds_alone() {
+fn the_hook_refuses_a_merge_of_changes_that_pass_alone() {
     let repository = repository();
     let place = repository.path();
     let is_done = |arguments: &[&str]| {
@@ -140,19 +140,19 @@ fn the_hook_refuses_a_merge_of_what_holds_alone() {
     is_done(&["checkout", "--quiet", "-"]);
     let merge = git(place, &["merge", "--quiet", "-m", "Both", "moved"]);
     assert!(!merge.status.success(), "{merge:?}");
-    let said = String::from_utf8([merge.stdout, merge.stderr].concat()).unwrap();
+    let messages = String::from_utf8([merge.stdout, merge.stderr].concat()).unwrap();
     assert!(
-        said.contains("changed  cover\n    hole-moved     holes 1, 2, 3, 4: moved by +0.0000 +0.0100"),
-        "{said}"
+        messages.contains("changed  cover\n    hole-moved     holes 1, 2, 3, 4: moved by +0.0000 +0.0100"),
+        "{messages}"
     );
-    assert!(!said.contains("changed  plate"), "{said}");
+    assert!(!messages.contains("changed  plate"), "{messages}");
     run_line("gcode-sim test parts --lib macros --accept", place);
     is_done(&["commit", "--quiet", "-a", "--no-edit"]);
 }
 
 /// The lines of the workflow that run gcode-sim, with the numbers of the shards in.
 #[test]
-fn the_commands_of_the_workflow_do_what_the_page_says() {
+fn the_commands_of_the_workflow_have_the_results_of_the_page() {
     let text = std::fs::read_to_string(example().join(".github/workflows/programs.yml")).unwrap();
     let place = tempfile::tempdir().unwrap();
     copy_folder(&example(), place.path());

@@ -120,7 +120,7 @@ fn the_ball_keeps_its_distance_between_the_points_too() {
                 assert!(off.abs() <= path.chord_error, "{off} at {at:?}, a {} b {}", path.a, path.b);
             }
         }
-        // It begins and ends over the x asked for: there the normal goes through the point of the surface.
+        // It begins and ends over the specified x: there the normal goes through the point of the surface.
         for (at, x) in [(points[0], path.from), (points[points.len() - 1], path.to)] {
             let y = path.b * (1.0 - (x / path.a) * (x / path.a)).sqrt();
             let far = f64::hypot(at[0] - x, at[1] - y);
@@ -176,7 +176,7 @@ fn the_program_ends_clear_of_the_part_with_the_modes_it_found() {
     assert!((distance(&MELON, end) - 50.0 - 3.0).abs() < 0.002, "{end:?}");
 }
 
-/// A part that stands aside by s and is tilted by δ about z has its surface moved along the normal by n·s + δ·(x·n_y − y·n_x);
+/// A part that is shifted by s and tilted by δ about z has its surface moved along the normal by n·s + δ·(x·n_y − y·n_x);
 /// the ball gets that much nearer, up to what bends over so short a way.
 #[test]
 fn the_reading_on_a_misplaced_part_is_its_displacement_along_the_normal() {

@@ -15,7 +15,7 @@ use crate::mutations::cases;
 /// fraction, axis words and F at the beginning of their block, and a remark in place of each that stands alone. What an operator
 /// is shown stays.
 fn rewrite(text: &str) -> String {
-    // Where a number is computed, it says which block or which local is meant.
+    // A computed number selects the block or the local.
     let is_counted = !["GOTO#", "GOTO #", "GOTO["].iter().any(|jump| text.contains(jump));
     let is_named = !text.contains("#[");
     let line = |line: &str| {

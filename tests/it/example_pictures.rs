@@ -40,7 +40,7 @@ const PICTURES: &[(&str, &str, &str)] = &[
 
 /// Letters may be a step lighter or darker; `cargo xtask bless` writes them anew.
 #[test]
-fn the_examples_pictures_are_drawn_like_that_now() {
+fn the_examples_pictures_are_drawn_as_stored() {
     let place = tempfile::tempdir().unwrap();
     for (folder, name, line) in PICTURES {
         let folder = workspace().join("examples").join(folder);
@@ -52,12 +52,12 @@ fn the_examples_pictures_are_drawn_like_that_now() {
         }
         let (kept, drawn) = (std::fs::read(&kept).unwrap(), std::fs::read(&drawn).unwrap());
         let difference = gcode_draw::compare(&kept, &drawn, 1).unwrap();
-        assert!(difference.is_none(), "{name} is drawn otherwise now; run cargo xtask bless");
+        assert!(difference.is_none(), "{name} is drawn differently; run cargo xtask bless");
     }
 }
 
 #[test]
-fn every_picture_of_the_examples_is_held() {
+fn every_picture_of_the_examples_is_compared() {
     let mut found: Vec<String> = Vec::new();
     for folder in std::fs::read_dir(workspace().join("examples")).unwrap() {
         let folder = folder.unwrap();

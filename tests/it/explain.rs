@@ -1,4 +1,4 @@
-//! The pages of `explain`: one for every alarm and every finding, and every example does what its page says.
+//! The pages of `explain`: one for every alarm and every finding, with examples that raise it.
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ fn is_finding(page: &Page) -> bool {
 }
 
 #[test]
-fn every_page_has_its_row_and_every_code_is_there_once() {
+fn every_page_has_its_row_and_every_code_is_listed_once() {
     let listed: Vec<String> = explain::findings().iter().map(|page| page.code.to_owned()).collect();
     let codes: BTreeSet<String> = listed.iter().cloned().collect();
     assert_eq!(codes.len(), listed.len(), "{listed:?}");
@@ -125,7 +125,7 @@ fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
 }
 
 #[test]
-fn the_first_program_gives_the_finding_and_the_second_none() {
+fn the_first_program_has_the_finding_and_the_second_none() {
     let mut wrong = String::new();
     for page in explain::findings().iter().filter(|page| is_finding(page)) {
         let codes: Vec<_> = findings_on(page, 0).iter().map(Diagnostic::code).collect();

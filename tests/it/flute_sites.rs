@@ -1,4 +1,4 @@
-//! Findings on flutes say where on the burr, by pass and by place.
+//! Sites of findings on flutes, by pass and by place on the burr.
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::PartPoint;
 use gcode_lang::program::NoLibrary;
@@ -30,7 +30,7 @@ fn case(name: &str) -> [String; 3] {
 
 /// Of four flutes a quarter apart the fourth is missing: its place is across from the second.
 #[test]
-fn a_missing_flute_is_where_it_would_be() {
+fn the_site_of_a_missing_flute_is_its_nominal_place() {
     let [program, machine, reference] = &case("a_missing_flute_is_counted");
     let grinding = run(program, machine, reference);
     let [site] = sites(&grinding, "flute-missing")[..] else { panic!("one is missing") };
@@ -46,7 +46,7 @@ fn a_missing_flute_is_where_it_would_be() {
 
 /// Of four flutes two neighbours: half the burr is bare, with room for the other two.
 #[test]
-fn each_of_several_missing_flutes_has_its_place() {
+fn each_of_several_missing_flutes_has_its_site() {
     let [program, machine, reference] = &case("a_missing_flute_is_counted");
     let found = sites(&run(&program.replace("LT 3]", "LT 2]"), machine, reference), "flute-missing");
     let [one, other] = found[..] else { panic!("{found:?}") };
@@ -56,7 +56,7 @@ fn each_of_several_missing_flutes_has_its_place() {
 
 /// Each flute of the other hand is wrong, and the sites name every one.
 #[test]
-fn what_is_wrong_with_all_passes_is_on_all_of_them() {
+fn a_fault_of_all_passes_has_a_site_on_each() {
     let [program, machine, reference] = &case("a_left_hand_burr_is_not_a_right_hand_one");
     let grinding = run(program, machine, reference);
     let mut passes: Vec<_> = sites(&grinding, "flute-helix").iter().map(|site| site.pass).collect();
@@ -67,7 +67,7 @@ fn what_is_wrong_with_all_passes_is_on_all_of_them() {
 
 /// A rapid a millimetre into the cylinder, where its first flute is to begin.
 #[test]
-fn a_dive_is_where_it_is_deepest() {
+fn the_site_of_a_collision_is_its_deepest_point() {
     let [program, machine, reference] = &case("four_flutes_of_a_burr_pass");
     let into = program.replacen("WHILE[", "G00 Y3.\nX-4. A0 B20. C0\nY-1.\nY3.\nWHILE[", 1);
     let [site] = sites(&run(&into, machine, reference), "wheel-into-burr")[..] else { panic!("one block") };
@@ -78,7 +78,7 @@ fn a_dive_is_where_it_is_deepest() {
 
 /// The third flute goes 15° astray in one block, at C30: on a ball of radius 6 that is x = −6·sin 30°.
 #[test]
-fn one_wrong_block_is_on_its_pass_alone() {
+fn one_wrong_block_has_a_site_on_its_pass_alone() {
     let [program, machine, reference] = &case("one_block_off_its_flute_is_named");
     let [site] = sites(&run(program, machine, reference), "flute-index")[..] else { panic!("one place") };
     assert_eq!(site.pass, Some(3));

@@ -177,8 +177,8 @@ fn a_hole_off_the_cylinder_hides_no_finding_on_the_rows() {
     let aside = ("G80\n", "G80\nG81 X10. Y60. Z-60. R2. F60.\nG80\n");
     let verdict = verdict(SMALL, &[fault, aside]);
     assert!(!verdict.extra.is_empty(), "{:?}", codes(&verdict));
-    let told: Vec<_> = verdict.findings.iter().filter(|f| f.code == "row-angle").collect();
-    assert!(told.len() == 1 && told[0].notes.concat().contains("105.26"), "{told:?}");
+    let found: Vec<_> = verdict.findings.iter().filter(|f| f.code == "row-angle").collect();
+    assert!(found.len() == 1 && found[0].notes.concat().contains("105.26"), "{found:?}");
 }
 
 /// The job's reference and the macro refuse the same jobs.

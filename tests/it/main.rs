@@ -1,4 +1,4 @@
-//! Laws and whole-program tests that are not cases: house rules, round trips, published numbers, the README.
+//! Properties and whole-program tests that are not cases: house rules, round trips, published numbers, the README.
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
 mod accepted;

@@ -12,7 +12,7 @@ use crate::every_word::effect;
 use crate::words::slips;
 
 /// Number of words that are changed in one program; a long one has many alike.
-const MOST: usize = 24;
+const MOST: usize = 12;
 
 fn record(main: &Path, text: &str) -> Option<Record> {
     let mut request = request(main);

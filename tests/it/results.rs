@@ -1,5 +1,5 @@
-//! Results for other programs: SARIF is what its schema wants, JUnit is XML with the counts that servers show, and the
-//! results of shards put together are those of one run.
+//! Results for other programs: SARIF is valid by its schema, JUnit has the counts that servers show, and the merged results of shards are
+//! those of one run.
 use std::path::Path;
 
 use gcode_tests::programs::run_line;
@@ -32,7 +32,7 @@ fn json(line: &str, place: &Path) -> Value {
         .unwrap_or_else(|e| panic!("{line}: {e}: {}", String::from_utf8_lossy(&done.stderr)))
 }
 
-/// What the schema of SARIF 2.1.0 has against a document.
+/// Errors of a document by the schema of SARIF 2.1.0.
 fn against_schema(document: &Value) -> Vec<String> {
     // A bracket stands alone in a pattern there, and the validator is strict about it.
     let schema = include_str!("../fixtures/sarif-2.1.0-rtm.5.json").replace("{2}]?$", "{2})?$");
@@ -41,30 +41,35 @@ fn against_schema(document: &Value) -> Vec<String> {
     schema.iter_errors(document).map(|error| format!("{}: {error}", error.instance_path())).collect()
 }
 
+/// Code, file and line of a result.
+type Entry<'l> = (&'l str, &'l str, Option<u64>);
+
+/// The results of a SARIF log, which must be valid.
+fn entries(log: &Value) -> Vec<Entry<'_>> {
+    assert_eq!(against_schema(log), Vec::<String>::new());
+    let results = log["runs"][0]["results"].as_array().unwrap();
+    let entries = results.iter().map(|result| {
+        let at = &result["locations"][0]["physicalLocation"];
+        let uri = at["artifactLocation"]["uri"].as_str().unwrap_or_default();
+        (result["ruleId"].as_str().unwrap(), uri, at["region"]["startLine"].as_u64())
+    });
+    entries.collect()
+}
+
 #[test]
-fn sarif_is_what_its_schema_wants_and_says_where() {
+fn sarif_is_valid_and_has_the_places() {
     let place = tempfile::tempdir().unwrap();
     collection(place.path());
     let log = json("gcode-sim test parts --format sarif", place.path());
-    assert_eq!(against_schema(&log), Vec::<String>::new());
-    let results = log["runs"][0]["results"].as_array().unwrap();
-    let told: Vec<(&str, &str, &Value)> = results
-        .iter()
-        .map(|result| {
-            let at = &result["locations"][0]["physicalLocation"];
-            let uri = at["artifactLocation"]["uri"].as_str().unwrap_or_default();
-            (result["ruleId"].as_str().unwrap(), uri, &at["region"]["startLine"])
-        })
-        .collect();
-    let first = Value::from(1);
-    let wanted = [
-        ("hole-position", "parts/aside/main.nc", &Value::from(4)),
-        ("stop", "parts/lost/main.nc", &Value::from(2)),
-        ("hole-moved", "parts/moved/main.nc", &Value::from(4)),
-        ("case-new", "parts/new%20%26%20%3Codd%3E/main.nc", &first),
-        ("case-refused", "parts/two/a.nc", &first),
+    let expected = [
+        ("hole-position", "parts/aside/main.nc", Some(4)),
+        ("stop", "parts/lost/main.nc", Some(2)),
+        ("hole-moved", "parts/moved/main.nc", Some(4)),
+        ("case-new", "parts/new%20%26%20%3Codd%3E/main.nc", Some(1)),
+        ("case-refused", "parts/two/a.nc", Some(1)),
     ];
-    assert_eq!(told, wanted);
+    assert_eq!(entries(&log), expected);
+    let results = log["runs"][0]["results"].as_array().unwrap();
     let moved = results[2]["message"]["text"].as_str().unwrap();
     assert_eq!(
         moved,
@@ -76,7 +81,7 @@ fn sarif_is_what_its_schema_wants_and_says_where() {
     }
     let mut broken = log;
     broken["runs"][0]["results"][0]["level"] = "bad".into();
-    assert!(!against_schema(&broken).is_empty(), "the schema is looked at");
+    assert!(!against_schema(&broken).is_empty(), "the schema refuses a wrong level");
 }
 
 #[test]
@@ -94,7 +99,7 @@ fn findings_of_check_are_sarif_too() {
     );
 }
 
-/// What `verify` has against a program, at the line that does it and the call that led there; what `diff` finds, in the new one.
+/// Findings of `verify` are at the line that causes them, changes of `diff` at the line of the new program.
 #[test]
 fn findings_of_verify_and_changes_of_diff_are_sarif() {
     let place = tempfile::tempdir().unwrap();
@@ -103,31 +108,21 @@ fn findings_of_verify_and_changes_of_diff_are_sarif() {
     std::fs::write(place.path().join("new.nc"), drill("0.").replace("M00\n", "")).unwrap();
     std::fs::write(place.path().join("wanted.csv"), "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n")
         .unwrap();
-    let told = |line: &str| -> Vec<(String, Value, Value)> {
-        let log = json(line, place.path());
-        assert_eq!(against_schema(&log), Vec::<String>::new(), "{line}");
-        let results = log["runs"][0]["results"].as_array().unwrap();
-        let one = |result: &Value| {
-            let at = &result["locations"][0]["physicalLocation"];
-            let code = result["ruleId"].as_str().unwrap().to_owned();
-            (code, at["artifactLocation"]["uri"].clone(), at["region"]["startLine"].clone())
-        };
-        results.iter().map(one).collect()
-    };
-    let found = told("gcode-sim verify new.nc --reference wanted.csv --format sarif");
-    assert!(found.contains(&("hole-position".to_owned(), "new.nc".into(), 3.into())), "{found:?}");
-    assert_eq!(told("gcode-sim verify old.nc --reference wanted.csv --format sarif"), []);
-    let found = told("gcode-sim diff old.nc new.nc --format sarif");
-    let wanted = [
-        ("hole-moved".to_owned(), "new.nc".into(), 3.into()),
-        ("stop".to_owned(), "new.nc".into(), 3.into()),
+    let expected: [(&str, &[Entry<'_>]); 3] = [
+        ("verify old.nc --reference wanted.csv", &[]),
+        ("diff old.nc new.nc", &[("hole-moved", "new.nc", Some(3)), ("stop", "new.nc", Some(3))]),
+        ("diff old.nc old.nc", &[]),
     ];
-    assert_eq!(found, wanted);
-    assert_eq!(told("gcode-sim diff old.nc old.nc --format sarif"), []);
+    for (command, expected) in expected {
+        let log = json(&format!("gcode-sim {command} --format sarif"), place.path());
+        assert_eq!(entries(&log), expected, "{command}");
+    }
+    let log = json("gcode-sim verify new.nc --reference wanted.csv --format sarif", place.path());
+    assert!(entries(&log).contains(&("hole-position", "new.nc", Some(3))), "{log}");
 }
 
 #[test]
-fn junit_counts_failures_and_tells_them_as_the_terminal_does() {
+fn junit_counts_failures_and_describes_them_as_the_terminal_does() {
     let place = tempfile::tempdir().unwrap();
     collection(place.path());
     let done = run_line("gcode-sim test parts --format junit", place.path());
@@ -179,22 +174,28 @@ fn the_results_of_shards_merge_to_those_of_one_run() {
         std::fs::write(place.path().join("main.json"), whole.to_string()).unwrap();
         std::fs::write(place.path().join("odd.json"), "{}").unwrap();
         let done = run_line(&format!("gcode-sim test --merge {line}"), place.path());
-        let said = String::from_utf8(done.stderr).unwrap();
-        assert!(said.contains(wanted), "{line}: {said}");
+        let messages = String::from_utf8(done.stderr).unwrap();
+        assert!(messages.contains(wanted), "{line}: {messages}");
         assert_eq!(done.status.code(), Some(2), "{line}");
     }
 }
 
-/// A build server keeps the document in a file: its log says why a case can't be used.
+/// A build server keeps the document in a file: its log has the reason why a case can't be used.
 #[test]
-fn a_refused_case_is_told_beside_every_document() {
+fn a_refused_case_is_reported_beside_every_document() {
     let place = tempfile::tempdir().unwrap();
     collection(place.path());
     for format in ["json", "junit", "sarif"] {
         let done = run_line(&format!("gcode-sim test parts --format {format} > out"), place.path());
-        let said = String::from_utf8(done.stderr).unwrap();
-        assert!(said.starts_with("error: case two: parts/two contains several programs"), "{format}: {said}");
+        let messages = String::from_utf8(done.stderr).unwrap();
+        assert!(
+            messages.starts_with("error: case two: parts/two contains several programs"),
+            "{format}: {messages}"
+        );
         assert_eq!(done.status.code(), Some(2), "{format}");
     }
-    assert!(run_line("gcode-sim test parts", place.path()).stderr.is_empty(), "the text says it itself");
+    assert!(
+        run_line("gcode-sim test parts", place.path()).stderr.is_empty(),
+        "the text has the reason itself"
+    );
 }

@@ -1,4 +1,4 @@
-//! The set-up sheet: whole in one file, no text of a job becomes markup, its hashes are those of the files written.
+//! The set-up sheet: complete in one file, no text of a job becomes markup, its hashes are those of the files written.
 use std::path::Path;
 
 use gcode_sim::report::encode::sha256;
@@ -27,7 +27,7 @@ fn no_text_of_a_job_becomes_markup() {
 }
 
 #[test]
-fn everything_is_inside_and_nothing_runs() {
+fn a_sheet_has_everything_inside_and_no_script() {
     let place = tempfile::tempdir().unwrap();
     std::fs::write(place.path().join("job.toml"), JOB).unwrap();
     let done = programs::run_line("gcode-gen sheet job.toml -o sheet.html", place.path());
@@ -60,7 +60,7 @@ fn its_hashes_are_those_of_the_files_that_emit_writes() {
 }
 
 #[test]
-fn results_are_left_to_the_inspector() {
+fn the_columns_for_results_are_empty() {
     let html = html(JOB, None);
     // Position, depth and diameter of one hole: two columns each, both empty.
     for name in ["results", "gauge, non-conformance"] {
@@ -70,7 +70,7 @@ fn results_are_left_to_the_inspector() {
 }
 
 #[test]
-fn what_does_not_hold_has_no_sheet() {
+fn a_job_that_fails_verification_has_no_sheet() {
     let place = tempfile::tempdir().unwrap();
     // Least increments of 0.01 spoil a zone of 0.001.
     let coarse = JOB.replace("IS-B", "IS-A").replace("position = 0.1", "position = 0.001");

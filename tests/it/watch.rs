@@ -1,4 +1,4 @@
-//! `test --watch` runs again what a saved file concerns.
+//! `test --watch` runs the cases again that a saved file concerns.
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Stdio};
@@ -31,11 +31,11 @@ impl Watching {
         Self { child, lines }
     }
 
-    /// What is told up to the line that counts the cases.
-    fn told(&self) -> String {
+    /// The output up to the line that counts the cases.
+    fn output(&self) -> String {
         let mut text = String::new();
         loop {
-            let line = self.lines.recv_timeout(Duration::from_secs(20)).expect("something is told");
+            let line = self.lines.recv_timeout(Duration::from_secs(20)).expect("output within 20 s");
             text.push_str(&format!("{line}\n"));
             if line.contains(" as accepted") {
                 return text;
@@ -45,7 +45,7 @@ impl Watching {
 }
 
 #[test]
-fn a_saved_file_is_tried_again() {
+fn a_saved_file_runs_its_cases_again() {
     let place = tempfile::tempdir().unwrap();
     let place = place.path();
     let write = |file: &str, text: &str| {
@@ -59,16 +59,19 @@ fn a_saved_file_is_tried_again() {
     run_line("gcode-sim test parts --lib macros --accept", place);
 
     let watching = Watching::begin(place);
-    assert_eq!(watching.told(), "2 cases: 2 as accepted\n");
+    assert_eq!(watching.output(), "2 cases: 2 as accepted\n");
     // One case alone, as the file is in its folder.
     write("parts/plain/main.nc", "O2\nG0 X2.\nM30\n\n");
-    let told = watching.told();
-    assert!(told.starts_with("\nsaved: parts/plain/main.nc\nchanged  plain\n    move-shifted "), "{told}");
-    assert!(told.ends_with("1 case: 0 as accepted, 1 changed\n"), "{told}");
+    let output = watching.output();
+    assert!(
+        output.starts_with("\nsaved: parts/plain/main.nc\nchanged  plain\n    move-shifted "),
+        "{output}"
+    );
+    assert!(output.ends_with("1 case: 0 as accepted, 1 changed\n"), "{output}");
     // A macro concerns all.
     write("macros/O9001.nc", "O9001\nG81 X0.01 Y0. Z-5. R2. F100\nG80\nM99\n");
-    let told = watching.told();
-    assert!(told.contains("saved: macros/O9001.nc\n"), "{told}");
-    assert!(told.contains("hole 1: moved by +0.0100 +0.0000 +0.0000 mm"), "{told}");
-    assert!(told.ends_with("2 cases: 0 as accepted, 2 changed\n"), "{told}");
+    let output = watching.output();
+    assert!(output.contains("saved: macros/O9001.nc\n"), "{output}");
+    assert!(output.contains("hole 1: moved by +0.0100 +0.0000 +0.0000 mm"), "{output}");
+    assert!(output.ends_with("2 cases: 0 as accepted, 2 changed\n"), "{output}");
 }

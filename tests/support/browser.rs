@@ -1,4 +1,4 @@
-//! A browser without a screen, driven as WebDriver (W3C) says, over a plain connection to the machine itself.
+//! A browser without a screen, driven by WebDriver (W3C) over a plain local connection.
 use std::error::Error;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -14,8 +14,8 @@ const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 /// One browser with an empty profile; it ends when this is dropped.
 pub struct Browser {
     driver: Child,
-    /// What the driver prints; it ends where nobody listens.
-    _said: BufReader<ChildStdout>,
+    /// The driver's output; the driver ends if this is closed.
+    _output: BufReader<ChildStdout>,
     port: u16,
     session: String,
     _profile: tempfile::TempDir,
@@ -29,9 +29,9 @@ impl Browser {
     /// Starts a browser with a window of this size; panics if chromium or chromedriver is missing.
     pub fn start(width: u32, height: u32) -> Self {
         let installed = |name: &str| {
-            let told =
+            let status =
                 Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
-            told.is_ok_and(|status| status.success())
+            status.is_ok_and(|status| status.success())
         };
         let browser = BROWSERS.into_iter().find(|name| installed(name)).filter(|_| installed(DRIVER));
         let browser = browser.expect("install chromium and chromedriver: the feature `browser` needs both");
@@ -42,8 +42,8 @@ impl Browser {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let mut said = BufReader::new(driver.stdout.take().unwrap());
-        let port = port_of(&mut said);
+        let mut output = BufReader::new(driver.stdout.take().unwrap());
+        let port = port_of(&mut output);
         let profile = tempfile::tempdir().unwrap();
         let options = json!({
             "binary": path_of(browser),
@@ -61,7 +61,7 @@ impl Browser {
             "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
         }}});
         let mut started =
-            Self { driver, _said: said, port, session: String::new(), _profile: profile, _turn: turn };
+            Self { driver, _output: output, port, session: String::new(), _profile: profile, _turn: turn };
         let session = started.ask("POST", "/session", &wanted).unwrap();
         started.session = format!("/session/{}", session["sessionId"].as_str().unwrap());
         started
@@ -115,7 +115,7 @@ impl Browser {
         self.post("/goog/cdp/execute", &json!({"cmd": name, "params": parameters}))
     }
 
-    /// The messages of a log since it was asked for last: `browser` is the console, `performance` has the network.
+    /// The messages of a log since it was read last: `browser` is the console, `performance` has the network.
     pub fn log(&self, kind: &str) -> Vec<Value> {
         self.post("/se/log", &json!({"type": kind})).as_array().cloned().unwrap_or_default()
     }
@@ -151,10 +151,10 @@ impl Drop for Browser {
     }
 }
 
-/// The port that a driver says it listens on.
-fn port_of(said: &mut impl BufRead) -> u16 {
+/// The port in a driver's output.
+fn port_of(output: &mut impl BufRead) -> u16 {
     let mut line = String::new();
-    while said.read_line(&mut line).unwrap() > 0 {
+    while output.read_line(&mut line).unwrap() > 0 {
         let port =
             line.rsplit_once("successfully on port ").map(|(_, port)| port.trim_end().trim_end_matches('.'));
         if let Some(port) = port {

@@ -9,18 +9,18 @@ use gcode_part::job::Job;
 use gcode_session::{Request, grind};
 use gcode_sim::report::flute_view;
 
-/// The picture of one view; the job's form must be `moves`, for there is no library here.
-pub(super) fn scene(job: &str, program: Option<String>, view: &str) -> Picture {
+/// Returns the picture of one view; the job's form must be `moves`, for there is no library here.
+pub(super) fn picture(job: &str, program: Option<String>, view: &str) -> Picture {
     let job = Job::parse(job).unwrap();
     let package = families::emit(&job);
     let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
     let text = program.unwrap_or_else(|| main.text.clone());
     let request = Request::new("O8400.nc", text.as_bytes(), machine);
-    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+    let NominalPart::Flutes(flutes) = NominalPart::from_job(&job).unwrap() else {
         panic!("the job is no burr")
     };
-    let grinding = grind(&request, &mut NoLibrary, &wanted).unwrap();
+    let grinding = grind(&request, &mut NoLibrary, &flutes).unwrap();
     let view_of = flute_view::of("O8400.nc", &grinding, &grinding.verify());
     match view {
         "side" => side_view(&view_of),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::{Case, copy_folder, programs};
 
-/// Runs the commands and holds the whole session, exit codes and new files included, against `session.snap`.
+/// Runs the commands and compares the whole session, exit codes and new files included, with `session.snap`.
 pub(crate) fn run(case: &Case) {
     let place = tempfile::tempdir().unwrap();
     copy_folder(&case.dir, place.path());
@@ -18,8 +18,8 @@ pub(crate) fn run(case: &Case) {
         let done = programs::run_line(line, place.path());
         let _ = writeln!(session, "$ {line}");
         session.push_str(&String::from_utf8_lossy(&done.stdout));
-        for told in String::from_utf8_lossy(&done.stderr).lines() {
-            let _ = writeln!(session, "! {told}");
+        for line in String::from_utf8_lossy(&done.stderr).lines() {
+            let _ = writeln!(session, "! {line}");
         }
         let _ = writeln!(session, "[exit {}]", done.status.code().unwrap());
     }

@@ -1,6 +1,6 @@
 //! Cases of kind `control`: many small programs in one file, each with the end that was worked out for it.
 //!
-//! `cases.txt` has, after a line that says what it is about, cases of the form
+//! `cases.txt` has, after a sentence on what it is about, cases of the form
 //!
 //! ```text
 //! == vacant equals vacant

@@ -1,4 +1,4 @@
-//! Cases of kinds `exec` and `alarm`: what a control tells the machine, block by block, and how the run ends.
+//! Cases of kinds `exec` and `alarm`: the events of a run, block by block, and its end.
 //!
 //! `case.nc` is run; the snapshot `events` has a line per event with the line of its block. `expect.txt`, where there
 //! is one, is the end as it was worked out by hand, in the words of [`crate::expect`].
@@ -11,7 +11,7 @@ use gcode_lang::source::Span;
 use crate::Case;
 use crate::expect::{self, Ran};
 
-/// What the control tells the machine.
+/// Compares the events with `events.snap`.
 pub(crate) fn run(case: &Case) {
     let program = case.bytes("case.nc");
     let ran = expect::run(&program);

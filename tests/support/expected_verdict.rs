@@ -1,6 +1,6 @@
 //! What `verify` has to find in a program, in the words of a case's `expect.txt`.
 //!
-//! Each line is one thing; a line that begins with `#` says how its numbers were worked out.
+//! Each line is one thing; a line that begins with `#` explains how its numbers were worked out.
 //!
 //! | line | holds when |
 //! |---|---|
@@ -40,129 +40,100 @@ pub(crate) struct FindingLine {
     pub(crate) text: String,
 }
 
-/// What a case expects.
-pub(crate) struct Expectation<'a> {
-    summary: Option<&'a str>,
-    /// Each with the numbers and names that have to be said.
-    findings: Vec<(&'a str, Vec<&'a str>)>,
-    missing: Option<Vec<&'a str>>,
-    facts: Vec<(&'a str, Vec<&'a str>)>,
-    made: Vec<&'a str>,
-    not_checked: Vec<Vec<&'a str>>,
-    /// Whether there is a printed layout to compare with.
-    pub(crate) layout: bool,
+/// Whether `expect.txt` has a printed layout to compare.
+pub(crate) fn has_layout(expected: &str) -> bool {
+    expected.lines().any(|line| line == "layout")
 }
 
-impl<'a> Expectation<'a> {
-    pub(crate) fn parse(text: &'a str) -> Self {
-        let mut expected = Self {
-            summary: None,
-            findings: Vec::new(),
-            missing: None,
-            facts: Vec::new(),
-            made: Vec::new(),
-            not_checked: Vec::new(),
-            layout: false,
-        };
-        for line in text.lines().filter(|line| !line.starts_with('#')) {
+impl Outcome {
+    /// What differs from the lines of `expect.txt`, one line each.
+    pub(crate) fn differences(&self, expected: &str) -> Vec<String> {
+        let mut wrong = Vec::new();
+        let (mut verdicts, mut findings, mut made) = (Vec::new(), Vec::new(), Vec::new());
+        for line in expected.lines().filter(|line| !line.starts_with('#')) {
             let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
             match word {
-                "machine" | "reference" => {}
-                "PASS" | "FAIL" => {
-                    assert!(expected.summary.replace(line).is_none(), "a second verdict: {line}");
-                }
+                "machine" | "reference" | "layout" => {}
+                "PASS" | "FAIL" => verdicts.push(line),
                 "alarm" | "error" | "warning" | "note" => {
-                    let (head, said) = line.split_once(" with ").unwrap_or((line, ""));
-                    expected.findings.push((head, said.split_whitespace().collect()));
+                    findings.push(line.split_once(" with ").unwrap_or((line, "")));
                 }
-                "missing" => expected.missing = Some(rest.split_whitespace().collect()),
+                "missing" if rest.split_whitespace().eq(&self.missing) => {}
+                "missing" => wrong.push(format!("missing {}", self.missing.join(" "))),
                 "hole" | "neighbours" | "burr" => {
                     let (subject, facts) =
                         line.split_at(line.find('=').and_then(|at| line[..at].rfind(' ')).unwrap());
-                    expected.facts.push((subject, facts.split_whitespace().collect()));
+                    self.compare_facts(subject, facts, &mut wrong);
                 }
-                "made" => expected.made.push(rest),
+                "made" => made.push(rest),
                 "not-checked" => {
-                    let said = rest.strip_prefix("with ").unwrap();
-                    expected.not_checked.push(said.split_whitespace().collect());
+                    let words = rest.strip_prefix("with ").unwrap();
+                    let is_met = |line: &String| words.split_whitespace().all(|word| mentions(line, word));
+                    if !self.not_checked.iter().any(is_met) {
+                        wrong.push(format!("nothing is listed as not checked with {words}"));
+                    }
                 }
-                "layout" => expected.layout = true,
                 _ => panic!("no line of expect.txt: {line}"),
             }
         }
-        expected
-    }
-
-    /// What differs, one line each.
-    pub(crate) fn differences(&self, outcome: &Outcome) -> Vec<String> {
-        let mut wrong = Vec::new();
-        let found = outcome.summary.as_deref();
-        if found != self.summary {
-            let [expected, found] = [self.summary, found].map(|summary| summary.unwrap_or("no verdict"));
-            wrong.push(format!("{found}; expected is {expected}"));
+        if verdicts != Vec::from_iter(self.summary.as_deref()) {
+            let found = self.summary.as_deref().unwrap_or("no verdict");
+            wrong.push(format!("{found}; expected is {}", verdicts.join(" and ")));
         }
-        self.compare_findings(&outcome.findings, &mut wrong);
-        if self.missing.as_ref().is_some_and(|missing| *missing != outcome.missing) {
-            wrong.push(format!("missing {}", outcome.missing.join(" ")));
-        }
-        for (subject, facts) in &self.facts {
-            let of_subject = |found: &&(String, Facts)| {
-                *subject == "hole *" && found.0.starts_with("hole ") || found.0 == *subject
-            };
-            let mut found = outcome.facts.iter().filter(of_subject).peekable();
-            if found.peek().is_none() {
-                wrong.push(format!("there is no {subject}"));
-            }
-            for (name, numbers) in found {
-                compare(name, facts, numbers, &mut wrong);
-            }
-        }
-        self.compare_made(&outcome.made, &mut wrong);
-        for said in &self.not_checked {
-            let holds = |line: &String| said.iter().all(|word| mentions(line, word));
-            if !outcome.not_checked.iter().any(holds) {
-                wrong.push(format!("nothing is left open with {}", said.join(" ")));
-            }
-        }
+        self.compare_findings(&findings, &mut wrong);
+        self.compare_made(&made, &mut wrong);
         wrong
     }
 
-    fn compare_findings(&self, found: &[FindingLine], wrong: &mut Vec<String>) {
-        let expected: Vec<&str> = self.findings.iter().map(|(head, _)| *head).collect();
-        let heads: Vec<&str> = found.iter().map(|finding| finding.head.as_str()).collect();
-        if heads != expected {
-            let [found, expected] = [heads, expected].map(|all| match all.is_empty() {
+    /// Compares the facts of a subject; `hole *` is every hole.
+    fn compare_facts(&self, subject: &str, facts: &str, wrong: &mut Vec<String>) {
+        let is_meant = |found: &&(String, Facts)| {
+            subject == "hole *" && found.0.starts_with("hole ") || found.0 == subject
+        };
+        let mut found = self.facts.iter().filter(is_meant).peekable();
+        if found.peek().is_none() {
+            wrong.push(format!("there is no {subject}"));
+        }
+        found.for_each(|(name, numbers)| compare(name, facts, numbers, wrong));
+    }
+
+    fn compare_findings(&self, expected: &[(&str, &str)], wrong: &mut Vec<String>) {
+        let [found, heads]: [Vec<&str>; 2] = [
+            self.findings.iter().map(|finding| finding.head.as_str()).collect(),
+            expected.iter().map(|(head, _)| *head).collect(),
+        ];
+        if found != heads {
+            let [found, heads] = [found, heads].map(|all| match all.is_empty() {
                 true => "nothing".to_owned(),
                 false => all.join("\n  "),
             });
-            wrong.push(format!("found is\n  {found}\nexpected is\n  {expected}"));
+            wrong.push(format!("found is\n  {found}\nexpected is\n  {heads}"));
             return;
         }
-        for ((head, said), finding) in self.findings.iter().zip(found) {
-            for word in said.iter().filter(|word| !mentions(&finding.text, word)) {
-                wrong.push(format!("{head} doesn't say {word}: {}", finding.text.trim()));
+        for ((head, words), finding) in expected.iter().zip(&self.findings) {
+            for word in words.split_whitespace().filter(|word| !mentions(&finding.text, word)) {
+                wrong.push(format!("{head} doesn't have {word}: {}", finding.text.trim()));
             }
         }
     }
 
-    fn compare_made(&self, made: &[(String, Facts)], wrong: &mut Vec<String>) {
-        if self.made.len() != made.len() {
-            wrong.push(format!("{} holes are made; expected are {}", made.len(), self.made.len()));
+    fn compare_made(&self, expected: &[&str], wrong: &mut Vec<String>) {
+        if expected.len() != self.made.len() {
+            wrong.push(format!("{} holes are made; expected are {}", self.made.len(), expected.len()));
         }
-        for (expected, (place, numbers)) in self.made.iter().zip(made) {
+        for (expected, (place, numbers)) in expected.iter().zip(&self.made) {
             let (facts, at) = expected.split_once(" at ").unwrap();
-            let facts: Vec<&str> = facts.split_whitespace().collect();
             if at != place {
                 wrong.push(format!("the hole at {at} is made at {place}"));
             }
-            compare(&format!("the hole at {at}"), &facts, numbers, wrong);
+            compare(&format!("the hole at {at}"), facts, numbers, wrong);
         }
     }
 }
 
 /// `facts` are of the form `key=number`.
-fn compare(subject: &str, facts: &[&str], found: &[(&'static str, f64)], wrong: &mut Vec<String>) {
-    for fact in facts {
+fn compare(subject: &str, facts: &str, found: &[(&'static str, f64)], wrong: &mut Vec<String>) {
+    for fact in facts.split_whitespace() {
         let (key, number) = fact.split_once('=').unwrap();
         match found.iter().find(|(name, _)| *name == key) {
             Some((_, value)) if agrees(*value, number) => {}

@@ -1,4 +1,4 @@
-//! What holds for any bytes whatever: the bodies of the fuzz targets, and of the test that replays their corpus.
+//! Properties of any bytes: the bodies of the fuzz targets and of the test that replays their corpus.
 use gcode_control::{Control, Limits};
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::Machine;

@@ -1,5 +1,5 @@
 //! Cases of kind `gen`: the main programs and the machine file that `job.toml` becomes. The resident macros stand in
-//! `macros/` and `examples/`, where they are held byte for byte.
+//! `macros/` and `examples/`, where they are compared byte for byte.
 use std::fmt::Write;
 
 use gcode_gen::package::file_name;
@@ -7,7 +7,7 @@ use gcode_part::job::Job;
 
 use crate::Case;
 
-/// Emits `job.toml` and holds what belongs to it alone against `emitted.snap`; nothing is run here.
+/// Emits `job.toml` and compares what belongs to it alone with `emitted.snap`; nothing is run here.
 pub(crate) fn run(case: &Case) {
     let job = Job::parse(&case.text("job.toml")).unwrap_or_else(|error| panic!("{}: {error}", case.name()));
     let mut shown = String::new();

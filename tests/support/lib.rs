@@ -1,4 +1,4 @@
-//! Reads a case folder, holds what comes out against the files beside it, and knows the kinds of cases.
+//! Reads a case folder, compares its result with the files beside it, and knows the kinds of cases.
 //!
 //! A case is a folder `suite/<kind>/<behaviour in words>/`. What goes in stands there (`case.nc`, a job, a
 //! picture's data), and what must come out stands beside it as snapshots. One file per kind in this folder.
@@ -26,7 +26,7 @@ pub mod verify;
 
 use std::path::{Path, PathBuf};
 
-/// What is done with a case; it panics where something else comes out than must.
+/// Runs a case; panics if the result differs.
 type Run = fn(&Case);
 
 /// The kinds of cases by their folder under `suite/`.
@@ -72,7 +72,7 @@ impl Case {
         self.dir.strip_prefix(root()).unwrap().display().to_string()
     }
 
-    /// `shown` must be what `<name>.snap` beside the inputs says. `INSTA_UPDATE=always` accepts what is new.
+    /// Compares `shown` with `<name>.snap` beside the inputs. `INSTA_UPDATE=always` accepts what is new.
     pub fn snapshot(&self, name: &str, shown: &str) {
         let mut settings = insta::Settings::clone_current();
         settings.set_snapshot_path(&self.dir);
@@ -139,7 +139,7 @@ pub fn cases(kind: &str) -> Vec<Case> {
     dirs.into_iter().map(|dir| Case { dir }).collect()
 }
 
-/// The kinds that have folders, so that a folder nobody runs is noticed.
+/// The kinds that have folders, so that a folder without a kind is noticed.
 pub fn folders() -> Vec<String> {
     let Ok(entries) = std::fs::read_dir(root()) else { return Vec::new() };
     let mut names: Vec<_> = entries

@@ -53,7 +53,7 @@ pub(crate) fn run(case: &Case) {
     let mut entries = text.split("\n== ");
     let head = entries.next().unwrap().lines().skip(1);
     let mut common = Setup { job: case.optional("job.toml").unwrap_or_default(), ..Setup::default() };
-    let mut left = BTreeMap::new();
+    let (mut left, mut benches) = (BTreeMap::new(), BTreeMap::new());
     head.filter(|line| is_row(line)).for_each(|line| common.add(line, &left));
     let (mut wrong, mut count) = (String::new(), 0);
     for entry in entries {
@@ -69,7 +69,7 @@ pub(crate) fn run(case: &Case) {
                 .split(" & ")
                 .filter(|word| !word.trim().is_empty())
                 .for_each(|word| row.add(word.trim(), &left));
-            let ran = row.run();
+            let ran = row.run(&mut benches);
             count += 1;
             let mut expected = expected.trim().to_owned();
             if let Some(others) = expected.strip_suffix("; set=kept") {
@@ -135,8 +135,10 @@ impl Setup {
         }
     }
 
-    fn run(&self) -> Ran {
-        let bench = Bench::of(&self.job).with_machine(&self.machine);
+    /// Runs the programs of the job, which are emitted once for all rows that share it.
+    fn run(&self, benches: &mut BTreeMap<String, Bench>) -> Ran {
+        let bench = benches.entry(self.job.clone()).or_insert_with(|| Bench::of(&self.job));
+        let bench = bench.clone().with_machine(&self.machine);
         let (main, bench) = match self.run.strip_prefix('O').and_then(|number| number.parse().ok()) {
             Some(number) => (number, bench),
             None => (1, bench.with_main(1, &self.run.replace(';', "\n"))),

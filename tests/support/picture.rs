@@ -1,11 +1,11 @@
-//! Draws the view that a `case.toml` describes, or that of the burr in a `job.toml` beside it as a `case.nc` or its own program grinds it, and holds it against
-//! `expected.png`, one step per channel allowed. With an `old.nc` it is the holes of `new.nc` over those of `old.nc`.
+//! Draws the view that a `case.toml` describes and compares it with `expected.png`; each channel may differ by one step.
 //!
-//! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
-//! was drawn instead, and where it differs, is left in `target/pictures/`.
+//! With a `job.toml` the view is of its burr, ground by `case.nc` or by its own program; with an `old.nc`, of the holes of
+//! `new.nc` over those of `old.nc`. `says.snap` has the picture's texts. With an `other.toml` the picture is the comparison
+//! of both. A picture that differs is left in `target/pictures/`, with its differences.
 use gcode_draw::{
-    Cylinder, Difference, DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Sheet, Side, Size, Stroke,
-    TopView, compare, development, lay_out, paint, png, top_view,
+    Cylinder, Difference, DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Sheet, Side, Stroke, TopView,
+    compare, development, lay_out, paint, png, top_view,
 };
 use gcode_inspect::machine::Machine;
 use gcode_part::Hole;
@@ -17,18 +17,18 @@ use tiny_skia::{IntRect, Pixmap};
 use crate::changes::revision;
 use crate::{Case, burr_picture, root};
 
-/// A picture that people look at in a review is small.
+/// Largest size of an expected picture.
 const MOST_BYTES: usize = 20 * 1024;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Picture {
     size: String,
-    /// Left, top, width, height of what `expected.png` shows of it.
+    /// Left, top, width, height of the part in `expected.png`.
     crop: [u32; 4],
     name: String,
     outline: Option<f64>,
-    /// Of a part that is a cylinder, seen along the spindle, or unrolled.
+    /// Dimensions of a part that is a cylinder, which is seen along the spindle or unrolled.
     cylinder: Option<CylinderCase>,
     #[serde(default)]
     unrolled: bool,
@@ -53,7 +53,7 @@ struct BurrPicture {
 struct ChangedPicture {
     size: String,
     crop: [u32; 4],
-    /// What counts as the same, mm.
+    /// Tolerance for equality, mm.
     tolerance: f64,
 }
 
@@ -63,7 +63,7 @@ struct HoleCase {
     id: String,
     at: [f64; 3],
     axis: [f64; 3],
-    /// Actual − nominal of the entry; a missing hole has none, and neither has one without a reference.
+    /// Actual − nominal of the entry; `None` for a missing hole and without a reference.
     off: Option<[f64; 3]>,
     #[serde(default = "six")]
     diameter: f64,
@@ -93,64 +93,60 @@ fn six() -> f64 {
 }
 
 pub(crate) fn run(case: &Case) {
-    if let Some(job) = case.optional("job.toml") {
-        let picture: BurrPicture = toml::from_str(&case.text("case.toml")).unwrap();
-        let scene = burr_picture::scene(&job, case.optional("case.nc"), &picture.view);
-        let sheet = lay_out(&scene, picture.size.parse().unwrap()).unwrap();
-        case.snapshot("says", &words(&sheet));
-        return assert_picture(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
-    }
-    if let Some(old) = case.optional("old.nc") {
-        let picture: ChangedPicture = toml::from_str(&case.text("case.toml")).unwrap();
-        let view = changed(&old, &case.text("new.nc"), picture.tolerance);
-        let sheet = lay_out(&top_view(&view), picture.size.parse().unwrap()).unwrap();
-        case.snapshot("says", &words(&sheet));
-        return assert_picture(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
-    }
-    let (picture, sheet) = draw(&case.text("case.toml"));
+    let text = case.text("case.toml");
+    let (picture, size, crop) = if let Some(job) = case.optional("job.toml") {
+        let form: BurrPicture = toml::from_str(&text).unwrap();
+        (burr_picture::picture(&job, case.optional("case.nc"), &form.view), form.size, form.crop)
+    } else if let Some(old) = case.optional("old.nc") {
+        let form: ChangedPicture = toml::from_str(&text).unwrap();
+        (top_view(&changed(&old, &case.text("new.nc"), form.tolerance)), form.size, form.crop)
+    } else {
+        described(&text)
+    };
+    let lay_out = |picture, size: String| lay_out(&picture, size.parse().unwrap()).unwrap();
+    let sheet = lay_out(picture, size);
     let bytes = png(&paint(&sheet)).unwrap();
     let Some(other) = case.optional("other.toml") else {
         case.snapshot("says", &words(&sheet));
-        return assert_picture(case, &cropped(&bytes, picture.crop));
+        return assert_picture(case, &cropped(&bytes, crop));
     };
-    let (_, other) = draw(&other);
-    let difference = compare(&bytes, &png(&paint(&other)).unwrap(), 1).unwrap();
+    let (other, size, _) = described(&other);
+    let difference = compare(&bytes, &png(&paint(&lay_out(other, size))).unwrap(), 1).unwrap();
     case.snapshot("says", &describe(&difference));
-    assert_picture(case, &cropped(&difference.png().unwrap(), picture.crop));
+    assert_picture(case, &cropped(&difference.png().unwrap(), crop));
 }
 
-/// The holes of a new revision over those of the old one, on the machine that is taken where none is told.
+/// Returns the holes of a new revision over those of the old one, on the default machine.
 fn changed(old: &str, new: &str, tolerance: f64) -> TopView {
     let machine = Machine::default();
     let (old, new) = (revision(old), revision(new));
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
-    let differences = (&compared, tolerance);
-    changed_view::of_changes("O0100.nc", (&old, &new), &machine, differences, None)
+    changed_view::of_changes("O0100.nc", (&old, &new), &machine, (&compared, tolerance), None)
 }
 
-fn draw(text: &str) -> (Picture, Sheet) {
-    let picture: Picture = toml::from_str(text).unwrap();
-    let size: Size = picture.size.parse().unwrap();
+/// Returns the picture that a `case.toml` describes, its size and its crop.
+fn described(text: &str) -> (gcode_draw::Picture, String, [u32; 4]) {
+    let form: Picture = toml::from_str(text).unwrap();
+    let cylinder = form.cylinder.map(|CylinderCase { radius, length, rows }| Cylinder {
+        outer: radius,
+        radius,
+        length,
+        rows,
+    });
     let view = TopView {
-        name: picture.name.clone(),
-        outline: picture.outline,
-        side: if picture.cylinder.is_some() { Side::Z } else { Side::Y },
-        cylinder: picture.cylinder.as_ref().map(|cylinder| Cylinder {
-            outer: cylinder.radius,
-            radius: cylinder.radius,
-            length: cylinder.length,
-            rows: cylinder.rows,
-        }),
-        tolerance: picture.tolerance,
+        name: form.name,
+        outline: form.outline,
+        side: if cylinder.is_some() { Side::Z } else { Side::Y },
+        cylinder,
+        tolerance: form.tolerance,
         rotary: "B".to_owned(),
         purpose: PicturePurpose::Verdict,
-        holes: picture.hole.iter().map(drawn_hole).collect(),
-        path: picture.path.iter().map(stroke).collect(),
+        holes: form.hole.iter().map(drawn_hole).collect(),
+        path: form.path.iter().map(stroke).collect(),
         ..TopView::default()
     };
-    let scene = if picture.unrolled { development(&view).unwrap() } else { top_view(&view) };
-    let sheet = lay_out(&scene, size).unwrap();
-    (picture, sheet)
+    let picture = if form.unrolled { development(&view).unwrap() } else { top_view(&view) };
+    (picture, form.size, form.crop)
 }
 
 fn stroke(case: &PathCase) -> Stroke<3> {
@@ -175,10 +171,10 @@ fn drawn_hole(case: &HoleCase) -> DrawnHole {
         diameter: Some(case.diameter),
         from: None,
     };
-    let wanted = matches!(standing, HoleStatus::Good | HoleStatus::Bad | HoleStatus::Missing);
+    let is_nominal = matches!(standing, HoleStatus::Good | HoleStatus::Bad | HoleStatus::Missing);
     DrawnHole {
         id: case.id.clone(),
-        nominal: wanted.then(|| at([0.0; 3])),
+        nominal: is_nominal.then(|| at([0.0; 3])),
         actual: (standing != HoleStatus::Missing).then(|| at(case.off.unwrap_or_default())),
         status: standing,
         position_deviation: case.phi,
@@ -187,11 +183,11 @@ fn drawn_hole(case: &HoleCase) -> DrawnHole {
     }
 }
 
-/// What the picture says in words.
+/// Returns the texts of the picture.
 fn words(sheet: &Sheet) -> String {
     let mut lines: Vec<String> =
         sheet.labels.iter().map(|(_, lines)| format!("label: {}", lines.join(" | "))).collect();
-    lines.extend(sheet.magnification.map(|times| format!("misfits: ×{times:.0}")));
+    lines.extend(sheet.magnification.map(|times| format!("deviations: ×{times:.0}")));
     lines.extend(sheet.notes.iter().map(|note| format!("note: {note}")));
     lines.join("\n")
 }
@@ -213,7 +209,7 @@ fn cropped(bytes: &[u8], [left, top, width, height]: [u32; 4]) -> Vec<u8> {
     png(&part.and_then(|part| whole.clone_rect(part)).unwrap()).unwrap()
 }
 
-/// `INSTA_UPDATE=always` accepts what is new, as for snapshots.
+/// Compares with the expected picture; `INSTA_UPDATE=always` accepts a new one, as for snapshots.
 fn assert_picture(case: &Case, actual: &[u8]) {
     assert!(actual.len() <= MOST_BYTES, "{} bytes are more than {MOST_BYTES}: crop it", actual.len());
     let expected = case.dir.join("expected.png");
@@ -225,12 +221,12 @@ fn assert_picture(case: &Case, actual: &[u8]) {
     if accepts {
         return std::fs::write(expected, actual).unwrap();
     }
-    let left = root().join("../../target/pictures").join(case.name());
-    std::fs::create_dir_all(&left).unwrap();
-    std::fs::write(left.join("actual.png"), actual).unwrap();
+    let folder = root().join("../../target/pictures").join(case.name());
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("actual.png"), actual).unwrap();
     let Some(difference) = difference else {
-        panic!("there is no expected.png; what was drawn is in {}", left.display())
+        panic!("there is no expected.png; the picture is in {}", folder.display())
     };
-    std::fs::write(left.join("difference.png"), difference.png().unwrap()).unwrap();
-    panic!("{}; see {}", describe(&difference), left.display());
+    std::fs::write(folder.join("difference.png"), difference.png().unwrap()).unwrap();
+    panic!("{}; see {}", describe(&difference), folder.display());
 }

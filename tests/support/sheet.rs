@@ -6,7 +6,7 @@ use gcode_part::job::{Job, Rates};
 
 use crate::Case;
 
-/// Holds the text of the sheet against `sheet.snap`; `rates.toml` is what `--rates` names.
+/// Compares the text of the sheet with `sheet.snap`; `rates.toml` is what `--rates` names.
 pub(crate) fn run(case: &Case) {
     let rates = case.optional("rates.toml").map(|text| Rates::parse(&text).unwrap());
     case.snapshot("sheet", &text(&html(&case.text("job.toml"), rates.as_ref())));
@@ -21,8 +21,8 @@ pub fn html(job: &str, rates: Option<&Rates>) -> String {
     Sheet::new(&job, &package, &checked, rates, Vec::new()).unwrap().html()
 }
 
-/// What a reader sees: a line a row or paragraph, cells apart by bars. Hashes are told by their length alone, for they
-/// change with every byte of a macro.
+/// The visible text: a line for each row or paragraph, bars between cells. Hashes are shown by their length alone, for they change with
+/// every byte of a macro.
 fn text(html: &str) -> String {
     let body = html.split_once("<body>").unwrap().1;
     let mut text = String::new();

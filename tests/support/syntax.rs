@@ -8,7 +8,7 @@ use gcode_lang::syntax::{parse, print_decimal};
 
 use crate::Case;
 
-/// Reads the file and holds what was read against `read.snap`.
+/// Reads the file and compares the result with `read.snap`.
 pub(crate) fn run(case: &Case) {
     let mut sources = Sources::default();
     let id = sources.add("case.nc", case.bytes("case.nc"));

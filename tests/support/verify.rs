@@ -1,6 +1,6 @@
 //! Cases of kind `verify`: a program compared with a reference, and what has to be found, as it was worked out by hand.
 //!
-//! `case.nc` is the program (programs it calls stand in the same file). `expect.txt` says in the words of
+//! `case.nc` is the program (programs it calls stand in the same file). `expect.txt` has in the words of
 //! `expected_verdict` which machine and which reference, of those in `suite/verify/`, and what comes out.
 //! A machine or a reference that only one case has stands beside its program: `machine.toml`, `reference.toml` or `.csv`.
 //! Without a reference the holes are listed that the program makes.
@@ -18,11 +18,10 @@ use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
 
 use crate::Case;
-use crate::expected_verdict::{Expectation, FindingLine, Outcome};
+use crate::expected_verdict::{FindingLine, Outcome, has_layout};
 
 pub(crate) fn run(case: &Case) {
     let text = case.text("expect.txt");
-    let expected = Expectation::parse(&text);
     let machine = machine_of(&case.dir).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let wanted = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
@@ -39,10 +38,11 @@ pub(crate) fn run(case: &Case) {
         }
         None => list_holes(&simulate(&request, &mut NoLibrary, None).unwrap()),
     };
-    let differences = expected.differences(&outcome);
+    let differences = outcome.differences(&text);
     assert!(differences.is_empty(), "{}:\n{}\n{layout}", case.name(), differences.join("\n"));
-    assert!(expected.layout || case.optional("verdict.snap").is_none(), "{}: no line 'layout'", case.name());
-    if expected.layout {
+    let has_layout = has_layout(&text);
+    assert!(has_layout || case.optional("verdict.snap").is_none(), "{}: no line 'layout'", case.name());
+    if has_layout {
         case.snapshot("verdict", &layout);
     }
 }
@@ -190,7 +190,7 @@ fn known_facts<const N: usize>(facts: [(&'static str, Option<f64>); N]) -> Vec<(
     facts.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
 }
 
-/// `error hole-depth at O6:13 from O5:6 of r1h0`, and what is said of it.
+/// Findings as `error hole-depth at O6:13 from O5:6 of r1h0`, with their messages and notes.
 fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<FindingLine> {
     let one = |finding: &Diagnostic| {
         let mut head = format!("{} {}", finding.severity.name(), finding.code());

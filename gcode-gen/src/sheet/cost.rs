@@ -71,7 +71,7 @@ impl Cost {
 }
 
 /// Returns the time on the job's own machine.
-pub fn machine_time(words: &SheetInfo, record: &Record) -> MachineTime {
+pub(super) fn machine_time(words: &SheetInfo, record: &Record) -> MachineTime {
     MachineTime {
         run: record.times.total() / 60.0,
         stops: record.stops.len(),
@@ -82,7 +82,7 @@ pub fn machine_time(words: &SheetInfo, record: &Record) -> MachineTime {
 
 /// Returns the costs of the job's own machine and of the others. Times not given for another machine are
 /// taken to be the same.
-pub fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
+pub(super) fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
     let beside = |other: &AlternativeMachine| Cost {
         machine: Some(other.machine.clone()),
         time: MachineTime {
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn minutes_add_up_and_what_is_not_said_is_not_counted() {
+    fn minutes_add_up_and_missing_ones_are_named() {
         assert_eq!(two_hours().total(), 120.0);
         assert!(two_hours().not_counted().is_empty());
         let silent = MachineTime { minutes: Minutes::default(), ..two_hours() };

@@ -9,11 +9,11 @@ use gcode_sim::report::figures::{rounded, short, signed, signed_to};
 use crate::check::PackageVerdict;
 
 /// Largest number of holes with lines of their own; larger patterns have common lines.
-pub const LISTED: usize = 100;
+pub(super) const LISTED: usize = 100;
 
 /// One characteristic. It has no result: a simulation is not a measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Characteristic {
+pub(super) struct Characteristic {
     pub reference: String,
     pub name: &'static str,
     pub requirement: String,
@@ -21,7 +21,7 @@ pub struct Characteristic {
     pub predicted: String,
 }
 
-pub fn characteristics(job: &Job, judgement: &PackageVerdict) -> Vec<Characteristic> {
+pub(super) fn characteristics(job: &Job, judgement: &PackageVerdict) -> Vec<Characteristic> {
     match judgement {
         PackageVerdict::Measured => match job {
             Job::Alignment(job) => of_alignment(job),
@@ -93,22 +93,21 @@ fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
 }
 
 fn of_neighbours(neighbours: &Neighbours) -> Vec<Characteristic> {
-    let Neighbours { metric, nominal: wanted, with_six, with_six_nominal: with_six_wanted, min, max } =
-        neighbours;
+    let Neighbours { metric, nominal, with_six, with_six_nominal, min, max } = neighbours;
     let place = |distance: &Option<Distance>| match distance {
         Some(Distance { distance, between: [one, other] }) => {
             format!("{} between {one} and {other}", rounded(*distance, 4))
         }
         None => "none".to_owned(),
     };
-    let pitch = || format!("{} ({metric})", rounded(*wanted, 4));
+    let pitch = || format!("{} ({metric})", rounded(*nominal, 4));
     let new = |name: &'static str, requirement: String, predicted: String| {
         Characteristic::new("neighbours", name, requirement, predicted)
     };
     vec![
         new("minimum distance", pitch(), place(min)),
         new("maximum distance", pitch(), place(max)),
-        new("holes with all six neighbours", with_six_wanted.to_string(), with_six.to_string()),
+        new("holes with all six neighbours", with_six_nominal.to_string(), with_six.to_string()),
     ]
 }
 
@@ -129,8 +128,8 @@ fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
     ];
     // Helix angles can be measured at these polar angles, on the specified law.
     all.extend(verdict.laws.iter().map(|law| {
-        let wanted = if verdict.law == "published" { law.published } else { law.constant_helix };
-        let requirement = format!("{}° ±{}°", rounded(wanted, 2), verdict.helix_tolerance);
+        let nominal = if verdict.law == "published" { law.published } else { law.constant_helix };
+        let requirement = format!("{}° ±{}°", rounded(nominal, 2), verdict.helix_tolerance);
         let place = format!("{}° from the tip", law.polar);
         let found = law.measured.map_or("not measured".to_owned(), |angle| format!("{}°", rounded(angle, 2)));
         Characteristic::new(&place, "helix angle", requirement, found)

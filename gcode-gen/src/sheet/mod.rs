@@ -6,10 +6,10 @@
 //! are.
 pub mod cost;
 mod html;
-pub mod measure;
-pub mod record;
-pub mod settings;
-pub mod stop_instructions;
+mod measure;
+mod record;
+mod settings;
+mod stop_instructions;
 
 use gcode_part::job::{Job, Rates};
 
@@ -20,7 +20,7 @@ use record::Record;
 use settings::RequiredSetting;
 
 /// Basis of all numbers on the page.
-pub const BASIS: &str = "Predicted by simulation, not measured";
+const BASIS: &str = "Predicted by simulation, not measured";
 
 /// A verified package with the data for its sheet.
 pub struct Sheet<'a> {

@@ -16,7 +16,7 @@ const KEPT_VARIABLES: std::ops::RangeInclusive<u32> = 500..=999;
 
 /// Record of the run of all main programs.
 #[derive(Debug, Default)]
-pub struct Record {
+pub(super) struct Record {
     /// Each main program with the kept common variables at its first start.
     pub program_starts: Vec<ProgramStart>,
     pub stops: Vec<OperatorStop>,
@@ -33,14 +33,14 @@ pub struct Record {
 
 /// A main program, and the variables that earlier ones left.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ProgramStart {
+pub(super) struct ProgramStart {
     pub main: u32,
     pub variables: Vec<(u32, f64)>,
 }
 
 /// An operator stop.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OperatorStop {
+pub(super) struct OperatorStop {
     pub kind: StopKind,
     pub text: String,
     /// Variables that the text names, with their values.
@@ -55,14 +55,14 @@ pub struct OperatorStop {
 
 /// Times in seconds: paths over feeds and rapid rates, without acceleration, stops and tool changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MotionTimes {
+pub(super) struct MotionTimes {
     pub rapid: f64,
     pub feed: f64,
     pub dwell: f64,
 }
 
 impl MotionTimes {
-    pub fn total(&self) -> f64 {
+    pub(super) fn total(&self) -> f64 {
         self.rapid + self.feed + self.dwell
     }
 }
@@ -72,7 +72,7 @@ impl MotionTimes {
 ///
 /// # Errors
 /// [`CheckError::Broken`] if the package contradicts itself, which [`crate::check::check`] refuses before.
-pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
+pub(super) fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
     let mut listener = RunRecorder::default();
     let mut record = Record::default();
     let mut kept = Vec::new();

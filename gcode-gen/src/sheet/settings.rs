@@ -11,11 +11,11 @@ use crate::check::{CheckError, broken_package};
 use crate::package::Package;
 
 /// Number of blocks followed: later ones only repeat loops.
-pub const MAX_BLOCKS: u64 = 2_000;
+pub(super) const MAX_BLOCKS: u64 = 2_000;
 
 /// A switch that must have the simulated value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RequiredSetting {
+pub(super) struct RequiredSetting {
     pub key: &'static str,
     pub meaning: &'static str,
     /// 0 or 1.
@@ -29,7 +29,7 @@ pub struct RequiredSetting {
 ///
 /// # Errors
 /// [`CheckError::Broken`] if the package contradicts itself.
-pub fn required_settings(
+pub(super) fn required_settings(
     job: &Job,
     package: &Package,
     begins: &[ProgramStart],
@@ -43,14 +43,14 @@ pub fn required_settings(
             request.settings = settings;
             RunTrace::of(job, package, &request).map_err(|error| broken_package(&request.name, &error))
         };
-        let wanted = trace(usual.clone())?;
-        if wanted.alarm.is_some() {
+        let expected = trace(usual.clone())?;
+        if expected.alarm.is_some() {
             continue;
         }
         for row in ROWS {
             let Some((value, turned)) = switched(row, &usual) else { continue };
             let other = trace(turned)?;
-            if other != wanted && found.iter().all(|known| known.key != row.key) {
+            if other != expected && found.iter().all(|known| known.key != row.key) {
                 let otherwise = other.alarm.unwrap_or_else(|| "the machine moves differently".to_owned());
                 found.push(RequiredSetting {
                     key: row.key,
@@ -140,7 +140,7 @@ mod tests {
     /// ATAN of the third quadrant is 225, or -135 with NAT; `IF[..]` needs THEN unless PLAIN-IF; X10 is 10 µm
     /// or mm.
     #[test]
-    fn a_switch_that_changes_what_happens_is_named() {
+    fn a_switch_that_changes_the_run_is_named() {
         let moves = "the machine moves differently".to_owned();
         assert_eq!(found("O1\n#1=ATAN[-1.]/[-1.]\nG0 X#1\nM30\n"), [("NAT", "0", moves.clone())]);
         assert_eq!(found("O1\nG0 X10\nM30\n"), [("DPI", "0", moves)]);

@@ -6,7 +6,7 @@ use gcode_sim::report::figures::{rounded, short};
 
 use super::record::OperatorStop;
 
-pub fn instructions(job: &Job, stop: &OperatorStop) -> Vec<String> {
+pub(super) fn instructions(job: &Job, stop: &OperatorStop) -> Vec<String> {
     if let (Job::PinHoles(job), StopKind::Message, [(variable, angle)]) =
         (job, stop.kind, stop.variables.as_slice())
         && job.machine.head.kind() == HeadKind::Manual
@@ -123,6 +123,6 @@ fn shim() -> String {
 }
 
 /// Returns true if X and Y are programmed for the tool's tip instead of the head's pivot.
-pub fn tip_is_programmed(job: &PinHoles) -> bool {
+pub(super) fn tip_is_programmed(job: &PinHoles) -> bool {
     job.machine.head.pivot == 0.0 && job.tools.iter().all(|tool| tool.length == 0.0)
 }

@@ -15,7 +15,7 @@ use proptest::prelude::*;
 
 use self::sample_jobs::{Wish, example, wishes};
 
-/// The same with two flutes, where their number is nothing to the test.
+/// The example with two flutes, for tests that don't depend on their number.
 fn two_flutes() -> Wish {
     Wish { flutes: 2, ..example() }
 }
@@ -34,7 +34,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(8))]
 
     #[test]
-    fn a_random_burr_is_ground_as_wanted(wish in wishes()) {
+    fn a_random_burr_is_ground_as_specified(wish in wishes()) {
         let verdict = passed(&wish);
         prop_assert_eq!(verdict.flutes, wish.flutes as usize);
         prop_assert!(verdict.surface_deviation.unwrap() <= wish.chord_error + 1e-6);
@@ -44,8 +44,7 @@ proptest! {
         if wish.law == "constant-helix" {
             prop_assert!((least - wish.helix).abs() < 0.3 && (most - wish.helix).abs() < 0.3, "{least} {most}");
         } else {
-            // It leans as B does where it begins and grows steeper from there, tan β over the cosine of the way gone, over
-            // which its lean is measured.
+            // The flute begins at B's angle and grows steeper, tan β over the cosine of the distance, over which the angle is measured.
             let flat = if wish.helix < 0.0 { most } else { least };
             let way = Deg::from_rad(verdict.gauge / (wish.diameter / 2.0)).0.min(80.0);
             let steepest = Deg::atan2(Deg(wish.helix.abs()).tan(), Deg(way).cos()).0;
@@ -74,7 +73,7 @@ fn replaced(from: &str, to: &str) -> FluteVerdict {
 /// On the cylinder the contact's way is 19/cos 20° mm, and X, A go 19 and 66.036°: G94 takes 68.7/(200/20.219) min, in
 /// which 200 mm/min take 0.1011.
 #[test]
-fn how_the_wheel_turns_and_how_fast_it_runs_counts() {
+fn the_wheels_rotation_and_speed_along_the_flute_count() {
     let cases = [
         ("S3000 M03", "S3000 M03", Answer::Pass, None),
         ("S3000 M03", "S3000", Answer::Fail, Some("spindle-stopped")),
@@ -88,8 +87,8 @@ fn how_the_wheel_turns_and_how_fast_it_runs_counts() {
     ];
     for (from, to, answer, code) in cases {
         let verdict = replaced(from, to);
-        let told: Vec<_> = verdict.findings.iter().map(|finding| &*finding.code).collect();
-        assert!(verdict.verdict == answer && told == Vec::from_iter(code), "{to}: {told:?}");
+        let expected: Vec<_> = verdict.findings.iter().map(|finding| &*finding.code).collect();
+        assert!(verdict.verdict == answer && expected == Vec::from_iter(code), "{to}: {expected:?}");
     }
     let slow = replaced("G93\n", "G94\n").speed_min.unwrap();
     let wanted = 20.219 / (66.036f64.hypot(19.0) / (200.0 / 20.219));
@@ -98,15 +97,18 @@ fn how_the_wheel_turns_and_how_fast_it_runs_counts() {
 
 /// The burr's end 0.02 too far from the C axis in Y: off by 0.02·(1 − cos 85°) at the tip, below.
 #[test]
-fn an_offset_that_is_off_is_told_as_that() {
+fn a_wrong_offset_is_named_as_the_cause() {
     let verdict = replaced("J-15. ", "J-15.02 ");
-    let told = verdict.findings.iter().find(|finding| finding.code == "flute-surface").unwrap();
+    let expected = verdict.findings.iter().find(|finding| finding.code == "flute-surface").unwrap();
     let deepest = 0.02 * (1.0 - Deg(85.0).cos());
-    assert!((verdict.surface_deviation.unwrap() - deepest).abs() < 0.002, "{told:?}");
-    assert!(told.notes[0].contains("X40.000 Y-15.020 from the C axis instead of X40 Y-15"), "{told:?}");
+    assert!((verdict.surface_deviation.unwrap() - deepest).abs() < 0.002, "{expected:?}");
+    assert!(
+        expected.notes[0].contains("X40.000 Y-15.020 from the C axis instead of X40 Y-15"),
+        "{expected:?}"
+    );
     let verdict = replaced("I40. ", "I40.03 ");
-    let told = verdict.findings.iter().find(|finding| finding.code == "flute-surface").unwrap();
-    assert!(told.notes[0].contains("X40.030 Y-15.000 from the C axis"), "{told:?}");
+    let expected = verdict.findings.iter().find(|finding| finding.code == "flute-surface").unwrap();
+    assert!(expected.notes[0].contains("X40.030 Y-15.000 from the C axis"), "{expected:?}");
 }
 
 /// Every rapid and feed of a burr's program: whether it is a rapid, its end, its seconds.
@@ -190,7 +192,7 @@ fn there_are_as_few_moves_as_hold_the_chord_error() {
 
 /// Forward kinematics decides: the same programs on a machine with one axis turned round grind no such burr.
 #[test]
-fn each_axis_sign_counts() {
+fn the_sign_of_each_axis_counts() {
     for letter in ["X", "Y", "A", "B", "C"] {
         let mut bench = two_flutes().bench();
         let (before, after) = bench.package.machine.split_once(&format!("letter = \"{letter}\"")).unwrap();
@@ -218,7 +220,7 @@ fn with(blocks: &str) -> FluteVerdict {
 
 /// The blank stands `depth` above the tooth bottom at Y 0; the wheel goes along it from X -19 to X 0.
 #[test]
-fn what_goes_into_the_blank_without_a_pass_is_told() {
+fn a_wheel_in_the_blank_without_a_pass_is_reported() {
     let depth = example_depth();
     let below = |y: f64| format!("{:.3} mm below the blank surface", depth - y);
     let cases = [
@@ -234,12 +236,12 @@ fn what_goes_into_the_blank_without_a_pass_is_told() {
         ("X-19.\nG01 Y-0.1 F30.\nG00 Y50.\n", "0.100 mm below the tooth bottom".to_owned()),
         ("X-19.\nY0.\nG00 Y50.\n", format!("rapid motion with the wheel in the blank, {}", "")),
     ];
-    for (blocks, told) in cases {
+    for (blocks, expected) in cases {
         let verdict = with(blocks);
         let found: Vec<_> = verdict.findings.iter().filter(|f| f.code == "wheel-into-burr").collect();
         assert!(
-            found.iter().any(|f| f.message.contains(&told)),
-            "{blocks}: {:?}, not {told}",
+            found.iter().any(|f| f.message.contains(&expected)),
+            "{blocks}: {:?}, not {expected}",
             verdict.findings
         );
     }
@@ -255,9 +257,9 @@ fn example_depth() -> f64 {
     wanted.tooth_depth.max(wanted.surface_tolerance)
 }
 
-/// Sixteen whole turns in one block: where it is looked at must not be the same place every time.
+/// Sixteen whole turns in one block: the samples must not all be at the same place.
 #[test]
-fn whole_turns_in_one_block_are_seen() {
+fn whole_turns_in_one_block_are_followed() {
     let verdict = with("X-19.\nG01 Y0. F30.\nG91 A5760.\nG90 G00 Y50.\n");
     assert!(verdict.findings.iter().any(|f| f.code == "flute-helix"), "{:?}", verdict.findings);
 }
@@ -265,25 +267,29 @@ fn whole_turns_in_one_block_are_seen() {
 /// 2500 turns round 12 mm are 94 m, 1.9 million points of 0.05 mm; round 242 mm 1900 m, 7.6 million of 0.25 mm.
 #[test]
 fn moves_without_measure_end_in_a_finding() {
-    for (blocks, told) in [
+    for (blocks, expected) in [
         ("X-19.\nG01 Y0. F30.\nG91 A900000.\nG90 G00 Y50.\n", "more than 4750"), // 2·40·(19 + 8.901)/cos 20°/0.05
         ("Y100.\nG91 A900000.\nG90\n", "more than 400000 points of the wheel's path"),
     ] {
         let verdict = with(blocks);
         assert!(verdict.verdict == Answer::Fail);
         let found: Vec<_> = verdict.findings.iter().filter(|f| f.code == "limit").collect();
-        assert!(found.len() == 1 && found[0].message.starts_with(told), "{blocks}: {:?}", verdict.findings);
+        assert!(
+            found.len() == 1 && found[0].message.starts_with(expected),
+            "{blocks}: {:?}",
+            verdict.findings
+        );
     }
 }
 
 #[test]
-fn where_the_axes_stand_at_the_start_is_told_as_not_checked() {
+fn the_motion_from_the_start_is_listed_as_not_checked() {
     let verdict = passed(&two_flutes());
-    let told = "rapid motion up to where the wheel is first clear of the blank (1 move)";
-    assert!(verdict.not_checked.iter().any(|line| line.starts_with(told)), "{:?}", verdict.not_checked);
+    let expected = "rapid motion up to where the wheel is first clear of the blank (1 move)";
+    assert!(verdict.not_checked.iter().any(|line| line.starts_with(expected)), "{:?}", verdict.not_checked);
 }
 
-/// Straying by the whole chord error leans too much where a flute narrows: the moves are made for less of it.
+/// A deviation by the whole chord error tilts a narrowing flute too much: the moves are computed for less.
 #[test]
 fn near_the_tip_moves_are_shorter_for_the_helix_angle() {
     let control = ("haas-ngc", "IS-C");
@@ -299,7 +305,7 @@ fn near_the_tip_moves_are_shorter_for_the_helix_angle() {
 
 /// With an increment of 0.001 mm the least chord error leaves 0.0005 mm to stray by, which over 0.5 mm is 0.057°.
 #[test]
-fn a_control_too_coarse_for_the_helix_angle_is_told() {
+fn a_control_too_coarse_for_the_helix_angle_is_refused() {
     let text = format!("{}[tolerance]\nhelix = 0.05\n", two_flutes().text());
     let bench = Bench::of(&text);
     let Err(error) = check(&bench.job, &bench.package) else { panic!("nothing is refused") };

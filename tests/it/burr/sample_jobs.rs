@@ -84,6 +84,7 @@ pub(super) fn wishes() -> impl Strategy<Value = Wish> {
         prop_oneof![5.0..40.0f64, -40.0..-5.0f64],
         prop::sample::select(vec!["constant-helix", "published"]),
         8.0..70.0f64,
+        0.002..0.01f64,
     );
     let grinder = (
         prop::array::uniform2(-80.0..80.0f64),
@@ -91,29 +92,11 @@ pub(super) fn wishes() -> impl Strategy<Value = Wish> {
         prop::option::of((1.2..3.0f64, 0.3..0.9f64)),
         prop::sample::select(vec!["loop", "moves"]),
     );
-    (control, burr, flute, 0.002..0.01f64, grinder).prop_map(
-        |(
-            control,
-            (diameter, cylinder, flutes),
-            (helix, law, tip_angle),
-            chord_error,
-            (offset, signs, profile, form),
-        )| {
-            let form = if control.0 == "haas-ngc" { "moves" } else { form };
-            Wish {
-                control,
-                diameter,
-                cylinder,
-                flutes,
-                helix,
-                law,
-                tip_angle,
-                chord_error,
-                offset,
-                profile,
-                signs,
-                form,
-            }
-        },
-    )
+    (control, burr, flute, grinder).prop_map(|(control, burr, flute, (offset, signs, profile, form))| {
+        let (diameter, cylinder, flutes) = burr;
+        let (helix, law, tip_angle, chord_error) = flute;
+        let form = if control.0 == "haas-ngc" { "moves" } else { form };
+        let flute = Wish { flutes, helix, law, tip_angle, chord_error, ..example() };
+        Wish { control, diameter, cylinder, offset, signs, profile, form, ..flute }
+    })
 }

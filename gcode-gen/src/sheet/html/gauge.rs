@@ -56,7 +56,7 @@ mod tests {
 
     /// U·#583 is subtracted from φ: with the sign −1 a tilt above 0 makes it larger, and the blocks higher.
     #[test]
-    fn the_sense_of_the_table_is_that_of_its_sign() {
+    fn the_direction_of_the_table_follows_its_sign() {
         assert!(sense(1).contains(
             "from X towards Y (sine_table.sign 1). A tilt #583 above 0 is corrected by lower blocks"
         ));

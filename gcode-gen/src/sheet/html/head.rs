@@ -11,15 +11,15 @@ pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
     let words = sheet.job.sheet();
     let control = sheet.job.control();
     let (dialect, increment) = (control.dialect.name(), control.increment.name());
-    let said = |word: &Option<String>| word.as_ref().map_or_else(blank, |word| html! { (word) });
+    let word_or_blank = |word: &Option<String>| word.as_ref().map_or_else(blank, |word| html! { (word) });
     html! {
         h1 { "Set-up sheet" }
         p { (kind(sheet.job)) ", main " (if sheet.package.mains.len() == 1 { "program " } else { "programs " }) b { (mains(sheet)) } }
         div.wide { table.facts { tbody {
-            tr { th { "part" } td { (said(&words.part)) } th { "drawing" } td { (said(&words.drawing)) } }
-            tr { th { "revision" } td { (said(&words.revision)) } th { "material" } td { (said(&words.material)) } }
+            tr { th { "part" } td { (word_or_blank(&words.part)) } th { "drawing" } td { (word_or_blank(&words.drawing)) } }
+            tr { th { "revision" } td { (word_or_blank(&words.revision)) } th { "material" } td { (word_or_blank(&words.material)) } }
             tr {
-                th { "machine" } td { (said(&words.machine)) }
+                th { "machine" } td { (word_or_blank(&words.machine)) }
                 th { "control" }
                 td { (dialect) ", least increment " (increment) " (" (control.increment.size()) " mm and degrees)" }
             }

@@ -268,7 +268,7 @@ mod tests {
 
     /// A curve from 0 up to 4 and down again, clipped to 1 to 3, gives two pieces that end on the limits.
     #[test]
-    fn a_curve_is_cut_where_it_leaves_its_graph() {
+    fn a_curve_is_clipped_at_the_limits_of_its_graph() {
         let roof = [[0.0, 0.0], [4.0, 4.0], [8.0, 0.0]];
         let pieces = between(&roof, 1.0, 3.0);
         assert_eq!(pieces, [vec![[1.0, 1.0], [3.0, 3.0]], vec![[5.0, 3.0], [7.0, 1.0]]]);
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_graph_reaches_as_far_as_what_it_shows() {
+    fn the_range_of_a_graph_contains_its_band_but_no_clipped_curve() {
         let curve = |y: f64, guest: bool| Curve {
             points: vec![[0.0, y], [9.0, y]],
             pen: Pen::First,

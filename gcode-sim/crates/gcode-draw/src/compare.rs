@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_is_counted_bounded_and_marked() {
+    fn differing_pixels_are_counted_bounded_and_marked() {
         let (a, b) = (png(30, 20, &[]), png(30, 20, &[(12, 10, 0), (15, 8, 100), (20, 20 - 1, 201)]));
         let difference = compare(&a, &b, 1).unwrap();
         assert_eq!(difference.pixels, 2);
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_is_named() {
+    fn a_file_that_is_not_a_png_is_named() {
         let error = compare(&png(4, 4, &[]), b"G0 X0", 1).unwrap_err().to_string();
         assert!(error.starts_with("the second file cannot be read as a picture"), "{error}");
     }

@@ -51,8 +51,8 @@ impl DeviationDials {
     /// dial.
     pub(super) fn choose(scene: &Scene, frame: &Frame, detail: Detail) -> Self {
         let gaps = gaps(scene, frame);
-        let wanted: Vec<bool> = scene.marks.iter().map(|mark| detail.shows_deviation(mark)).collect();
-        let mut room: Vec<f64> = gaps.iter().zip(&wanted).filter(|(_, w)| **w).map(|(gap, _)| *gap).collect();
+        let shows: Vec<bool> = scene.marks.iter().map(|mark| detail.shows_deviation(mark)).collect();
+        let mut room: Vec<f64> = gaps.iter().zip(&shows).filter(|(_, w)| **w).map(|(gap, _)| *gap).collect();
         room.sort_by(f64::total_cmp);
         let quarter = room.get(room.len() / 4).copied().unwrap_or(0.0);
         let most = (0.42 * quarter).min(frame.largest_dial).max(0.8 * frame.text_size);
@@ -61,7 +61,7 @@ impl DeviationDials {
             (times, times * zone / 2.0 * frame.scale.factor)
         });
         let radius = shown.map_or(f64::INFINITY, |(_, radius)| radius);
-        let has: Vec<bool> = wanted.iter().zip(&gaps).map(|(w, gap)| *w && 2.0 * radius <= *gap).collect();
+        let has: Vec<bool> = shows.iter().zip(&gaps).map(|(w, gap)| *w && 2.0 * radius <= *gap).collect();
         let many = LABEL_LIMIT < scene.marks.len();
         // Among hundreds of bad holes none stands out, and their positions matter more.
         let dense = LABEL_LIMIT < scene.marks.iter().filter(|mark| !mark.status.is_good()).count();
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_close_to_another_has_no_dial_and_that_is_said() {
+    fn a_hole_close_to_another_has_no_dial_and_a_note_counts_it() {
         let mut marks: Vec<Mark> =
             (0..8).map(|i| mark([f64::from(i) * 50.0, 0.0], HoleStatus::Good)).collect();
         marks.push(mark([3.0, 0.0], HoleStatus::Good));

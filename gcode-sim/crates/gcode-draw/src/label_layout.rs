@@ -7,6 +7,7 @@ use super::measure::{Frame, LABEL_LIMIT};
 use super::obstacle::Obstacle;
 use super::palette;
 use super::scene::{Align, Mark, Pen, Scene, Shape, Stroke};
+use super::sheet::Sheet;
 use super::symbol;
 use gcode_lang::units::Deg;
 
@@ -99,21 +100,15 @@ impl LabelLayout {
         scene.marks.iter().filter(|m| !m.label.is_empty()).count() - self.labels.len()
     }
 
-    pub(super) fn write(
-        &self,
-        scene: &Scene,
-        frame: &Frame,
-        inks: &mut Vec<DrawCommand>,
-    ) -> Vec<(Rect, Vec<String>)> {
-        let leaders = self.labels.iter().filter_map(|l| l.placement.leader);
-        inks.extend(leaders.map(|(from, to)| DrawCommand::line(from, to, palette::leader(frame.text_size))));
-        let mut labels = Vec::new();
+    /// Draws the labels and their leaders.
+    pub(super) fn write(&self, scene: &Scene, frame: &Frame, sheet: &mut Sheet) {
+        let leaders = self.labels.iter().filter_map(|label| label.placement.leader);
+        let ink = palette::leader(frame.text_size);
+        sheet.commands.extend(leaders.map(|(from, to)| DrawCommand::line(from, to, ink)));
         for label in &self.labels {
             let lines = scene.marks[label.mark].label[..label.lines].to_vec();
-            write(&lines, &label.placement, frame, inks);
-            labels.push((label.placement.rect, lines));
+            write(lines, &label.placement, frame, sheet);
         }
-        labels
     }
 
     /// Returns notes that count the omitted and the shortened labels.
@@ -133,20 +128,19 @@ impl LabelLayout {
     }
 }
 
-/// Captions the lines that are `wanted`, such as radii, and returns the captions without room. A circle's
+/// Captions the lines that satisfy a predicate, such as radii, and returns the captions without room. A circle's
 /// caption lies anywhere on it, from the lower left on; a straight line's on its middle; a scale's at the end
 /// of the tick; a path's on the path or on a leader to its middle. A scale may lose numbers without a note.
 pub(super) fn caption_strokes(
     scene: &Scene,
-    wanted: impl Fn(&Stroke) -> bool,
+    has_caption: impl Fn(&Stroke) -> bool,
     frame: &Frame,
     field: &mut LabelArea,
-    inks: &mut Vec<DrawCommand>,
-    labels: &mut Vec<(Rect, Vec<String>)>,
+    sheet: &mut Sheet,
 ) -> Vec<String> {
     let mut left = Vec::new();
     let paths: Vec<Path<'_>> = scene.strokes.iter().filter_map(|stroke| Path::of(stroke, frame)).collect();
-    for stroke in scene.strokes.iter().filter(|stroke| wanted(stroke)) {
+    for stroke in scene.strokes.iter().filter(|stroke| has_caption(stroke)) {
         let Some(caption) = &stroke.caption else { continue };
         let lines = vec![caption.clone()];
         let size = text_box(&lines, frame);
@@ -189,11 +183,10 @@ pub(super) fn caption_strokes(
         if let Some(spot) = spot {
             if let Some((from, to)) = spot.leader {
                 let (radius, color) = (0.17 * frame.text_size, palette::TEXT);
-                inks.push(DrawCommand::line(from, to, palette::leader(frame.text_size)));
-                inks.push(DrawCommand::Disc { centre: from, radius, color });
+                sheet.commands.push(DrawCommand::line(from, to, palette::leader(frame.text_size)));
+                sheet.commands.push(DrawCommand::Disc { centre: from, radius, color });
             }
-            write(&lines, &spot, frame, inks);
-            labels.push((spot.rect, lines));
+            write(lines, &spot, frame, sheet);
         } else if stroke.pen != Pen::Scale {
             left.push(caption.clone());
         }
@@ -241,9 +234,9 @@ fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
 }
 
 /// Writes the lines in a box that interrupts the lines below it, as a dimension interrupts its line.
-fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<DrawCommand>) {
+fn write(lines: Vec<String>, spot: &LabelPlacement, frame: &Frame, sheet: &mut Sheet) {
     let (rect, size, align) = (spot.rect, frame.text_size, spot.align);
-    inks.push(DrawCommand::Area { points: rect.corners(), color: palette::PAPER });
+    sheet.commands.push(DrawCommand::Area { points: rect.corners(), color: palette::PAPER });
     let x = match align {
         Align::Left => rect.left + 0.15 * size,
         Align::Centre => rect.centre().x,
@@ -252,8 +245,9 @@ fn write(lines: &[String], spot: &LabelPlacement, frame: &Frame, inks: &mut Vec<
     for (n, line) in lines.iter().enumerate() {
         let at = px(x, rect.top + size * (0.05 + ASCENT + LEADING * n as f64));
         let color = if n == 0 { palette::TEXT } else { palette::SOFT_TEXT };
-        inks.push(DrawCommand::Text { at, align, size, text: line.clone(), color });
+        sheet.commands.push(DrawCommand::Text { at, align, size, text: line.clone(), color });
     }
+    sheet.labels.push((rect, lines));
 }
 
 #[cfg(test)]
@@ -282,7 +276,7 @@ mod tests {
 
     /// Lines a tenth of a letter apart.
     #[test]
-    fn paths_too_close_for_their_numbers_have_them_on_leaders() {
+    fn paths_too_close_for_their_numbers_have_leaders() {
         let path = |n: usize| {
             let y = 1.0 + 0.4 * n as f64;
             (0..=40).map(|k| [2.0 + 2.4 * f64::from(k), y]).collect::<Vec<_>>()
@@ -297,7 +291,7 @@ mod tests {
 
     /// The number of the left tick continues it to the left; the number of the upper tick interrupts it.
     #[test]
-    fn a_scales_number_stands_beside_a_level_tick_and_on_an_upright_one() {
+    fn the_number_of_a_scale_continues_a_horizontal_tick_and_interrupts_a_vertical_one() {
         let tick = |from: Point, to: Point, name: &'static str| (vec![from, to], Pen::Scale, name);
         let sheet =
             sheet(vec![tick([-1.0, 30.0], [-4.0, 30.0], "left"), tick([50.0, 61.0], [50.0, 68.0], "over")]);
@@ -316,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scale_without_room_for_a_number_says_nothing_of_it() {
+    fn a_scale_omits_numbers_without_a_note() {
         let tick = |x: f64, name: &'static str| (vec![[x, 61.0], [x, 66.0]], Pen::Scale, name);
         let sheet = sheet(vec![tick(50.0, "r100"), tick(51.0, "r101"), tick(70.0, "r120")]);
         let named: Vec<&str> = sheet.labels.iter().map(|(_, lines)| lines[0].as_str()).collect();

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_label_stands_at_the_upper_right_of_a_lonely_symbol() {
+    fn a_label_without_neighbours_is_at_the_upper_right() {
         let spot = field().place(symbol(200.0, 150.0, 10.0), (30.0, 12.0), 12.0).unwrap();
         assert!(200.0 < spot.rect.left && spot.rect.bottom < 150.0, "{spot:?}");
         assert_eq!(spot.leader, None);
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_label_that_has_no_place_beside_its_symbol_gets_a_leader() {
+    fn a_label_without_room_beside_its_symbol_gets_a_leader() {
         let mut field = field();
         field.block(Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 });
         let spot = field.place(symbol(200.0, 150.0, 10.0), (30.0, 12.0), 12.0).unwrap();

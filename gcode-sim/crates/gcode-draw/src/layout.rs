@@ -2,7 +2,7 @@
 use super::PictureError;
 use super::deviation_dials::{Detail, DeviationDials};
 use super::font::Font;
-use super::ink::{DrawCommand, Rect, px};
+use super::ink::{Rect, px};
 use super::label_layout::{LabelLayout, caption_strokes};
 use super::labels::LabelArea;
 use super::lines::{are_arrows_hidden, axes, block_stroke, scale_bar, shape_commands};
@@ -73,18 +73,16 @@ pub fn lay_out(picture: &Picture, size: Size) -> Result<Sheet, PictureError> {
             best = plan;
         }
     }
-    let Plan { mut commands, labels, notes, legend_use, .. } = best;
-    commands.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
-    commands.extend(panel.commands(picture, &frame, legend_use, &notes));
-    let magnification = legend_use.magnification;
-    Ok(Sheet { commands, labels, notes, magnification, ..Sheet::empty(size.page()) })
+    let Plan { mut sheet, legend_use, .. } = best;
+    sheet.commands.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
+    let texts = panel.commands(picture, &frame, legend_use, &sheet.notes);
+    sheet.commands.extend(texts);
+    Ok(Sheet { page: size.page(), magnification: legend_use.magnification, ..sheet })
 }
 
 /// One attempt at a layout, at a given level of detail.
 struct Plan {
-    commands: Vec<DrawCommand>,
-    labels: Vec<(Rect, Vec<String>)>,
-    notes: Vec<String>,
+    sheet: Sheet,
     legend_use: LegendUse,
     /// Number of holes without a label.
     unlabelled: usize,
@@ -93,29 +91,29 @@ struct Plan {
 impl Plan {
     fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
         let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text_size), frame.text_size);
-        let mut inks = Vec::new();
+        let mut sheet = Sheet::empty(drawing);
         for stroke in &scene.strokes {
-            inks.extend(shape_commands(stroke, &frame.scale, frame.text_size));
+            sheet.commands.extend(shape_commands(stroke, &frame.scale, frame.text_size));
             block_stroke(&mut field, stroke, frame);
         }
-        inks.extend(axes(scene, frame, extent, drawing, &mut field));
+        sheet.commands.extend(axes(scene, frame, extent, drawing, &mut field));
         // A straight line's caption has one position, a hole's label many, the caption of a circle or path
         // any.
-        let mut labels = Vec::new();
         let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !stroke.pen.is_path();
-        let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut inks, &mut labels);
+        let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut sheet);
         let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
         // Bad holes are drawn last, on top.
         for good in [true, false] {
             let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.status.is_good() == good);
-            inks.extend(holes.flat_map(|(_, hole)| hole.commands.iter().cloned()));
+            sheet.commands.extend(holes.flat_map(|(_, hole)| hole.commands.iter().cloned()));
         }
         let mut lettering = LabelLayout::of(scene, &drawn, frame, &field);
-        labels.extend(lettering.write(scene, frame, &mut inks));
-        let is_circle = |stroke: &Stroke| !is_line(stroke);
-        bare.extend(caption_strokes(scene, is_circle, frame, &mut lettering.field, &mut inks, &mut labels));
-        let mut notes: Vec<String> = dials.note(scene).into_iter().collect();
+        lettering.write(scene, frame, &mut sheet);
+        let is_other = |stroke: &Stroke| !is_line(stroke);
+        bare.extend(caption_strokes(scene, is_other, frame, &mut lettering.field, &mut sheet));
+        let notes = &mut sheet.notes;
+        notes.extend(dials.note(scene));
         if drawn.iter().any(|d| d.is_truncated) {
             notes.push("Deviation with an arrow: longer than drawn.".to_owned());
         }
@@ -123,31 +121,25 @@ impl Plan {
         if !bare.is_empty() {
             notes.push(format!("No room on the line for {}.", bare.join(", ")));
         }
-        let unlabelled = lettering.unlabelled(scene);
-        let shown = LegendUse {
+        if detail == Detail::SignsWithoutAxes {
+            notes.push("Axes of the holes not drawn: no room.".to_owned());
+        }
+        let legend_use = LegendUse {
             magnification: dials.magnification(),
             directions: drawn.iter().any(|d| d.has_axis_arrow),
             displacements: drawn.iter().any(|d| d.has_displacement_line),
             has_plain_good: dials.has_plain(scene, HoleStatus::is_good),
-            has_plain_rest: dials.has_plain(scene, |standing| !standing.is_good()),
+            has_plain_rest: dials.has_plain(scene, |status| !status.is_good()),
         };
-        if detail == Detail::SignsWithoutAxes {
-            notes.push("Axes of the holes not drawn: no room.".to_owned());
-        }
-        Self { commands: inks, labels, notes, legend_use: shown, unlabelled }
+        Self { sheet, legend_use, unlabelled: lettering.unlabelled(scene) }
     }
 }
 
 fn check(scene: &Scene) -> Result<(), PictureError> {
     let fits = |p: &Point| p.iter().all(|v| v.abs() <= MAX_COORDINATE);
     for stroke in &scene.strokes {
-        let fine = match &stroke.shape {
-            Shape::Line(points) => points.iter().all(fits),
-            Shape::Circle { centre, radius } => fits(centre) && fits(&[*radius, 0.0]) && 0.0 <= *radius,
-            Shape::Arrow(ends) => ends.iter().all(fits),
-            Shape::Zero(at) | Shape::Text { at, .. } => fits(at),
-        };
-        if !fine {
+        let is_negative = matches!(stroke.shape, Shape::Circle { radius, .. } if radius < 0.0);
+        if is_negative || !stroke.shape.points().iter().all(fits) {
             return Err(PictureError::OffTheSheet(format!("a line of the drawing ({:?})", stroke.pen)));
         }
     }
@@ -171,12 +163,8 @@ fn extent(scene: &Scene) -> (Point, Point) {
     let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| s.pen.is_path());
     for stroke in &scene.strokes {
         let counts = path_alone || !stroke.pen.is_path() || matches!(stroke.pen, Pen::New | Pen::Old);
-        match &stroke.shape {
-            Shape::Line(points) if counts => seen.extend(points.iter().map(|p| (*p, 0.0))),
-            Shape::Line(_) => {}
-            Shape::Circle { centre, radius } => seen.push((*centre, *radius)),
-            Shape::Arrow(ends) => seen.extend(ends.map(|p| (p, 0.0))),
-            Shape::Zero(at) | Shape::Text { at, .. } => seen.push((*at, 0.0)),
+        if counts || !matches!(stroke.shape, Shape::Line(_)) {
+            seen.extend(stroke.shape.points().into_iter().map(|point| (point, 0.0)));
         }
     }
     for mark in &scene.marks {
@@ -202,6 +190,7 @@ fn extent(scene: &Scene) -> (Point, Point) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ink::DrawCommand;
     use crate::picture::{LegendItem, Sample, Title};
     use crate::scene::{Axis, Mark, ZoneDeviation};
     use proptest::prelude::*;
@@ -321,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn too_many_holes_for_their_numbers_are_said_to_be() {
+    fn a_note_counts_the_holes_without_a_number() {
         let places = (0..900).map(|i| [f64::from(i % 30) * 30.0 - 435.0, f64::from(i / 30) * 30.0 - 435.0]);
         let marks = places.enumerate().map(|(i, at)| Mark { status: HoleStatus::Good, ..mark(i, at) });
         let sheet = lay_out(&picture(marks.collect()), Size::new(480, 360).unwrap()).unwrap();
@@ -330,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coordinate_that_is_no_number_is_refused() {
+    fn a_coordinate_that_is_not_a_number_is_refused() {
         for at in [[f64::NAN, 0.0], [0.0, f64::INFINITY], [2e6, 0.0]] {
             let error = lay_out(&picture(vec![mark(6, at)]), Size::default()).unwrap_err().to_string();
             assert!(error.starts_with("hole 7 has a coordinate that is not a number"), "{error}");

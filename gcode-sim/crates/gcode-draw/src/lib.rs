@@ -20,6 +20,10 @@
 //! // 2 units of paper a millimetre; the zero point is 10 units from the left and 60 from the top.
 //! let sheet = Sheet::to_scale(&seen, [100.0, 70.0], [10.0, 60.0], 2.0, 12.0);
 //! assert!(svg(&sheet, "Tool path").contains("<polyline points=\"10,60 90,60 90,20\""));
+//!
+//! let json = serde_json::to_string(&part)?;
+//! assert_eq!(json, r#"{"strokes":[{"line":[0,0,5,40,0,5,40,20,5],"pen":"feed"}],"marks":[]}"#);
+//! # Ok::<(), serde_json::Error>(())
 //! ```
 //!
 //! The pictures of holes and flutes are made from their contents, [`TopView`] and [`FluteView`], by [`main_view`],

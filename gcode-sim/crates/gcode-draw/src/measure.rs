@@ -3,8 +3,7 @@ use super::font::Font;
 use super::ink::{Px, Rect, px};
 use super::scene::Point;
 
-/// Largest number of labelled holes: more labels could not be told apart, and the most important ones are
-/// kept.
+/// Largest number of labelled holes: more labels are illegible, and the most important ones are kept.
 pub(super) const LABEL_LIMIT: usize = 400;
 
 /// Values shared by all layout steps.
@@ -93,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn a_magnification_is_a_number_one_can_divide_by() {
+    fn a_magnification_is_an_easy_number() {
         assert_eq!(plain(magnification(1730.0)), "1500");
         assert_eq!(plain(magnification(999.0)), "800");
         assert_eq!(plain(magnification(2000.0)), "2000");
@@ -109,7 +108,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_bar_is_never_too_long_and_never_a_third_of_it(most in 1e-4f64..1e6) {
+        fn a_bar_fits_and_fills_two_fifths_of_its_room(most in 1e-4f64..1e6) {
             let length = bar_length(most);
             prop_assert!(length <= most * (1.0 + 1e-9));
             prop_assert!(most / 2.5 <= length * (1.0 + 1e-9));

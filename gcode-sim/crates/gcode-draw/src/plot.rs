@@ -112,12 +112,12 @@ mod tests {
         let sign = |part: f64| ChartMarker {
             position: [length * part, high],
             status: HoleStatus::Bad,
-            name: "too far".to_owned(),
+            name: "out of limits".to_owned(),
         };
         let curve = (0..=100).map(|n| [length * f64::from(n) / 100.0, high * libm::sin(f64::from(n) / 15.0)]);
         Chart {
             gaps: vec![[length / 3.0, length / 2.0]],
-            x_label: "Way of the ball, mm".to_owned(),
+            x_label: "Path of the ball, mm".to_owned(),
             guides: vec![(0.3 * length, "a place".to_owned()), (0.31 * length, "another".to_owned())],
             graphs: vec![Graph {
                 y_label: "Reading, mm".to_owned(),
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn no_text_covers_another_and_all_are_on_the_sheet() {
+    fn texts_neither_overlap_nor_leave_the_sheet() {
         let charts = [(0.083, 652.3), (1e-5, 0.02), (4.9, 12_345.0), (0.0, 0.0)];
         let charts = charts.map(|(high, length)| PlotBody::Chart(chart(high, length)));
         let plots: Vec<Plot> = charts.into_iter().chain([0, 1, 12, 60].map(bars)).map(plot).collect();
@@ -166,7 +166,7 @@ mod tests {
 
     /// Twice the ordinate is twice the distance from the zero line.
     #[test]
-    fn a_curve_stands_where_its_numbers_say() {
+    fn a_curve_is_drawn_to_scale() {
         let mut chart = chart(0.05, 100.0);
         let graph = &mut chart.graphs[0];
         graph.curves[0].points = vec![[0.0, 0.0], [50.0, 0.02], [100.0, 0.04]];
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_half_as_long_is_half_as_long() {
+    fn bars_are_drawn_to_scale() {
         let sheet = plot(bars(2)).lay_out(Size::new(1200, 800).unwrap());
         let areas = sheet.commands.iter().filter_map(|command| match command {
             DrawCommand::Area { points, .. } => Some(points[1].x - points[0].x),

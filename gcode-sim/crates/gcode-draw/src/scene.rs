@@ -247,6 +247,20 @@ impl<const D: usize> Stroke<D> {
     }
 }
 
+impl Shape {
+    /// Returns the points of the shape; the corners round a circle.
+    pub(super) fn points(&self) -> Vec<Point> {
+        match self {
+            Self::Line(points) => points.clone(),
+            Self::Circle { centre: [x, y], radius } => {
+                vec![[x - radius, y - radius], [x + radius, y + radius]]
+            }
+            Self::Arrow(ends) => ends.to_vec(),
+            Self::Zero(at) | Self::Text { at, .. } => vec![*at],
+        }
+    }
+}
+
 impl<const D: usize> Mark<D> {
     /// Builds a mark without a hole's dimensions and without label.
     pub fn new(position: [f64; D], status: HoleStatus) -> Self {

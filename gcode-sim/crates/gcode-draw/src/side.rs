@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_from_behind_is_off_to_the_side_where_it_is() {
+    fn a_hole_drilled_from_behind_keeps_the_direction_of_its_deviation() {
         let (z, from) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
         for axis in [z, from] {
             let (nominal, found) = (drilled([30.0, 5.0, 0.0], axis), drilled([30.02, 5.01, 0.0], axis));

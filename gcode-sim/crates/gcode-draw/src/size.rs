@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_not_be_read_is_refused() {
+    fn a_malformed_or_extreme_size_is_refused() {
         for text in ["800", "800x", "x600", "-1x5", "800x600x3", "8e2x600", ""] {
             assert!(matches!(text.parse::<Size>(), Err(PictureError::NoSize(_))), "{text}");
         }

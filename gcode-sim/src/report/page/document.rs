@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_ends_the_data_early() {
+    fn data_cannot_end_the_script_element() {
         let page = document("T", &html! {}, &"</script><img src=x onerror=alert(1)>").unwrap();
         assert!(!page.contains("<img"), "{page}");
         assert_eq!(page.matches("</script>").count(), 2);

@@ -26,11 +26,11 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
             @let stopped = side.observed.revision.record.outcome() != "end";
             @if let Some(verdict) = side.observed.verdict {
                 @let good = verdict.holes.iter().filter(|hole| hole.ok).count();
-                @let wanted = verdict.holes.len() + verdict.missing.len();
+                @let nominal = verdict.holes.len() + verdict.missing.len();
                 p.answer.yes[verdict.verdict == Answer::Pass].no[verdict.verdict == Answer::Fail] {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
                     @match verdict.verdict { Answer::Pass => "PASS", Answer::Fail => "FAIL" }
-                    ", " (good) " of " (figures::count(wanted, "hole")) " in tolerance"
+                    ", " (good) " of " (figures::count(nominal, "hole")) " in tolerance"
                     @if !verdict.missing.is_empty() { ", " (verdict.missing.len()) " missing" }
                     @if !verdict.extra.is_empty() { ", " (verdict.extra.len()) " extra" }
                 }

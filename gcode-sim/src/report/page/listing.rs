@@ -61,15 +61,16 @@ fn executed<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> ExecutedLines<'a> {
     let spans = places.flat_map(|place| {
         std::iter::once(place.block).chain(place.calls.as_ref().map(|call| call.calling_block))
     });
-    let mut wanted: BTreeSet<_> = spans.map(|span| (span.source, sources.line_column(span).line)).collect();
+    let mut linked_lines: BTreeSet<_> =
+        spans.map(|span| (span.source, sources.line_column(span).line)).collect();
     let mut marked: BTreeMap<(SourceId, u32), (&str, u64)> = BTreeMap::new();
     for stop in stops(page, side) {
         if let (Some(mark), Some(line)) = (stop.mark, side.lines.of_place(stop.place)) {
             marked.entry(line).or_insert((mark, 0)).1 += 1;
         }
     }
-    wanted.extend(marked.keys());
-    ExecutedLines { blocks, stops: marked, linked_lines: wanted }
+    linked_lines.extend(marked.keys());
+    ExecutedLines { blocks, stops: marked, linked_lines }
 }
 
 /// Pairs the files that contain the same programs; the main programs always form a pair.
@@ -138,8 +139,9 @@ fn listed_rows(
 ) -> Vec<ListingRow> {
     let mut all: Vec<ListingRow> = Vec::new();
     for line in lines {
-        let wanted = || line.iter().zip(pair).zip(done).any(|((at, text), done)| is_linked(*at, *text, done));
-        if *left > 0 || wanted() {
+        let is_linked =
+            || line.iter().zip(pair).zip(done).any(|((at, text), done)| is_linked(*at, *text, done));
+        if *left > 0 || is_linked() {
             *left = left.saturating_sub(1);
             all.push(ListingRow::Line(line));
         } else if let Some(ListingRow::Gap(lines)) = all.last_mut() {
@@ -285,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_lines_stand_side_by_side() {
+    fn equal_lines_are_side_by_side() {
         let (old, new) = (text(&["O1", "G0 X1.", "M30"]), text(&["O1", "G0 X2.", "G0 X3.", "M30"]));
         let expected =
             [vec![Some(0), Some(0)], vec![Some(1), Some(1)], vec![None, Some(2)], vec![Some(2), Some(3)]];
@@ -294,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_told_by_their_first_last_and_extremes() {
+    fn values_are_described_by_first_last_and_extremes() {
         let number = Value::Number;
         let one = VariableValues {
             number: 7,

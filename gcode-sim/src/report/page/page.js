@@ -1,4 +1,4 @@
-// Brings the parts of the page together: what is picked in one is shown in the others.
+// Connects drawing, table and listing: an item selected in one is shown in the others.
 (function () {
   const data = JSON.parse(document.getElementById("data").textContent);
   const sides = data.sides.map((side) => new Side(side, document.getElementById(`canvas-${side.word}`)));
@@ -6,7 +6,7 @@
   const picked = document.getElementById("picked");
   const table = holeTable((row) => pickRow(row));
 
-  // A place in the listing: the line that a link leads to, with the lines that called it.
+  // Marks a line of the listing and the lines that called it.
   function mark(anchor, callers = []) {
     document.querySelectorAll(".half.at, .half.from").forEach((half) => half.classList.remove("at", "from"));
     document.getElementById(anchor)?.classList.add("at");
@@ -31,7 +31,7 @@
     return span;
   };
 
-  function tell(text, side, lines) {
+  function describe(text, side, lines) {
     picked.replaceChildren(text);
     lines.forEach((number, place) => picked.append(place === 0 ? ". " : " called from ", lineOf(side, number)));
   }
@@ -44,7 +44,7 @@
     viewer.pick = { side, move };
     const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${side.xyz[3 * at + axis].toFixed(3)}`).join(" ");
     const [from, to] = [point(side.starts[move]), point(side.starts[move + 1] - 1)];
-    tell(`${name(side)}move ${move + 1} of ${side.all_moves}, ${side.kinds[side.kind[move]]} from ${from} to ${to}`, side, linesOf(viewer.pick));
+    describe(`${name(side)}move ${move + 1} of ${side.all_moves}, ${side.kinds[side.kind[move]]} from ${from} to ${to}`, side, linesOf(viewer.pick));
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     viewer.ask();
@@ -54,7 +54,7 @@
     viewer.pick = { side, hole, row: hole.row ?? undefined };
     table.show(hole.row);
     const at = hole.entry.map((value, axis) => `${"XYZ"[axis]} ${value.toFixed(3)}`).join(" ");
-    tell(`${name(side)}hole ${hole.id} at ${at}, depth ${hole.depth.toFixed(3)}`, side, hole.lines);
+    describe(`${name(side)}hole ${hole.id} at ${at}, depth ${hole.depth.toFixed(3)}`, side, hole.lines);
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     viewer.ask();
@@ -67,7 +67,7 @@
     }
   }
 
-  // A line that a link led to: its moves are shown, unless it is the block of what is picked already.
+  // Shows the moves of the line that a link leads to, unless it is the block of the selection already.
   function arrived() {
     const anchor = decodeURIComponent(location.hash.slice(1));
     const half = document.getElementById(anchor);
@@ -83,7 +83,7 @@
       if (number < 0) continue;
       viewer.pick = { line: { side, number } };
       const moves = side.at.filter((place) => side.places[place].includes(number)).length;
-      tell(`${name(side)}${moves} move${moves === 1 ? "" : "s"}`, side, [number]);
+      describe(`${name(side)}${moves} move${moves === 1 ? "" : "s"}`, side, [number]);
     }
     viewer.ask();
   }
@@ -122,7 +122,7 @@
     viewer.fit();
   }
 
-  // One finger or the mouse turns, two fingers zoom and move; what hardly moves is a click.
+  // One finger or the mouse rotates, two fingers zoom and pan; a drag of up to 4 pixels is a click.
   function pointers(side) {
     const { canvas } = side;
     const down = new Map();
@@ -191,7 +191,7 @@
   box("rapids", "rapids");
   box("changed-only", "changedOnly");
 
-  // A drawing that stays in sight covers lines: what is landed on stands below it.
+  // A sticky drawing covers lines: the target of a link is scrolled to below it.
   function measure() {
     const element = document.getElementById("viewer");
     const sticks = getComputedStyle(element).position === "sticky";

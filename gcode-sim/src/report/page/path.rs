@@ -190,18 +190,18 @@ fn rounded(value: f64, parts: f64) -> f64 {
 
 pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
     let tools = [
-        ("top", "Top"),
-        ("front", "Front"),
-        ("side", "Side"),
-        ("reset", "Reset"),
-        ("in", "+"),
-        ("out", "\u{2212}"),
+        ("top", "Top", Some("View from above")),
+        ("front", "Front", Some("View from the front")),
+        ("side", "Side", Some("View from the side")),
+        ("reset", "Reset", None),
+        ("in", "+", Some("Zoom in")),
+        ("out", "\u{2212}", Some("Zoom out")),
     ];
     html! {
         div #viewer {
             div.tools role="toolbar" aria-label="View" {
-                @for (action, name) in tools {
-                    button type="button" data-view=(action) aria-label=[label(action)] { (name) }
+                @for (action, name, label) in tools {
+                    button type="button" data-view=(action) aria-label=[label] { (name) }
                 }
                 label { input #rapids type="checkbox" checked; " Rapids" }
                 @if sides.len() == 2 { label { input #changed-only type="checkbox"; " Changes only" } }
@@ -234,17 +234,6 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
             @for (side, drawn) in sides.iter().zip(&data.sides) { (left_out(side, sides, drawn)) }
             noscript { p { "The drawing needs scripts; everything else on this page works without them." } }
         }
-    }
-}
-
-fn label(action: &str) -> Option<&'static str> {
-    match action {
-        "in" => Some("Zoom in"),
-        "out" => Some("Zoom out"),
-        "top" => Some("View from above"),
-        "front" => Some("View from the front"),
-        "side" => Some("View from the side"),
-        _ => None,
     }
 }
 

@@ -235,7 +235,7 @@ pub(super) fn judged_rows(
     columns.extend((sides.len() == 2).then(|| "Change of φ".to_owned()));
     columns.extend(["Deviation at entry", "Deviation at bottom", "Depth error", "Tilt °"].map(str::to_owned));
     columns.extend(sides.iter().map(|side| side_title("Block", side, sides)));
-    let wanted = reference.holes.iter().map(|hole| {
+    let nominal = reference.holes.iter().map(|hole| {
         let id = hole.id.as_deref().unwrap_or_default();
         let found_by: Vec<Option<&HoleVerdict>> = by_id.iter().map(|holes| holes.get(id).copied()).collect();
         let is = found_by.last().copied().flatten();
@@ -266,7 +266,7 @@ pub(super) fn judged_rows(
         let holes = found_by.iter().map(|hole| hole.map(|hole| hole.drilled_index)).collect();
         HoleTableRow { id: shown(id), state, words, cells, holes }
     });
-    let mut rows: Vec<HoleTableRow> = wanted.collect();
+    let mut rows: Vec<HoleTableRow> = nominal.collect();
     for (place, (side, verdict)) in judged.iter().enumerate() {
         rows.extend(extra_rows(place, side, verdict, columns.len(), sides));
     }

@@ -21,7 +21,7 @@ function holeTable(onRow) {
     heads.forEach((other) => other.setAttribute("aria-sort", "none"));
     head.setAttribute("aria-sort", down ? "descending" : "ascending");
     const keyed = [...body.rows].map((row) => [key(row, column), row]);
-    // What has no value stands at the end in either direction.
+    // Rows without a value are last in either direction.
     keyed.sort(([a], [b]) => {
       if (a === null || b === null) return (a === null) - (b === null);
       return down ? compare(b, a) : compare(a, b);

@@ -1,6 +1,6 @@
-// The drawing: one camera for all canvases, which shows the part straight, without perspective.
+// The drawing: one camera for all canvases, in parallel projection.
 const RAD = Math.PI / 180;
-// Below what is fitted into a canvas its scale has a strip of its own, pixels.
+// Height of the strip for the scale bar below the drawing, pixels.
 const STRIP = 40;
 
 class Camera {
@@ -9,7 +9,7 @@ class Camera {
     this.look("reset");
   }
 
-  // Up is z as it is, or y: then x goes to the right, and -z away from who looks.
+  // Named views. The axis `up` is z or y; with y, x points to the right and -z away from the viewer.
   look(name) {
     const [yaw, pitch] = { top: [0, 90], front: [0, 0], side: [90, 0], reset: [-30, 28] }[name];
     Object.assign(this, { yaw, pitch, zoom: 1, panX: 0, panY: 0 });
@@ -24,7 +24,7 @@ class Camera {
     this.zoom = Math.max(0.2, Math.min(500, this.zoom * factor));
   }
 
-  // Rows: to the right, up, towards who looks.
+  // Rows: right, up, towards the viewer.
   axes() {
     const [cy, sy, cp, sp] = [Math.cos(this.yaw * RAD), Math.sin(this.yaw * RAD), Math.cos(this.pitch * RAD), Math.sin(this.pitch * RAD)];
     const rows = [[cy, sy, 0], [-sy * sp, cy * sp, cp], [sy * cp, -cy * cp, sp]];
@@ -51,12 +51,12 @@ class Side {
     }));
   }
 
-  // What has to be seen: cuts and holes; where there are none, every move.
+  // Coordinates of cuts and holes, or of all moves if there are none.
   extent() {
     const points = this.holes.flatMap((hole) => [...hole.entry, ...hole.bottom]);
-    const take = (wanted) => {
+    const take = (matches) => {
       for (let move = 0; move < this.moves.length; move++) {
-        if (!wanted(this.moves[move].pen)) continue;
+        if (!matches(this.moves[move].pen)) continue;
         for (let at = 3 * this.starts[move]; at < 3 * this.starts[move + 1]; at++) points.push(this.xyz[at]);
       }
     };
@@ -65,7 +65,7 @@ class Side {
     return points;
   }
 
-  // Where a point of the part is on the canvas.
+  // Projects a point of the part to the canvas.
   point([x, y, z]) {
     const [right, up] = this.view.rows;
     const { middle, scale, cx, cy } = this.view;
@@ -84,14 +84,14 @@ class Side {
     }
   }
 
-  strokeMoves(colour, width, dash, wanted) {
+  strokeMoves(colour, width, dash, matches) {
     const context = this.context;
     Object.assign(context, { strokeStyle: colour, lineWidth: width });
     context.setLineDash(dash);
     let drawn = 0;
     context.beginPath();
     for (let move = 0; move < this.moves.length; move++) {
-      if (!wanted(move)) continue;
+      if (!matches(move)) continue;
       let at = 2 * this.starts[move];
       context.moveTo(this.screen[at], this.screen[at + 1]);
       for (at += 2; at < 2 * this.starts[move + 1]; at += 2) context.lineTo(this.screen[at], this.screen[at + 1]);
@@ -126,7 +126,7 @@ class Side {
     this.drawAxes(colours);
   }
 
-  // The entry of a hole looks away from who looks.
+  // Whether the entry of a hole faces away from the viewer.
   isAway(hole) {
     const near = this.view.rows[2];
     return [0, 1, 2].reduce((sum, axis) => sum + near[axis] * (hole.entry[axis] - hole.bottom[axis]), 0) < -1e-9;
@@ -144,7 +144,7 @@ class Side {
     }
     const context = this.context;
     const many = this.holes.length > 500;
-    // Those that look away first and faint, those that are right before those that are wrong.
+    // Holes that face away are drawn first and faint, good ones before bad ones.
     const order = (name) => [name[0], ["hole", "wrong", "pick"].indexOf(name.split(" ")[1])].join("");
     for (const name of [...groups.keys()].sort((a, b) => (order(a) < order(b) ? -1 : 1))) {
       const [away, role, isMissing] = name.split(" ");
@@ -154,21 +154,21 @@ class Side {
       this.strokeHoles(groups.get(name), role !== "hole");
       context.setLineDash([]);
     }
-    // Those that are worth most a look take their places first.
+    // The most important labels are placed first.
     const taken = [];
     context.font = "12px system-ui, sans-serif";
     for (const name of [...groups.keys()].sort((a, b) => (order(a) < order(b) ? 1 : -1))) {
       const [away, role] = name.split(" ");
       Object.assign(context, { globalAlpha: away === "a" && role === "hole" ? 0.3 : 1, fillStyle: colours[role] });
       const group = groups.get(name);
-      // Of a crowd nobody could tell whose name is whose.
+      // Names in a crowd would be ambiguous.
       const named = this.holes.length <= 60 || (role !== "hole" && group.length <= 60) || role === "pick";
       if (named) group.forEach((hole) => this.label(hole, taken, colours, role === "pick"));
     }
     context.globalAlpha = 1;
   }
 
-  // A hole's name beside it, where no other one stands; where all places are taken a click on the hole tells it.
+  // Writes a hole's name beside it at the first free position; without one, a click on the hole shows it.
   label(hole, taken, colours, always) {
     const [x, y] = this.point(hole.entry);
     const [away, wide, high] = [this.radius(hole) + 6, this.context.measureText(hole.id).width, 13];
@@ -184,7 +184,7 @@ class Side {
     this.write(hole.id, ...place, colours);
   }
 
-  // Lines end before words.
+  // Writes a text with a margin that interrupts lines.
   write(words, x, y, colours) {
     Object.assign(this.context, { strokeStyle: colours.paper, lineWidth: 3, lineJoin: "round" });
     this.context.strokeText(words, x, y);
@@ -210,7 +210,7 @@ class Side {
     context.stroke();
   }
 
-  // The part's axes, and a length to compare with.
+  // Draws the part's axes and a scale bar.
   drawAxes(colours) {
     const context = this.context;
     const { width, height, rows, scale } = this.view;
@@ -239,13 +239,13 @@ class Side {
     context.textAlign = "left";
   }
 
-  // The hole or else the move under a point of the canvas.
+  // Returns the hole, else the move, under a point of the canvas.
   nearest(x, y, options) {
     const reach = 12;
     let best = null;
     for (const hole of this.holes) {
       const near = toSegment(x, y, ...this.point(hole.entry), ...this.point(hole.bottom));
-      // One that looks away lies behind others.
+      // A hole that faces away lies behind others.
       const far = near + (this.isAway(hole) ? reach / 2 : 0);
       if (far < Math.max(reach, this.radius(hole)) && (!best || far < best.far)) best = { far, hole, side: this };
     }
@@ -254,7 +254,7 @@ class Side {
       if ((!options.rapids && this.moves[move].pen === "rapid") || (options.changedOnly && !this.isChanged.has(move))) continue;
       for (let at = 2 * this.starts[move]; at < 2 * (this.starts[move + 1] - 1); at += 2) {
         const far = toSegment(x, y, this.screen[at], this.screen[at + 1], this.screen[at + 2], this.screen[at + 3]);
-        // Of two that lie on one another the later is seen.
+        // The later of two coincident moves is on top.
         if (far < reach && (!best || far <= best.far)) best = { far, move, side: this };
       }
     }
@@ -268,7 +268,7 @@ function toSegment(x, y, ax, ay, bx, by) {
   return Math.hypot(x - ax - part * dx, y - ay - part * dy);
 }
 
-// Fits what has to be seen into the canvases, and draws when something is different.
+// Fits the extents into the canvases, and draws after changes.
 class Viewer {
   constructor(data, sides) {
     Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false } });
@@ -284,7 +284,7 @@ class Viewer {
     this.waiting = false;
   }
 
-  // Pixels for a millimetre so that all is in sight as the camera stands.
+  // Returns the pixels per millimetre that fit the extents into the canvas.
   fitting(rows, width, height) {
     if (this.extents.length === 0) return 1;
     let [wide, high] = [1e-3, 1e-3];

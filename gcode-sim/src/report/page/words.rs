@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_read_as_people_write_them() {
+    fn numbers_and_durations_are_formatted() {
         assert_eq!([value(1158.8), value(-0.5), value(0.0), value(7.0)], ["1158.8", "-0.5", "0", "7"]);
         assert_eq!(value(2.5e-9), "2.500e-9");
         assert_eq!(count(1_234_567), "1\u{a0}234\u{a0}567");
@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_keeps_nothing_that_hides_or_turns_it() {
+    fn invisible_and_direction_characters_are_replaced() {
         assert_eq!(shown("A\u{202e}B\u{0}C\tD"), "A\u{fffd}B\u{fffd}C D");
     }
 }

@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_on_the_seam_stands_at_its_left() {
+    fn a_hole_on_the_seam_is_drawn_at_the_left_edge() {
         for azimuth in [0.0, 360.0, -0.000_1, 359.999_9] {
             let mark = mark(hole(0.0, azimuth, 100.0), hole(0.0, azimuth, 100.0), 400.0);
             assert!(mark.position[0].abs() < 0.001, "{azimuth}: {mark:?}");
@@ -232,7 +232,7 @@ mod tests {
 
     /// 0.02 mm towards larger azimuth at 90°, which is −z there, and 0.03 mm in x.
     #[test]
-    fn a_deviation_points_where_the_hole_is() {
+    fn a_deviation_points_from_nominal_to_actual() {
         let mut found = hole(20.03, 90.0, 100.0);
         found.entry[2] -= 0.02;
         let deviation = mark(hole(20.0, 90.0, 100.0), found, 400.0).deviation.unwrap();
@@ -244,7 +244,7 @@ mod tests {
 
     /// 628 mm round and 30 mm long: three strips of 120°.
     #[test]
-    fn a_long_way_round_is_cut_into_strips_and_nothing_lies_across_a_cut() {
+    fn a_long_circumference_is_cut_into_strips_and_no_hole_lies_across_a_cut() {
         let at = |azimuth: f64| mark(hole(20.0, azimuth, 100.0), hole(20.0, azimuth, 100.0), 30.0).position;
         let third = 209.439_510_239;
         let block = at(0.0)[1] - at(120.0)[1];
@@ -259,7 +259,7 @@ mod tests {
         ] {
             let at = at(azimuth);
             let off = libm::hypot(at[0] - right, at[1] + 20.0 + down);
-            assert!(off < 1e-5, "{azimuth}: {at:?}, {right} {down} wanted");
+            assert!(off < 1e-5, "{azimuth}: {at:?}, nominal {right} {down}");
         }
     }
 
@@ -279,10 +279,10 @@ mod tests {
         assert_eq!((name(false), name(true)), ("A".to_owned(), "−A".to_owned()));
     }
 
-    /// Of 100 rows on one strip every tenth is numbered and the others have a tick; of 8 rows all are
+    /// With 100 rows on one strip every tenth is numbered and the others have a tick; with 8 rows all are
     /// numbered.
     #[test]
-    fn odd_rows_have_a_tick_too() {
+    fn rows_without_a_number_have_a_tick() {
         let of = |rows: u32| {
             let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length: 400.0, rows });
             let scene = development(&TopView { cylinder, ..TopView::default() }).unwrap().scene;
@@ -298,7 +298,7 @@ mod tests {
 
     /// A hole far beyond the length must not land on the next strip.
     #[test]
-    fn strips_keep_apart_from_what_was_drilled_beyond_them() {
+    fn a_hole_beyond_the_length_does_not_reach_the_next_strip() {
         let scene = scene(None, hole(170.0, 0.0, 100.0), 30.0);
         let zeros = scene.strokes.iter().filter(|stroke| stroke.caption.as_deref() == Some("x 0")).count();
         assert_eq!(zeros, 2, "of 170, not of 30, which would be cut into three");

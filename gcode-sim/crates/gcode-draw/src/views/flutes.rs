@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn what_faces_away_is_not_drawn() {
+    fn surface_that_faces_away_is_not_drawn() {
         let (front, back) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
         let seen = paths(&side_view(&view([front, front, back, front])));
         assert_eq!(seen, [vec![[0.0, 1.0], [1.0, 1.0]]]);

@@ -157,7 +157,7 @@ mod tests {
 
     /// A band of 0.6° in 40° of angles is too thin; a fault of 30° is as visible there as in a separate graph.
     #[test]
-    fn deviations_have_a_graph_of_their_own_where_the_law_turns_far() {
+    fn a_thin_tolerance_band_gets_a_separate_graph_of_deviations() {
         let turning = |off: f64| {
             let mut helix = courses(&[off]);
             for at in &mut helix.passes[0] {
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_place_of_the_worst_pass_has_a_sign() {
+    fn the_largest_deviation_has_a_marker() {
         let helix = courses(&[0.1, -0.4, 0.35]);
         let sign = helix.sign(|at| at.actual).unwrap();
         assert_eq!((sign.position, sign.name.as_str()), ([6.0, 19.6], "pass 2, and 1 more"));
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn both_hands_are_told_apart() {
+    fn the_graph_distinguishes_left_and_right_hand() {
         let mut helix = courses(&[0.0]);
         helix.passes[0].iter_mut().for_each(|at| at.actual = -20.0);
         let graph = helix.angles();

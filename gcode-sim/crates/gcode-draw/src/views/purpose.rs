@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_headline_names_what_is_wrong_and_what_has_changed() {
+    fn the_headline_counts_the_statuses() {
         use HoleStatus::{Bad, Good};
         use PicturePurpose::{Change, Verdict};
         for (purpose, counts, others, status, words) in [

@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn z_points_down_so_that_the_view_from_above_is_right_handed() {
+    fn the_view_from_above_has_z_downwards() {
         let hole = Some(hole([0.0, 9.0, 5.0], [0.0, 1.0, 0.0]));
         let holes = vec![DrawnHole {
             id: "1".to_owned(),
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axial_hole_shows_its_deviation_as_it_is() {
+    fn an_axial_hole_shows_its_deviation_unchanged() {
         let up = [0.0, 1.0, 0.0];
         let deviation = seen(&hole([420.0, 675.0, 0.0], up), &hole([420.03, 677.0, 0.04], up));
         for end in [deviation.entry, deviation.bottom] {
