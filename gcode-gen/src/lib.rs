@@ -18,6 +18,8 @@
 //! assert!(check(&job, &package)?.refusals.is_empty());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![warn(missing_docs)]
+
 mod nc;
 
 pub mod package;

@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tool_then_radius_and_direction_then_azimuth() {
+    fn holes_are_ordered_by_tool_then_setting_then_azimuth() {
         let mut text = String::from(
             "family = \"pin-holes\"\n[control]\ndialect = \"fanuc-31i\"\nincrement = \"IS-B\"\n[machine]\n\
              rotary = { letter = \"B\", sign = 1 }\n[surface]\nkind = \"ellipsoid\"\na = 500\nb = 300\n\

@@ -22,7 +22,7 @@ pub const FORMATS: &[Format] = &[
 pub struct EmitReport<'c> {
     /// Basis of the numbers.
     pub basis: &'static str,
-    /// Why nothing is written, in words; null if the programs pass verification.
+    /// The reason why nothing is written; null if the programs pass verification.
     pub refused: Option<String>,
     /// The files that were written.
     pub written: Vec<String>,
@@ -73,13 +73,13 @@ impl<'c> EmitReport<'c> {
 pub struct SheetReport {
     /// Basis of the numbers.
     pub basis: &'static str,
-    /// Why nothing is written, in words; null if the programs pass verification.
+    /// The reason why nothing is written; null if the programs pass verification.
     pub refused: Option<String>,
     /// The file that was written.
     pub written: Option<String>,
     /// Time of a part; null if the programs fail verification.
     pub time: Option<TimeReport>,
-    /// On the job's machine first, then on the alternative machines; empty without a rate.
+    /// Costs on the job's machine, then on the alternative machines; empty without a rate.
     pub costs: Vec<CostReport>,
 }
 
@@ -88,7 +88,9 @@ pub struct SheetReport {
 pub struct TimeReport {
     /// Running time of the program, minutes.
     pub run: f64,
+    /// Number of operator stops.
     pub stops: usize,
+    /// Number of tool changes.
     pub tool_changes: usize,
     /// Machine time in minutes, including the given times for set-up, stops and tool changes.
     pub all: f64,
@@ -101,7 +103,9 @@ pub struct TimeReport {
 pub struct CostReport {
     /// Name of the machine; null for the job's own.
     pub machine: Option<String>,
+    /// Currency of the cost.
     pub currency: String,
+    /// Cost of a part.
     pub cost: f64,
     /// Extra cost of the job's own machine in percent, below 0 cheaper; null if not comparable.
     pub change: Option<f64>,

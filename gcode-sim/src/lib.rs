@@ -15,14 +15,17 @@
 //! use gcode_inspect::machine::Machine;
 //! use gcode_lang::program::NoLibrary;
 //! use gcode_session::{Request, run};
-//! use gcode_sim::report::run::RunReport;
+//! use gcode_sim::report::diagnostic;
 //!
-//! let request = Request::new("O1.nc", b"O1\n#100=2*21\nM30\n".as_slice(), Machine::default());
+//! let request = Request::new("O1.nc", b"O1\n#100=2/0\nM30\n".as_slice(), Machine::default());
 //! let run = run(&request, &mut NoLibrary, &mut ())?;
-//! let report = RunReport::new(&run, None, Vec::new());
-//! assert_eq!((report.outcome, report.variables), ("end", vec![(100, 42.0)]));
+//! let finding = run.stop_finding().expect("a division by zero is an alarm");
+//! let text = diagnostic::render(&finding, run.control.memory().sources());
+//! assert!(text.contains("division by zero") && text.contains("#100=2/0"));
 //! # Ok::<(), gcode_session::SessionError>(())
 //! ```
+#![warn(missing_docs)]
+
 pub mod report;
 
 pub mod schema;

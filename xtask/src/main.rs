@@ -30,7 +30,7 @@ fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> bool {
     run.is_ok_and(|status| status.success())
 }
 
-#[expect(clippy::print_stderr, reason = "a tool for the people who build the project")]
+#[expect(clippy::print_stderr, reason = "a tool prints its commands")]
 fn print(text: &str) {
     eprintln!("{text}");
 }

@@ -162,8 +162,8 @@ fn messages(
     also: Vec<String>,
     answer: Answer,
 ) -> (Vec<String>, Vec<String>) {
-    let rendered = |wanted: &dyn Fn(Severity) -> bool| {
-        let chosen = findings.iter().filter(|finding| wanted(finding.severity));
+    let rendered = |is_chosen: &dyn Fn(Severity) -> bool| {
+        let chosen = findings.iter().filter(|finding| is_chosen(finding.severity));
         chosen.map(|finding| diagnostic::render(finding, run.control.memory().sources())).collect::<Vec<_>>()
     };
     let mut refusals = rendered(&|severity| Severity::Error <= severity);

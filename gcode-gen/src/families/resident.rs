@@ -30,7 +30,7 @@ impl Macro {
             ("{half}", number(increment.size() / 2.0)),
             ("{per_unit}", number(increment.per_unit())),
             ("{rounding}", number(shift_threshold(increment))),
-            // Of the axis with number 1 + #12.
+            // The external offset of the axis with number 1 + #12.
             ("{external}", external_offset_term(dialect, "[5201+#12]")),
         ];
         let all = of_control.iter().chain(marks);

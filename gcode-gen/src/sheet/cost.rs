@@ -8,17 +8,21 @@ use super::record::Record;
 pub struct MachineTime {
     /// Running time of the program.
     pub run: f64,
+    /// Number of operator stops.
     pub stops: usize,
+    /// Number of tool changes.
     pub tool_changes: usize,
     /// Minutes given by the user; missing ones are not counted.
     pub minutes: Minutes,
 }
 
 impl MachineTime {
+    /// Returns the minutes of all operator stops; `None` if the time of one is not given.
     pub fn all_stops(&self) -> Option<f64> {
         total_minutes(self.stops, self.minutes.stop)
     }
 
+    /// Returns the minutes of all tool changes; `None` if the time of one is not given.
     pub fn all_tool_changes(&self) -> Option<f64> {
         total_minutes(self.tool_changes, self.minutes.tool_change)
     }
@@ -49,6 +53,7 @@ fn total_minutes(count: usize, minutes: Option<f64>) -> Option<f64> {
 pub struct Cost {
     /// Name of the machine; `None` for the job's own.
     pub machine: Option<String>,
+    /// Time of the part on this machine.
     pub time: MachineTime,
     /// Rate of a machine hour.
     pub rate: f64,

@@ -57,7 +57,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let in_job = |error: &dyn Display| UsageError::in_file(&arguments.job, error);
-    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
+    let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     if !(1..=MAX_SAMPLES).contains(&arguments.samples) {
         return Err(UsageError::new(format!("--samples {}: 1 to {MAX_SAMPLES}", arguments.samples)));
     }
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let sources = error_file(&input::text(&arguments.errors)?, &machine)
         .map_err(|error| UsageError::in_file(&arguments.errors, error))?;
     let one = NonZeroUsize::MIN;
-    let question = BudgetRequest {
+    let request = BudgetRequest {
         machine: &machine,
         holes: &reference.holes,
         clearance: job.clearance(),
@@ -91,13 +91,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         samples: arguments.samples,
         seed: arguments.seed,
         threads: arguments.threads.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
-        tolerance: Tolerances::of(&reference, asked).position,
+        tolerance: Tolerances::of(&reference, tolerance).position,
     };
     let counted = AtomicUsize::new(0);
     let all = arguments.samples.saturating_mul(reference.holes.len());
-    let found = progress::with_progress(all, &counted, || budget(&question, &counted))
+    let result = progress::with_progress(all, &counted, || budget(&request, &counted))
         .map_err(|error| in_job(&error))?;
-    let report = BudgetReport::new(&question, &found);
+    let report = BudgetReport::new(&request, &result);
     output::report(&report, BudgetReport::text, arguments.format)?;
     if let Some(path) = &arguments.picture {
         // The height grows with the number of bars.

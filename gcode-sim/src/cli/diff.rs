@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
-use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, render, unused_machine};
+use super::{ExitStatus, UsageError, options, output, page, render, unused_machine};
 use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
@@ -60,11 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let programs = [arguments.old.as_path(), arguments.new.as_path()];
     let files: Vec<&Path> =
         programs.into_iter().chain(arguments.run.files()).chain(arguments.reference.as_deref()).collect();
-    overwrite_guard::one_pipe(&files)?;
-    for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        overwrite_guard::check_not_input(result, &files)?;
-    }
-    arguments.page.as_deref().map(page::check_is_html).transpose()?;
+    options::check_files(&files, arguments.picture.as_deref(), arguments.page.as_deref())?;
     let mut before = arguments.run.clone();
     if !arguments.old_libraries.is_empty() {
         before.libraries.clone_from(&arguments.old_libraries);

@@ -4,6 +4,7 @@ use clap::ValueEnum;
 /// Formats of any result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum TextFormat {
+    #[expect(missing_docs, reason = "its comment would be a help text")]
     Text,
     /// One document, and nothing else on standard output
     Json,
@@ -11,7 +12,7 @@ pub enum TextFormat {
 
 /// Formats of a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ListFormat {
+pub(crate) enum ListFormat {
     Text,
     /// One document, and nothing else on standard output
     Json,
@@ -21,7 +22,7 @@ pub enum ListFormat {
 
 /// Formats of findings with locations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FindingFormat {
+pub(crate) enum FindingFormat {
     Text,
     /// One document, and nothing else on standard output
     Json,
@@ -31,7 +32,7 @@ pub enum FindingFormat {
 
 /// Formats of test cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum TestFormat {
+pub(crate) enum TestFormat {
     Text,
     /// One document, and nothing else on standard output
     Json,

@@ -29,9 +29,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) =
         options::checked_request(&arguments.program, None, None, arguments.page.as_deref())?;
     if let Some(path) = &arguments.page {
-        let watched = page::simulate_traced(&request, &mut folders, None)?;
-        page::write_alone(&request, &watched, None, &arguments.program.conditions, path)?;
-        let status = print_result(arguments, &watched.0.simulation)?;
+        let traced = page::simulate_traced(&request, &mut folders, None)?;
+        page::write_alone(&request, &traced, None, &arguments.program.conditions, path)?;
+        let status = print_result(arguments, &traced.0.simulation)?;
         output::written("page", path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }

@@ -29,9 +29,9 @@ impl Folders {
         Ok(Self { folders, programs: None, unread: BTreeSet::new() })
     }
 
-    /// Returns the first file, in the order of folders and names, that satisfies `wanted`.
-    fn find(&mut self, wanted: impl Fn(&Path) -> bool) -> Option<PathBuf> {
-        self.files().into_iter().find(|path| wanted(path))
+    /// Returns the first file, in the order of folders and names, that satisfies `is_chosen`.
+    fn find(&mut self, is_chosen: impl Fn(&Path) -> bool) -> Option<PathBuf> {
+        self.files().into_iter().find(|path| is_chosen(path))
     }
 
     /// Returns the files that may be programs, in the order of folders and names; known other extensions are

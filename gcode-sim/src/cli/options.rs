@@ -1,4 +1,4 @@
-//! Turns the command-line arguments into a request for a session.
+//! Builds the request for a session from the command-line arguments.
 use std::path::Path;
 
 use super::conditions::ProgramArguments;
@@ -52,8 +52,21 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     Ok((request, folders))
 }
 
-/// Reads the program of a command with its conditions, and warns of an unused machine file. Refuses a second use of
-/// standard input, a result or page that would overwrite an input, and a page that is not an HTML file.
+/// Refuses a second use of standard input, a result or page that would overwrite an input, and a page that is not an
+/// HTML file.
+pub(super) fn check_files(
+    inputs: &[&Path],
+    result: Option<&Path>,
+    page: Option<&Path>,
+) -> Result<(), UsageError> {
+    overwrite_guard::one_pipe(inputs)?;
+    for result in [result, page].into_iter().flatten() {
+        overwrite_guard::check_not_input(result, inputs)?;
+    }
+    page.map_or(Ok(()), page::check_is_html)
+}
+
+/// Reads the program of a command with its conditions, checks its files, and warns of an unused machine file.
 pub(super) fn checked_request(
     program: &ProgramArguments,
     reference: Option<&Path>,
@@ -61,12 +74,7 @@ pub(super) fn checked_request(
     page: Option<&Path>,
 ) -> Result<(Request, Folders), UsageError> {
     let files = std::iter::once(program.program.as_path()).chain(program.conditions.files());
-    let files: Vec<&Path> = files.chain(reference).collect();
-    overwrite_guard::one_pipe(&files)?;
-    for result in [result, page].into_iter().flatten() {
-        overwrite_guard::check_not_input(result, &files)?;
-    }
-    page.map(page::check_is_html).transpose()?;
+    check_files(&files.chain(reference).collect::<Vec<_>>(), result, page)?;
     let (request, folders) = request(program)?;
     unused_machine::warn_unused_machine(program, &request);
     Ok((request, folders))
@@ -102,12 +110,12 @@ fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result
     Ok(())
 }
 
-/// Checks that the machine rotates the part as the job specifies. With different signs a fit cannot tell
-/// which is right.
+/// Checks that the machine rotates the part as the job specifies. With different signs a fit cannot
+/// determine which is right.
 fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), String> {
     let letter = rotary.letter;
-    let turns = machine.axes.find(letter as u8).and_then(|axis| machine.table.rotary_sign(axis));
-    let Some(sign) = turns else {
+    let sign = machine.axes.find(letter as u8).and_then(|axis| machine.table.rotary_sign(axis));
+    let Some(sign) = sign else {
         return Err(format!(
             "key 'machine.rotary.letter' is {letter}, and {file} has no [[table]] with this letter that \
              rotates the part: give the job's machine file"

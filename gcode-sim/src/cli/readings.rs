@@ -51,9 +51,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         output::write(path, &report.plot().draw(size)?)?;
         output::written("picture", path, arguments.format == ListFormat::Text)?;
     }
-    let found = super::findings(&following.readings.findings, &following.run);
-    if found != ExitStatus::Passed {
-        return Ok(found);
+    let status = super::findings(&following.readings.findings, &following.run);
+    if status != ExitStatus::Passed {
+        return Ok(status);
     }
     if report.is_empty() {
         output::print_message("error: no feed of the program follows the part's surface within 5 mm\n");

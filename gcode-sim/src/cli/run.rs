@@ -36,7 +36,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) =
         options::checked_request(&arguments.program, None, arguments.output.as_deref(), None)?;
-    let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
+    let shown = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(MoveRecorder::default);
     let (run, rapids) = progress::of_run(&mut request, |request| {
         // The tool is followed only if a part for probing is given.
@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, RapidChecker::finish)))
     })?;
     let mut system = Vec::new();
-    for number in wanted {
+    for number in shown {
         let value = run.control.variable(number);
         system
             .push((number, value.map_err(|alarm| UsageError::new(format!("--show '#{number}': {alarm}")))?));

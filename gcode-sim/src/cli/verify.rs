@@ -60,18 +60,18 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
+    let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let results = (arguments.picture.as_deref(), arguments.page.as_deref());
     let (mut request, folders) =
         options::checked_request(&arguments.program, Some(&arguments.reference), results.0, results.1)?;
     match options::read_nominal(&arguments.reference)? {
         NominalPart::Holes(reference) => {
-            let mut tolerances = Tolerances::of(&reference, asked);
+            let mut tolerances = Tolerances::of(&reference, tolerance);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
             holes(arguments, &mut request, folders, &reference, tolerances)
         }
-        NominalPart::Flutes(mut wanted) => {
+        NominalPart::Flutes(mut nominal) => {
             let of_holes = [
                 ("--depth-tolerance", depth.is_some()),
                 ("--worst-first", arguments.worst_first),
@@ -81,8 +81,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             if let Some((flag, _)) = of_holes.iter().find(|(_, given)| *given) {
                 return Err(UsageError::new(format!("{flag} is for holes, and the reference is a burr")));
             }
-            wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
-            flutes(arguments, &mut request, folders, &wanted)
+            nominal.surface_tolerance = tolerance.unwrap_or(nominal.surface_tolerance);
+            flutes(arguments, &mut request, folders, &nominal)
         }
     }
 }
@@ -91,9 +91,9 @@ fn flutes(
     arguments: &Arguments,
     request: &mut Request,
     mut folders: Folders,
-    wanted: &Flutes,
+    nominal: &Flutes,
 ) -> Result<ExitStatus, UsageError> {
-    let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, wanted))?;
+    let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, nominal))?;
     let verdict = grinding.verify();
     let table = || flute_table::table(&verdict);
     let picture = || gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
@@ -143,11 +143,11 @@ fn holes(
         print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
     if let Some(path) = &arguments.page {
-        let watched = page::simulate_traced(request, &mut folders, reference.surface)?;
-        let verdict = watched.0.simulation.verify(reference, tolerances, &machine);
+        let traced = page::simulate_traced(request, &mut folders, reference.surface)?;
+        let verdict = traced.0.simulation.verify(reference, tolerances, &machine);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
-        page::write_alone(request, &watched, judged, &arguments.program.conditions, path)?;
-        let status = print(&watched.0.simulation, &verdict)?;
+        page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;
+        let status = print(&traced.0.simulation, &verdict)?;
         output::written("page", path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }

@@ -51,51 +51,40 @@ struct SourceRow {
     share: f64,
 }
 
-impl From<Statistics> for BudgetRow {
-    fn from(of: Statistics) -> Self {
-        Self {
-            mean: of.mean,
-            p50: of.p50,
-            p95: of.p95,
-            p997: of.p997,
-            max: of.max,
-            within: of.share_in_tolerance,
-        }
-    }
+fn row(of: Statistics) -> BudgetRow {
+    let Statistics { mean, p50, p95, p997, max, share_in_tolerance: within } = of;
+    BudgetRow { mean, p50, p95, p997, max, within }
 }
 
-impl From<&ErrorShare> for SourceRow {
-    fn from(of: &ErrorShare) -> Self {
-        Self { source: of.source.clone(), spread: None, moves: of.displacement, share: of.share }
-    }
+fn source_row(of: &ErrorShare, spread: Option<String>) -> SourceRow {
+    SourceRow { source: of.source.clone(), spread, moves: of.displacement, share: of.share }
 }
 
 impl BudgetReport {
-    pub(crate) fn new(question: &BudgetRequest<'_>, found: &Budget) -> Self {
-        let holes = found.holes.iter().map(|hole| HoleRow {
+    pub(crate) fn new(request: &BudgetRequest<'_>, budget: &Budget) -> Self {
+        let holes = budget.holes.iter().map(|hole| HoleRow {
             id: hole.id.clone(),
-            row: hole.statistics.into(),
+            row: row(hole.statistics),
             nominal: hole.nominal,
-            sources: hole.shares.iter().map(SourceRow::from).collect(),
+            sources: hole.shares.iter().map(|share| source_row(share, None)).collect(),
         });
         let spread = |name: &str| {
             let source =
-                question.sources.iter().find(|source| source.quantity.name(question.machine) == name)?;
+                request.sources.iter().find(|source| source.quantity.name(request.machine) == name)?;
             Some(match source.distribution {
                 Distribution::Fixed(value) => format!("fixed {value}"),
                 Distribution::Normal(value) => format!("normal {value}"),
                 Distribution::Uniform(value) => format!("uniform {value}"),
             })
         };
-        let sources =
-            found.shares.iter().map(|share| SourceRow { spread: spread(&share.source), ..share.into() });
+        let sources = budget.shares.iter().map(|share| source_row(share, spread(&share.source)));
         Self {
             basis: "predicted by simulation, not measured",
-            samples: question.samples,
-            seed: question.seed,
-            tolerance: question.tolerance,
+            samples: request.samples,
+            seed: request.seed,
+            tolerance: request.tolerance,
             holes: holes.collect(),
-            parts: found.parts.into(),
+            parts: row(budget.parts),
             sources: sources.collect(),
         }
     }

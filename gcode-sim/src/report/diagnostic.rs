@@ -117,7 +117,7 @@ mod tests {
             .help("check the divisor: a vacant variable counts as 0");
         diagnostic.span = Some(Span { source: called, start: 10, end: 14 });
         let text = anstream::adapter::strip_str(&render(&diagnostic, &sources)).to_string();
-        let wanted = "\
+        let expected = "\
 alarm[PS0112]: division by zero
  --> O0002.nc:2:4
   |
@@ -127,6 +127,6 @@ alarm[PS0112]: division by zero
   = called from O0001.nc:2: G65 P2 A1.
   = help: check the divisor: a vacant variable counts as 0
 ";
-        assert_eq!(text, wanted);
+        assert_eq!(text, expected);
     }
 }

@@ -17,7 +17,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sha256_is_that_of_the_standard() {
+    fn sha256_gives_the_digest_of_the_standard() {
         // FIPS 180-2, appendix B.1.
         assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     }

@@ -16,50 +16,29 @@ pub fn table(verdict: &FluteVerdict) -> String {
         |value, places, tolerance: f64| [number(value, places), "0".to_owned(), tolerance.to_string()];
     let range = |min, max, places| format!("{} {}", number(min, places), number(max, places));
     let none = String::new;
-    let rows = [
-        ("", ["actual", "nominal", "tolerance"].map(str::to_owned)),
-        ("flutes", [verdict.flutes.to_string(), verdict.nominal_flutes.to_string(), none()]),
-        (
-            "contact deviation from the tooth bottom, mm",
-            deviation(verdict.surface_deviation, 4, verdict.tolerance),
-        ),
-        (
-            "helix angle, minimum and maximum, degrees",
-            [
-                range(verdict.helix_min, verdict.helix_max, 2),
-                format!("{} on cylinder", verdict.helix),
-                none(),
-            ],
-        ),
-        (
-            "helix angle deviation from the law, degrees",
-            deviation(verdict.helix_error, 3, verdict.helix_tolerance),
-        ),
-        (
-            "index deviation between neighbours, degrees",
-            deviation(verdict.index_error, 4, verdict.index_tolerance),
-        ),
-        (
-            "speed along the flutes, minimum and maximum",
-            [
-                range(verdict.speed_min, verdict.speed_max, 1),
-                verdict.speed.map_or("-".to_owned(), |speed| format!("{speed} mm/min")),
-                verdict.speed.map_or(none(), |_| format!("{:.0} %", 100.0 * verdict.speed_tolerance)),
-            ],
-        ),
-        (
-            "minimum distance of neighbours, mm",
-            [number(verdict.nearest, 3), format!("at least {}", verdict.min_nearest), none()],
-        ),
-        (
-            "passes, and grinding moves in them",
-            [format!("{} {}", verdict.passes, verdict.moves), none(), none()],
-        ),
-    ];
-    for (what, [actual, nominal, tolerance]) in rows {
+    let mut row = |what: &str, [actual, nominal, tolerance]: [String; 3]| {
         let line = format!("{what:<46} {actual:>14} {nominal:>16} {tolerance:>10}");
         let _ = writeln!(text, "{}", line.trim_end());
-    }
+    };
+    row("", ["actual", "nominal", "tolerance"].map(str::to_owned));
+    row("flutes", [verdict.flutes.to_string(), verdict.nominal_flutes.to_string(), none()]);
+    let contact = deviation(verdict.surface_deviation, 4, verdict.tolerance);
+    row("contact deviation from the tooth bottom, mm", contact);
+    let angles = range(verdict.helix_min, verdict.helix_max, 2);
+    let nominal = format!("{} on cylinder", verdict.helix);
+    row("helix angle, minimum and maximum, degrees", [angles, nominal, none()]);
+    let helix = deviation(verdict.helix_error, 3, verdict.helix_tolerance);
+    row("helix angle deviation from the law, degrees", helix);
+    let index = deviation(verdict.index_error, 4, verdict.index_tolerance);
+    row("index deviation between neighbours, degrees", index);
+    let speeds = range(verdict.speed_min, verdict.speed_max, 1);
+    let nominal = verdict.speed.map_or("-".to_owned(), |speed| format!("{speed} mm/min"));
+    let percent = verdict.speed.map_or(none(), |_| format!("{:.0} %", 100.0 * verdict.speed_tolerance));
+    row("speed along the flutes, minimum and maximum", [speeds, nominal, percent]);
+    let least = format!("at least {}", verdict.min_nearest);
+    row("minimum distance of neighbours, mm", [number(verdict.nearest, 3), least, none()]);
+    let passes = format!("{} {}", verdict.passes, verdict.moves);
+    row("passes, and grinding moves in them", [passes, none(), none()]);
     laws(&mut text, &verdict.laws);
     if !verdict.helix_course.is_empty() {
         let _ =

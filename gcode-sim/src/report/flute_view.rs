@@ -13,8 +13,8 @@ use gcode_session::GrindingRun;
 
 /// Builds the view of the program `name`.
 pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteView {
-    let wanted = &grinding.nominal;
-    let profile = &wanted.profile;
+    let nominal = &grinding.nominal;
+    let profile = &nominal.profile;
     let points = |pass: &GrindingPass| {
         pass.trace.samples.iter().map(|sample| flute_point(profile, sample.point)).collect()
     };
@@ -22,10 +22,10 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
     let nose = (0..=90).map(|degree| profile.point_at_polar(Deg(90.0 - f64::from(degree))));
     let nose: Vec<[f64; 2]> = nose.map(|at| [at.x, -at.y]).collect();
     let mut outline = nose;
-    if 0.0 < wanted.start {
-        outline.insert(0, [wanted.start, profile.radius()]);
+    if 0.0 < nominal.start {
+        outline.insert(0, [nominal.start, profile.radius()]);
     }
-    let end = profile.point_at_polar(wanted.tip_angle);
+    let end = profile.point_at_polar(nominal.tip_angle);
     let number = |value: Option<f64>, places: usize| {
         value.map_or("−".to_owned(), |value| format!("{value:.places$}").replace('-', "−"))
     };

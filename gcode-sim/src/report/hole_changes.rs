@@ -47,7 +47,7 @@ mod tests {
     use gcode_review::{Revision, RevisionDiff};
     use gcode_session::Request;
 
-    fn told(old: &str, new: &str) -> Vec<Vec<String>> {
+    fn all_remarks(old: &str, new: &str) -> Vec<Vec<String>> {
         let made = |text: &str| {
             let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
             Revision::of(&request, &mut NoLibrary, None).unwrap()
@@ -64,15 +64,18 @@ mod tests {
     /// Spot drilled by T1 and drilled by T2 to 20 mm; then drilled by T2 alone, 2 mm less deep and 0.03 mm
     /// off.
     #[test]
-    fn a_hole_is_told_with_all_its_tools() {
+    fn a_changed_hole_has_all_its_tools() {
         let pass = |tool: u32, x: &str, y: &str| {
             format!("T{tool} M6\nS500 M3\nG0 Y50.\nX{x} Z0\nG1 Y{y} F100\nG0 Y50.\n")
         };
         let program = |passes: &[String]| format!("O1\nG90\n{}M30\n", passes.concat());
         let old = program(&[pass(1, "10.", "-2."), pass(2, "10.", "-20.")]);
-        assert_eq!(told(&old, &old), [Vec::<String>::new()]);
-        assert_eq!(told(&old, &program(&[pass(2, "10.", "-18.")])), [["depth −2.000", "T2, was T1 T2"]]);
-        let aside = program(&[pass(1, "10.03", "-2."), pass(2, "10.03", "-20.")]);
-        assert_eq!(told(&old, &aside), [["moved 0.030"]]);
+        assert_eq!(all_remarks(&old, &old), [Vec::<String>::new()]);
+        assert_eq!(
+            all_remarks(&old, &program(&[pass(2, "10.", "-18.")])),
+            [["depth −2.000", "T2, was T1 T2"]]
+        );
+        let moved = program(&[pass(1, "10.03", "-2."), pass(2, "10.03", "-20.")]);
+        assert_eq!(all_remarks(&old, &moved), [["moved 0.030"]]);
     }
 }

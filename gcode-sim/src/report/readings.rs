@@ -97,7 +97,7 @@ impl ReadingsReport {
         let ended = matches!(following.run.outcome, Outcome::End);
         let whole = ended && findings.iter().all(|finding| finding.severity < Severity::Error);
         let verdict = tolerance.map(|t| if whole && within(t) { Answer::Pass } else { Answer::Fail });
-        let told = findings.iter().map(|finding| {
+        let rows = findings.iter().map(|finding| {
             let at = finding.backtrace.as_ref().map(|place| following.run.locate(place.block));
             let (program, line) = at.unzip();
             let (code, message) = (finding.code().into_owned(), finding.message.clone());
@@ -116,7 +116,7 @@ impl ReadingsReport {
             least,
             greatest,
             passes,
-            findings: told.collect(),
+            findings: rows.collect(),
             gaps: following.readings.gaps.clone(),
             approach_retract_counts: following.readings.approach_retract_counts,
             name: name.to_owned(),

@@ -15,86 +15,86 @@ use gcode_session::Run;
 
 /// The document of `run --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct RunReport {
-    pub outcome: &'static str,
-    pub alarm: Option<AlarmReport>,
-    pub stops: Vec<StopReport>,
+pub(crate) struct RunReport {
+    pub(crate) outcome: &'static str,
+    pub(crate) alarm: Option<AlarmReport>,
+    pub(crate) stops: Vec<StopReport>,
     /// The program's printed output, line by line; bytes that are not text as `\xNN`.
-    pub output: Vec<String>,
+    pub(crate) output: Vec<String>,
     /// M codes left to the machine builder's logic.
     #[serde(rename = "passed_on")]
-    pub auxiliary_codes: Vec<AuxiliaryCodeReport>,
+    pub(crate) auxiliary_codes: Vec<AuxiliaryCodeReport>,
     /// The notes: what the control did without a message.
-    pub notes: Vec<NoteReport>,
+    pub(crate) notes: Vec<NoteReport>,
     #[serde(serialize_with = "variables")]
     #[schemars(with = "BTreeMap<String, f64>")]
-    pub variables: Vec<(u32, f64)>,
+    pub(crate) variables: Vec<(u32, f64)>,
     /// The system variables of `--show`; null is vacant.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "shown")]
     #[schemars(with = "BTreeMap<String, Option<f64>>")]
-    pub system: Vec<(u32, Option<f64>)>,
+    pub(crate) system: Vec<(u32, Option<f64>)>,
     /// End point in the active work coordinate system.
-    pub position: Coordinates,
-    pub machine: Coordinates,
-    pub blocks: u64,
-    pub moves: u64,
-    pub seconds: f64,
+    pub(crate) position: Coordinates,
+    pub(crate) machine: Coordinates,
+    pub(crate) blocks: u64,
+    pub(crate) moves: u64,
+    pub(crate) seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub path: Option<Vec<MoveReport>>,
+    pub(crate) path: Option<Vec<MoveReport>>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct AlarmReport {
-    pub number: u32,
-    pub code: String,
-    pub message: String,
-    pub program: String,
-    pub line: u32,
-    pub column: u32,
-    pub block: String,
-    pub help: Option<String>,
+pub(crate) struct AlarmReport {
+    pub(crate) number: u32,
+    pub(crate) code: String,
+    pub(crate) message: String,
+    pub(crate) program: String,
+    pub(crate) line: u32,
+    pub(crate) column: u32,
+    pub(crate) block: String,
+    pub(crate) help: Option<String>,
     /// The calls that led there, innermost first.
-    pub calls: Vec<BlockLocation>,
+    pub(crate) calls: Vec<BlockLocation>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct StopReport {
-    pub kind: &'static str,
-    pub text: String,
+pub(crate) struct StopReport {
+    pub(crate) kind: &'static str,
+    pub(crate) text: String,
 }
 
 /// An M code without an effect on the control, and its first block.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "PassedOnReport")]
-pub struct AuxiliaryCodeReport {
-    pub code: String,
-    pub program: String,
-    pub line: u32,
+pub(crate) struct AuxiliaryCodeReport {
+    pub(crate) code: String,
+    pub(crate) program: String,
+    pub(crate) line: u32,
 }
 
 /// A note: a condition that is not an alarm and probably not intended, and the first block that has it.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct NoteReport {
-    pub code: &'static str,
-    pub message: String,
-    pub program: String,
-    pub line: u32,
+pub(crate) struct NoteReport {
+    pub(crate) code: &'static str,
+    pub(crate) message: String,
+    pub(crate) program: String,
+    pub(crate) line: u32,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct MoveReport {
-    pub kind: &'static str,
-    pub to: Coordinates,
-    pub seconds: f64,
-    pub feed: Option<f64>,
-    pub program: String,
-    pub line: u32,
+pub(crate) struct MoveReport {
+    pub(crate) kind: &'static str,
+    pub(crate) to: Coordinates,
+    pub(crate) seconds: f64,
+    pub(crate) feed: Option<f64>,
+    pub(crate) program: String,
+    pub(crate) line: u32,
 }
 
 /// Letter and value of every axis, in the order of the control's axis table.
 #[derive(Debug, JsonSchema)]
 #[schemars(with = "BTreeMap<char, f64>")]
-pub struct Coordinates(pub Vec<(char, f64)>);
+pub(crate) struct Coordinates(pub Vec<(char, f64)>);
 
 impl Coordinates {
     fn new(axes: &Axes, value: impl Fn(usize) -> f64) -> Self {
@@ -136,13 +136,13 @@ fn shown<S: Serializer>(all: &[(u32, Option<f64>)], serializer: S) -> Result<S::
 }
 
 /// Largest number of recorded moves: a loop that never ends must not fill the memory.
-pub const MAX_MOVES: usize = 1_000_000;
+pub(crate) const MAX_MOVES: usize = 1_000_000;
 
 /// Records every move that changes the position, and every dwell.
 #[derive(Debug, Default)]
-pub struct MoveRecorder {
+pub(crate) struct MoveRecorder {
     /// There were more than [`MAX_MOVES`].
-    pub is_truncated: bool,
+    pub(crate) is_truncated: bool,
     position: Position,
     moves: Vec<(&'static str, Position, f64, Option<f64>, Span)>,
 }
@@ -170,7 +170,7 @@ impl EventSink for MoveRecorder {
 
 impl RunReport {
     /// Builds the report of a run; `moves` and the values of `system` variables are optional.
-    pub fn new(run: &Run, moves: Option<&MoveRecorder>, system: Vec<(u32, Value)>) -> Self {
+    pub(crate) fn new(run: &Run, moves: Option<&MoveRecorder>, system: Vec<(u32, Value)>) -> Self {
         let control = &run.control;
         let axes = &control.settings().axes;
         let machine = control.machine_position();
@@ -224,7 +224,7 @@ impl RunReport {
     }
 
     /// Formats the result for a terminal.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         let word = match self.outcome {
             "end" => "ended",

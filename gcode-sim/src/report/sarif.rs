@@ -225,8 +225,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_are_named_from_where_the_program_was_started() {
-        for (file, wanted) in [
+    fn file_names_are_relative_to_the_working_directory() {
+        for (file, expected) in [
             ("parts/O1.nc", "parts/O1.nc"),
             ("./parts/O1.nc", "parts/O1.nc"),
             ("/shop/nc/parts/O1.nc", "parts/O1.nc"),
@@ -237,7 +237,7 @@ mod tests {
             ("plate:2.nc", "plate%3A2.nc"),
             ("standard input", "standard%20input"),
         ] {
-            assert_eq!(uri(file, "/shop/nc"), wanted, "{file}");
+            assert_eq!(uri(file, "/shop/nc"), expected, "{file}");
         }
         assert_eq!(uri("/O1.nc", ""), "file:///O1.nc");
         assert_eq!(uri("/O1.nc", "/"), "O1.nc");

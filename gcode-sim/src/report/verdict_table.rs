@@ -60,20 +60,8 @@ fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
 }
 
 /// Names and widths of the columns between a hole's name and its verdict.
-const COLUMNS: [(&str, usize); 12] = [
-    ("x", 9),
-    ("y", 9),
-    ("z", 9),
-    ("dx", 8),
-    ("dy", 8),
-    ("dz", 8),
-    ("entry", 7),
-    ("bottom", 7),
-    ("tilt", 7),
-    ("depth", 8),
-    ("Φ", 7),
-    ("out", 7),
-];
+const COLUMNS: [&str; 12] = ["x", "y", "z", "dx", "dy", "dz", "entry", "bottom", "tilt", "depth", "Φ", "out"];
+const WIDTHS: [usize; 12] = [9, 9, 9, 8, 8, 8, 7, 7, 7, 8, 7, 7];
 
 /// Writes one line per hole.
 fn lines(text: &mut String, holes: &[&HoleVerdict]) {
@@ -82,10 +70,10 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
     }
     let wide = holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(4, 12);
     let mut line = |name: &str, cells: [String; 12], verdict: &str| {
-        let cells = cells.iter().zip(COLUMNS).map(|(cell, (_, wide))| format!(" {cell:>wide$}"));
+        let cells = cells.iter().zip(WIDTHS).map(|(cell, wide)| format!(" {cell:>wide$}"));
         let _ = writeln!(text, "{name:<wide$}{}  {verdict}", cells.collect::<String>());
     };
-    line("hole", COLUMNS.map(|(name, _)| name.to_owned()), "verdict");
+    line("hole", COLUMNS.map(str::to_owned), "verdict");
     for hole in holes {
         let [x, y, z] = hole.nominal.entry.map(|v| rounded(v, 3));
         let [dx, dy, dz] = off(hole).map(signed);
@@ -298,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn one_line_a_hole() {
+    fn a_hole_has_one_line() {
         insta::assert_snapshot!(table(&verdict(), Layout::default()), @r"
 Position of 2 holes against Φ0.1: predicted by simulation, not measured
 mm and degrees; deviations are actual − nominal
@@ -316,7 +304,7 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
     }
 
     #[test]
-    fn every_column_worst_first() {
+    fn the_full_table_has_every_column_worst_hole_first() {
         insta::assert_snapshot!(table(&verdict(), Layout { worst_first: true, full: true }), @r"
 Position of 2 holes against Φ0.1: predicted by simulation, not measured
 mm and degrees; deviations are actual − nominal
@@ -346,9 +334,9 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
     /// Rounding alone causes Φ0.0211: more than a zone of 0.02, less than one of 0.0212.
     #[test]
     fn a_zone_smaller_than_rounding_is_warned_of() {
-        let told = |tolerance: f64| table(&Verdict { tolerance, ..verdict() }, Layout::default());
+        let text_at = |tolerance: f64| table(&Verdict { tolerance, ..verdict() }, Layout::default());
         let warning = "WARNING  this control's least increment is too coarse for Φ0.02: use a finer increment or a wider tolerance";
-        assert!(told(0.02).contains(warning));
-        assert!(!told(0.0212).contains("WARNING"));
+        assert!(text_at(0.02).contains(warning));
+        assert!(!text_at(0.0212).contains("WARNING"));
     }
 }

@@ -38,10 +38,12 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
         tried.refusals.extend(bench.stop_messages(&run));
         tried.seconds = run.control.seconds().0;
         let (pair, difference) = best_pair(job, &measured);
-        let found = [570, 571, 572].map(|number| common_variable(&run, number));
-        let wanted = [pair[0] as f64, pair[1] as f64, difference];
-        if !found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-6) {
-            tried.refuse(format!("#570 to #572 are {found:?}; a search through all pairs gives {wanted:?}"));
+        let actual = [570, 571, 572].map(|number| common_variable(&run, number));
+        let expected = [pair[0] as f64, pair[1] as f64, difference];
+        if !actual.iter().zip(expected).all(|(actual, expected)| (actual - expected).abs() < 1e-6) {
+            tried.refuse(format!(
+                "#570 to #572 are {actual:?}; a search through all pairs gives {expected:?}"
+            ));
         }
         for (end, name) in ends(job).into_iter().zip(["E", "F"]) {
             let there = corrected_position(bench, &run, part, end)?;
@@ -64,7 +66,7 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     Ok(tried)
 }
 
-/// Lets the program touch the candidates itself, on a part that stands too high: they must be points of its
+/// Lets the program touch the candidates itself, on a part that is too high: they must be points of its
 /// surface.
 fn check_touched_candidates(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), CheckError> {
     let job = bench.job;
@@ -113,12 +115,12 @@ fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
     let Surface { a, b, .. } = job.surface;
     let count = job.chord.candidates as usize;
     let mut all = ends(job).map(|end| [end; 10]);
-    for (points, (true_one, turn)) in all.iter_mut().zip(TRUE_PAIR.into_iter().zip([137.5, 71.3])) {
+    for (points, (true_one, step)) in all.iter_mut().zip(TRUE_PAIR.into_iter().zip([137.5, 71.3])) {
         for (index, p) in points.iter_mut().enumerate().filter(|(index, _)| index + 1 != true_one.min(count))
         {
-            let angle = Deg(turn * (index + 1) as f64);
-            let [along, aside] = [angle.cos(), angle.sin()].map(|part| part * job.chord.circle / 2.0);
-            let [x, y, z] = [p[0] + along, p[1] - along, aside];
+            let angle = Deg(step * (index + 1) as f64);
+            let [along, across] = [angle.cos(), angle.sin()].map(|part| part * job.chord.circle / 2.0);
+            let [x, y, z] = [p[0] + along, p[1] - along, across];
             // Projected back onto the surface, from its centre.
             let beyond = ((x * x + z * z) / (a * a) + y * y / (b * b)).sqrt();
             *p = [x, y, z].map(|c| c / beyond);
@@ -135,9 +137,9 @@ fn best_pair(job: &Alignment, [e, f]: &[[Point; 10]; 2]) -> ([usize; 2], f64) {
     let count = job.chord.candidates as usize;
     let pairs = (1..=count).flat_map(|i| (1..=count).map(move |k| [i, k]));
     let longer = |[i, k]: [usize; 2]| distance(e[i - 1], f[k - 1]) - model;
-    let found = pairs.min_by(|one, other| longer(*one).abs().total_cmp(&longer(*other).abs()));
-    let found = found.unwrap_or_default();
-    (found, longer(found))
+    let best = pairs.min_by(|one, other| longer(*one).abs().total_cmp(&longer(*other).abs()));
+    let best = best.unwrap_or_default();
+    (best, longer(best))
 }
 
 /// Returns a point of the misplaced part in the corrected work coordinates, with the rotary axis at its

@@ -32,15 +32,15 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
             job.ellipse().chord_error
         ));
     }
-    for (reading, wanted) in ends(pass).into_iter().zip([job.ellipse().from, job.ellipse().to]) {
+    for (reading, nominal) in ends(pass).into_iter().zip([job.ellipse().from, job.ellipse().to]) {
         // The ball touches where the normal through its centre meets the surface.
         let x = reading.ball_centre.x
             - surface.nearest(&reading.ball_centre).normal.x * (job.probe.radius + reading.value);
         // Rounding moves the centre by up to half an increment in x and y each, and the foot of the normal by
         // at most twice that.
-        if (x - wanted).abs() > 2.0 * job.control.increment.size() || reading.ball_centre.z != 0.0 {
+        if (x - nominal).abs() > 2.0 * job.control.increment.size() || reading.ball_centre.z != 0.0 {
             tried.refuse(format!(
-                "an end is at {}; x = {wanted} on the ellipse is specified",
+                "an end is at {}; x = {nominal} on the ellipse is specified",
                 reading.ball_centre
             ));
         }

@@ -8,7 +8,7 @@ mod sine;
 
 use std::fmt::Display;
 
-use gcode_control::{Outcome, Value};
+use gcode_control::Value;
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::{Machine, Placement};
 use gcode_lang::diag::Severity;
@@ -130,12 +130,8 @@ impl TrialProgram<'_> {
     /// Returns the reasons to reject a run, for a terminal: warnings, an alarm, or a limit.
     fn stop_messages(&self, run: &Run) -> Vec<String> {
         let sources = run.control.memory().sources();
-        let warned = run.note_findings().filter(|finding| Severity::Warning <= finding.severity);
-        let mut told: Vec<_> = warned.map(|finding| diagnostic::render(&finding, sources)).collect();
-        if !matches!(run.outcome, Outcome::End) {
-            told.extend(run.stop_finding().map(|finding| diagnostic::render(&finding, sources)));
-        }
-        told
+        let findings = run.findings().filter(|finding| Severity::Warning <= finding.severity);
+        findings.map(|finding| diagnostic::render(&finding, sources)).collect()
     }
 }
 

@@ -196,7 +196,7 @@ mod tests {
     /// degrees over ±25. Noise of 0.002 is allowed, because twice the deviations are 0.0072 and 0.0035; 0.003
     /// is not, because they are 0.0108. Over ±15, 0.001 causes 0.0024 degrees.
     #[test]
-    fn a_probe_or_a_petal_that_the_promise_is_too_much_for_is_warned_of() {
+    fn too_noisy_a_probe_and_too_narrow_a_petal_are_warned_of() {
         assert_eq!(warned(("radius = 3.0", "radius = 3.0")), None);
         assert!(
             warned(("radius = 3.0", "radius = 3.0\nnoise = 0.003"))
@@ -208,8 +208,8 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_apart_is_named_for_what_it_is() {
-        for (change, wanted) in [
+    fn an_undetermined_fit_is_refused_with_its_cause() {
+        for (change, expected) in [
             (
                 ("[150.0, 420.0]", "[150.0, 151.0]"),
                 "tilt cannot be distinguished from shift at y 150 and 151 over B -25 to 25",
@@ -218,8 +218,8 @@ mod tests {
             (("b = 724.3", "b = 1158.8"), "the tilt of a sphere cannot be measured"),
         ] {
             let job = job(change);
-            let told = describe_fit_error(&job, fit_uncertainty(&job).unwrap_err());
-            assert!(told.contains(wanted), "{told}");
+            let message = describe_fit_error(&job, fit_uncertainty(&job).unwrap_err());
+            assert!(message.contains(expected), "{message}");
         }
     }
 }

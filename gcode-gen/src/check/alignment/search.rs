@@ -74,14 +74,14 @@ mod tests {
     /// the two tilts at the ends of B and shifts of 0.3 add some tenths. E, rotated by 0.25° about y, moves
     /// by 812.4·0.25° in rad = 3.54, and a candidate by half a circle more.
     #[test]
-    fn a_search_that_is_too_short_is_told_with_one_that_does() {
-        let told = refusals("2.0");
-        let advised: Vec<f64> = told
+    fn too_short_a_search_is_refused_with_a_sufficient_one() {
+        let messages = refusals("2.0");
+        let advised: Vec<f64> = messages
             .split("'probe.search' is 2: use ")
             .skip(1)
             .map(|rest| rest.split('\n').next().unwrap().parse().unwrap())
             .collect();
-        assert!(advised.len() == 2 && advised.iter().all(|value| (3.4..6.0).contains(value)), "{told}");
+        assert!(advised.len() == 2 && advised.iter().all(|value| (3.4..6.0).contains(value)), "{messages}");
         let most = advised.into_iter().fold(0.0, f64::max);
         assert_eq!(refusals(&format!("{most:?}")), "", "{most} does");
     }

@@ -21,10 +21,10 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     // setting.
     let set = [None, Some(table.phi + 0.05)];
     for (tilt, set) in TILTS.into_iter().flat_map(|tilt| set.map(|set| (tilt, set))) {
-        let stands = set.unwrap_or(table.phi);
-        let wanted = stands - f64::from(table.sign) * tilt;
+        let present = set.unwrap_or(table.phi);
+        let nominal = present - f64::from(table.sign) * tilt;
         // The macro refuses angles outside a sine table's range.
-        if !(0.0..=45.0).contains(&wanted) || !(0.0..=45.0).contains(&stands) {
+        if !(0.0..=45.0).contains(&nominal) || !(0.0..=45.0).contains(&present) {
             continue;
         }
         let run = bench.run(
@@ -35,19 +35,19 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
         tried.seconds = run.control.seconds().0;
         let [angle, height, change, left] = [586, 587, 588, 589].map(|number| common_variable(&run, number));
         // Half a step, and the rounding of doubles.
-        let off = (height - table.length * Deg(wanted).sin()).abs();
+        let off = (height - table.length * Deg(nominal).sin()).abs();
         worst = worst.max(off);
         let made = Deg::asin(height / table.length);
         let holds = off <= step / 2.0 + 1e-9
-            && (angle - wanted).abs() < 1e-9
-            && ((made.0 - wanted) * 3600.0 - left).abs() < 1e-3
-            && (height - change - table.length * Deg(stands).sin()).abs() < 1e-9
+            && (angle - nominal).abs() < 1e-9
+            && ((made.0 - nominal) * 3600.0 - left).abs() < 1e-3
+            && (height - change - table.length * Deg(present).sin()).abs() < 1e-9
             && (common_variable(&run, 596) - made.0).abs() < 1e-9
             && common_variable(&run, 583).is_nan();
         if !holds {
             tried.refuse(format!(
-                "for a tilt of {tilt} degrees on a table at {stands} the program gives PHI {angle}, H \
-                 {height}, {change} more, {left} seconds left; nominal PHI {wanted}"
+                "for a tilt of {tilt} degrees on a table at {present} the program gives PHI {angle}, H \
+                 {height}, {change} more, {left} seconds left; nominal PHI {nominal}"
             ));
         }
     }
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
     use crate::families::alignment::FAMILY;
 
-    fn told(phi: &str) -> String {
+    fn warnings_at(phi: &str) -> String {
         let Ok(Job::Alignment(job)) =
             Job::parse(&FAMILY.new_job.replace("phi = 38.5", &format!("phi = {phi}")))
         else {
@@ -103,18 +103,18 @@ mod tests {
 
     /// L = 200: at 0.5° from 0 on, where 0.001 has no stack; at 5° from 13.951 on.
     #[test]
-    fn a_table_that_some_tilts_cannot_be_set_on_is_warned_of() {
+    fn a_table_that_cannot_be_set_for_some_tilts_is_warned_of() {
         for (phi, edge, lowest) in [
             ("0.5", Some("0.5 degrees in one direction takes it beyond 0"), true),
             ("44.9", Some("0.1 degrees in one direction takes it beyond 45"), false),
             ("38.5", None, false),
             ("5.0", None, false),
         ] {
-            let told = told(phi);
-            assert_eq!(told.contains("PHI BEYOND 0. TO 45."), edge.is_some(), "{told}");
-            assert!(edge.is_none_or(|edge| told.contains(edge)), "{told}");
-            assert_eq!(told.contains("has gaps, the lowest at 0.0010 mm"), lowest, "{told}");
-            assert_eq!(told.contains("gaps"), lowest, "{told}");
+            let messages = warnings_at(phi);
+            assert_eq!(messages.contains("PHI BEYOND 0. TO 45."), edge.is_some(), "{messages}");
+            assert!(edge.is_none_or(|edge| messages.contains(edge)), "{messages}");
+            assert_eq!(messages.contains("has gaps, the lowest at 0.0010 mm"), lowest, "{messages}");
+            assert_eq!(messages.contains("gaps"), lowest, "{messages}");
         }
     }
 }

@@ -126,10 +126,10 @@ fn worst_error(job: &Burr, error: f64) -> WorstHelixError {
         }
         let Some(last) = places.get(end) else { break };
         let along = last.along - first.along;
-        let found = Deg::atan2(last.around - first.around, along);
-        let wanted = Deg::atan2(last.nominal - first.nominal, along);
-        let rounding = Deg::from_rad(turn * first.radius * wanted.cos() / length(first, last));
-        let off = (found - wanted).abs() + rounding;
+        let actual = Deg::atan2(last.around - first.around, along);
+        let nominal = Deg::atan2(last.nominal - first.nominal, along);
+        let rounding = Deg::from_rad(turn * first.radius * nominal.cos() / length(first, last));
+        let off = (actual - nominal).abs() + rounding;
         if worst.error < off {
             worst = WorstHelixError { error: off, polar: Deg(90.0) - places[(start + end) / 2].c };
         }

@@ -94,10 +94,10 @@ mod tests {
     /// Radii 14 and 4 on a cylinder of 6: the centres are 10 apart and the large one is 8 beyond the axis, so
     /// the small one is 6 along it, the nose is 10 long, and the arcs meet at sin C = 6/10.
     #[test]
-    fn two_arcs_worked_by_hand() {
+    fn two_tangent_arcs_meet_where_worked_out() {
         let job = crate::families::burr::tests::job("profile = { large = 14.0, small = 4.0 }\n");
         assert!((tip(&job.shape) - 10.0).abs() < 1e-12);
-        let found = arcs(&job);
+        let actual = arcs(&job);
         let expected = [
             Arc {
                 from: Deg(0.0),
@@ -116,9 +116,9 @@ mod tests {
                 along: 6.0,
             },
         ];
-        assert_eq!(found, expected);
+        assert_eq!(actual, expected);
         // There, 14·0.8 − 8 = 3.2 from the axis and 14·0.6 = 8.4 along it, on either arc.
-        for arc in found {
+        for arc in actual {
             let station = arc.station(Deg(36.87));
             assert!((station.radius - 3.2).abs() < 1e-4 && (station.along - 8.4).abs() < 1e-4, "{station:?}");
         }

@@ -93,7 +93,7 @@ pub(super) fn alarms(sheet: &Sheet<'_>) -> Markup {
     let Job::Alignment(job) = sheet.job else { return html! {} };
     let k = alarm_thousands(job.control.dialect);
     let row = |alarm: &MacroAlarm| {
-        vec![cell(shown(alarm, k)), html! { span.mono { (alarm.text) } }, cell(alarm.remedy)]
+        vec![cell(shown(alarm, k)), html! { span.mono { (alarm.text) } }, cell(&alarm.remedy)]
     };
     let before = |index: usize| ALARMS.iter().take(index);
     let rows = ALARMS

@@ -76,13 +76,13 @@ pub(super) fn unchanged_counter(control: &Control, first: Span, last: Span) -> O
         let Statement::Assign { target, value } = &statement.node else { return None };
         let ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, counter, step) = &value.kind else { return None };
         let (target, counter, step) = (number(target)?, number(counter)?, number(step)?);
-        let stands = match control.variable(step).ok()? {
+        let value = match control.variable(step).ok()? {
             Value::Vacant => "vacant",
             Value::Number(0.0) => "0",
             Value::Number(_) => return None,
         };
         let written = sources.text(statement.span);
-        (target == counter).then(|| format!("{} adds nothing: #{step} is {stands}", written.trim()))
+        (target == counter).then(|| format!("{} adds nothing: #{step} is {value}", written.trim()))
     })
 }
 

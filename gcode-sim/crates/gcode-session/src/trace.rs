@@ -178,14 +178,14 @@ mod tests {
     }
 
     #[test]
-    fn blocks_are_counted_and_those_jumped_over_are_not() {
+    fn executed_blocks_are_counted_and_skipped_ones_are_absent() {
         let text = "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#1=#1+1\nEND1\nGOTO9\n#2=1\nN9 M30\n";
         // The loop's condition is evaluated a fourth time and is false.
         assert_eq!(times(text), [(2, 1), (3, 4), (4, 3), (5, 3), (6, 1), (8, 1)]);
     }
 
     #[test]
-    fn a_variable_in_a_loop_has_a_first_a_last_and_a_range() {
+    fn a_variable_in_a_loop_has_first_and_last_value_and_range() {
         let trace = trace("O1\n#1=3\nWHILE[#1 GT 0]DO1\n#1=#1-1\nEND1\nM30\n");
         let block = trace.blocks().nth(2).unwrap();
         let number = Value::Number;

@@ -87,8 +87,8 @@ impl Case {
             return Err(UsageError::new(format!("{both}: both are references; delete one")));
         }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
-        let wanted = reference.as_deref().map(options::read_nominal).transpose()?;
-        let surface = match &wanted {
+        let nominal = reference.as_deref().map(options::read_nominal).transpose()?;
+        let surface = match &nominal {
             Some(NominalPart::Holes(reference)) => {
                 request.conduct = reference.process_limits.clone();
                 reference.surface
@@ -99,7 +99,7 @@ impl Case {
         if revision.is_cut_off() {
             return Err(cut_off(&revision));
         }
-        let against = match &wanted {
+        let against = match &nominal {
             None => None,
             Some(NominalPart::Holes(reference)) => {
                 let tolerances = Tolerances::of(reference, None);
@@ -116,9 +116,9 @@ impl Case {
         let (answer, changes) = match there(ACCEPTED) {
             None => (CaseAnswer::New, Vec::new()),
             Some(path) => {
-                let unusable = |error| UsageError::new(format!("{}: {error}", path.display()));
                 let accepted = Record::from_json(&input::text(&path)?).map_err(|error| {
-                    unusable(format!("{error}; delete it, run with --accept, and review what was accepted"))
+                    let remedy = "delete it, run with --accept, and review what was accepted";
+                    UsageError::new(format!("{}: {error}; {remedy}", path.display()))
                 })?;
                 not_compared = accepted.unrecorded_aspects().into_iter().map(str::to_owned).collect();
                 let found = changes(&accepted, &revision.record.reduced_to(&accepted), tolerance);

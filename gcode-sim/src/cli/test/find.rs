@@ -20,14 +20,11 @@ pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, UsageError> {
     }
     let mut found = search.found;
     found.sort_by(|(a, one), (b, other)| (a, &one.name).cmp(&(b, &other.name)));
-    let mut cases: Vec<Case> = Vec::with_capacity(found.len());
-    for (root, mut case) in found {
-        if roots.len() > 1 {
-            case.name = format!("{}/{}", roots[root].display(), case.name);
-        }
-        cases.push(case);
-    }
-    Ok(cases)
+    let named = |(root, case): (usize, Case)| match roots {
+        [_] => case,
+        _ => Case { name: format!("{}/{}", roots[root].display(), case.name), ..case },
+    };
+    Ok(found.into_iter().map(named).collect())
 }
 
 /// A folder to be searched.
@@ -52,37 +49,32 @@ impl Search {
     /// Searches a folder and everything below it except links.
     fn look(&mut self, from: CaseFolder) -> Result<(), UsageError> {
         let mut places = vec![from];
-        while let Some(place) = places.pop() {
-            if self.seen.insert(input::canonical(&place.folder)?) {
-                self.folder(place, &mut places)?;
+        while let Some(CaseFolder { root, folder, name, in_library }) = places.pop() {
+            if !self.seen.insert(input::canonical(&folder)?) {
+                continue;
             }
-        }
-        Ok(())
-    }
-
-    fn folder(&mut self, place: CaseFolder, places: &mut Vec<CaseFolder>) -> Result<(), UsageError> {
-        let CaseFolder { root, folder, name, in_library } = place;
-        let entries = input::folder(&folder)?;
-        let has_accepted = entries.iter().any(|path| path.file_name().is_some_and(|name| name == ACCEPTED));
-        let programs: Vec<PathBuf> =
-            entries.iter().filter(|path| is_program(path) && !path.is_dir()).cloned().collect();
-        let is_case = has_accepted || !programs.is_empty() && !in_library;
-        for path in entries {
-            let own = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let below = if name.is_empty() { own.clone() } else { format!("{name}/{own}") };
-            if path.is_dir() {
-                let in_library = in_library || is_case && own == LIBRARY;
-                let place = CaseFolder { root, folder: path.clone(), name: below, in_library };
-                let list = if path.is_symlink() { &mut self.links } else { &mut *places };
-                list.push(place);
-            } else if path.is_symlink() && !path.exists() && !own.starts_with('.') && !is_program(&path) {
-                // The link may have been a folder of cases.
-                self.found.push((root, Case { name: below, folder: path, programs: Vec::new() }));
+            let entries = input::folder(&folder)?;
+            let has_accepted =
+                entries.iter().any(|path| path.file_name().is_some_and(|name| name == ACCEPTED));
+            let programs: Vec<PathBuf> =
+                entries.iter().filter(|path| is_program(path) && !path.is_dir()).cloned().collect();
+            let is_case = has_accepted || !programs.is_empty() && !in_library;
+            for path in entries {
+                let own = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let below = if name.is_empty() { own.clone() } else { format!("{name}/{own}") };
+                if path.is_dir() {
+                    let list = if path.is_symlink() { &mut self.links } else { &mut places };
+                    let in_library = in_library || is_case && own == LIBRARY;
+                    list.push(CaseFolder { root, folder: path, name: below, in_library });
+                } else if path.is_symlink() && !path.exists() && !own.starts_with('.') && !is_program(&path) {
+                    // The link may have been a folder of cases.
+                    self.found.push((root, Case { name: below, folder: path, programs: Vec::new() }));
+                }
             }
-        }
-        if is_case {
-            let name = if name.is_empty() { ".".to_owned() } else { name };
-            self.found.push((root, Case { name, folder, programs }));
+            if is_case {
+                let name = if name.is_empty() { ".".to_owned() } else { name };
+                self.found.push((root, Case { name, folder, programs }));
+            }
         }
         Ok(())
     }

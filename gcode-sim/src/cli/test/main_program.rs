@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn where_several_could_be_meant_nothing_is_run() {
+    fn an_ambiguous_main_program_is_refused() {
         let hole = ("O9002.nc", "O9002\nM99\n");
         assert_eq!(
             chosen(&[("O1.nc", "O1\nM98 P#1\nM30\n"), hole]),

@@ -29,42 +29,42 @@ const MOST_CHANGES: usize = 500;
 
 /// One program with the results of its run.
 #[derive(Clone, Copy, Debug)]
-pub struct ObservedProgram<'a> {
-    pub request: &'a Request,
-    pub revision: &'a Revision,
-    pub trace: &'a Trace,
+pub(crate) struct ObservedProgram<'a> {
+    pub(crate) request: &'a Request,
+    pub(crate) revision: &'a Revision,
+    pub(crate) trace: &'a Trace,
     /// Verdict; `None` without a reference.
-    pub verdict: Option<&'a Verdict>,
+    pub(crate) verdict: Option<&'a Verdict>,
 }
 
 /// An input file besides the programs.
 #[derive(Clone, Debug)]
-pub struct Document {
+pub(crate) struct Document {
     /// Kind of file, such as `machine file`.
-    pub role: &'static str,
-    pub name: String,
-    pub bytes: Vec<u8>,
+    pub(crate) role: &'static str,
+    pub(crate) name: String,
+    pub(crate) bytes: Vec<u8>,
 }
 
 /// The comparison of two revisions, and its tolerance, mm or degrees.
 #[derive(Clone, Copy, Debug)]
-pub struct Difference<'a> {
-    pub compared: &'a RevisionDiff,
-    pub unexecuted: &'a [UnexecutedChange],
-    pub tolerance: f64,
+pub(crate) struct Difference<'a> {
+    pub(crate) compared: &'a RevisionDiff,
+    pub(crate) unexecuted: &'a [UnexecutedChange],
+    pub(crate) tolerance: f64,
 }
 
 /// Contents of a page.
 #[derive(Clone, Copy, Debug)]
-pub struct Page<'a> {
+pub(crate) struct Page<'a> {
     /// The old revision, if two are compared.
-    pub old: Option<(ObservedProgram<'a>, Difference<'a>)>,
-    pub new: ObservedProgram<'a>,
-    pub machine: &'a Machine,
-    pub reference: Option<&'a Reference>,
+    pub(crate) old: Option<(ObservedProgram<'a>, Difference<'a>)>,
+    pub(crate) new: ObservedProgram<'a>,
+    pub(crate) machine: &'a Machine,
+    pub(crate) reference: Option<&'a Reference>,
     /// Flags that the run depends on, as given.
-    pub conditions: &'a [String],
-    pub documents: &'a [Document],
+    pub(crate) conditions: &'a [String],
+    pub(crate) documents: &'a [Document],
 }
 
 /// One side of the page.
@@ -81,7 +81,7 @@ impl Page<'_> {
     ///
     /// # Errors
     /// The error of serde_json if the data cannot be written as JSON.
-    pub fn html(&self) -> Result<String, serde_json::Error> {
+    pub(crate) fn html(&self) -> Result<String, serde_json::Error> {
         let mut lines: Vec<Lines> = Vec::new();
         for (word, seen) in self.observed_programs() {
             lines.push(Lines::new(word, &seen.revision.simulation.run));
