@@ -293,8 +293,8 @@ fn step_distance(a: &Step, b: &Step) -> Option<f64> {
     if a.kind.change() != b.kind.change() {
         return None;
     }
-    let way = difference(&a.to, &b.to);
-    let distance = (0..MAX_AXES).map(|axis| way[axis].abs()).sum::<f64>();
+    let shift = difference(&a.to, &b.to);
+    let distance = (0..MAX_AXES).map(|axis| shift[axis].abs()).sum::<f64>();
     let other_kind = std::mem::discriminant(&a.kind) != std::mem::discriminant(&b.kind);
     Some(distance + if other_kind { 1e3 } else { 0.0 })
 }

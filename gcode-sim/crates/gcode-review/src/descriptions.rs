@@ -33,10 +33,10 @@ pub(super) fn describe(kind: &StepKind, axes: &Axes) -> String {
 
 /// Formats the end point of the axes that a move moves, in machine coordinates.
 pub(super) fn point(step: &Step, axes: &Axes) -> String {
-    let way = difference(&step.to, &step.from);
+    let displacement = difference(&step.to, &step.from);
     let moving: Vec<String> = axes
         .iter()
-        .filter(|(axis, _)| way[*axis] != 0.0)
+        .filter(|(axis, _)| displacement[*axis] != 0.0)
         .map(|(axis, letter)| format!("{letter}{:.4}", step.at[axis]))
         .collect();
     if moving.is_empty() { "its start point".to_owned() } else { moving.join(" ") }

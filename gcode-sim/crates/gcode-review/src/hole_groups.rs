@@ -118,20 +118,20 @@ fn text(holes: &[ChangedHole], is_alike: bool, axes: &Axes, tolerance: f64) -> S
     let differences = || holes.iter().map(|one| &one.difference);
     let mut parts = Vec::new();
     let moved = holes.iter().filter_map(|one| Some((one.hole, one.difference.moved?)));
-    if let Some((hole, way)) = moved.max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm())) {
+    if let Some((hole, shift)) = moved.max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm())) {
         let first = &holes[0].shift;
         parts.push(if is_alike {
-            format!("moved by {}", shown(&way))
+            format!("moved by {}", shown(&shift))
         } else if holes.iter().all(|one| near(&one.shift, first, tolerance)) {
             let by = coordinates(first, axes, tolerance, true);
             format!(
                 "moved by {by} of the machine, up to {:.4} mm (hole {}: {})",
-                way.norm(),
+                shift.norm(),
                 hole + 1,
-                shown(&way)
+                shown(&shift)
             )
         } else {
-            format!("moved by up to {:.4} mm (hole {}: {})", way.norm(), hole + 1, shown(&way))
+            format!("moved by up to {:.4} mm (hole {}: {})", shift.norm(), hole + 1, shown(&shift))
         });
     }
     let tilted = differences().filter_map(|one| one.tilted).max_by(f64::total_cmp);
@@ -151,8 +151,8 @@ fn text(holes: &[ChangedHole], is_alike: bool, axes: &Axes, tolerance: f64) -> S
     parts.join(", ")
 }
 
-fn shown(way: &Vector3<f64>) -> String {
-    let [x, y, z] = [way.x, way.y, way.z].map(plain);
+fn shown(shift: &Vector3<f64>) -> String {
+    let [x, y, z] = [shift.x, shift.y, shift.z].map(plain);
     format!("{x:+.4} {y:+.4} {z:+.4} mm")
 }
 

@@ -10,7 +10,7 @@ use gcode_control::{Modal, modal_code};
 /// Returns one effect for each block with such commands.
 pub(super) fn compare(alignment: &Alignment<'_>) -> Vec<Effect> {
     let [old, new] = alignment.records;
-    let (Some(was), Some(is)) = (&old.begun, &new.begun) else { return Vec::new() };
+    let (Some(was), Some(is)) = (&old.first_commands, &new.first_commands) else { return Vec::new() };
     let moves = moves_of_both(alignment);
     let missing = was.iter().filter(|command| is_power_on_default(command)).filter_map(|command| {
         let later = is.iter().find(|other| (other.what, &other.name) == (command.what, &command.name));

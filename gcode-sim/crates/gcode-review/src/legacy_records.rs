@@ -44,7 +44,7 @@ fn reworded(message: &str, was: &str, is: &str) -> Option<String> {
 impl Record {
     /// Returns true for a record of an earlier version, which lacks the first commands.
     pub fn is_legacy(&self) -> bool {
-        self.begun.is_none()
+        self.first_commands.is_none()
     }
 
     /// Names what a record of an earlier version lacks; it may lack it because the run had none of it.
@@ -70,7 +70,7 @@ impl Record {
         if !accepted.is_legacy() {
             return record;
         }
-        record.begun = None;
+        record.first_commands = None;
         if accepted.program.is_none() {
             record.program = None;
         }
@@ -116,7 +116,7 @@ mod tests {
     use super::present_words;
 
     #[test]
-    fn an_alarm_that_was_worded_otherwise_is_the_same_alarm() {
+    fn an_alarm_with_a_former_message_has_its_present_one() {
         for (was, is) in [
             ("alarm PS1124 the drilling axis can't be told", "alarm PS1124 the drilling axis is ambiguous"),
             ("alarm PS0119 SQRT can't take -4", "alarm PS0119 SQRT is not defined for -4"),

@@ -104,8 +104,8 @@ impl PassPair<'_> {
     }
 
     /// Splits a displacement into its parts along and across the feed.
-    fn parts(self, way: &Position) -> (f64, f64) {
-        parts(way, self.before)
+    fn parts(self, displacement: &Position) -> (f64, f64) {
+        parts(displacement, self.before)
     }
 }
 
@@ -138,9 +138,9 @@ fn tip(record: &Record, hole: usize, step: usize) -> Option<Point3<f64>> {
 }
 
 /// Splits a displacement into its parts along and across a feed.
-fn parts(way: &Position, feed: &Step) -> (f64, f64) {
-    let along = dot(way, &feed.way()) / feed.length().max(f64::MIN_POSITIVE);
-    (along, (dot(way, way) - along * along).max(0.0).sqrt())
+fn parts(displacement: &Position, feed: &Step) -> (f64, f64) {
+    let along = dot(displacement, &feed.displacement()) / feed.length().max(f64::MIN_POSITIVE);
+    (along, (dot(displacement, displacement) - along * along).max(0.0).sqrt())
 }
 
 /// Formats a pass that changed in one or more holes, with the numbers of the first if all of them are equal, else

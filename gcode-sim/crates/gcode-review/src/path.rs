@@ -55,13 +55,14 @@ impl Record {
                     StepKind::Arc(arc, _) => Some(arc),
                     _ => None,
                 };
-                let way = way(machine, &setup, &from, &to, arc);
-                if legs.len() == moves || left < way.len() {
+                let points_of_move = move_points(machine, &setup, &from, &to, arc);
+                if legs.len() == moves || left < points_of_move.len() {
                     break;
                 }
-                left -= way.len();
-                let back = legs.last().is_some_and(|leg| leg.is_of_hole && is_back(&leg.points, &way));
-                legs.push(leg(index, step, of_holes.contains(&index) || back, way));
+                left -= points_of_move.len();
+                let back =
+                    legs.last().is_some_and(|leg| leg.is_of_hole && is_back(&leg.points, &points_of_move));
+                legs.push(leg(index, step, of_holes.contains(&index) || back, points_of_move));
             }
             from = to;
         }
@@ -75,8 +76,8 @@ fn leg(index: usize, step: &Step, is_of_hole: bool, points: Vec<Point3<f64>>) ->
 }
 
 /// Returns true if a path ends where the path before starts.
-fn is_back(before: &[Point3<f64>], way: &[Point3<f64>]) -> bool {
-    before.first().zip(way.last()).is_some_and(|(begin, end)| (begin - end).norm() < 1e-6)
+fn is_back(before: &[Point3<f64>], now: &[Point3<f64>]) -> bool {
+    before.first().zip(now.last()).is_some_and(|(begin, end)| (begin - end).norm() < 1e-6)
 }
 
 /// Applies a command that changes the position of the tool: tool, length, head angle.
@@ -93,7 +94,8 @@ fn set_up(setup: &mut Setup, kind: &StepKind) {
     }
 }
 
-fn way(
+/// Returns the points of a move on the part.
+fn move_points(
     machine: &Machine,
     setup: &Setup,
     from: &Position,
@@ -106,8 +108,8 @@ fn way(
         machine.for_each_pose(&travel, setup, CHORD, |pose| points.push(pose.tip));
         return points;
     };
-    let turning = (0..MAX_AXES).filter(|axis| machine.axes.is_rotary(*axis));
-    let turned: f64 = turning.map(|axis| (to[axis] - from[axis]).abs()).sum();
+    let rotary = (0..MAX_AXES).filter(|axis| machine.axes.is_rotary(*axis));
+    let turned: f64 = rotary.map(|axis| (to[axis] - from[axis]).abs()).sum();
     let sweep = arc.map_or(0.0, |arc| arc.sweep.0.abs());
     // A chord of 3° is 1.4 µm off a circle of 4 mm, a burr's.
     let chords = ((turned + sweep) / 3.0).ceil().clamp(1.0, 1000.0) as u32;

@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_written_anew_are_one_gap_each() {
+    fn each_rewritten_block_is_one_gap() {
         assert_eq!(found("G0\nX1.\nY1.\nM30", "N5 G0\nX2.\nY2. (HERE)\nM30"), [[1..2, 1..2], [2..3, 2..3]]);
         assert_eq!(found("G0\nX1.\nM30", "G0\nX1. Y1.\nX2.\nM30"), [[1..2, 1..3]]);
         assert_eq!(found("G0\nM30", "G0\nM0\nM30"), [[1..1, 1..2]]);
@@ -237,11 +237,11 @@ mod tests {
     }
 
     #[test]
-    fn a_call_written_otherwise_is_the_cause_of_all_in_it() {
+    fn a_call_with_other_arguments_is_the_cause_of_its_differences() {
         let old = at(9, "G1 X#1", &[(5, "G65 P2 A1."), (3, "N10 G65 P1 A1. (FIRST)")]);
         let new = at(9, "G1 X#1", &[(5, "G65 P2 A1."), (4, "N20 G65P1 A1.01")]);
         assert_eq!(cause(&old, &new), (old.calls[1].clone(), new.calls[1].clone()));
-        // Another number, another remark: the same call.
+        // Another sequence number and another comment: the same call.
         let same = at(9, "G1 X#2", &[(5, "G65 P2 A1."), (4, "N20 G65P1 A1.")]);
         assert_eq!(cause(&old, &same), (old.clone(), same.clone()));
     }

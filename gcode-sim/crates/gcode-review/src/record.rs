@@ -37,7 +37,7 @@ pub struct Record {
     /// Modal conditions by their numbers, [`Step::condition`].
     pub(super) conditions: Vec<ModalConditions>,
     /// First commands of the program; `None` in accepted results that do not have them.
-    pub(super) begun: Option<Vec<FirstCommand>>,
+    pub(super) first_commands: Option<Vec<FirstCommand>>,
     /// Name of the main program as a control shows it.
     pub(super) program: Option<String>,
     pub(super) ending: EndState,
@@ -191,14 +191,14 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
     let ending = ending(run, &recorder);
-    let Recorder { mut steps, places, mut conditions, begun, executed, .. } = recorder;
-    let mut begun: Vec<FirstCommand> = begun.into_values().collect();
+    let Recorder { mut steps, places, mut conditions, first_commands, executed, .. } = recorder;
+    let mut first_commands: Vec<FirstCommand> = first_commands.into_values().collect();
     if conditions.is_empty() {
         conditions.push(ModalConditions::default());
     }
     let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
     let named = words.filter_map(|word| word.place.as_mut());
-    let named = named.chain(begun.iter_mut().map(|begun| &mut begun.place));
+    let named = named.chain(first_commands.iter_mut().map(|command| &mut command.place));
     let of_steps = steps.iter_mut().flat_map(|step| std::iter::once(&mut step.place).chain(&mut step.set_by));
     let places = resolve(run, &places, of_steps.chain(named));
     Record {
@@ -212,7 +212,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
         ending,
         sources: Some(run.control.memory().sources().clone()),
         executed,
-        begun: Some(begun),
+        first_commands: Some(first_commands),
         program: run.control.memory().programs().first().map(Program::label),
         conditions,
         steps,
@@ -277,9 +277,9 @@ impl Record {
         let is_cut = |feeds: &Vec<usize>| feeds.iter().any(|step| *step >= steps);
         first.unfinished = (0..self.feeds.len()).filter(|hole| is_cut(&self.feeds[*hole])).collect();
         first.feeds.iter_mut().for_each(|feeds| feeds.retain(|step| *step < steps));
-        let begun = first.feeds.iter().rposition(|feeds| !feeds.is_empty()).map_or(0, |last| last + 1);
-        first.feeds.truncate(begun);
-        first.holes.truncate(begun);
+        let count = first.feeds.iter().rposition(|feeds| !feeds.is_empty()).map_or(0, |last| last + 1);
+        first.feeds.truncate(count);
+        first.holes.truncate(count);
         Cow::Owned(first)
     }
 

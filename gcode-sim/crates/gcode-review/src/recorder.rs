@@ -41,7 +41,7 @@ pub(super) struct Recorder {
     /// Last block that wrote each mode, common variable, offset, parameter, output and counter, by name.
     pub written: BTreeMap<String, Backtrace>,
     /// First command of each mode, axis and offset.
-    pub begun: BTreeMap<(CommandKind, String), FirstCommand>,
+    pub first_commands: BTreeMap<(CommandKind, String), FirstCommand>,
     /// Executed blocks, by source and offset.
     pub executed: ExecutedBlocks,
     moves: usize,
@@ -121,10 +121,10 @@ impl Recorder {
         let axes = axes.into_iter().map(|letter| (CommandKind::Axis, letter.to_string(), letter.to_string()));
         let offsets = offsets.into_iter().map(|name| (CommandKind::Offset, name.clone(), name));
         for (what, name, text) in modes.chain(axes).chain(offsets) {
-            if !self.begun.contains_key(&(what, name.clone())) {
+            if !self.first_commands.contains_key(&(what, name.clone())) {
                 let place = self.place(place.clone());
-                let begun = FirstCommand { what, name: name.clone(), text, moves: self.moves, place };
-                self.begun.insert((what, name), begun);
+                let first = FirstCommand { what, name: name.clone(), text, moves: self.moves, place };
+                self.first_commands.insert((what, name), first);
             }
         }
     }

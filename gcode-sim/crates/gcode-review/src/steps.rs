@@ -171,12 +171,12 @@ impl Step {
 
     /// Returns true for two moves of the same direction and length.
     pub(super) fn is_parallel(&self, other: &Self, tolerance: f64) -> bool {
-        self.is_move() && other.is_move() && near(&self.way(), &other.way(), tolerance)
+        self.is_move() && other.is_move() && near(&self.displacement(), &other.displacement(), tolerance)
     }
 
     /// Returns true if the step ends on the line of `feed`.
     pub(super) fn is_on_line_of(&self, feed: &Self) -> bool {
-        let (along, aside) = (feed.way(), difference(&self.to, &feed.to));
+        let (along, aside) = (feed.displacement(), difference(&self.to, &feed.to));
         let part = dot(&aside, &along) / dot(&along, &along).max(f64::MIN_POSITIVE);
         // Rounded end points are this far off an oblique line.
         (0..MAX_AXES).all(|axis| (aside[axis] - part * along[axis]).abs() <= 0.002)
@@ -188,13 +188,13 @@ impl Step {
     }
 
     /// Returns the displacement from start to end.
-    pub(super) fn way(&self) -> Position {
+    pub(super) fn displacement(&self) -> Position {
         difference(&self.to, &self.from)
     }
 
     /// Returns the straight distance from start to end, mm and degrees as equal numbers.
     pub(super) fn length(&self) -> f64 {
-        norm(&self.way())
+        norm(&self.displacement())
     }
 }
 
@@ -220,15 +220,11 @@ pub(super) fn is_same_arc(a: &PlanarArc, b: &PlanarArc, tolerance: f64) -> bool 
 
 /// Returns `to` less `from`, axis by axis.
 pub(super) fn difference(to: &Position, from: &Position) -> Position {
-    let mut way = Position::default();
-    for axis in 0..MAX_AXES {
-        way[axis] = to[axis] - from[axis];
-    }
-    way
+    Position(std::array::from_fn(|axis| to[axis] - from[axis]))
 }
 
-fn norm(way: &Position) -> f64 {
-    dot(way, way).sqrt()
+fn norm(displacement: &Position) -> f64 {
+    dot(displacement, displacement).sqrt()
 }
 
 /// Returns the scalar product, mm and degrees as equal numbers.

@@ -166,7 +166,7 @@ impl Record {
         }
         let _ = writeln!(text, "\"totals\": {},\n\"ending\": {},", json(&self.totals)?, json(&self.ending)?);
         let _ = writeln!(text, "\"places\": {},", lines(&self.places)?);
-        if let Some(begun) = &self.begun {
+        if let Some(begun) = &self.first_commands {
             let _ = writeln!(text, "\"begun\": {},", lines(begun)?);
         }
         let _ = writeln!(text, "\"steps\": {},", lines(&steps)?);
@@ -219,27 +219,24 @@ impl Record {
             holes.push(hole.found(holes.len())?);
             feeds.push(hole.steps);
         }
-        let mut begun = file.begun.iter().flatten();
-        if let Some(begun) = begun.find(|begun| file.places.len() <= begun.place) {
-            return Err(StoreError(format!(
-                "{} names block {}, which does not exist",
-                begun.text, begun.place
-            )));
+        let mut commands = file.begun.iter().flatten();
+        if let Some(FirstCommand { text, place, .. }) =
+            commands.find(|command| file.places.len() <= command.place)
+        {
+            return Err(StoreError(format!("{text} names block {place}, which does not exist")));
         }
         let (places, mut ending, totals) = (file.places, file.ending, file.totals);
         ending.words = present_words(&ending.words);
-        let unfinished = BTreeSet::new();
-        let (begun, program) = (file.begun, file.program);
         Ok(Self {
             axes,
             steps,
             holes,
             feeds,
-            unfinished,
+            unfinished: BTreeSet::new(),
             places,
             conditions,
-            begun,
-            program,
+            first_commands: file.begun,
+            program: file.program,
             ending,
             sources: None,
             executed: BTreeMap::new(),

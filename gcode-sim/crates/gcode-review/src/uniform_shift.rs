@@ -40,16 +40,16 @@ fn moves(record: &Record) -> impl Iterator<Item = usize> {
 
 /// Returns true if every axis that is displaced has one displacement in all moves.
 fn is_uniform_shift<'a>(both: impl Iterator<Item = (&'a Step, &'a Step)>, tolerance: f64) -> bool {
-    let mut way = Position::default();
+    let mut common = Position::default();
     for (old, new) in both {
         let shift = difference(&new.to, &old.to);
         for axis in 0..MAX_AXES {
             if shift[axis].abs() <= tolerance {
                 continue;
             }
-            if way[axis] == 0.0 {
-                way[axis] = shift[axis];
-            } else if (way[axis] - shift[axis]).abs() > tolerance {
+            if common[axis] == 0.0 {
+                common[axis] = shift[axis];
+            } else if (common[axis] - shift[axis]).abs() > tolerance {
                 return false;
             }
         }
