@@ -4,7 +4,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::hole::Hole;
-use super::nominal::{ProcessLimits, Reference, ToolProcess};
+use super::reference::{ProcessLimits, Reference, ToolProcess};
 use super::surface::Surface;
 use crate::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 use crate::reader::FileError;

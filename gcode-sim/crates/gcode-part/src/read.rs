@@ -137,7 +137,8 @@ fn check(hole: &Hole, index: usize) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::nominal::{NominalPart, Reference};
+    use super::super::nominal::NominalPart;
+    use super::super::reference::Reference;
     use super::*;
 
     const HOLE: &str =

@@ -1,0 +1,89 @@
+//! Nominal holes with their tolerances, and the limits of the process.
+use super::hole::{Hole, HoleList, Unit};
+use super::pattern::Pattern;
+use super::read;
+use super::surface::Surface;
+use crate::job::{Clamp, Rotary};
+use crate::reader::FileError;
+
+/// Nominal holes with their tolerances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// Holes, each with an id.
+    pub holes: Vec<Hole>,
+    /// Diameter of the tolerance zone, mm; `None` if the reference does not specify it.
+    pub position: Option<f64>,
+    /// Tolerance of a depth, either way, mm; `None` if the reference does not specify it.
+    pub depth: Option<f64>,
+    /// Surface of the part; `None` for a hole list.
+    pub surface: Option<Surface>,
+    /// Limits of the process that the reference specifies.
+    pub process_limits: ProcessLimits,
+    /// Nominal relation of neighbouring holes; `None` for parts without a pattern.
+    pub pattern: Option<Pattern>,
+}
+
+impl Reference {
+    /// Returns the reference of a hole list. Holes without an id get `#` and their number.
+    ///
+    /// # Errors
+    /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
+    pub fn of_list(list: HoleList) -> Result<Self, FileError> {
+        Ok(Self {
+            holes: read::check_all(list.holes)?,
+            position: None,
+            depth: None,
+            surface: None,
+            process_limits: ProcessLimits::default(),
+            pattern: None,
+        })
+    }
+
+    /// Returns the hole list that `reference` writes.
+    pub fn list(&self) -> HoleList {
+        HoleList { unit: Unit::Mm, holes: self.holes.clone() }
+    }
+}
+
+/// Limits for a program's motion. An unspecified value is `None` and is not checked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProcessLimits {
+    /// Height above the surface at which the feed begins, mm.
+    pub clearance: Option<f64>,
+    /// The clearance if the job specifies it explicitly: no rapid ends nearer to the part.
+    pub approach: Option<f64>,
+    /// Least height above the surface while the rotary table rotates, mm.
+    pub retract: Option<f64>,
+    /// Rotary table of the job.
+    pub rotary: Option<Rotary>,
+    /// M codes that clamp and release the rotary table; they have no other effect.
+    pub clamp: Option<Clamp>,
+    /// Limits of each tool.
+    pub tools: Vec<ToolProcess>,
+}
+
+/// Limits of one tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolProcess {
+    /// Number of the tool.
+    pub number: u32,
+    /// Number of the tool's length offset, H.
+    pub offset: Option<u32>,
+    /// Spindle speed, r/min.
+    pub speed: Option<f64>,
+    /// Feed into the part, mm/min.
+    pub feed: Option<f64>,
+    /// Largest depth of cut before a retract, mm.
+    pub peck: Option<f64>,
+}
+
+impl ProcessLimits {
+    /// Returns the limits of a tool. If the program selects none, a single tool is taken to be in the
+    /// spindle.
+    pub fn tool_process(&self, tool: Option<u32>) -> Option<&ToolProcess> {
+        match tool {
+            Some(number) => self.tools.iter().find(|duty| duty.number == number),
+            None => self.tools.first().filter(|_| self.tools.len() == 1),
+        }
+    }
+}
