@@ -244,8 +244,8 @@ fn what_a_program_says_is_text_and_nothing_else() {
     assert_eq!(line, "O1(</script><img src=x onerror=\"document.title='broken'\">)");
     let line = browser.run("return document.querySelector('#old-0-5 code').textContent");
     assert_eq!(line, "G0 X1.(&lt;)");
-    let told = browser.run("return document.getElementById('told').textContent");
-    assert!(told.as_str().unwrap().contains("<!--<script>"), "{told}");
+    let messages = browser.run("return document.getElementById('messages').textContent");
+    assert!(messages.as_str().unwrap().contains("<!--<script>"), "{messages}");
     is_quiet(&browser);
 }
 
@@ -267,7 +267,7 @@ fn a_lost_stop_is_marked_where_it_was() {
     ];
     assert_eq!(marks, json!(wanted));
     let listed = browser.run(
-        "return [...document.querySelectorAll('#told .stops li')].map((stop) => \
+        "return [...document.querySelectorAll('#messages .stops li')].map((stop) => \
          `${stop.querySelector('code').textContent} ${stop.querySelector('.mark').textContent}`)",
     );
     let wanted = [
@@ -286,7 +286,7 @@ fn a_lost_stop_is_marked_where_it_was() {
     let high =
         browser.run("return document.querySelector('#old-0-4 .mark').getBoundingClientRect().height > 0");
     assert_eq!(high, true);
-    browser.click("#told .stops li .place a");
+    browser.click("#messages .stops li .place a");
     lands(&browser, "old-0-4 M00");
     is_quiet(&browser);
 }
@@ -347,7 +347,7 @@ fn what_is_worst_and_what_nobody_executed_stands_first() {
     let browser = Browser::start(1200, 900);
     browser.open(&page);
     let found = browser.run(
-        "return [...document.querySelectorAll('#told .sides > div')].map((side) => \
+        "return [...document.querySelectorAll('#messages .sides > div')].map((side) => \
          [...side.querySelectorAll('.findings > li')].map((finding) => \
          `${finding.className} ${finding.querySelector('code').textContent} ${finding.querySelectorAll('a').length}`))",
     );
@@ -365,7 +365,7 @@ fn what_is_worst_and_what_nobody_executed_stands_first() {
     assert_eq!(warnings(&sides[0]), warnings(&sides[1]));
     assert_eq!(warnings(&sides[0]).len(), 1, "{found}");
     let marks = browser.run(
-        "return [...document.querySelectorAll('#told .findings .mark')].map((mark) => mark.textContent)",
+        "return [...document.querySelectorAll('#messages .findings .mark')].map((mark) => mark.textContent)",
     );
     assert_eq!(marks, json!(["not in the old program"]));
 
@@ -401,7 +401,7 @@ fn a_program_that_stops_shows_where_and_why() {
     let browser = Browser::start(1200, 900);
     browser.open(&page);
     // From the alarm to its line; nothing is there to be drawn on the new side.
-    browser.click("#told .alarm .place a");
+    browser.click("#messages .alarm .place a");
     lands(&browser, "new-0-3 G0 X[#1/0]");
     let halves = browser.run(
         "return ['old-0-3', 'new-0-3', 'old-0-4', 'new-0-4'].map((id) => document.getElementById(id).classList.contains('done'))",

@@ -114,7 +114,7 @@ impl Page<'_> {
                     (path::viewer(&sides, &data))
                     (listing::listing(self, &sides))
                 }))
-                (section("told", "Stops, alarms and findings", messages::messages(self, &sides)))
+                (section("messages", "Stops, alarms and findings", messages::messages(self, &sides)))
                 (section("proof", "Basis of the results", proof::proof(self, &sides)))
                 (section("signatures", "Signatures", proof::signatures()))
             }
@@ -140,7 +140,7 @@ impl Page<'_> {
         let others = [
             ("holes", "Holes"),
             ("path", "Path and program"),
-            ("told", "Stops and alarms"),
+            ("messages", "Stops and alarms"),
             ("proof", "SHA-256"),
             ("signatures", "Signatures"),
         ];
