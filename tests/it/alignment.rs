@@ -141,7 +141,7 @@ fn the_five_holes_are_in_tolerance_after_the_correction_alone() {
         assert_eq!(after.holes.len(), 5);
         assert!(after.worst.unwrap() < 0.05, "{found:?}: {:?}", after.worst);
         for (row, after) in rows.iter_mut().zip(&after.holes) {
-            // A hole that is far off is none of the wanted ones.
+            // A hole that is far off matches no nominal one.
             for verdict in [&before, &run_out] {
                 let hole = verdict.holes.iter().find(|hole| hole.id == after.id);
                 let phi =

@@ -109,7 +109,7 @@ fn of(state: &[(u32, f64)], number: u32) -> Option<f64> {
 #[test]
 fn reset_in_o8230_uses_no_tilt_twice() {
     let bench = Bench::example("alignment", &[]);
-    for (stands, wanted, new) in [(None, 38.4, 38.400_162), (Some(40.0), 39.9, 39.900_028)] {
+    for (stands, expected, new) in [(None, 38.4, 38.400_162), (Some(40.0), 39.9, 39.900_028)] {
         let mut set = vec![(583, 0.1), (585, 0.001)];
         set.extend(stands.map(|angle| (596, angle)));
         let mut states = States::default();
@@ -119,7 +119,7 @@ fn reset_in_o8230_uses_no_tilt_twice() {
             let next = bench.run(8230, &Placement::default(), state);
             match alarm(&next) {
                 // As if nothing had been.
-                None => assert!((value(&next, 586) - wanted).abs() < 1e-9, "{state:?}"),
+                None => assert!((value(&next, 586) - expected).abs() < 1e-9, "{state:?}"),
                 // The tilt is used up, and the table's angle is the new one.
                 Some(3165) => assert!((of(state, 596).unwrap() - new).abs() < 2e-6, "{state:?}"),
                 // The angle is unknown.
@@ -171,7 +171,7 @@ fn reset_in_o8200_leaves_no_points_that_are_used_in_part_or_twice() {
         let mut states = States::default();
         let whole = bench.run_observed(8200, &high, &set, &mut (), &mut states);
         assert_eq!(alarm(&whole), None);
-        let wanted = value(&whole, 574);
+        let expected = value(&whole, 574);
         let mut met = BTreeSet::new();
         for state in &states.0 {
             let next = bench.run(8200, &high, state);
@@ -180,8 +180,8 @@ fn reset_in_o8200_leaves_no_points_that_are_used_in_part_or_twice() {
                 None => {
                     // Marks that were typed in show 0 here, points that are touched anew 0.2.
                     let touched = next.control.moves() > 0;
-                    let wanted = if touched { 0.2 } else { wanted };
-                    assert!((value(&next, 574) - wanted).abs() < 0.0006, "{state:?}");
+                    let expected = if touched { 0.2 } else { expected };
+                    assert!((value(&next, 574) - expected).abs() < 0.0006, "{state:?}");
                     assert!(touched || state.iter().filter(|(n, _)| (501..=560).contains(n)).count() == 60);
                 }
                 Some(number) => {

@@ -99,13 +99,13 @@ fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
         .map_or_else(Machine::default, |text| Machine::parse(text).unwrap());
     // A finding on the reference itself has a second one without it.
     let job = jobs.get(number).or(jobs.first()).copied();
-    let wanted =
+    let nominal =
         page.fenced("csv").into_iter().chain(job).next().map(|text| NominalPart::parse(text).unwrap());
     let mut request = Request::new("example.nc", program.as_bytes(), machine.clone());
-    if let Some(NominalPart::Flutes(flutes)) = &wanted {
+    if let Some(NominalPart::Flutes(flutes)) = &nominal {
         return grind(&request, &mut NoLibrary, flutes).unwrap().verify().diagnostics;
     }
-    let reference = wanted.and_then(NominalPart::into_holes);
+    let reference = nominal.and_then(NominalPart::into_holes);
     // Of a job on these pages only the surface counts, or the pattern.
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     if let (Some(surface), Some(probe)) = (surface, &machine.probe) {

@@ -17,8 +17,8 @@ fn sites(grinding: &GrindingRun, code: &str) -> Vec<PartPoint> {
 
 fn run(program: &str, machine: &str, reference: &str) -> GrindingRun {
     let machine = Machine::parse(machine).unwrap();
-    let NominalPart::Flutes(wanted) = NominalPart::parse(reference).unwrap() else { panic!("a burr") };
-    grind(&Request::new("case.nc", program.as_bytes(), machine), &mut NoLibrary, &wanted).unwrap()
+    let NominalPart::Flutes(nominal) = NominalPart::parse(reference).unwrap() else { panic!("a burr") };
+    grind(&Request::new("case.nc", program.as_bytes(), machine), &mut NoLibrary, &nominal).unwrap()
 }
 
 /// Program, machine and reference of a case of kind `verify`.

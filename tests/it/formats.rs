@@ -94,14 +94,14 @@ fn every_answer_has_its_formats_in_the_same_words() {
             .collect();
         let mut names: Vec<&str> = values.iter().map(|(name, _)| *name).collect();
         for (name, words) in &values {
-            let wanted = WORDS.iter().find(|(known, _)| known == name).map_or("", |(_, words)| words);
-            assert_eq!(*words, wanted, "{command} --format {name}");
+            let expected = WORDS.iter().find(|(known, _)| known == name).map_or("", |(_, words)| words);
+            assert_eq!(*words, expected, "{command} --format {name}");
         }
         assert!(lines.contains(&format!("[default: {}]", formats[0]).as_str()), "{command}: {lines:?}");
-        let mut wanted = formats.to_vec();
+        let mut expected = formats.to_vec();
         names.sort_unstable();
-        wanted.sort_unstable();
-        assert_eq!(names, wanted, "{command}");
+        expected.sort_unstable();
+        assert_eq!(names, expected, "{command}");
     }
 }
 

@@ -43,21 +43,21 @@ fn column(browser: &Browser, number: u32) -> Vec<String> {
 }
 
 /// The block that the page stands at must become the one that begins so: a browser tells of a jump a moment later.
-fn lands(browser: &Browser, wanted: &str) {
+fn lands(browser: &Browser, expected: &str) {
     let at = || {
         browser.run(
             "const half = document.querySelector('.half.at'); \
              return half && `${half.id} ${half.querySelector('code').textContent}`",
         )
     };
-    let there = |place: &Value| place.as_str().is_some_and(|place| place.starts_with(wanted));
+    let there = |place: &Value| place.as_str().is_some_and(|place| place.starts_with(expected));
     for _ in 0..100 {
         if there(&at()) {
             return;
         }
         std::thread::sleep(std::time::Duration::from_millis(50));
     }
-    panic!("the page stands at {}, not at {wanted}; picked: {}", at(), picked(browser));
+    panic!("the page stands at {}, not at {expected}; picked: {}", at(), picked(browser));
 }
 
 fn picture(browser: &Browser, side: &str) -> String {
@@ -260,22 +260,22 @@ fn a_lost_stop_is_marked_where_it_was() {
         "return [...document.querySelectorAll('.half .mark')].map((mark) => \
          `${mark.closest('.half').id} ${mark.textContent}`)",
     );
-    let wanted = [
+    let expected = [
         "old-0-4 stop not executed here by the new program",
         "old-0-6 stop executed differently by the new program",
         "new-0-5 stop executed differently by the old program",
     ];
-    assert_eq!(marks, json!(wanted));
+    assert_eq!(marks, json!(expected));
     let listed = browser.run(
         "return [...document.querySelectorAll('#messages .stops li')].map((stop) => \
          `${stop.querySelector('code').textContent} ${stop.querySelector('.mark').textContent}`)",
     );
-    let wanted = [
+    let expected = [
         "M00 not executed here by the new program",
         "#3006 executed differently by the new program",
         "#3006 executed differently by the old program",
     ];
-    assert_eq!(listed, json!(wanted));
+    assert_eq!(listed, json!(expected));
 
     // A telephone shows one program's lines where both are alike, and this one's in any case.
     browser.command(
@@ -304,9 +304,9 @@ fn a_row_says_what_is_different_and_names_all_tools() {
     assert_eq!(column(&browser, 8), ["T1 T2 → T2", "T2"]);
 
     // Against a reference both holes are good; that one is made otherwise stands beside it.
-    let wanted = "id,x,y,z,i,j,k,depth,diameter\na,10,0,0,0,1,0,20,\nb,30,0,0,0,1,0,20,\n";
-    std::fs::write(place.path().join("wanted.csv"), wanted).unwrap();
-    browser.open(&page(place.path(), "diff OLD.nc NEW.nc --reference wanted.csv"));
+    let expected = "id,x,y,z,i,j,k,depth,diameter\na,10,0,0,0,1,0,20,\nb,30,0,0,0,1,0,20,\n";
+    std::fs::write(place.path().join("reference.csv"), expected).unwrap();
+    browser.open(&page(place.path(), "diff OLD.nc NEW.nc --reference reference.csv"));
     assert_eq!(column(&browser, 2), ["in tolerance, but: T2, was T1 T2", "in tolerance"]);
     let sign = browser
         .run("return getComputedStyle(document.querySelector('tr.altered .state'), '::before').content");

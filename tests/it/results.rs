@@ -106,10 +106,10 @@ fn findings_of_verify_and_changes_of_diff_are_sarif() {
     let drill = |y: &str| format!("O1\nS500 M3\nG81 X10. Y{y} Z-5. R2. F100\nG80\nM00\nM30\n");
     std::fs::write(place.path().join("old.nc"), drill("0.2")).unwrap();
     std::fs::write(place.path().join("new.nc"), drill("0.").replace("M00\n", "")).unwrap();
-    std::fs::write(place.path().join("wanted.csv"), "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n")
+    std::fs::write(place.path().join("reference.csv"), "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n")
         .unwrap();
     let expected: [(&str, &[Entry<'_>]); 3] = [
-        ("verify old.nc --reference wanted.csv", &[]),
+        ("verify old.nc --reference reference.csv", &[]),
         ("diff old.nc new.nc", &[("hole-moved", "new.nc", Some(3)), ("stop", "new.nc", Some(3))]),
         ("diff old.nc old.nc", &[]),
     ];
@@ -117,7 +117,7 @@ fn findings_of_verify_and_changes_of_diff_are_sarif() {
         let log = json(&format!("gcode-sim {command} --format sarif"), place.path());
         assert_eq!(entries(&log), expected, "{command}");
     }
-    let log = json("gcode-sim verify new.nc --reference wanted.csv --format sarif", place.path());
+    let log = json("gcode-sim verify new.nc --reference reference.csv --format sarif", place.path());
     assert!(entries(&log).contains(&("hole-position", "new.nc", Some(3))), "{log}");
 }
 
@@ -160,7 +160,7 @@ fn the_results_of_shards_merge_to_those_of_one_run() {
     }
     run_line("gcode-sim test parts --shard 4/4 --tolerance 0.02 --format json > wide.json", place.path());
     assert_eq!(json("gcode-sim test --merge 3.json 1.json 4.json 2.json --format json", place.path()), whole);
-    for (line, wanted) in [
+    for (line, expected) in [
         ("1.json 2.json 4.json", "the results of --shard 3/4 are missing"),
         ("1.json 2.json 3.json 4.json 4.json", "7 cases of 6"),
         ("main.json main.json", "case aside is in two of the results"),
@@ -175,7 +175,7 @@ fn the_results_of_shards_merge_to_those_of_one_run() {
         std::fs::write(place.path().join("odd.json"), "{}").unwrap();
         let done = run_line(&format!("gcode-sim test --merge {line}"), place.path());
         let messages = String::from_utf8(done.stderr).unwrap();
-        assert!(messages.contains(wanted), "{line}: {messages}");
+        assert!(messages.contains(expected), "{line}: {messages}");
         assert_eq!(done.status.code(), Some(2), "{line}");
     }
 }

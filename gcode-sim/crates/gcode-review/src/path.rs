@@ -136,8 +136,8 @@ mod tests {
         // B90 turns the part's +z to the machine's +x: the tool at x = 10 is at z = 10 of the part.
         let path = legs("O1\nG0 B90.\nG0 X10.\nG1 X10. Y-2. F100\nM30\n", 10);
         let expected = [("rapid", [0.0; 3]), ("rapid", [0.0, 0.0, 10.0]), ("feed", [0.0, -2.0, 10.0])];
-        for ((kind, end), (wanted, point)) in path.iter().zip(expected) {
-            assert_eq!(*kind, wanted);
+        for ((kind, end), (expected_kind, point)) in path.iter().zip(expected) {
+            assert_eq!(*kind, expected_kind);
             assert!((0..3).all(|i| (end[i] - point[i]).abs() < 1e-9), "{end:?} instead of {point:?}");
         }
         assert_eq!(path.len(), 3);

@@ -177,8 +177,8 @@ mod tests {
                 each(&other).into_iter().map(move |there| (segment_distance(piece, there), index))
             });
             let least = pairs.reduce(|best, near| if near < best { near } else { best });
-            let (found, wanted) = (distance(&one, &other).unwrap(), least.unwrap());
-            prop_assert!((found.0 - wanted.0).abs() < 1e-12, "{found:?} {wanted:?}");
+            let (found, expected) = (distance(&one, &other).unwrap(), least.unwrap());
+            prop_assert!((found.0 - expected.0).abs() < 1e-12, "{found:?} {expected:?}");
         }
     }
 }
