@@ -87,7 +87,7 @@ impl Planner<'_> {
             return Err(self.not_simulated("more than a million pecks in one block"));
         }
         if incremental && self.named_axes().any(|axis| self.data.settings.rolls_over[axis]) {
-            return Err(self.not_simulated("a drilling cycle with an incremental axis that rolls over"));
+            return Err(self.not_simulated("a canned cycle with an incremental axis that rolls over"));
         }
         if repeats == 0 && !self.data.settings.undocumented.k0_positions {
             plan.notes.push(Note::CycleRepeatsZero);
@@ -228,7 +228,7 @@ fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64
     // G51 excepts cycles with a shift; the manual doesn't say how far.
     let has_scaled_shift = stretch != 1.0 && cycle.steps.contains(&CycleStep::Shift);
     if transform.tilt.is_some() || is_mirrored || has_scaled_shift {
-        let what = "a drilling cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
+        let what = "a canned cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
         return Err(Alarm::NotSimulated { what: what.into() });
     }
     Ok(stretch)

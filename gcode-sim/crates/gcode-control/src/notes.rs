@@ -19,7 +19,7 @@ gcode_lang::finding_kinds! {
     INTO_LOOP = "into-loop", Warning, "a jump into a loop";
     LARGE_ALARM_NUMBER = "large-alarm-number", Warning, "the number of #3000 exceeds its range";
     LENGTH_OF_NOTHING = "length-of-nothing", Warning, "G43 without H";
-    LEVEL_MISSING = "level-missing", Warning, "a drilling cycle without R or without its depth";
+    LEVEL_MISSING = "level-missing", Warning, "a canned cycle without R or without its depth";
     LONG_M_CODE = "long-m-code", Warning, "an M code with more than four digits";
     LOWER_CASE = "lower-case", Note, "lower-case letters are read as capitals";
     M_CODE_LOST = "m-code-lost", Warning, "only the last M code of a block counts";
@@ -87,7 +87,7 @@ pub enum Note {
     AxisLeftOut,
     /// DPRNT has printed only the lower digits of a number.
     DigitsLost,
-    /// A drilling cycle drills before this level, its R or its depth, is commanded.
+    /// A canned cycle drills before this level, its R or its depth, is commanded.
     CycleLevelMissing(char),
     /// G43 or G44, × 10, with H0, which is no offset.
     LengthOffsetZero(u32),
@@ -98,7 +98,7 @@ pub enum Note {
         /// Its position.
         is_on: bool,
     },
-    /// A drilling cycle drills along Z while G18 or G19, × 10, is active, as with FXY 5101#0 = 0.
+    /// A canned cycle drills along Z while G18 or G19, × 10, is active, as with FXY 5101#0 = 0.
     DrillsAlongZ(u32),
     /// `#3000=n` with a number beyond those of the manuals.
     LargeAlarmNumber {

@@ -88,7 +88,7 @@ impl Planner<'_> {
             OneShot::PresetSystem => self.shift_system(plan, |state, axis, _| {
                 (state.coordinate_shift[axis], state.local_offset[axis]) = (0.0, 0.0);
             }),
-            OneShot::OneSide if cycle => Err(self.not_simulated("G60 (in a drilling cycle)")),
+            OneShot::OneSide if cycle => Err(self.not_simulated("G60 (in a canned cycle)")),
             OneShot::OneSide => self.plan_one_side(plan),
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),

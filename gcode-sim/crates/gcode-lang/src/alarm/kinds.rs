@@ -26,7 +26,7 @@ crate::finding_kinds! {
     PS0039 = "PS0039", Alarm, "a corner word at the start, end or change of sides of compensation";
     PS0041 = "PS0041", Alarm, "the tool is too large for the contour";
     PS0042 = "PS0042", Alarm, "G45 to G48 under cutter compensation";
-    PS0044 = "PS0044", Alarm, "reference return in a drilling cycle";
+    PS0044 = "PS0044", Alarm, "reference return in a canned cycle";
     PS0045 = "PS0045", Alarm, "pecks without a depth";
     PS0046 = "PS0046", Alarm, "G30 with another P than 2, 3 or 4";
     PS0050 = "PS0050", Alarm, "a corner word in a thread";

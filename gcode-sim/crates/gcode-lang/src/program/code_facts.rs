@@ -34,7 +34,7 @@ impl Letters {
 pub enum AxisWords {
     /// Move by the modal codes.
     Move,
-    /// Hole of a drilling cycle.
+    /// Hole of a canned cycle.
     Hole,
     /// End position that does not depend on the start position.
     Position,

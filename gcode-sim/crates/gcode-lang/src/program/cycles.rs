@@ -1,4 +1,4 @@
-//! Drilling cycles G73 to G89, each a sequence of steps that the control expands.
+//! Canned cycles G73 to G89, each a sequence of steps that the control expands.
 
 /// Step of a cycle at a hole, after the tool has reached the R level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub enum CycleStep {
     ManualRetract,
 }
 
-/// Drilling cycle.
+/// Canned cycle.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Cycle {
     /// G code × 10.

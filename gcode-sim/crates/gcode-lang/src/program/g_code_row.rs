@@ -26,7 +26,7 @@ pub enum Effect {
     Cutter(CutterSide),
     /// Group 08: tool length compensation.
     Length(Length),
-    /// Group 09: drilling cycle; `None` is G80.
+    /// Group 09: canned cycle; `None` is G80.
     Cycle(Option<&'static Cycle>),
     /// Group 10: return level of cycles.
     ReturnTo(ReturnTo),

@@ -160,7 +160,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     cycle(&cycles::TAP_LEFT_HAND),
     cycle(&cycles::BORE_SHIFT),
     haas(770, Effect::NotSimulated, "bore from the back"),
-    row(800, Effect::Cycle(None), "drilling cycle off"),
+    row(800, Effect::Cycle(None), "canned cycle off"),
     fanuc(804, Effect::NoEffect, "electronic gear box off").with(facts::WITHOUT_EFFECT),
     cycle(&cycles::DRILL),
     fanuc(811, Effect::NotSimulated, "chopping"),
