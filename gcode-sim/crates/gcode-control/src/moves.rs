@@ -392,13 +392,13 @@ impl Planner<'_> {
             plan.state.programmed = endpoint.programmed;
             for radius in &radii {
                 let start = plan.state.machine;
-                let (centre, half) = ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
+                let (centre, half_circle_centre) = ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
                 let mut edge = start;
                 edge[0] = self.data.remove_residue(centre.0 + radius);
                 let arcs = [
-                    (edge, half, radius / 2.0, 180.0),
+                    (edge, half_circle_centre, radius / 2.0, 180.0),
                     (edge, centre, *radius, 360.0),
-                    (start, half, radius / 2.0, 180.0),
+                    (start, half_circle_centre, radius / 2.0, 180.0),
                 ];
                 for (to, centre, radius, degrees) in arcs {
                     let sweep = Deg(if clockwise { -degrees } else { degrees });

@@ -118,7 +118,7 @@ impl Note {
                 (&G53_IGNORED, message, "command G90 with G53")
             }
             Self::MCodeLost(code) => {
-                let message = format!("M{code} is lost: of several M codes in a block only the last counts");
+                let message = format!("M{code:02} is lost: of several M codes in a block only the last counts");
                 (
                     &M_CODE_LOST,
                     message,

@@ -153,14 +153,14 @@ pub(super) struct CycleLevel {
 }
 
 impl CycleState {
-    /// Returns the cycle with pecks that have their commanded length after the scaling of the levels by `stretch`.
-    pub(super) fn unscaled(self, stretch: f64) -> Self {
+    /// Returns the cycle with pecks that have their commanded length after the scaling of the levels by `scale_factor`.
+    pub(super) fn unscaled(self, scale_factor: f64) -> Self {
         let pecks = self.pecks.map(|pecks| PeckSchedule {
-            first: pecks.first / stretch,
-            decrement: pecks.decrement / stretch,
-            minimum: pecks.minimum / stretch,
+            first: pecks.first / scale_factor,
+            decrement: pecks.decrement / scale_factor,
+            minimum: pecks.minimum / scale_factor,
         });
-        Self { q: self.q.map(|q| q / stretch), pecks, ..self }
+        Self { q: self.q.map(|q| q / scale_factor), pecks, ..self }
     }
 
     pub(super) fn is_r_unknown(&self) -> bool {

@@ -237,7 +237,7 @@ with_defaults! {
         /// 3410: largest difference between the radii at start and end of an arc, mm.
         pub arc_tolerance: f64 = 0.02,
         /// 5440: final approach of G60 with its direction, mm or degrees.
-        pub one_side_overrun: Position = Default::default(),
+        pub single_direction_overrun: Position = Default::default(),
         /// M97 P calls the subprogram at a sequence number of its own program.
         pub has_local_calls: bool = false,
         /// 5114: retract of G73, mm.

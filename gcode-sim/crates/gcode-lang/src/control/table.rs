@@ -68,7 +68,7 @@ impl std::fmt::Display for SettingValues {
                 [only] => f.write_str(only),
                 [others @ .., last] => write!(f, "{} or {last}", others.join(", ")),
             },
-            Self::Whole(least, most) => write!(f, "{least} to {most}"),
+            Self::Whole(min, max) => write!(f, "{min} to {max}"),
             Self::Number(_, _, said) | Self::Text(_, said) => f.write_str(said),
         }
     }
@@ -106,18 +106,18 @@ macro_rules! choice {
 }
 
 macro_rules! whole {
-    ($key:literal, $meaning:literal, $least:literal, $most:literal, |$s:ident, $v:ident| $set:expr) => {
-        row!($key, $meaning, SettingValues::Whole($least, $most), |$s, text| {
-            let $v = whole(text, $least, $most)?;
+    ($key:literal, $meaning:literal, $min:literal, $max:literal, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, SettingValues::Whole($min, $max), |$s, text| {
+            let $v = whole(text, $min, $max)?;
             $set;
         })
     };
 }
 
 macro_rules! number {
-    ($key:literal, $meaning:literal, $least:expr, $most:expr, $said:expr, |$s:ident, $v:ident| $set:expr) => {
-        row!($key, $meaning, SettingValues::Number($least, $most, $said), |$s, text| {
-            let $v = between(text, $least, $most)?;
+    ($key:literal, $meaning:literal, $min:expr, $max:expr, $said:expr, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, SettingValues::Number($min, $max, $said), |$s, text| {
+            let $v = between(text, $min, $max)?;
             $set;
         })
     };
@@ -199,7 +199,7 @@ const DOCUMENTED: &[SettingRow] = &[
     number!("RAPID", "1420: rapid rate of linear axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
     number!("RAPID-ROTARY", "1420: rapid rate of rotary axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
     number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
-    row!("5440", "the final approach of G60, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.one_side_overrun = point(s, v)?),
+    row!("5440", "the final approach of G60, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.single_direction_overrun = point(s, v)?),
     switch!("M97-CALLS", "M97 P calls the subprogram at N of the same program", has_local_calls),
     number!("5114", "retract of G73; setting 22 of a Haas", 0.0, 1e6, LENGTH, |s, v| s.g73_retract = v),
     number!("5115", "clearance of G83", 0.0, 1e6, LENGTH, |s, v| s.g83_clearance = v),
@@ -330,12 +330,12 @@ fn choice<T: Copy>(value: &str, all: &[(&str, T)]) -> Option<T> {
     all.iter().find(|(name, _)| name.eq_ignore_ascii_case(value)).map(|(_, choice)| *choice)
 }
 
-fn between(value: &str, least: f64, most: f64) -> Option<f64> {
-    value.parse().ok().filter(|v| (least..=most).contains(v))
+fn between(value: &str, min: f64, max: f64) -> Option<f64> {
+    value.parse().ok().filter(|v| (min..=max).contains(v))
 }
 
-fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
-    value.parse().ok().filter(|v| (least..=most).contains(v))
+fn whole(value: &str, min: usize, max: usize) -> Option<usize> {
+    value.parse().ok().filter(|v| (min..=max).contains(v))
 }
 
 /// Reads a position, `X10,Z-5`; axes not named are at 0.
