@@ -1,4 +1,4 @@
-//! Expands a checked drilling block: its holes, and the steps of the cycle at each of them.
+//! Expands a checked block of a canned cycle: its holes, and the steps of the cycle at each of them.
 use super::data::ControlData;
 use super::state::{CycleState, PeckSchedule, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
@@ -6,7 +6,7 @@ use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::ReturnTo;
 use gcode_lang::units::{MmPerMin, Rpm, Seconds};
 
-/// Checked drilling block; its expansion can't fail.
+/// Checked block of a canned cycle; its expansion can't fail.
 #[derive(Clone, Debug)]
 pub(super) struct CyclePlan {
     pub(super) cycle: &'static Cycle,
@@ -81,7 +81,8 @@ impl CyclePlan {
             CycleStep::Peck => {
                 for_each_peck((r, z), &state.cycle.unscaled(self.scale_factor), |last, next, done| {
                     if last != r {
-                        let clearance = (data.settings.g83_clearance / self.scale_factor).min((r - last).abs());
+                        let clearance =
+                            (data.settings.g83_clearance / self.scale_factor).min((r - last).abs());
                         motion.rapid(level(last + clearance.copysign(r - z)));
                     }
                     motion.feed(level(next));
@@ -276,7 +277,10 @@ mod tests {
     #[test]
     fn a_hole_is_drilled_from_r_to_z_and_left_to_the_active_return_level() {
         let down = [("rapid", 50.0), ("rapid", 2.0), ("feed", -10.0)];
-        assert_eq!(moves(&cycles::DRILLING, ReturnTo::Initial, None), [&down[..], &[("rapid", 50.0)]].concat());
+        assert_eq!(
+            moves(&cycles::DRILLING, ReturnTo::Initial, None),
+            [&down[..], &[("rapid", 50.0)]].concat()
+        );
         assert_eq!(moves(&cycles::DRILLING, ReturnTo::R, None), [&down[..], &[("rapid", 2.0)]].concat());
     }
 

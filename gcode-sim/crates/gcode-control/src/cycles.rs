@@ -1,4 +1,4 @@
-//! Checks a drilling block: its axis, words, repeats and end; G70 and G71 of a Haas repeat it round a centre.
+//! Checks a block of a canned cycle: its axis, words, repeats and end; G70 and G71 of a Haas repeat it round a centre.
 use super::cycle_expansion::{CyclePlan, has_too_many_pecks};
 use super::functions::ExecResult;
 use super::notes::Note;
@@ -52,7 +52,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Checks a drilling block and computes its end.
+    /// Checks a block of a canned cycle and computes its end.
     pub(super) fn plan_cycle(
         &self,
         plan: &mut BlockPlan,

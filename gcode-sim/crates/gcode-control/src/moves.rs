@@ -392,7 +392,8 @@ impl Planner<'_> {
             plan.state.programmed = endpoint.programmed;
             for radius in &radii {
                 let start = plan.state.machine;
-                let (centre, half_circle_centre) = ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
+                let (centre, half_circle_centre) =
+                    ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
                 let mut edge = start;
                 edge[0] = self.data.remove_residue(centre.0 + radius);
                 let arcs = [

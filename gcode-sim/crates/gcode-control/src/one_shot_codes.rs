@@ -99,7 +99,11 @@ impl Planner<'_> {
     }
 
     /// Applies the values of the named axes to the shifts of the coordinate system.
-    fn shift_coordinate_system(&self, plan: &mut BlockPlan, shift: impl Fn(&mut State, usize, f64)) -> ExecResult<()> {
+    fn shift_coordinate_system(
+        &self,
+        plan: &mut BlockPlan,
+        shift: impl Fn(&mut State, usize, f64),
+    ) -> ExecResult<()> {
         for axis in 0..self.data.settings.axes.len() {
             if let Some(value) = self.axis_dimension(axis, &plan.state)? {
                 shift(&mut plan.state, axis, value);
@@ -134,7 +138,8 @@ impl Planner<'_> {
         let endpoint = self.resolve_endpoint(&mut plan.state)?;
         let mut before = endpoint.machine;
         for axis in self.named_axes() {
-            before[axis] = self.data.remove_residue(before[axis] - self.data.settings.single_direction_overrun[axis]);
+            before[axis] =
+                self.data.remove_residue(before[axis] - self.data.settings.single_direction_overrun[axis]);
         }
         self.push_rapid(plan, &before);
         self.push_rapid(plan, &endpoint.machine);

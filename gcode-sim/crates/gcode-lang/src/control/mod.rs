@@ -262,7 +262,7 @@ with_defaults! {
         pub allows_parameter_input: bool = true,
         /// `M98 P` with five digits or more is repeats and program.
         pub reads_repeats_in_p: bool = true,
-        /// Letter that repeats a drilling block, K or L.
+        /// Letter for the number of repeats of a canned cycle, K or L.
         pub cycle_repeat_letter: u8 = b'K',
         /// G28 without an axis moves all axes to the reference position.
         pub homes_all_axes: bool = false,

@@ -60,7 +60,7 @@ impl Cycle {
 }
 
 use CycleStep::{
-    Dwell, DwellAtR, FeedToBottom, FeedToR, ManualRetract, Peck, HighSpeedPeck, RapidBack, RapidToInitial,
+    Dwell, DwellAtR, FeedToBottom, FeedToR, HighSpeedPeck, ManualRetract, Peck, RapidBack, RapidToInitial,
     RapidToInitialAlways, RapidToR, Shift, ShiftBack, SpindleForward, SpindleReverse, SpindleStop,
 };
 
@@ -87,8 +87,11 @@ pub const PECK_DRILLING: Cycle =
 pub const TAPPING: Cycle = row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitial], "tapping cycle");
 pub(super) const BORING_FEED_RETRACT: Cycle =
     row(850, &[FeedToBottom, FeedToR, RapidToInitial], "boring cycle, retract by feed");
-pub(super) const BORING_SPINDLE_STOP: Cycle =
-    row(860, &[FeedToBottom, SpindleStop, RapidBack, SpindleForward], "boring cycle, retract with the spindle stopped");
+pub(super) const BORING_SPINDLE_STOP: Cycle = row(
+    860,
+    &[FeedToBottom, SpindleStop, RapidBack, SpindleForward],
+    "boring cycle, retract with the spindle stopped",
+);
 #[rustfmt::skip]
 pub(super) const BACK_BORING: Cycle = Cycle { starts_at_r: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitialAlways, ShiftBack, SpindleForward], "back boring cycle") };
 pub(super) const BORING_MANUAL_RETRACT: Cycle = row(

@@ -19,7 +19,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         may_have_feed[*block] == Some(false) && !has_feed_word(words) && is_feed_move(context, words)
     });
     let alarm = |block| Alarm::FeedZero.located_at(unit.op(block).span);
-    moves_without_feed.map(|(block, _)| context.alarm_finding(unit, &RULE.kind, block, &alarm(block))).collect()
+    moves_without_feed
+        .map(|(block, _)| context.alarm_finding(unit, &RULE.kind, block, &alarm(block)))
+        .collect()
 }
 
 /// Returns, for each block, whether some path to it may have an F; `None` for an unreachable block.
