@@ -48,7 +48,8 @@ impl Planner<'_> {
             }
             let new = state.modal.apply(row.effect);
             if new.is_some() && axis_use.is_some() && new != axis_use {
-                return Err(self.not_simulated(several_axis_uses([new, axis_use])));
+                return Err(self
+                    .not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68) in one block"));
             }
             axis_use = new.or(axis_use);
             if row.effect == Effect::Cycle(None) {
@@ -237,14 +238,5 @@ impl Planner<'_> {
     fn set_spindle(&self, plan: &mut BlockPlan, direction: SpindleDirection, speed: Rpm) {
         plan.state.spindle = direction;
         plan.push_event(EventKind::Spindle { direction, speed });
-    }
-}
-
-/// Names the codes of a block of which more than one uses the axis words.
-fn several_axis_uses(uses: [Option<AxisWordUse>; 2]) -> &'static str {
-    if uses.iter().all(|axis_use| matches!(axis_use, Some(AxisWordUse::OneShot(_)))) {
-        "a block with several G codes of group 00"
-    } else {
-        "a block with several G codes that use the axis words"
     }
 }

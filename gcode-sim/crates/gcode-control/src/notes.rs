@@ -9,7 +9,7 @@ gcode_lang::finding_kinds! {
     AXIS_LEFT_OUT = "axis-left-out", Warning, "a first move that omits an axis";
     BLOCK_SKIP = "block-skip", Note, "the result holds for one position of the block skip switch";
     CENTRE_HERE = "centre-here", Note, "a centre at the current point";
-    CORNER_IGNORED = "corner-ignored", Warning, "a corner word without effect";
+    CORNER_IGNORED = "corner-ignored", Warning, ",R or ,C without effect";
     CYCLE_DATA_LOST = "cycle-data-lost", Warning, "P or Q in a block that does not drill";
     DIGITS_LOST = "digits-lost", Warning, "DPRNT without the upper digits";
     DOUBLED_NUMBER = "doubled-number", Warning, "a jump to one of several N";

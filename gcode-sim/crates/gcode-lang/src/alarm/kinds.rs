@@ -46,7 +46,7 @@ crate::finding_kinds! {
     PS0115 = "PS0115", Alarm, "a variable that the control does not have";
     PS0116 = "PS0116", Alarm, "a variable that cannot be written";
     PS0118 = "PS0118", Alarm, "more than five nested brackets";
-    PS0119 = "PS0119", Alarm, "a value for which the function is not defined";
+    PS0119 = "PS0119", Alarm, "a value out of the range of a function";
     PS0122 = "PS0122", Alarm, "too many nested macro calls";
     PS0124 = "PS0124", Alarm, "DO without END";
     PS0125 = "PS0125", Alarm, "a macro statement with a format error";

@@ -28,13 +28,13 @@ impl Alarm {
             Self::NoDataAfterAddress { letter } => (&PS0005, format!("address {letter} has no number"), Some("write its value, or remove the letter")),
             Self::MissingWord { code, letter } => (&PS0005, format!("{code} needs {letter}"), Some("write it in the same block")),
             Self::NoCycle { code } => (&PS0010, format!("{code} without a canned cycle"), Some("command G81 or another cycle before it, with L0 if the centre has no hole")),
-            Self::IllegalMinus { letter } => (&PS0006, format!("address {letter} takes no minus sign"), Some("write the number without a minus sign")),
+            Self::IllegalMinus { letter } => (&PS0006, format!("address {letter} takes no minus sign"), Some("remove the minus sign")),
             Self::IllegalPoint { letter: Some(letter) } => (&PS0007, format!("address {letter} takes no decimal point"), Some("write the number without a decimal point")),
             Self::IllegalPoint { letter: None } => (&PS0007, "a number has two decimal points".into(), Some("remove one of them")),
             Self::ImproperAddress { letter: 'L' } => (&PS0009, "address L is not allowed in this block".into(), Some("K is the number of repeats of a canned cycle (L with --control CYCLE-REPEATS=L); elsewhere L needs a call or G10")),
             Self::ImproperAddress { letter: letter @ ('D'..='T') } => (&PS0009, format!("address {letter} is not allowed in this block"), Some("remove it, or write the code that uses it")),
             Self::ImproperAddress { letter } => (&PS0009, format!("address {letter} is not allowed in this block"), Some("check the axes of the machine file")),
-            Self::ImproperGCode { code } => (&PS0010, format!("the control has no G{code}"), None),
+            Self::ImproperGCode { code } => (&PS0010, format!("the control has no G{}", two_digits(code)), None),
             Self::FeedZero => (&PS0011, "cutting feed without a feed rate".into(), Some("command F before or in this block")),
             Self::NoSpeedForFeed => (&PS0011, "cutting feed per revolution (G95) while S is 0".into(), Some("command S before or in this block, or G94 for a feed per minute")),
             Self::RadiusTooSmall { radius, half_chord } => (&PS0020, format!("R is {radius} mm, less than half the distance from start to end, {half_chord:.4} mm"), Some("write a larger R, or another end point")),
@@ -78,7 +78,7 @@ impl Alarm {
             Self::WriteProtected { number } => (&PS0116, format!("#{number} cannot be written"), None),
             Self::ReadProtected { number } => (&PS1115, format!("#{number} cannot be read"), None),
             Self::TooManyBrackets => (&PS0118, "more than five nested brackets".into(), Some("compute a part of it in a block of its own")),
-            Self::OutOfRange { function, value } => (&PS0119, format!("{function} is not defined for {value}"), None),
+            Self::OutOfRange { function, value } => (&PS0119, format!("{function}: {value} is out of range"), None),
             Self::TooManyMacroCalls { limit } => (&PS0122, format!("more than {limit} nested macro calls"), Some("check for a macro that calls itself")),
             Self::ParameterFormat { what } => (&PS0231, format!("G10 L52: {what}"), Some("write N5114 R2.5, with P for an axis and Q for a bit, and G11 at the end")),
             Self::AxisNumber { number } => (&PS0331, format!("axis number {number} does not exist"), Some("use a valid axis number; AXNUM[X] gives it")),
@@ -137,6 +137,12 @@ impl Alarm {
             Self::NotSimulated { what } => (&SIM0001, format!("{what} is not simulated"), Some("avoid it, or check it on a control that has it: this simulator does not execute it")),
         }
     }
+}
+
+/// Returns the number of a G code with two digits before the point, as manuals write it.
+fn two_digits(code: &str) -> String {
+    let is_single = code.bytes().take_while(u8::is_ascii_digit).count() == 1;
+    if is_single { format!("0{code}") } else { code.to_owned() }
 }
 
 /// Returns the message for a missing program, with the failure to read a file if there is one.

@@ -48,7 +48,7 @@ mod tests {
     #[test]
     fn the_code_that_is_lost_is_reported() {
         let found = messages(&RULE, "O1\nM3 S100 M8\nM30 M5\nM30\n");
-        assert_eq!(found[0], "M3 is lost: of several M codes in a block only the last counts");
+        assert_eq!(found[0], "M03 is lost: of several M codes in a block only the last counts");
         assert!(found[1].starts_with("PS0335: ") && found.len() == 2, "{found:?}");
     }
 
