@@ -65,7 +65,7 @@ pub enum Alarm {
         /// Letter of the missing word.
         letter: char,
     },
-    /// A pattern of holes has no drilling cycle.
+    /// A pattern of holes has no canned cycle.
     NoCycle {
         /// Code of the pattern.
         code: &'static str,
@@ -208,7 +208,7 @@ pub enum Alarm {
         /// Description of the error.
         what: String,
     },
-    /// G27 to G30 are commanded in a drilling cycle.
+    /// G27 to G30 are commanded in a canned cycle.
     ReferenceReturnInCycle,
     /// G73 or G83 has no peck depth Q.
     NoPeckDepth,
