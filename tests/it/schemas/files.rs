@@ -284,3 +284,59 @@ fn readers_and_schemas_refuse_the_same() {
     println!("{tried} files tried");
     assert!(wrong.is_empty(), "{} of {tried}:\n{}", wrong.len(), wrong.join("\n"));
 }
+
+/// Tries a list at every key of a table, and in every list of tables.
+#[test]
+fn a_list_in_place_of_a_table_is_refused() {
+    fn tables(value: &Value, name: &str, found: &mut Vec<(String, Value)>) {
+        if let Value::Array(items) = value {
+            items.iter().for_each(|item| tables(item, name, found));
+        }
+        let Value::Table(table) = value else { return };
+        for (key, inner) in table {
+            let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+            let with = |inner: Value| {
+                let mut copy = table.clone();
+                copy.insert(key.clone(), inner);
+                Value::Table(copy)
+            };
+            match inner {
+                Value::Table(_) => found.push((name.clone(), with(Value::Array(Vec::new())))),
+                Value::Array(items) if items.iter().any(Value::is_table) => {
+                    found.push((name.clone(), with(Value::Array(vec![Value::Array(Vec::new())]))));
+                }
+                _ => {}
+            }
+            let mut below = Vec::new();
+            tables(inner, &name, &mut below);
+            let is_list = inner.is_array();
+            found.extend(
+                below.into_iter().map(|(name, inner)| {
+                    (name, with(if is_list { Value::Array(vec![inner]) } else { inner }))
+                }),
+            );
+        }
+    }
+    let mut tried = BTreeSet::new();
+    for (path, name, read) in complete() {
+        let root = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let mut changed = Vec::new();
+        tables(&Value::Table(root), "", &mut changed);
+        for (key, document) in changed {
+            let error = read(&toml::to_string(&document).unwrap()).unwrap_err();
+            let expected = format!("key '{key}' is a list: a table, {{ key = value }}, is required");
+            assert!(error.ends_with(&expected), "{}: {key}: {error}", path.display());
+            tried.insert(format!("{name}.{key}"));
+        }
+    }
+    for key in [
+        "job.control",
+        "job.hole",
+        "machine.tool",
+        "machine.offsets.G54",
+        "errors.part.tilt.z",
+        "rates.beside",
+    ] {
+        assert!(tried.contains(key), "{key} is in no complete file: {tried:?}");
+    }
+}
