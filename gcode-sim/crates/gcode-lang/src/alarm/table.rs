@@ -35,6 +35,7 @@ impl Alarm {
             Self::ImproperAddress { letter: letter @ ('D'..='T') } => (&PS0009, format!("address {letter} is not allowed in this block"), Some("remove it, or write the code that uses it")),
             Self::ImproperAddress { letter } => (&PS0009, format!("address {letter} is not allowed in this block"), Some("check the axes of the machine file")),
             Self::ImproperGCode { code } => (&PS0010, format!("the control has no G{}", two_digits(code)), None),
+            Self::NegativeVariable { number } => (&PS0006, format!("#{number} takes no minus sign"), None),
             Self::FeedZero => (&PS0011, "cutting feed without a feed rate".into(), Some("command F before or in this block")),
             Self::NoSpeedForFeed => (&PS0011, "cutting feed per revolution (G95) while S is 0".into(), Some("command S before or in this block, or G94 for a feed per minute")),
             Self::RadiusTooSmall { radius, half_chord } => (&PS0020, format!("R is {radius} mm, less than half the distance from start to end, {half_chord:.4} mm"), Some("write a larger R, or another end point")),
@@ -116,7 +117,12 @@ impl Alarm {
             Self::MissingOpenBracket => (&PS1131, "an opening bracket '[' is missing".into(), Some("write it, or remove the unmatched ']'")),
             Self::RoundBrackets { letter: Some(letter) } => (&PS0005, format!("address {letter} has no number: round brackets are a comment"), Some("write '[' and ']'")),
             Self::RoundBrackets { letter: None } => (&PS1131, "an opening bracket '[' is missing: round brackets are a comment".into(), Some("write '[' and ']'")),
+<<<<<<< HEAD
             Self::RelationSymbol => (&PS1125, "'=', '<', '>', '&' and '|' are not operators of a condition here".into(), Some("write EQ, NE, LT, LE, GT, GE, AND or OR, or give --control SIGNS=1 for a control that accepts them")),
+=======
+            Self::RoundBracketsForValue => (&PS1125, "a value is missing: round brackets are a comment".into(), Some("write '[' and ']'")),
+            Self::RelationSymbol => (&PS1125, "'=', '<', '>', '&' and '|' are not operators of a condition here".into(), Some("write EQ, NE, LT, LE, GT, GE, AND or OR; SIGNS=1 is for a control that accepts them")),
+>>>>>>> h-mech
             Self::MissingCloseBracket => (&PS1132, "a closing bracket ']' is missing".into(), None),
             Self::MissingEquals => (&PS1133, "'=' is missing".into(), None),
             Self::MissingComma => (&PS1134, "a comma is missing".into(), None),
