@@ -117,12 +117,8 @@ impl Alarm {
             Self::MissingOpenBracket => (&PS1131, "an opening bracket '[' is missing".into(), Some("write it, or remove the unmatched ']'")),
             Self::RoundBrackets { letter: Some(letter) } => (&PS0005, format!("address {letter} has no number: round brackets are a comment"), Some("write '[' and ']'")),
             Self::RoundBrackets { letter: None } => (&PS1131, "an opening bracket '[' is missing: round brackets are a comment".into(), Some("write '[' and ']'")),
-<<<<<<< HEAD
-            Self::RelationSymbol => (&PS1125, "'=', '<', '>', '&' and '|' are not operators of a condition here".into(), Some("write EQ, NE, LT, LE, GT, GE, AND or OR, or give --control SIGNS=1 for a control that accepts them")),
-=======
             Self::RoundBracketsForValue => (&PS1125, "a value is missing: round brackets are a comment".into(), Some("write '[' and ']'")),
-            Self::RelationSymbol => (&PS1125, "'=', '<', '>', '&' and '|' are not operators of a condition here".into(), Some("write EQ, NE, LT, LE, GT, GE, AND or OR; SIGNS=1 is for a control that accepts them")),
->>>>>>> h-mech
+            Self::RelationSymbol => (&PS1125, "'=', '<', '>', '&' and '|' are not operators of a condition here".into(), Some("write EQ, NE, LT, LE, GT, GE, AND or OR, or give --control SIGNS=1 for a control that accepts them")),
             Self::MissingCloseBracket => (&PS1132, "a closing bracket ']' is missing".into(), None),
             Self::MissingEquals => (&PS1133, "'=' is missing".into(), None),
             Self::MissingComma => (&PS1134, "a comma is missing".into(), None),
