@@ -166,8 +166,10 @@ fn no_rapid_can_touch_the_part_on_any_path() {
         let moves: Vec<(char, &Position)> = recorder.moves().collect();
         let rapids: Vec<_> = moves.windows(2).filter(|pair| pair[1].0 == 'R').collect();
         // Beside the part at x < 0 never, above it always.
-        let reached =
-            |at: usize, by: f64, [from, to]: [&Position; 2]| (from[at].min(to[at]).max(0.0) / by).powi(2);
+        let reached = |at: usize, by: f64, [from, to]: [&Position; 2]| {
+            let part = from[at].min(to[at]).max(0.0) / by;
+            part * part
+        };
         let lowest = rapids
             .iter()
             .map(|pair| [pair[0].1, pair[1].1])

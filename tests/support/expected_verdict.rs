@@ -147,7 +147,7 @@ fn compare(subject: &str, facts: &str, found: &[(&'static str, f64)], wrong: &mu
 fn agrees(value: f64, stated: &str) -> bool {
     let number: f64 = stated.parse().unwrap_or_else(|_| panic!("{stated} is no number"));
     let decimals = stated.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    let half = if decimals == 0 { 0.0 } else { 0.5 * 10_f64.powi(-(decimals as i32)) };
+    let half = if decimals == 0 { 0.0 } else { 0.5 / gcode_lang::units::POWERS[decimals] };
     (value - number).abs() <= half + 1e-9
 }
 

@@ -28,7 +28,8 @@ impl Wish {
             None => (radius, String::new()),
             Some((large, small)) => {
                 let (large, small) = (large * radius, small * radius);
-                let nose = ((large - small).powi(2) - (large - radius).powi(2)).sqrt() + small;
+                let (hypotenuse, leg) = (large - small, large - radius);
+                let nose = (hypotenuse * hypotenuse - leg * leg).sqrt() + small;
                 (nose, format!("profile = {{ large = {large:?}, small = {small:?} }}\n"))
             }
         };

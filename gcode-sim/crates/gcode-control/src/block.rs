@@ -43,12 +43,12 @@ impl Control {
             return executor.end_of_program(memory);
         };
         let (program, op) = loop {
-            let place = executor.flow.frame.next;
-            let Some((program, op)) = program.lower_block(place) else {
+            let index = executor.flow.frame.next;
+            let Some((program, op)) = program.lower_block(index) else {
                 return executor.end_of_program(memory);
             };
             executor.log.blocks += 1;
-            executor.flow.frame.next = place + 1;
+            executor.flow.frame.next = index + 1;
             let result = match op.body() {
                 OpBody::Plain(OpKind::AssignFree(assign)) => executor.assign(assign),
                 OpBody::Plain(OpKind::Statement(statement)) => {
@@ -67,7 +67,7 @@ impl Control {
                     break (program, op);
                 }
             };
-            // The place of an assignment is read only after an alarm or an effect.
+            // The span of an assignment is read only after an alarm or an effect.
             if result.is_err() || executor.registers.block_effects.is_pause(executor.log.blocks) {
                 executor.flow.block = op.span;
                 return result;

@@ -44,7 +44,7 @@ impl Planner<'_> {
             }
             self.words.mark_read(row.facts.words.without_effect);
             if matches!(row.effect, Effect::NotSimulated | Effect::Call) {
-                return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.help)));
+                return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.description)));
             }
             let new = state.modal.apply(row.effect);
             if new.is_some() && axis_use.is_some() && new != axis_use {

@@ -107,12 +107,12 @@ impl Planner<'_> {
     /// Plans the call of a macro by a code, which stands first in the block; the other words are the arguments. Returns
     /// true if there is one.
     pub(super) fn plan_macro_by_code(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
-        for (place, word) in self.lowered.list.iter().enumerate() {
+        for (index, word) in self.lowered.list.iter().enumerate() {
             let Some(called) = self.program_called_by(word)? else { continue };
             if called.kind == CodeCallKind::Subprogram {
                 continue;
             }
-            if place > 0 {
+            if index > 0 {
                 let what = "words before a code that calls a macro".into();
                 return Err(Alarm::MacroFormat { what }.located_at(self.lowered.list[0].span));
             }
@@ -164,8 +164,8 @@ impl Planner<'_> {
     /// Returns the word of a block that calls a subprogram; the other words of the block act first.
     pub(super) fn subprogram_by_code(&self) -> ExecResult<Option<CallingWord>> {
         let mut found = None;
-        for (place, word) in self.lowered.list.iter().enumerate() {
-            let Some(calling) = self.calling_word(place, word)? else { continue };
+        for (index, word) in self.lowered.list.iter().enumerate() {
+            let Some(calling) = self.calling_word(index, word)? else { continue };
             if found.is_some() || self.lowered.call().is_some() {
                 return Err(Alarm::TwoSubprogramCalls.located_at(word.span));
             }

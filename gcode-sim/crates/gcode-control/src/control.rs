@@ -181,7 +181,8 @@ impl Control {
         })
     }
 
-    /// Executes one block; returns the outcome when the run ends. A block that raises an alarm has changed nothing.
+    /// Executes one block; returns the outcome when the run ends. A block that raises an alarm has changed nothing, except
+    /// a G31 that the setting `SKIP-ALARM` stops after its move.
     pub fn step<S: EventSink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
         if let Some(outcome) = self.final_outcome() {
             return Some(outcome);
@@ -203,16 +204,16 @@ impl Control {
         result.is_ok() && self.executor.registers.block_effects.is_none()
     }
 
-    /// Records the note of a block; returns the outcome if the block has ended the run.
+    /// Records the notes of a block; returns the outcome if the block has ended the run.
     #[inline(never)]
     fn conclude<S: EventSink>(&mut self, mut result: ExecResult<()>, sink: &mut S) -> Option<Box<Outcome>> {
-        let (note, run_end) = self.executor.registers.block_effects.take();
+        let (notes, run_end) = self.executor.registers.block_effects.take();
         if run_end == Some(RunEnd::ProgramEnd)
             && let Err(alarm) = self.executor.advance_lookahead(sink, Lookahead::finish)
         {
             result = Err(alarm);
         }
-        if let Some(note) = note {
+        for note in notes {
             self.executor.log.note(note, self.executor.flow.block);
         }
         let outcome = match result {

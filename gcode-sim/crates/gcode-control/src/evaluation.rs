@@ -6,7 +6,6 @@ use super::functions::{
     is_finite, locate, power, variable_number,
 };
 use super::notes::Note;
-use super::quantities::POWERS;
 use super::registers::Registers;
 use super::variables::{Accumulator, Value, VariableClass};
 use gcode_lang::alarm::Alarm;
@@ -15,7 +14,7 @@ use gcode_lang::program::{
 };
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Function, Relation};
-use gcode_lang::units::{round, round_scaled};
+use gcode_lang::units::{POWERS, round, round_scaled};
 
 /// Unit to which ROUND rounds.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -68,7 +67,7 @@ impl Registers {
     fn fetch(&self, source: &OperandSource, last: Accumulator) -> Value {
         match source {
             OperandSource::Number(number) => Value::Number(*number),
-            OperandSource::Free(place) => self.variables.get_free(*place),
+            OperandSource::Free(variable) => self.variables.get_free(*variable),
             OperandSource::Computed(ComputedSource::Last) => last.into(),
             OperandSource::Computed(ComputedSource::Waiting) => self.operand_stack.pop(),
         }
@@ -78,7 +77,7 @@ impl Registers {
     #[inline(always)]
     fn fetch_number(&self, source: &OperandSource, last: Accumulator) -> f64 {
         match source {
-            OperandSource::Free(place) => self.variables.free_number(*place),
+            OperandSource::Free(variable) => self.variables.free_number(*variable),
             OperandSource::Number(number) => *number,
             OperandSource::Computed(ComputedSource::Last) => last.number,
             OperandSource::Computed(ComputedSource::Waiting) => self.operand_stack.pop().number(),
@@ -89,14 +88,14 @@ impl Registers {
     #[inline(always)]
     pub(super) fn load(&self, slot: Slot, span: &Span) -> ExecResult<Value> {
         match slot {
-            Slot::Free(place) => Ok(self.variables.get_free(place)),
+            Slot::Free(variable) => Ok(self.variables.get_free(variable)),
             Slot::Other(number) => locate(self.read_variable(number), *span),
         }
     }
 
     pub(super) fn read_variable(&self, number: u32) -> Result<Value, Alarm> {
         match self.variables.classify(number) {
-            VariableClass::Local(place) | VariableClass::Common(place) => Ok(self.variables.get(place)),
+            VariableClass::Local(index) | VariableClass::Common(index) => Ok(self.variables.get(index)),
             VariableClass::Vacant => Ok(Value::Vacant),
             VariableClass::System => self.read_system(number),
         }
@@ -265,7 +264,7 @@ impl Registers {
             }
             UncommonOp::SystemNumber(row) => {
                 let number = if self.data.settings.series_15_offsets { row.series_15 } else { row.number };
-                let place = match row.suffix {
+                let offset = match row.suffix {
                     None => 0,
                     Some((from, to)) => {
                         let suffix = integer(last.number())?;
@@ -275,7 +274,7 @@ impl Registers {
                         suffix as u32 - from
                     }
                 };
-                Value::Number(f64::from(number + place))
+                Value::Number(f64::from(number + offset))
             }
         })
     }

@@ -4,10 +4,10 @@ use super::data::{ControlData, system_index};
 use super::flow::ProgramFlow;
 use super::functions::ExecResult;
 use super::lookahead::Lookahead;
-use super::outcome::{RunEnd, RunLog};
+use super::outcome::{BlockEffects, RunEnd, RunLog};
 use super::plan::{BlockPlan, TableWrite};
 use super::planner::Planner;
-use super::registers::Registers;
+use super::registers::{Clock, Registers};
 use super::variables::VariableClass;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
@@ -24,6 +24,32 @@ pub(super) struct Executor {
     pub(super) registers: Registers,
     pub(super) flow: ProgramFlow,
     pub(super) log: RunLog,
+}
+
+/// Totals of a run to which every event adds: duration, moves and stops.
+struct RunTotals<'a> {
+    clock: &'a mut Clock,
+    log: &'a mut RunLog,
+    block_effects: &'a BlockEffects,
+}
+
+impl RunTotals<'_> {
+    #[inline(always)]
+    fn count_event(&mut self, kind: &EventKind, seconds: f64) {
+        self.count(seconds, u64::from(kind.end().is_some()));
+        if let EventKind::Stop { kind, text, variables } = kind {
+            self.log.record_stop(*kind, text, variables);
+        }
+    }
+
+    #[inline(always)]
+    fn count(&mut self, seconds: f64, moves: u64) {
+        self.clock.motion_seconds += seconds;
+        self.log.moves += moves;
+        if self.log.moves > self.log.max_moves {
+            self.block_effects.end_run(RunEnd::MoveLimit);
+        }
+    }
 }
 
 impl Executor {
@@ -73,8 +99,8 @@ impl Executor {
                     data.set_parameter(id, value, has_no_effect)
                 }
                 TableWrite::Variable { number, value } => {
-                    if let VariableClass::Common(place) = variables.classify(number) {
-                        variables.set(place, value);
+                    if let VariableClass::Common(index) = variables.classify(number) {
+                        variables.set(index, value);
                     }
                 }
             }
@@ -96,56 +122,52 @@ impl Executor {
     }
 
     fn emit_cycle<S: EventSink>(&mut self, cycle_plan: &CyclePlan, sink: &mut S) {
-        let (mut seconds, mut moves) = (0.0, 0);
-        let block = self.flow.block;
-        let calls = self.flow.frame.calls.clone();
-        cycle_plan.expand(&self.registers.data, &mut |kind, time| {
-            seconds += time;
-            moves += u64::from(kind.end().is_some());
-            sink.event(&Event { kind: &kind, seconds: Seconds(time), block, calls: &calls });
+        let Self { registers: Registers { data, clock, block_effects, .. }, flow, log } = self;
+        let mut totals = RunTotals { clock, log, block_effects };
+        let (block, calls) = (flow.block, &flow.frame.calls);
+        cycle_plan.expand(data, &mut |kind, seconds| {
+            totals.count_event(&kind, seconds);
+            sink.event(&Event { kind: &kind, seconds: Seconds(seconds), block, calls });
         });
-        self.registers.clock.motion_seconds += seconds;
-        self.count_moves(moves);
     }
 
     #[inline(always)]
     pub(super) fn emit<S: EventSink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
         self.count_event(kind, seconds);
+        self.pass_on(kind, seconds, sink);
+    }
+
+    /// Gives an event of the current block to a sink without counting it.
+    #[inline(always)]
+    pub(super) fn pass_on<S: EventSink>(&self, kind: &EventKind, seconds: f64, sink: &mut S) {
         let block = self.flow.block;
         sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.flow.frame.calls });
     }
 
     #[inline(always)]
     fn count_event(&mut self, kind: &EventKind, seconds: f64) {
-        self.registers.clock.motion_seconds += seconds;
-        self.count_moves(u64::from(kind.end().is_some()));
-        if let EventKind::Stop { kind, text, variables } = kind {
-            self.log.record_stop(*kind, text, variables);
-        }
+        self.totals().count_event(kind, seconds);
+    }
+
+    #[inline(always)]
+    fn totals(&mut self) -> RunTotals<'_> {
+        let Registers { clock, block_effects, .. } = &mut self.registers;
+        RunTotals { clock, log: &mut self.log, block_effects }
     }
 
     /// Counts a move without emitting it, for a sink that isn't active.
     #[inline(always)]
     pub(super) fn count_move(&mut self, seconds: f64) {
-        self.registers.clock.motion_seconds += seconds;
-        self.count_moves(1);
-    }
-
-    #[inline(always)]
-    fn count_moves(&mut self, moves: u64) {
-        self.log.moves += moves;
-        if self.log.moves > self.log.max_moves {
-            self.registers.block_effects.end_run(RunEnd::MoveLimit);
-        }
+        self.totals().count(seconds, 1);
     }
 
     /// Replaces the lookahead by that of a plan, and emits the events that no longer wait.
     fn take_lookahead<S: EventSink>(&mut self, lookahead: &mut Lookahead, sink: &mut S) {
         std::mem::swap(&mut self.registers.lookahead, lookahead);
-        for (kind, seconds, place) in self.registers.lookahead.take_ready() {
+        for (kind, seconds, backtrace) in self.registers.lookahead.take_ready() {
             self.count_event(&kind, seconds);
-            let (seconds, block) = (Seconds(seconds), place.block);
-            sink.event(&Event { kind: &kind, seconds, block, calls: &place.calls });
+            let (seconds, block) = (Seconds(seconds), backtrace.block);
+            sink.event(&Event { kind: &kind, seconds, block, calls: &backtrace.calls });
         }
         if self.registers.lookahead.is_idle() {
             self.registers.lookahead = Lookahead::default();

@@ -1,6 +1,6 @@
 //! Proof that a program never ends: the control is in a state that it has been in before.
 //!
-//! Brent's algorithm for cycles: at each jump back a fingerprint (place, variables, position) is compared with that of an
+//! Brent's algorithm for cycles: at each jump back a fingerprint (block, variables, position) is compared with that of an
 //! earlier jump, which is kept for longer and longer. If they match, the control is copied; if it equals its copy one
 //! iteration later, all that follows repeats. Between matches a jump costs a few instructions.
 use super::executor::Executor;
@@ -20,8 +20,8 @@ struct Fingerprint {
     callers: usize,
     machine: Position,
     vars: Vars,
-    /// Place of the variable that differed last.
-    differing_place: usize,
+    /// Index of the variable that differed last.
+    differing_index: usize,
 }
 
 /// Everything that can decide what the program does next; the record of the run can't.
@@ -158,7 +158,7 @@ impl Fingerprint {
             callers: flow.callers.len(),
             machine: registers.state.machine,
             vars: registers.variables.clone(),
-            differing_place: 0,
+            differing_index: 0,
         }
     }
 
@@ -167,7 +167,7 @@ impl Fingerprint {
     fn may_match(&self, executor: &Executor) -> bool {
         self.machine[0].to_bits() == executor.registers.state.machine[0].to_bits()
             && self.next == executor.flow.frame.next
-            && !self.vars.differs_at(self.differing_place, &executor.registers.variables)
+            && !self.vars.differs_at(self.differing_index, &executor.registers.variables)
     }
 
     /// Returns true if all values are equal.
@@ -181,7 +181,7 @@ impl Fingerprint {
             return false;
         }
         let difference = self.vars.difference(&registers.variables);
-        self.differing_place = difference.unwrap_or(self.differing_place);
+        self.differing_index = difference.unwrap_or(self.differing_index);
         difference.is_none()
     }
 }

@@ -43,7 +43,7 @@ pub struct UnsimulatedCodes {
 }
 
 impl Control {
-    /// Lowers the next block and returns its place; `None` after the last block.
+    /// Lowers the next block and returns its index; `None` after the last block.
     pub fn next_block(&mut self) -> Option<Span> {
         let Frame { program, next, .. } = self.executor.flow.frame;
         self.memory.lower_block(program, next).map(|op| op.span)

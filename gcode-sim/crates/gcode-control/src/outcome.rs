@@ -1,6 +1,6 @@
 //! Limits, end and record of a run: no program can read any of it.
-use std::cell::Cell;
-use std::collections::BTreeMap;
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 use super::notes::Note;
@@ -65,12 +65,12 @@ pub struct OperatorStop {
     pub variables: Vec<(u32, f64)>,
 }
 
-/// Effects of a block on the run: a note, or the end. Most blocks have none.
+/// Effects of a block on the run: notes, or the end. Most blocks have none.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockEffects {
     /// Number of executed blocks at which the run pauses; 0 after an effect, so that one comparison tests both.
     pause: Cell<u64>,
-    note: Cell<Option<Note>>,
+    notes: RefCell<BTreeSet<Note>>,
     run_end: Cell<Option<RunEnd>>,
 }
 
@@ -94,7 +94,7 @@ impl BlockEffects {
     }
 
     pub(super) fn record_note(&self, note: Note) {
-        self.note.set(Some(note));
+        self.notes.borrow_mut().insert(note);
         self.pause.set(0);
     }
 
@@ -109,17 +109,17 @@ impl BlockEffects {
     }
 
     /// Takes the effects; none is left.
-    pub(super) fn take(&self) -> (Option<Note>, Option<RunEnd>) {
-        (self.note.take(), self.run_end.take())
+    pub(super) fn take(&self) -> (BTreeSet<Note>, Option<RunEnd>) {
+        (self.notes.take(), self.run_end.take())
     }
 
     /// Runs a function and discards its effects.
     pub(super) fn without_effects<T>(&self, inspect: impl FnOnce() -> T) -> T {
-        let before = (self.pause.get(), self.note.get(), self.run_end.get());
+        let (pause, notes, run_end) = (self.pause.get(), self.notes.take(), self.run_end.get());
         let result = inspect();
-        self.pause.set(before.0);
-        self.note.set(before.1);
-        self.run_end.set(before.2);
+        self.pause.set(pause);
+        self.notes.replace(notes);
+        self.run_end.set(run_end);
         result
     }
 }

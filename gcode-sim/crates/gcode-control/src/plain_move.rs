@@ -159,8 +159,8 @@ impl Registers {
                 }
                 value => {
                     let value = match value {
-                        WordOperand::Variable { slot: Slot::Free(place), .. } => {
-                            self.variables.get_free(*place)
+                        WordOperand::Variable { slot: Slot::Free(variable), .. } => {
+                            self.variables.get_free(*variable)
                         }
                         value => self.evaluate_axis_value(words, value)?,
                     };

@@ -4,7 +4,6 @@ use super::data::ControlData;
 use super::flow::ProgramFlow;
 use super::functions::{ExecResult, locate};
 use super::linear_motion::{CoordinateBasis, Endpoint};
-use super::quantities::POWERS;
 use super::registers::Registers;
 use super::state::{PolarPoint, State};
 use super::words::{BlockWords, WordNumber};
@@ -14,6 +13,7 @@ use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::Words;
 use gcode_lang::program::modes::{Distance, Polar, Unit};
 use gcode_lang::source::Span;
+use gcode_lang::units::POWERS;
 
 /// The control and the words of a block.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ pub(super) struct Planner<'a> {
     pub(super) lowered: &'a Words,
     /// Evaluated words.
     pub(super) words: &'a BlockWords,
-    /// Place of the block.
+    /// Span of the block.
     pub(super) block: Span,
 }
 

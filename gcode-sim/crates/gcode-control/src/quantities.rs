@@ -8,7 +8,7 @@ use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Increment;
 use gcode_lang::program::modes::{FeedMode, Unit};
 use gcode_lang::syntax::ast::Decimal;
-use gcode_lang::units::round_scaled_within;
+use gcode_lang::units::{POWERS, round_scaled_within};
 
 /// Units of the axis words of a block, computed once for all of them.
 #[derive(Clone, Copy, Debug)]
@@ -23,16 +23,13 @@ pub(super) struct Measure {
 /// Largest value in increments: nine digits (8.1, PS0003).
 const MAX_INCREMENTS: u64 = 999_999_999;
 
-/// Powers of ten by their exponent.
-pub(super) const POWERS: [f64; 8] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
-
 /// Powers of ten as integers; the last exceeds the digits of any literal.
 const INTEGER_POWERS: [u64; 20] = {
     let mut units = [1; 20];
-    let mut place = 1;
-    while place < units.len() {
-        units[place] = units[place - 1] * 10;
-        place += 1;
+    let mut exponent = 1;
+    while exponent < units.len() {
+        units[exponent] = units[exponent - 1] * 10;
+        exponent += 1;
     }
     units
 };

@@ -2,7 +2,7 @@
 use super::control::Control;
 use super::data::{STANDARD_SYSTEMS, system_index};
 use gcode_lang::control::ParameterId;
-use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::modes::{GROUPS, WorkSystem};
 
 /// Value that is no longer as it is when the control is switched on.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct ResidualValue {
 /// Kind of a [`ResidualValue`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResidualKind {
-    /// Common variable.
+    /// Common variable, or #4130 in an additional work coordinate system.
     Variable,
     /// G code in effect in a modal group.
     Mode,
@@ -50,10 +50,12 @@ impl Control {
         for (number, value) in self.variables().filter(|(number, _)| *number >= 100) {
             push(ResidualKind::Variable, format!("#{number}"), value);
         }
-        for group in 1..=22 {
-            if let Ok(value) = registers.read_variable(4000 + group) {
-                push(ResidualKind::Mode, mode_name(group), value.number());
-            }
+        for group in GROUPS {
+            let code = state.modal.code_in(*group);
+            push(ResidualKind::Mode, mode_name(group.number()), f64::from(code) / 10.0);
+        }
+        if let WorkSystem::Additional(number) = state.modal.work {
+            push(ResidualKind::Variable, "#4130".to_owned(), f64::from(number));
         }
         let system_name = |index| match index {
             0 => "the external work offset".to_owned(),
@@ -86,5 +88,65 @@ impl Control {
             push(ResidualKind::Counter, format!("#{number}"), value);
         }
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Limits, Outcome, Value};
+    use gcode_lang::control::{Dialect, Settings};
+    use gcode_lang::program::g_codes::{Effect, find, name};
+    use gcode_lang::program::modes::{Mirror, Rotation, Scaling};
+    use gcode_lang::program::{Memory, NoLibrary};
+
+    /// The control of a family after a program of one block.
+    fn after(dialect: Dialect, block: &str) -> Control {
+        let mut settings = Settings::default();
+        settings.apply_dialect(dialect);
+        let mut memory = Memory::default();
+        memory.load("O1.nc", format!("O1\n{block}\n").into_bytes());
+        let mut control = Control::new(memory, settings);
+        let outcome = control.run(Limits::default(), &mut NoLibrary, &mut ());
+        assert!(matches!(outcome, Outcome::End), "{block} on {dialect:?}: {outcome:?}");
+        control
+    }
+
+    #[test]
+    fn every_modal_code_is_read_back_by_its_group_and_is_a_residual_value() {
+        for dialect in Dialect::ALL_CONTROLS.iter().copied() {
+            for row in (0..10_000).filter_map(|code| find(code).row_for(dialect)) {
+                let Some(group) = row.group() else { continue };
+                let (words, code) = match row.effect {
+                    Effect::AdditionalWork => (" P1", 541),
+                    Effect::NumberedWork(_) => ("", 541),
+                    Effect::Scaling(Scaling::On) => (" P2000", row.code),
+                    Effect::Mirror(Mirror::On) => (" X0", row.code),
+                    Effect::Rotation(Rotation::Tilted) => (" X0 Y0 Z0 I0 J0 K0", row.code),
+                    _ => ("", row.code),
+                };
+                let (block, expected) = (format!("{}{words}", name(row.code)), f64::from(code) / 10.0);
+                let control = after(dialect, &block);
+                // A Haas has no number for G154.
+                if code != 541 || dialect != Dialect::HaasNgc {
+                    assert_eq!(control.variable(4000 + group), Ok(Value::Number(expected)), "{block}");
+                }
+                let residual =
+                    ResidualValue { kind: ResidualKind::Mode, name: mode_name(group), value: expected };
+                assert!(control.residual_values().contains(&residual), "{block} on {dialect:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_number_of_an_additional_work_coordinate_system_is_a_residual_value() {
+        let number = |dialect, block| {
+            let values = after(dialect, block).residual_values();
+            values.into_iter().find(|value| value.name == "#4130").map(|value| value.value)
+        };
+        assert_eq!(number(Dialect::Fanuc31i, "G54"), None);
+        assert_eq!(number(Dialect::Fanuc31i, "G54.1 P3"), Some(3.0));
+        assert_eq!(number(Dialect::HaasNgc, "G154 P9"), Some(9.0));
+        assert_eq!(number(Dialect::HaasNgc, "G112"), Some(3.0));
     }
 }

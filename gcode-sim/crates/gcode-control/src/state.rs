@@ -4,8 +4,8 @@ use gcode_lang::motion::{AxisIndex, LengthCompensation, MAX_AXES, Position, Spin
 use gcode_lang::program::cycles::Cycle;
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{
-    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, Motion, Plane, Polar, ReturnTo,
-    Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
+    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, ModalGroup, Motion, Plane, Polar,
+    ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
 };
 use gcode_lang::units::Deg;
 
@@ -259,33 +259,37 @@ impl Modal {
         None
     }
 
-    /// Returns the active G code × 10 of a group, as #4001….
+    /// Returns the active G code × 10 of a group by its number, as #4001…; `None` if there is no such group.
     pub fn code(&self, group: u32) -> Option<u32> {
-        Some(match group {
-            1 => self.motion.code(),
-            2 => self.plane.code(),
-            3 => self.distance.code(),
-            4 => self.stroke_check.code(),
-            5 => self.feed_mode.code(),
-            6 => self.unit.code(),
-            7 => self.cutter.code(),
-            8 => self.length.code(),
-            9 => self.cycle.map_or(800, |cycle| cycle.code),
-            10 => self.return_to.code(),
-            11 => self.scaling.code(),
-            12 => self.call.code(),
-            13 => self.spindle_mode.code(),
-            14 => self.work.code(),
-            15 => self.cutting.code(),
-            16 => self.rotation.code(),
-            17 => self.polar.code(),
-            18 | 19 => 401,
-            // In-feed control and polar interpolation are always off.
-            20 => 1600,
-            21 => 131,
-            22 => self.mirror.code(),
-            _ => return None,
-        })
+        ModalGroup::of(group).map(|group| self.code_in(group))
+    }
+
+    /// Returns the active G code × 10 of a group.
+    pub fn code_in(&self, group: ModalGroup) -> u32 {
+        match group {
+            ModalGroup::Motion => self.motion.code(),
+            ModalGroup::Plane => self.plane.code(),
+            ModalGroup::Distance => self.distance.code(),
+            ModalGroup::StrokeCheck => self.stroke_check.code(),
+            ModalGroup::FeedMode => self.feed_mode.code(),
+            ModalGroup::Unit => self.unit.code(),
+            ModalGroup::Cutter => self.cutter.code(),
+            ModalGroup::Length => self.length.code(),
+            ModalGroup::Cycle => self.cycle.map_or(800, |cycle| cycle.code),
+            ModalGroup::ReturnTo => self.return_to.code(),
+            ModalGroup::Scaling => self.scaling.code(),
+            ModalGroup::ModalCall => self.call.code(),
+            ModalGroup::SpindleMode => self.spindle_mode.code(),
+            ModalGroup::Work => self.work.code(),
+            ModalGroup::Cutting => self.cutting.code(),
+            ModalGroup::Rotation => self.rotation.code(),
+            ModalGroup::Polar => self.polar.code(),
+            // Normal direction control, in-feed control and polar interpolation are always off.
+            ModalGroup::NormalDirection | ModalGroup::AlternateNormalDirection => 401,
+            ModalGroup::InFeed => 1600,
+            ModalGroup::PolarInterpolation => 131,
+            ModalGroup::Mirror => self.mirror.code(),
+        }
     }
 }
 
@@ -439,15 +443,17 @@ impl Transform {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gcode_lang::program::modes::GROUPS;
 
     #[test]
     fn power_on_codes_are_those_of_the_manuals() {
         let modal = Modal::default();
-        let codes: Vec<_> = (1..=17).filter_map(|group| modal.code(group)).collect();
-        assert_eq!(
-            codes,
-            [0, 170, 900, 220, 940, 210, 400, 490, 800, 980, 500, 670, 970, 540, 640, 690, 150]
-        );
+        let codes: Vec<_> = GROUPS.iter().map(|group| modal.code_in(*group)).collect();
+        let expected = [
+            0, 170, 900, 220, 940, 210, 400, 490, 800, 980, 500, 670, 970, 540, 640, 690, 150, 401, 401,
+            1600, 131, 501,
+        ];
+        assert_eq!(codes, expected);
     }
 
     #[test]

@@ -4,14 +4,15 @@ use super::executor::Executor;
 use super::functions::{ExecResult, integer, locate, variable_number};
 use super::loop_detection::LoopDetector;
 use super::notes::Note;
+use super::registers::Registers;
 use super::variables::{Value, VariableClass};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
-use gcode_lang::motion::{EventKind, EventSink, StopKind};
+use gcode_lang::motion::{Event, EventKind, EventSink, StopKind};
 use gcode_lang::program::{Assign, OpIndex, Operand, PrintPart, Program, Slot, Statement};
 use gcode_lang::source::{Span, Spanned};
 use gcode_lang::syntax::ast::PrintKind;
-use gcode_lang::units::round_scaled;
+use gcode_lang::units::{POWERS, round_scaled};
 
 /// Largest alarm number of a program on any control.
 const MAX_ALARM_NUMBER: u16 = 4095;
@@ -73,9 +74,7 @@ impl Executor {
                 self.write(slot, value, text.as_deref(), *target_span, sink)?;
             }
             Statement::Assignments(assignments) => {
-                for one in assignments {
-                    self.any_statement(program, one, loop_detector, sink)?;
-                }
+                self.assign_all(program, assignments, loop_detector, sink)?;
             }
             Statement::Goto(to) => self.goto(program, to)?,
             Statement::IfGoto { condition, to } => {
@@ -105,6 +104,31 @@ impl Executor {
             loop_detector.record_jump(self);
         }
         Ok(())
+    }
+
+    /// Executes the assignments of one block in their order, each with the values that the earlier ones have written; an
+    /// alarm takes all of them back.
+    #[inline(never)]
+    fn assign_all<S: EventSink>(
+        &mut self,
+        program: &Program,
+        assignments: &[Statement],
+        loop_detector: &mut LoopDetector,
+        sink: &mut S,
+    ) -> ExecResult<()> {
+        let before = self.registers.clone();
+        let stops = self.log.stops.len();
+        let mut deferred = DeferredEvents::default();
+        let mut assign = |one| self.any_statement(program, one, loop_detector, &mut deferred);
+        let result = assignments.iter().try_for_each(&mut assign);
+        if result.is_err() {
+            let block_effects = std::mem::take(&mut self.registers.block_effects);
+            self.registers = Registers { block_effects, ..before };
+            self.log.stops.truncate(stops);
+        } else {
+            deferred.0.iter().for_each(|kind| self.pass_on(kind, 0.0, sink));
+        }
+        result
     }
 
     /// Executes the DO or WHILE of a loop; `end` is the operation of its END.
@@ -183,7 +207,7 @@ impl Executor {
         sink: &mut S,
     ) -> ExecResult<()> {
         match slot {
-            Slot::Free(place) => self.registers.variables.set_free(place, value.into()),
+            Slot::Free(index) => self.registers.variables.set_free(index, value.into()),
             Slot::Other(number) => self.write_other(number, value, text, span, sink)?,
         }
         Ok(())
@@ -200,8 +224,8 @@ impl Executor {
         sink: &mut S,
     ) -> ExecResult<()> {
         match self.registers.variables.classify(number) {
-            VariableClass::Local(place) | VariableClass::Common(place) => {
-                self.registers.variables.set(place, value)
+            VariableClass::Local(index) | VariableClass::Common(index) => {
+                self.registers.variables.set(index, value)
             }
             VariableClass::Vacant => return Err(Alarm::WriteProtected { number }.located_at(span)),
             VariableClass::System if number == 3000 => {
@@ -246,10 +270,20 @@ impl Executor {
         let text = text.to_owned();
         let stop = EventKind::Stop { kind: StopKind::Message, text, variables };
         if self.registers.lookahead.has_pending_move() {
-            let place = self.flow.backtrace();
-            return self.registers.lookahead.push_pending(stop, place);
+            let backtrace = self.flow.backtrace();
+            return self.registers.lookahead.push_pending(stop, backtrace);
         }
         self.emit(&stop, 0.0, sink);
+    }
+}
+
+/// Events of the assignments of one block, until all of them are executed; only #3006 has one.
+#[derive(Default)]
+struct DeferredEvents(Vec<EventKind>);
+
+impl EventSink for DeferredEvents {
+    fn event(&mut self, event: &Event<'_>) {
+        self.0.push(event.kind.clone());
     }
 }
 
@@ -311,8 +345,7 @@ fn decimal(
     if !(1..=settings.print_digits).contains(&usize::from(whole + decimals)) {
         return Err(Alarm::PrintFormat);
     }
-    let scale = 10_f64.powi(i32::from(decimals));
-    let scaled = round_scaled(number.abs(), scale);
+    let scaled = round_scaled(number.abs(), POWERS[usize::from(decimals)]);
     if scaled > 1e15 {
         return Err(Alarm::IntegerOverflow);
     }
@@ -344,7 +377,7 @@ fn decimal(
 
 /// Prints `#n[d]`: the value × 10^d as two words, the highest byte first.
 fn binary(number: f64, decimals: u8, line: &mut Vec<u8>) -> Result<(), Alarm> {
-    let scaled = round_scaled(number, 10_f64.powi(i32::from(decimals)));
+    let scaled = round_scaled(number, POWERS[usize::from(decimals)]);
     if !(-2_147_483_648.0..=2_147_483_647.0).contains(&scaled) {
         return Err(Alarm::IntegerOverflow);
     }

@@ -129,8 +129,8 @@ fn find(number: u32, offsets: OffsetVariables) -> Result<&'static VariableRow, A
             return Err(unknown);
         }
     }
-    let place = ROWS.partition_point(|row| row.to < number);
-    let found = ROWS.get(place).filter(|row| row.from <= number);
+    let index = ROWS.partition_point(|row| row.to < number);
+    let found = ROWS.get(index).filter(|row| row.from <= number);
     found.ok_or_else(|| not_simulated(number, NOT_SIMULATED).unwrap_or(unknown))
 }
 
@@ -263,16 +263,16 @@ impl Registers {
         self.update_is_plain();
     }
 
-    fn tool_offset(&self, register: Register, place: u32) -> Result<f64, Alarm> {
-        let value = self.data.offsets.tool(self.data.register(register), place + 1)?;
+    fn tool_offset(&self, register: Register, index: u32) -> Result<f64, Alarm> {
+        let value = self.data.offsets.tool(self.data.register(register), index + 1)?;
         Ok(self.data.to_program_unit(&self.state, None, value))
     }
 
-    fn set_tool_offset(&mut self, register: Register, place: u32, value: f64) -> Result<(), Alarm> {
+    fn set_tool_offset(&mut self, register: Register, index: u32, value: f64) -> Result<(), Alarm> {
         let register = self.data.register(register);
-        self.data.offsets.tool(register, place + 1)?;
+        self.data.offsets.tool(register, index + 1)?;
         let value = self.data.check_offset_range(self.data.to_stored(&self.state, None, value))?;
-        self.data.offsets.tools[register as usize][place as usize + 1] = value;
+        self.data.offsets.tools[register as usize][index as usize + 1] = value;
         Ok(())
     }
 

@@ -39,11 +39,11 @@ impl Planner<'_> {
             return Err(self.not_simulated("G68.2 (tilted plane other than by Euler angles)"));
         }
         let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
-        for (place, (letter, angle)) in [(b'X', b'I'), (b'Y', b'J'), (b'Z', b'K')].into_iter().enumerate() {
+        for (index, (letter, angle)) in [(b'X', b'I'), (b'Y', b'J'), (b'Z', b'K')].into_iter().enumerate() {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            axes[place] = self.locate(self.data.settings.axes.find(letter).ok_or(missing))?;
-            origin[place] = self.dimension(letter, &plan.state)?.unwrap_or(0.0);
-            angles[place] = self.angle(angle)?.unwrap_or(0.0);
+            axes[index] = self.locate(self.data.settings.axes.find(letter).ok_or(missing))?;
+            origin[index] = self.dimension(letter, &plan.state)?.unwrap_or(0.0);
+            angles[index] = self.angle(angle)?.unwrap_or(0.0);
         }
         plan.state.transform.tilt = Some(Tilt::new(axes, origin, angles));
         self.data.apply_transform_change(&mut plan.state);

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{STACK, Slot};
+use gcode_lang::units::POWERS;
 
 /// Value of a variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -106,8 +107,8 @@ const LOCALS: usize = 34;
 /// Number of the variables up to the last common of every control.
 const DIRECT_COUNT: usize = 1000;
 
-/// Number of their places, a power of two: the low bits of any number are a place, without a range check.
-const PLACES: usize = DIRECT_COUNT.next_power_of_two();
+/// Number of their slots, a power of two: the low bits of any number are an index, without a range check.
+const SLOTS: usize = DIRECT_COUNT.next_power_of_two();
 
 /// Locals #1 to #33 of one macro level, by number; #0 stays vacant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,7 +129,7 @@ impl Locals {
     }
 }
 
-/// Class of a variable number; locals and commons with their place in [`Vars`].
+/// Class of a variable number; locals and commons with their index in [`Vars`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VariableClass {
     Vacant,
@@ -140,8 +141,8 @@ pub(super) enum VariableClass {
 /// Local and common variables.
 #[derive(Clone, Debug)]
 pub struct Vars {
-    /// Locals of the current level and commons, by number; other places are never written.
-    direct_values: Box<[StoredValue; PLACES]>,
+    /// Locals of the current level and commons, by number; other slots are never written.
+    direct_values: Box<[StoredValue; SLOTS]>,
     extra_values: Vec<StoredValue>,
     /// Locals of the callers' levels, the main program's first.
     outer_locals: Vec<Locals>,
@@ -158,7 +159,7 @@ impl Vars {
     pub(super) fn new(extra_range: Option<(u32, u32)>, aliases_commons: bool) -> Self {
         let count = extra_range.map_or(0, |(from, to)| (to - from + 1) as usize);
         Self {
-            direct_values: Box::new([StoredValue::VACANT; PLACES]),
+            direct_values: Box::new([StoredValue::VACANT; SLOTS]),
             extra_values: vec![StoredValue::VACANT; count],
             outer_locals: Vec::new(),
             extra_range: extra_range.unwrap_or((1, 0)),
@@ -170,8 +171,8 @@ impl Vars {
     /// SETVN: names the variables from `first` on, all or none.
     pub(super) fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {
         let numbered = || {
-            let number = |place: usize| first.saturating_add(place as u32);
-            names.iter().enumerate().map(move |(place, name)| (number(place), name))
+            let number = |index: usize| first.saturating_add(index as u32);
+            names.iter().enumerate().map(move |(index, name)| (number(index), name))
         };
         if let Some((number, _)) = numbered().find(|(number, _)| !(500..=549).contains(number)) {
             return Err(Alarm::NoSuchVariable { number: i64::from(number) });
@@ -193,8 +194,8 @@ impl Vars {
     #[inline]
     pub(super) fn classify(&self, number: u32) -> VariableClass {
         match Slot::of(number) {
-            Slot::Free(place) if usize::from(place) < LOCALS => VariableClass::Local(usize::from(place)),
-            Slot::Free(place) => VariableClass::Common(usize::from(place)),
+            Slot::Free(index) if usize::from(index) < LOCALS => VariableClass::Local(usize::from(index)),
+            Slot::Free(index) => VariableClass::Common(usize::from(index)),
             Slot::Other(number) => self.classify_other(number),
         }
     }
@@ -215,50 +216,50 @@ impl Vars {
 
     #[inline(always)]
     pub(super) fn get_free(&self, number: u16) -> Value {
-        self.direct_values[usize::from(number) % PLACES].into()
+        self.direct_values[usize::from(number) % SLOTS].into()
     }
 
     /// Returns the number of a variable of [`Slot::Free`]; 0 if it is vacant.
     #[inline(always)]
     pub(super) fn free_number(&self, number: u16) -> f64 {
-        self.direct_values[usize::from(number) % PLACES].number
+        self.direct_values[usize::from(number) % SLOTS].number
     }
 
     #[inline(always)]
     pub(super) fn set_free(&mut self, number: u16, value: Accumulator) {
-        let stored = &mut self.direct_values[usize::from(number) % PLACES];
+        let stored = &mut self.direct_values[usize::from(number) % SLOTS];
         (stored.number, stored.is_vacant, stored.decimals) = (value.number, value.is_vacant, 0);
     }
 
-    /// Returns the value at a place from [`Vars::classify`].
-    pub(super) fn get(&self, place: usize) -> Value {
-        self.stored_value(place).into()
+    /// Returns the value at an index from [`Vars::classify`].
+    pub(super) fn get(&self, index: usize) -> Value {
+        self.stored_value(index).into()
     }
 
-    /// Writes the value at a place from [`Vars::classify`].
-    pub(super) fn set(&mut self, place: usize, value: Value) {
-        match place.checked_sub(DIRECT_COUNT) {
-            None => self.direct_values[place] = value.into(),
-            Some(place) => self.extra_values[place] = value.into(),
+    /// Writes the value at an index from [`Vars::classify`].
+    pub(super) fn set(&mut self, index: usize, value: Value) {
+        match index.checked_sub(DIRECT_COUNT) {
+            None => self.direct_values[index] = value.into(),
+            Some(index) => self.extra_values[index] = value.into(),
         }
     }
 
     #[inline]
-    fn stored_value(&self, place: usize) -> StoredValue {
-        match place.checked_sub(DIRECT_COUNT) {
-            None => self.direct_values[place],
-            Some(place) => self.extra_values[place],
+    fn stored_value(&self, index: usize) -> StoredValue {
+        match index.checked_sub(DIRECT_COUNT) {
+            None => self.direct_values[index],
+            Some(index) => self.extra_values[index],
         }
     }
 
-    fn places(&self) -> usize {
+    fn indices(&self) -> usize {
         DIRECT_COUNT + self.extra_values.len()
     }
 
     /// ADP: returns the value of a local as if the argument had been written with a point.
     pub(super) fn value_with_point(&self, local: usize) -> f64 {
         let StoredValue { number, decimals, .. } = self.direct_values[local];
-        number * 10_f64.powi(i32::from(decimals))
+        number * POWERS[usize::from(decimals)]
     }
 
     /// Returns the locals of the current level.
@@ -304,15 +305,15 @@ impl Vars {
             && *names == other.names
     }
 
-    /// Returns true if the values at a place differ in any bit.
+    /// Returns true if the values at an index differ in any bit.
     #[inline]
-    pub(super) fn differs_at(&self, place: usize, other: &Self) -> bool {
-        self.stored_value(place).bits() != other.stored_value(place).bits()
+    pub(super) fn differs_at(&self, index: usize, other: &Self) -> bool {
+        self.stored_value(index).bits() != other.stored_value(index).bits()
     }
 
-    /// Returns a place where the values differ; that of #0 if only callers' locals do.
+    /// Returns an index where the values differ; that of #0 if only callers' locals do.
     pub(super) fn difference(&self, other: &Self) -> Option<usize> {
-        let found = (0..self.places()).find(|place| self.differs_at(*place, other));
+        let found = (0..self.indices()).find(|index| self.differs_at(*index, other));
         found.or_else(|| self.outer_bits().ne(other.outer_bits()).then_some(0))
     }
 
@@ -324,17 +325,17 @@ impl Vars {
     pub(super) fn nonvacant(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let local =
             |local| self.outer_locals.first().map_or_else(|| self.get(local), |level| level.get(local));
-        let locals = (0..LOCALS).map(move |place| (place, local(place)));
-        let commons = (LOCALS..self.places()).map(|place| (place, self.get(place)));
-        locals.chain(commons).filter_map(|(place, value)| {
+        let locals = (0..LOCALS).map(move |index| (index, local(index)));
+        let commons = (LOCALS..self.indices()).map(|index| (index, self.get(index)));
+        locals.chain(commons).filter_map(|(index, value)| {
             let number =
-                place.checked_sub(DIRECT_COUNT).map_or(place as u32, |more| self.extra_range.0 + more as u32);
+                index.checked_sub(DIRECT_COUNT).map_or(index as u32, |more| self.extra_range.0 + more as u32);
             Some((number, value.as_number()?))
         })
     }
 }
 
-/// Operands that wait for their operators, in [`STACK`] places. The stack is part of the control, so that an evaluation has
+/// Operands that wait for their operators, in [`STACK`] slots. The stack is part of the control, so that an evaluation has
 /// nothing to clear; its depth wraps, which needs no range check and tolerates operands that an alarm has left.
 #[derive(Clone, Debug)]
 pub(super) struct OperandStack {
@@ -405,8 +406,8 @@ mod tests {
     #[test]
     fn variables_that_are_not_vacant_have_their_numbers() {
         let mut vars = Vars::new(Some((98_000, 98_499)), false);
-        for place in [33, 100, 999, DIRECT_COUNT, DIRECT_COUNT + 499] {
-            vars.set(place, Value::Number(1.0));
+        for index in [33, 100, 999, DIRECT_COUNT, DIRECT_COUNT + 499] {
+            vars.set(index, Value::Number(1.0));
         }
         let numbers: Vec<_> = vars.nonvacant().map(|(number, _)| number).collect();
         assert_eq!(numbers, [33, 100, 999, 98_000, 98_499]);

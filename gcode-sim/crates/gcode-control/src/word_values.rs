@@ -1,7 +1,6 @@
 //! Values of the words of a block, and of the words of a macro call as arguments.
 use super::evaluation::RoundingTarget;
 use super::functions::{ExecResult, locate};
-use super::quantities::POWERS;
 use super::registers::Registers;
 use super::variables::{Locals, VACANT, Value};
 use super::words::{BlockWords, CallingWord, WordNumber, computed_row, count};
@@ -10,6 +9,7 @@ use gcode_lang::control::ArgumentScale;
 use gcode_lang::program::{ArgumentLocals, LoweredWord, WordOperand, Words, g_codes};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::Decimal;
+use gcode_lang::units::POWERS;
 
 impl Registers {
     /// Returns the count of a word; `None` without the word or with a vacant value.
@@ -75,7 +75,7 @@ impl Registers {
         if word.comma {
             return locate(block_words.put_corner(word, raw), word.span);
         }
-        let letter = match word.axis.and_then(|place| words.axis(place)) {
+        let letter = match word.axis.and_then(|index| words.axis(index)) {
             Some(axis) => {
                 let number = self.operand(axis)?.number();
                 self.data.settings.axes.letter(locate(self.data.axis_of(number), word.span)?) as u8
@@ -124,7 +124,7 @@ impl Registers {
     pub(super) fn evaluate_operand(&self, words: &Words, value: &WordOperand) -> ExecResult<Value> {
         match value {
             WordOperand::Variable { slot, span } => self.load(*slot, span),
-            WordOperand::Code(place) => self.run_code(words.code(*place), RoundingTarget::Increment),
+            WordOperand::Code(index) => self.run_code(words.code(*index), RoundingTarget::Increment),
             WordOperand::Number(number) => Ok(Value::Number(*number)),
             WordOperand::G(code, _) => Ok(Value::Number(f64::from(*code) / 10.0)),
             WordOperand::Literal(number) => Ok(Value::Number(number.value())),
@@ -160,8 +160,8 @@ impl Registers {
     /// Returns the number of a word as an argument of a macro.
     fn raw_argument(&self, words: &Words, word: &LoweredWord) -> ExecResult<Option<WordNumber>> {
         match word.value {
-            WordOperand::Code(place) => {
-                let value = self.run_code(words.code(place), RoundingTarget::Whole)?;
+            WordOperand::Code(index) => {
+                let value = self.run_code(words.code(index), RoundingTarget::Whole)?;
                 Ok(value.as_number().map(WordNumber::Computed))
             }
             _ => self.evaluate_word(words, word),

@@ -229,7 +229,7 @@ pub(super) struct CallingWord {
 
 impl CallingWord {
     /// Returns true if a word of the block belongs to the call.
-    pub(super) fn contains(&self, place: usize, word: &LoweredWord) -> bool {
-        place == self.index || self.takes_repeats && word.letter == b'L'
+    pub(super) fn contains(&self, index: usize, word: &LoweredWord) -> bool {
+        index == self.index || self.takes_repeats && word.letter == b'L'
     }
 }

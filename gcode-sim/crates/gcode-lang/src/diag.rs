@@ -1,4 +1,4 @@
-//! Findings and messages as plain data: code, severity, place, reason and remedy. Rendering is left to the
+//! Findings and messages as plain data: code, severity, span, reason and remedy. Rendering is left to the
 //! caller.
 use std::borrow::Cow;
 
@@ -139,7 +139,7 @@ const fn is_equal(mut one: &[u8], mut other: &[u8]) -> bool {
     one.is_empty() && other.is_empty()
 }
 
-/// One finding: message, place and remedy.
+/// One finding: message, span and remedy.
 ///
 /// The message is complete without the other fields, also on a narrow screen: it states the actual and the
 /// nominal value with their units.
@@ -159,7 +159,7 @@ pub struct Diagnostic {
     pub span: Option<Span>,
     /// Points on the part, the worst first.
     pub sites: Vec<Site>,
-    /// Secondary places with their captions: "the loop starts here".
+    /// Secondary spans with their captions: "the loop starts here".
     pub labels: Vec<(Span, String)>,
     /// Additional facts, one sentence each.
     pub notes: Vec<String>,
@@ -168,7 +168,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Creates a finding of the kind's severity, without place, notes or help.
+    /// Creates a finding of the kind's severity, without span, notes or help.
     pub fn new(kind: &'static FindingKind, message: impl Into<String>) -> Self {
         Self {
             kind,
@@ -214,7 +214,7 @@ impl Diagnostic {
         self
     }
 
-    /// Appends a secondary place with its caption.
+    /// Appends a secondary span with its caption.
     #[must_use]
     pub fn label(mut self, span: Span, caption: impl Into<String>) -> Self {
         self.labels.push((span, caption.into()));

@@ -5,7 +5,7 @@
 //! that cannot run becomes the [`alarm`] that a control raises when it reaches it.
 //!
 //! The other modules hold the data shared with the crates that execute, check and report programs: [`control`] the
-//! settings of a control, [`motion`] the events of a machine, [`source`] texts and places, [`units`] quantities and
+//! settings of a control, [`motion`] the events of a machine, [`source`] texts and spans, [`units`] quantities and
 //! [`diag`] findings.
 //!
 //! ```

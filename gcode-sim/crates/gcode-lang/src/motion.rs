@@ -41,20 +41,15 @@ impl Axes {
     }
 
     fn from_letters(axis_letters: &[u8]) -> Self {
-        let (mut letters, mut places, mut mask, mut rotary) = ([0; MAX_AXES], [Self::NO_AXIS; 256], 0, 0);
+        let (mut letters, mut axis_of_letter, mut mask, mut rotary) =
+            ([0; MAX_AXES], [Self::NO_AXIS; 256], 0, 0);
         for (axis, letter) in axis_letters.iter().enumerate() {
             letters[axis] = *letter;
-            places[usize::from(*letter)] = axis as u8;
+            axis_of_letter[usize::from(*letter)] = axis as u8;
             mask |= 1 << (letter - b'A');
             rotary |= u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
         }
-        Self {
-            letters,
-            count: axis_letters.len(),
-            axis_of_letter: places,
-            letter_bits: mask,
-            rotary_bits: rotary,
-        }
+        Self { letters, count: axis_letters.len(), axis_of_letter, letter_bits: mask, rotary_bits: rotary }
     }
 
     /// Returns the axis with this letter.

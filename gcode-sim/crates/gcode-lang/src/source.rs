@@ -1,4 +1,4 @@
-//! Program texts as bytes, and places in them. Every token, operation, event and finding has a [`Span`].
+//! Program texts as bytes, and positions in them. Every token, operation, event and finding has a [`Span`].
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
@@ -17,17 +17,17 @@ pub struct Span {
     pub end: u32,
 }
 
-/// A value with the place where it is written.
+/// Value with its span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spanned<T> {
     /// The value.
     pub node: T,
-    /// Its place.
+    /// Span of the value in its text.
     pub span: Span,
 }
 
 impl<T> Spanned<T> {
-    /// Pairs a value with its place.
+    /// Pairs a value with its span.
     pub fn new(node: T, span: Span) -> Self {
         Self { node, span }
     }
@@ -138,7 +138,7 @@ pub(crate) fn line_length(text: &[u8]) -> usize {
     // Sets the top bit of every byte up to CR, LF included. A byte above a match may get a false bit.
     let low_byte_bits = |word: u64| word.wrapping_sub(ONES * u64::from(b'\r' + 1)) & !word & ONES << 7;
     let (chunks, rest) = text.as_chunks::<16>();
-    for (place, chunk) in chunks.iter().enumerate() {
+    for (index, chunk) in chunks.iter().enumerate() {
         if !chunk.iter().fold(false, |any, byte| any | (*byte <= b'\r')) {
             continue;
         }
@@ -149,7 +149,7 @@ pub(crate) fn line_length(text: &[u8]) -> usize {
             while found != 0 {
                 let bits = found.trailing_zeros() & !7;
                 if is_line_end(&((word >> bits) as u8)) {
-                    return 16 * place + 8 * nth_word + bits as usize / 8;
+                    return 16 * index + 8 * nth_word + bits as usize / 8;
                 }
                 found &= found - 1;
             }

@@ -3,7 +3,7 @@
 //!
 //! Callers work on the programmed path; here it becomes the path of the tool centre. Moves go through two stages: corner
 //! words shape the path ([`path_move`]), compensation puts the centre beside it ([`cutter_compensation`]). Each stage holds
-//! back one move, and the items after a move that waits wait as well. Every event keeps the place of its own block.
+//! back one move, and the items after a move that waits wait as well. Every event keeps the backtrace of its own block.
 
 mod cutter_compensation;
 mod path_move;
@@ -41,7 +41,7 @@ pub(super) struct Lookahead {
     ready: Vec<ReadyEvent>,
 }
 
-/// Event that no longer waits, with its seconds and its place.
+/// Event that no longer waits, with its seconds and its backtrace.
 pub(super) type ReadyEvent = (EventKind, f64, Backtrace);
 
 /// Compensation and corner words that one block commands.
@@ -95,7 +95,7 @@ impl Lookahead {
 
     /// Checks the stroke of the moves that no longer wait, each with its own block.
     pub(super) fn check_stroke(&self, data: &ControlData) -> ExecResult<()> {
-        self.ready.iter().try_for_each(|(kind, _, place)| locate(data.check_move(kind), place.block))
+        self.ready.iter().try_for_each(|(kind, _, backtrace)| locate(data.check_move(kind), backtrace.block))
     }
 
     /// Adds an event that isn't a move after the pending move.

@@ -190,7 +190,7 @@ impl Lookahead {
                 let to = self.with_plane_point(path_move.end_position(), self.plane_point(&self.tool_centre));
                 self.emit_straight(data, &path_move, to);
             }
-            PendingItem::Other(kind, seconds, place) => self.ready.push((kind, seconds, place)),
+            PendingItem::Other(kind, seconds, backtrace) => self.ready.push((kind, seconds, backtrace)),
         }
     }
 

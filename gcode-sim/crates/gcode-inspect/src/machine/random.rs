@@ -88,7 +88,8 @@ mod tests {
                 };
                 boxes[(draw.uniform() * 1000.0) as usize] += 1;
             }
-            let chi = boxes.iter().map(|n| (f64::from(*n) - 1000.0).powi(2) / 1000.0).sum::<f64>();
+            let deviations = boxes.iter().map(|n| f64::from(*n) - 1000.0);
+            let chi = deviations.map(|deviation| deviation * deviation / 1000.0).sum::<f64>();
             assert!((chi - 999.0).abs() < 4.0 * 1998f64.sqrt(), "branch {branch}: {chi}");
         }
     }

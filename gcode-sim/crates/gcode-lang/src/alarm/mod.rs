@@ -455,7 +455,7 @@ pub enum Alarm {
     },
 }
 
-/// Alarm with its place. Boxed, because almost every step of a run returns a result without an alarm.
+/// Alarm with its span. Boxed, because almost every step of a run returns a result without an alarm.
 pub type LocatedAlarm = Box<Spanned<Alarm>>;
 
 /// Designation, wording and remedy of an alarm.
@@ -475,7 +475,7 @@ impl Alarm {
         self.row().code
     }
 
-    /// Attaches the place.
+    /// Attaches the span.
     #[cold]
     pub fn located_at(self, span: Span) -> LocatedAlarm {
         Box::new(Spanned::new(self, span))

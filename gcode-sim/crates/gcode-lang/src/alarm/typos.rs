@@ -12,7 +12,7 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
     let [before, rest] = [before, rest].map(|bytes| without_comments(&String::from_utf8_lossy(bytes)));
     let rest = rest.trim_matches(' ');
     let whole = format!("{before}{rest}");
-    let place = AlarmLine { whole: &whole, before: &before, rest, text: &sources.text(span) };
+    let line = AlarmLine { whole: &whole, before: &before, rest, text: &sources.text(span) };
     let rules = [
         foreign_character,
         letter_o,
@@ -27,7 +27,7 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         dwell_with_two_times,
         work_offset_range,
     ];
-    rules.into_iter().find_map(|rule| rule(alarm, &place)).or_else(|| alarm.row().help)
+    rules.into_iter().find_map(|rule| rule(alarm, &line)).or_else(|| alarm.row().help)
 }
 
 /// Line of an alarm, without its comments.

@@ -46,8 +46,8 @@ impl SequentialCodes {
     /// Returns the parameter that makes a code of this letter such a call.
     fn parameter(&self, letter: u8, called: CalledProgram) -> Option<u16> {
         let same = (self.kind == CodeCallKind::Subprogram) == (called.kind == CodeCallKind::Subprogram);
-        let place = u16::try_from(called.program.checked_sub(self.program)?).ok()?;
-        let number = self.first.checked_add(place)?;
+        let index = u16::try_from(called.program.checked_sub(self.program)?).ok()?;
+        let number = self.first.checked_add(index)?;
         (same && self.letter == letter && number <= self.last).then_some(number)
     }
 }
@@ -179,23 +179,23 @@ impl CodeCalls {
             return None;
         }
         CODE_RANGES.iter().zip(&self.ranges).find_map(|(family, [first, program, count])| {
-            let place = number - first.abs();
-            if family.letter != letter || *first == 0 || !(0..*count).contains(&place) {
+            let index = number - first.abs();
+            if family.letter != letter || *first == 0 || !(0..*count).contains(&index) {
                 return None;
             }
             let kind = if *first < 0 { CodeCallKind::Modal } else { family.kind };
-            Some(CalledProgram { program: u32::try_from(program + place).ok()?, kind })
+            Some(CalledProgram { program: u32::try_from(program + index).ok()?, kind })
         })
     }
 
     /// Returns the call that an address makes with any number.
     pub fn address_call(&self, letter: u8) -> Option<AddressCall> {
-        let place = self.addresses.iter().position(|address| *address == Some(letter));
+        let index = self.addresses.iter().position(|address| *address == Some(letter));
         match letter {
             b'T' if self.t_calls_program => Some(T_CALL),
             b'S' if self.s_calls_program => Some(S_CALL),
             b'B' if self.b_calls_program => Some(B_CALL),
-            _ => place.map(|place| ADDRESS_CALLS[place]),
+            _ => index.map(|index| ADDRESS_CALLS[index]),
         }
     }
 
@@ -208,11 +208,11 @@ impl CodeCalls {
                 if call.target.kind == CodeCallKind::Modal { -code } else { code }
             }));
         }
-        if let Some((range, place)) = range_parameter(number) {
-            return Some(self.ranges[range][place]);
+        if let Some((range, index)) = range_parameter(number) {
+            return Some(self.ranges[range][index]);
         }
-        let place = usize::from(number.checked_sub(FIRST_ADDRESS_PARAMETER)?);
-        self.addresses.get(place).map(|address| address.map_or(0, i64::from))
+        let index = usize::from(number.checked_sub(FIRST_ADDRESS_PARAMETER)?);
+        self.addresses.get(index).map(|address| address.map_or(0, i64::from))
     }
 
     /// Iterates over the codes of a letter that cannot be made calls.
@@ -247,14 +247,14 @@ impl CodeCalls {
             }
             return Some(());
         }
-        if let Some((range, place)) = range_parameter(number) {
-            let min = if place == 0 && CODE_RANGES[range].letter == b'G' { -9999 } else { 0 };
+        if let Some((range, index)) = range_parameter(number) {
+            let min = if index == 0 && CODE_RANGES[range].letter == b'G' { -9999 } else { 0 };
             let kept = (min..=99_999_999).contains(&value).then_some(value)?;
-            self.ranges[range][place] = kept;
+            self.ranges[range][index] = kept;
             return Some(());
         }
-        let place = usize::from(number.checked_sub(FIRST_ADDRESS_PARAMETER)?);
-        let address = self.addresses.get_mut(place)?;
+        let index = usize::from(number.checked_sub(FIRST_ADDRESS_PARAMETER)?);
+        let address = self.addresses.get_mut(index)?;
         let letter = u8::try_from(value).ok().filter(|letter| *letter == 0 || ADDRESSES.contains(letter))?;
         *address = (letter != 0).then_some(letter);
         Some(())
@@ -290,8 +290,8 @@ impl CodeCalls {
             (b'S', 9029) => self.s_calls_program = true,
             (b'B', 9028) => self.b_calls_program = true,
             _ => {
-                let place = ADDRESS_CALLS.iter().position(|call| call.program == program)?;
-                self.addresses[place] = ADDRESSES.contains(&letter).then_some(Some(letter))?;
+                let index = ADDRESS_CALLS.iter().position(|call| call.program == program)?;
+                self.addresses[index] = ADDRESSES.contains(&letter).then_some(Some(letter))?;
             }
         }
         Some(())
@@ -313,11 +313,11 @@ fn sequential_codes_of(number: u16) -> Option<&'static SequentialCodes> {
     SEQUENTIAL_CODES.iter().find(|family| (family.first..=family.last).contains(&number))
 }
 
-/// Returns the row of [`CODE_RANGES`] with this parameter, and its place among the three.
+/// Returns the row of [`CODE_RANGES`] with this parameter, and its index among the three.
 fn range_parameter(number: u16) -> Option<(usize, usize)> {
     CODE_RANGES.iter().enumerate().find_map(|(range, family)| {
-        let place = usize::from(number.checked_sub(family.first)?);
-        (place < 3).then_some((range, place))
+        let index = usize::from(number.checked_sub(family.first)?);
+        (index < 3).then_some((range, index))
     })
 }
 

@@ -73,7 +73,7 @@ impl Dialect {
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
 
     /// Families of a code that every control has.
-    pub(crate) const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::HaasNgc];
+    pub const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::HaasNgc];
     pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
     /// Controls with five simultaneous axes.
     pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];

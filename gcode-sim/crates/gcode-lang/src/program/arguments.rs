@@ -37,7 +37,7 @@ impl ArgumentLocals {
             letter => LETTERS
                 .iter()
                 .position(|other| *other == letter && letter != b'O')
-                .map(|place| Some(place + 1))
+                .map(|index| Some(index + 1))
                 .ok_or(Alarm::ImproperAddress { letter: char::from(letter) }),
         }
     }

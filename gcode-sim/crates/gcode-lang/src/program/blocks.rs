@@ -96,18 +96,18 @@ impl Blocks {
 
     /// Lowers a block into its slot; `None` after the last block.
     #[inline(never)]
-    pub(super) fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
-        let start = *self.starts.get(place)?;
-        let at = place & self.index_mask;
+    pub(super) fn lower(&mut self, index: OpIndex, loops: &Loops) -> Option<()> {
+        let start = *self.starts.get(index)?;
+        let at = index & self.index_mask;
         if at >= self.ops.len() {
             self.ops.resize_with(at + 1, Op::default);
         }
-        let apart = self.separate_trees.contains_key(&(place as u32));
+        let apart = self.separate_trees.contains_key(&(index as u32));
         if apart || !self.ops[at].refill(self.text.source, self.text.content(), start) {
-            let op = self.lower_tree(place, loops)?;
+            let op = self.lower_tree(index, loops)?;
             self.ops[at] = op;
         }
-        self.ops[at].ordinal = place as u32 + 1;
+        self.ops[at].ordinal = index as u32 + 1;
         Some(())
     }
 
@@ -133,7 +133,7 @@ impl Blocks {
 /// Links a WHILE, DO or END with its partner.
 ///
 /// Without a partner the operation becomes the alarm that a control raises when it reaches it.
-fn link_loop(op: &mut Op, place: OpIndex, loops: &Loops) {
+fn link_loop(op: &mut Op, index: OpIndex, loops: &Loops) {
     let kind = match &mut op.body {
         OpBody::Plain(kind) => kind,
         OpBody::Guarded(asked) => &mut asked.kind,
@@ -141,10 +141,10 @@ fn link_loop(op: &mut Op, place: OpIndex, loops: &Loops) {
     let OpKind::Statement(statement) = kind else { return };
     let (partner, found, alarm) = match statement {
         Statement::While { number, end, .. } | Statement::Do { number, end } => {
-            (end, loops.end_of(place), Alarm::MissingEnd { number: *number })
+            (end, loops.end_of(index), Alarm::MissingEnd { number: *number })
         }
         Statement::End { number, start } => {
-            (start, loops.begin_of(place), Alarm::MissingDo { number: *number })
+            (start, loops.begin_of(index), Alarm::MissingDo { number: *number })
         }
         _ => return,
     };
@@ -160,8 +160,8 @@ mod tests {
     use super::*;
 
     /// Returns the text of a block; every third one is an assignment with its own code.
-    fn line(place: usize) -> String {
-        if place.is_multiple_of(3) { format!("#1={place}+#2") } else { format!("N{place} X{place}.") }
+    fn line(index: usize) -> String {
+        if index.is_multiple_of(3) { format!("#1={index}+#2") } else { format!("N{index} X{index}.") }
     }
 
     #[test]
@@ -172,17 +172,17 @@ mod tests {
         memory.load("O1.nc", format!("O1\n{}", text.join("\n")).into_bytes());
         let id = memory.ids().next().unwrap();
         let near = (0..2 * KEPT_OPERATIONS).map(|step| step * KEPT_OPERATIONS % (LINES - 3));
-        for place in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
-            let op = memory.lower_block(id, place).unwrap();
+        for index in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
+            let op = memory.lower_block(id, index).unwrap();
             let span = op.span;
             if let OpKind::AssignFree(Assign { code, .. }) = op.kind() {
-                let expected = Operation::Add([OperandSource::Number(place as f64), OperandSource::Free(2)]);
+                let expected = Operation::Add([OperandSource::Number(index as f64), OperandSource::Free(2)]);
                 assert_eq!(code[0].operation, expected);
             } else {
-                assert_eq!(op.number, Some(place as u32));
+                assert_eq!(op.number, Some(index as u32));
             }
-            assert_eq!(memory.sources().text(span), line(place));
-            assert_eq!(memory.get(id).op(place).map(|op| op.span), Some(span));
+            assert_eq!(memory.sources().text(span), line(index));
+            assert_eq!(memory.get(id).op(index).map(|op| op.span), Some(span));
         }
         assert!(memory.lower_block(id, LINES).is_none());
         assert_eq!(memory.lower_program(id).ops().len(), LINES);

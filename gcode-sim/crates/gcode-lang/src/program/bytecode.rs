@@ -12,7 +12,7 @@ pub enum Operand {
     Variable {
         /// Variable.
         slot: Slot,
-        /// Place of the expression.
+        /// Span of the expression.
         span: Span,
     },
     /// Code that computes the value.
@@ -65,16 +65,16 @@ impl AssignmentTarget {
 /// Code of an expression; its last instruction leaves the value.
 pub type Bytecode = Box<[Instruction]>;
 
-/// Operation with its place.
+/// Operation with its span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruction {
     /// Operation.
     pub operation: Operation,
-    /// Place of the expression that the operation computes.
+    /// Span of the expression that the operation computes.
     pub span: Span,
 }
 
-/// Source of an operand. Most operands are numbers and variables, which need no place on the stack.
+/// Source of an operand. Most operands are numbers and variables, which need no slot on the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OperandSource {
     /// Variable of [`Slot::Free`].

@@ -10,10 +10,10 @@ impl Letters {
 
     /// Returns the set of some letters A to Z.
     pub const fn of(letters: &[u8]) -> Self {
-        let (mut bits, mut place) = (0, 0);
-        while place < letters.len() {
-            bits |= 1 << (letters[place] - b'A');
-            place += 1;
+        let (mut bits, mut index) = (0, 0);
+        while index < letters.len() {
+            bits |= 1 << (letters[index] - b'A');
+            index += 1;
         }
         Self(bits)
     }

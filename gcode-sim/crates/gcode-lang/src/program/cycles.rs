@@ -49,7 +49,7 @@ pub struct Cycle {
     /// Steps in order.
     pub steps: &'static [CycleStep],
     /// Description in a few words.
-    pub help: &'static str,
+    pub description: &'static str,
 }
 
 impl Cycle {
@@ -64,8 +64,8 @@ use CycleStep::{
     RapidToInitialAlways, RapidToR, Shift, ShiftBack, SpindleForward, SpindleReverse, SpindleStop,
 };
 
-const fn row(code: u32, steps: &'static [CycleStep], help: &'static str) -> Cycle {
-    Cycle { code, starts_at_r: true, needs_q: false, steps, help }
+const fn row(code: u32, steps: &'static [CycleStep], description: &'static str) -> Cycle {
+    Cycle { code, starts_at_r: true, needs_q: false, steps, description }
 }
 
 /// G73: high-speed peck drilling cycle.

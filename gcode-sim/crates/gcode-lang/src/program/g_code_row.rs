@@ -2,8 +2,8 @@
 use super::code_facts::CodeFacts;
 use super::cycles::Cycle;
 use super::modes::{
-    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, Motion, Plane, Polar, ReturnTo, Rotation,
-    Scaling, SpindleMode, StrokeCheck, Unit,
+    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalGroup, Motion, Plane, Polar, ReturnTo,
+    Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
 };
 use crate::control::Dialect;
 
@@ -64,25 +64,25 @@ pub enum Effect {
 
 impl Effect {
     /// Returns the modal group of a code that stays in force; `None` for any other.
-    pub fn group(self) -> Option<u32> {
+    pub const fn group(self) -> Option<ModalGroup> {
         Some(match self {
-            Self::Motion(_) => 1,
-            Self::Plane(_) => 2,
-            Self::Distance(_) => 3,
-            Self::StrokeCheck(_) => 4,
-            Self::FeedMode(_) => 5,
-            Self::Unit(_) => 6,
-            Self::Cutter(_) => 7,
-            Self::Length(_) => 8,
-            Self::Cycle(_) => 9,
-            Self::ReturnTo(_) => 10,
-            Self::Scaling(_) => 11,
-            Self::SpindleMode(_) => 13,
-            Self::Work(_) | Self::AdditionalWork | Self::NumberedWork(_) => 14,
-            Self::Cutting(_) => 15,
-            Self::Rotation(_) => 16,
-            Self::Polar(_) => 17,
-            Self::Mirror(_) => 22,
+            Self::Motion(_) => ModalGroup::Motion,
+            Self::Plane(_) => ModalGroup::Plane,
+            Self::Distance(_) => ModalGroup::Distance,
+            Self::StrokeCheck(_) => ModalGroup::StrokeCheck,
+            Self::FeedMode(_) => ModalGroup::FeedMode,
+            Self::Unit(_) => ModalGroup::Unit,
+            Self::Cutter(_) => ModalGroup::Cutter,
+            Self::Length(_) => ModalGroup::Length,
+            Self::Cycle(_) => ModalGroup::Cycle,
+            Self::ReturnTo(_) => ModalGroup::ReturnTo,
+            Self::Scaling(_) => ModalGroup::Scaling,
+            Self::SpindleMode(_) => ModalGroup::SpindleMode,
+            Self::Work(_) | Self::AdditionalWork | Self::NumberedWork(_) => ModalGroup::Work,
+            Self::Cutting(_) => ModalGroup::Cutting,
+            Self::Rotation(_) => ModalGroup::Rotation,
+            Self::Polar(_) => ModalGroup::Polar,
+            Self::Mirror(_) => ModalGroup::Mirror,
             Self::OneShot(_)
             | Self::NoEffect
             | Self::LookAhead
@@ -90,6 +90,35 @@ impl Effect {
             | Self::Call
             | Self::NotSimulated => return None,
         })
+    }
+
+    /// Returns true if events, the end of a block or modal conditions show the effect to a comparison of two runs.
+    pub(super) const fn is_shown(self) -> bool {
+        match self {
+            Self::NoEffect | Self::LookAhead | Self::Smoothness => false,
+            Self::Motion(_)
+            | Self::Plane(_)
+            | Self::Distance(_)
+            | Self::FeedMode(_)
+            | Self::Unit(_)
+            | Self::Cutter(_)
+            | Self::Length(_)
+            | Self::Cycle(_)
+            | Self::ReturnTo(_)
+            | Self::Scaling(_)
+            | Self::Work(_)
+            | Self::AdditionalWork
+            | Self::NumberedWork(_)
+            | Self::Cutting(_)
+            | Self::Rotation(_)
+            | Self::Polar(_)
+            | Self::Mirror(_)
+            | Self::OneShot(_) => true,
+            // The simulator has one state of the spindle mode, and the state of the stroke check is recorded at the end.
+            Self::SpindleMode(_) | Self::StrokeCheck(_) => true,
+            // They call a program or raise an alarm.
+            Self::Call | Self::NotSimulated => true,
+        }
     }
 }
 
@@ -149,7 +178,7 @@ pub struct GCodeRow {
     /// Facts for readers of the code that do not execute it.
     pub facts: CodeFacts,
     /// Description in a few words.
-    pub help: &'static str,
+    pub description: &'static str,
     /// Controls with this meaning of the code.
     pub dialects: &'static [Dialect],
 }
@@ -157,7 +186,7 @@ pub struct GCodeRow {
 impl GCodeRow {
     /// Returns the modal group of a code that stays in force; `None` for any other.
     pub fn group(&self) -> Option<u32> {
-        self.effect.group()
+        self.effect.group().map(ModalGroup::number)
     }
 }
 

@@ -16,27 +16,27 @@ impl GCodeRow {
 }
 
 /// Returns a row that applies to all controls.
-const fn row(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code, effect, help, facts: facts::MODAL, dialects: Dialect::ALL_CONTROLS }
+const fn row(code: u32, effect: Effect, description: &'static str) -> GCodeRow {
+    GCodeRow { code, effect, description, facts: facts::MODAL, dialects: Dialect::ALL_CONTROLS }
 }
 
 /// Returns a row that does not apply to a Haas.
-const fn fanuc(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { dialects: Dialect::FANUC, ..row(code, effect, help) }
+const fn fanuc(code: u32, effect: Effect, description: &'static str) -> GCodeRow {
+    GCodeRow { dialects: Dialect::FANUC, ..row(code, effect, description) }
 }
 
 /// Returns a row for controls with five simultaneous axes; the 0i-F has four.
-const fn five_axis(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { dialects: Dialect::FIVE_AXES, ..row(code, effect, help) }
+const fn five_axis(code: u32, effect: Effect, description: &'static str) -> GCodeRow {
+    GCodeRow { dialects: Dialect::FIVE_AXES, ..row(code, effect, description) }
 }
 
 /// Returns a row for a Haas alone.
-const fn haas(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { dialects: Dialect::HAAS, ..row(code, effect, help) }
+const fn haas(code: u32, effect: Effect, description: &'static str) -> GCodeRow {
+    GCodeRow { dialects: Dialect::HAAS, ..row(code, effect, description) }
 }
 
 const fn cycle(cycle: &'static Cycle) -> GCodeRow {
-    row(cycle.code, Effect::Cycle(Some(cycle)), cycle.help).with(facts::CYCLE)
+    row(cycle.code, Effect::Cycle(Some(cycle)), cycle.description).with(facts::CYCLE)
 }
 
 const fn fanuc_cycle(of: &'static Cycle) -> GCodeRow {

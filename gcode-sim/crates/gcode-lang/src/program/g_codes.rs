@@ -1,5 +1,5 @@
 //! Lookup of G codes. A code without a row raises an alarm and is never skipped.
-use super::code_facts::AxisWords;
+use super::code_facts::{AxisWords, Unsimulated};
 pub use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot, name, spelled};
 use super::g_code_table::CODES;
 use crate::control::Dialect;
@@ -34,20 +34,24 @@ pub fn find(code: u32) -> RowLookup {
 const LOOKUP: [RowLookup; LAST_CODE + 1] = {
     assert!(CODES.len() <= RowLookup::NONE as usize);
     let mut all = [RowLookup::NOT_FOUND; LAST_CODE + 1];
-    let mut place = 0;
-    while place < CODES.len() {
-        let row = &CODES[place];
+    let mut index = 0;
+    while index < CODES.len() {
+        let row = &CODES[index];
         let is_one_shot = matches!(row.effect, Effect::OneShot(_));
         assert!(
             !is_one_shot || !matches!(row.facts.axis_words, AxisWords::Move),
             "a code of group 00 has facts of its own"
         );
+        assert!(
+            row.effect.is_shown() || !matches!(row.facts.unsimulated, Unsimulated::No),
+            "a code without simulated effect has facts that record it"
+        );
         let mut set = 0;
         while set < row.dialects.len() {
-            all[row.code as usize].0[row.dialects[set] as usize] = place as u8;
+            all[row.code as usize].0[row.dialects[set] as usize] = index as u8;
             set += 1;
         }
-        place += 1;
+        index += 1;
     }
     all
 };

@@ -52,13 +52,13 @@ impl Loops {
     }
 
     pub(super) fn end_of(&self, begin: OpIndex) -> Option<OpIndex> {
-        let place = self.pairs.binary_search_by_key(&begin, |(first, ..)| *first).ok()?;
-        self.pairs.get(place).map(|(_, end, _)| *end)
+        let index = self.pairs.binary_search_by_key(&begin, |(first, ..)| *first).ok()?;
+        self.pairs.get(index).map(|(_, end, _)| *end)
     }
 
     pub(super) fn begin_of(&self, end: OpIndex) -> Option<OpIndex> {
-        let place = self.ends.binary_search_by_key(&end, |(last, _)| *last).ok()?;
-        self.ends.get(place).map(|(_, begin)| *begin)
+        let index = self.ends.binary_search_by_key(&end, |(last, _)| *last).ok()?;
+        self.ends.get(index).map(|(_, begin)| *begin)
     }
 
     /// Returns the number of a loop that contains `to` and is not among `open`.

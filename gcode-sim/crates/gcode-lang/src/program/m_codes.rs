@@ -44,22 +44,22 @@ pub struct MCodeRow {
     /// Effect.
     pub effect: MCodeEffect,
     /// Description in a few words.
-    pub help: &'static str,
+    pub description: &'static str,
     /// Controls with this meaning of the code.
     pub dialects: &'static [Dialect],
 }
 
 /// Returns a row that applies to all controls.
-const fn row(code: u32, effect: MCodeEffect, help: &'static str) -> MCodeRow {
-    MCodeRow { code, effect, help, dialects: Dialect::ALL_CONTROLS }
+const fn row(code: u32, effect: MCodeEffect, description: &'static str) -> MCodeRow {
+    MCodeRow { code, effect, description, dialects: Dialect::ALL_CONTROLS }
 }
 
-const fn fanuc(code: u32, effect: MCodeEffect, help: &'static str) -> MCodeRow {
-    MCodeRow { code, effect, help, dialects: Dialect::FANUC }
+const fn fanuc(code: u32, effect: MCodeEffect, description: &'static str) -> MCodeRow {
+    MCodeRow { code, effect, description, dialects: Dialect::FANUC }
 }
 
-const fn haas(code: u32, effect: MCodeEffect, help: &'static str) -> MCodeRow {
-    MCodeRow { code, effect, help, dialects: Dialect::HAAS }
+const fn haas(code: u32, effect: MCodeEffect, description: &'static str) -> MCodeRow {
+    MCodeRow { code, effect, description, dialects: Dialect::HAAS }
 }
 
 /// Codes with an effect on the control. All others go to the machine builder's logic.

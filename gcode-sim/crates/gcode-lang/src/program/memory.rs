@@ -127,7 +127,7 @@ impl Memory {
         program
     }
 
-    /// Returns the place of a block, read again from its text.
+    /// Returns the span of a block, read again from its text.
     pub fn block_span(&self, id: ProgramId, index: OpIndex) -> Option<Span> {
         self.get(id).blocks.tree(index).map(|tree| tree.span)
     }
@@ -169,9 +169,9 @@ impl Memory {
         self.by_name.get(&name).copied()
     }
 
-    /// Returns the program that contains a place.
+    /// Returns the program that contains a span.
     pub fn program_at(&self, span: Span) -> Option<&Program> {
-        // Programs are sorted by text, and by place within it.
+        // Programs are sorted by text, and by offset within it.
         let before = |p: &Program| (p.span.source, p.span.end) < (span.source, span.start);
         let found = self.programs.get(self.programs.partition_point(before))?;
         (found.span.source == span.source && found.span.start <= span.start).then_some(found)

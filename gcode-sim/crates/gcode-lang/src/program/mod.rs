@@ -1,6 +1,6 @@
 //! Lowering: tree to operations. Codes are looked up, loops paired, expressions put in postfix order.
 //!
-//! A [`Program`] is independent of a control's settings. Loading a file finds only the places of its blocks
+//! A [`Program`] is independent of a control's settings. Loading a file finds only the spans of its blocks
 //! and its loops (`outline`). A block is lowered when execution reaches it (`blocks`), a block of numbers
 //! directly from its text (`numbers`), so a long file needs little more memory than its text.
 mod arguments;
@@ -42,14 +42,14 @@ use crate::syntax::ast::{self, PrintKind, ProgramName};
 /// Index of an operation in its program.
 pub type OpIndex = usize;
 
-/// One O-program: the places of its blocks, and the operations of the blocks lowered so far.
+/// One O-program: the spans of its blocks, and the operations of the blocks lowered so far.
 #[derive(Debug)]
 pub struct Program {
     /// O number or name.
     pub name: ProgramName,
     /// First sequence number other than 0.
     first_number: Option<u32>,
-    /// Place from the O word, or the first block, to the end of the last block.
+    /// Span from the O word, or the first block, to the end of the last block.
     pub span: Span,
     blocks: Blocks,
     /// Sequence numbers with their blocks, sorted; computed at the first jump.
@@ -64,7 +64,7 @@ pub struct Program {
 pub struct Op {
     /// Number of the block in its program, counted from 1; 0 for an unused slot.
     ordinal: u32,
-    /// Place of the block.
+    /// Span of the block.
     pub span: Span,
     /// Sequence number.
     pub number: Option<u32>,
@@ -162,7 +162,7 @@ pub enum Statement {
     Assign {
         /// Assigned variable.
         target: AssignmentTarget,
-        /// Place of the variable.
+        /// Span of the variable.
         target_span: Span,
         /// Value.
         value: Operand,

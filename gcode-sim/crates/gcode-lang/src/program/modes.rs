@@ -1,5 +1,56 @@
 //! States of the modal groups: one type per group, each state with its G code × 10 as #4001… reads it.
 
+macro_rules! groups {
+    ($($name:ident = $number:literal, $what:literal;)+) => {
+        /// Modal group of G codes.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum ModalGroup {
+            $(#[doc = concat!("Group ", $number, ": ", $what, ".")] $name = $number,)+
+        }
+
+        /// All modal groups in ascending order.
+        pub const GROUPS: &[ModalGroup] = &[$(ModalGroup::$name),+];
+    };
+}
+
+groups! {
+    Motion = 1, "motion";
+    Plane = 2, "plane of arcs and drilling";
+    Distance = 3, "absolute or incremental";
+    StrokeCheck = 4, "stored stroke check";
+    FeedMode = 5, "feed mode";
+    Unit = 6, "inch or metric";
+    Cutter = 7, "cutter compensation";
+    Length = 8, "tool length compensation";
+    Cycle = 9, "canned cycle";
+    ReturnTo = 10, "return level of canned cycles";
+    Scaling = 11, "scaling";
+    ModalCall = 12, "modal macro calls";
+    SpindleMode = 13, "spindle speed mode";
+    Work = 14, "work coordinate system";
+    Cutting = 15, "cutting mode";
+    Rotation = 16, "coordinate system rotation";
+    Polar = 17, "polar coordinates";
+    NormalDirection = 18, "normal direction control";
+    AlternateNormalDirection = 19, "normal direction control by its other number";
+    InFeed = 20, "in-feed control";
+    PolarInterpolation = 21, "polar coordinate interpolation";
+    Mirror = 22, "mirror image";
+}
+
+impl ModalGroup {
+    /// Returns the group with a number of #4001…; `None` if there is none.
+    pub fn of(number: u32) -> Option<Self> {
+        GROUPS.iter().copied().find(|group| group.number() == number)
+    }
+
+    /// Returns the number of the group as in #4001….
+    pub const fn number(self) -> u32 {
+        self as u32
+    }
+}
+
 macro_rules! group {
     ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $state:ident = $code:literal,)+ }) => {
         $(#[$doc])*

@@ -1,4 +1,4 @@
-//! Facts about a program known once its file is loaded: its blocks' places, first sequence number and loops.
+//! Facts about a program known once its file is loaded: the spans of its blocks, first sequence number and loops.
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -44,15 +44,15 @@ impl OutlineBuilder {
     /// Records the loops, the sequence number and the separate tree of a block.
     #[inline(never)]
     fn record_block(&mut self, block: BlockOutline, text: &ProgramText) {
-        let place = self.blocks;
+        let index = self.blocks;
         match block {
             BlockOutline::Words(span) => {
                 self.record_number(sequence_number_at(text.source, text.content(), span.start));
             }
-            BlockOutline::Tree(block) => self.record_tree(place, &block),
+            BlockOutline::Tree(block) => self.record_tree(index, &block),
             BlockOutline::WithinLine(block) => {
-                self.record_tree(place, &block);
-                self.separate_trees.insert(place, *block);
+                self.record_tree(index, &block);
+                self.separate_trees.insert(index, *block);
             }
         }
     }
@@ -62,7 +62,7 @@ impl OutlineBuilder {
     }
 
     /// Records a block that had to be read.
-    fn record_tree(&mut self, place: u32, block: &ast::Block) {
+    fn record_tree(&mut self, index: u32, block: &ast::Block) {
         self.record_number(block.number.map(|number| number.node));
         if !block.items.iter().any(is_loop_item) {
             return;
@@ -75,7 +75,7 @@ impl OutlineBuilder {
             OpKind::Alarm(_) => mixed_end(block).map(|number| (LoopRole::MixedEnd, number)),
             _ => None,
         };
-        self.loops.extend(part.map(|(part, number)| (place as OpIndex, part, number)));
+        self.loops.extend(part.map(|(part, number)| (index as OpIndex, part, number)));
     }
 }
 

@@ -53,7 +53,7 @@ pub struct LoweredWord {
     pub comma: bool,
     /// Value.
     pub value: WordOperand,
-    /// Place of the word.
+    /// Span of the word.
     pub span: Span,
 }
 
@@ -70,7 +70,7 @@ pub enum WordOperand {
     Variable {
         /// Variable.
         slot: Slot,
-        /// Place of the expression.
+        /// Span of the expression.
         span: Span,
     },
     /// Index of the code in its block, see [`Words::code`].
@@ -122,7 +122,7 @@ pub struct CallOp {
     pub start: Option<LoweredWord>,
     /// Arguments of a macro call in the order written.
     pub arguments: Vec<LoweredWord>,
-    /// Place of the call's code.
+    /// Span of the call's code.
     pub span: Span,
 }
 
@@ -189,13 +189,13 @@ impl Words {
     }
 
     /// Returns the code of a word's value.
-    pub fn code(&self, place: u32) -> &[Instruction] {
-        self.uncommon.as_ref().map_or(&[], |rest| &rest.codes[place as usize])
+    pub fn code(&self, index: u32) -> &[Instruction] {
+        self.uncommon.as_ref().map_or(&[], |rest| &rest.codes[index as usize])
     }
 
     /// Returns the axis number of a word.
-    pub fn axis(&self, place: u32) -> Option<&Operand> {
-        self.uncommon.as_ref()?.axes.get(place as usize)
+    pub fn axis(&self, index: u32) -> Option<&Operand> {
+        self.uncommon.as_ref()?.axes.get(index as usize)
     }
 }
 
@@ -207,8 +207,8 @@ impl Lowering {
         skips: &[(u8, usize)],
     ) -> Result<Words, LocatedAlarm> {
         let mut skipped_form = None;
-        if let Some(((switch, place), before)) = skips.split_last() {
-            skipped_form = Some((*switch, self.lower_words(&items[..*place], before)?));
+        if let Some(((switch, index), before)) = skips.split_last() {
+            skipped_form = Some((*switch, self.lower_words(&items[..*index], before)?));
         }
         (self.codes, self.axes) = (Vec::new(), Vec::new());
         let mut words = self.lower_list(items)?;

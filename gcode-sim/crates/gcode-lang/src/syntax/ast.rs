@@ -1,4 +1,4 @@
-//! Syntax tree: programs, blocks, words and macro statements, each with its place.
+//! Syntax tree: programs, blocks, words and macro statements, each with its span.
 //!
 //! The tree is not interpreted. A number keeps its decimal point, because the unit of `X1` (1 mm or 0.001 mm)
 //! is a setting of the control. An unreadable block keeps its alarm, because a control raises it when it
@@ -11,7 +11,7 @@ use crate::source::{Span, Spanned};
 pub struct Program {
     /// O number or name.
     pub name: ProgramName,
-    /// Place of the O word, or of the first block of a program without one.
+    /// Span of the O word, or of the first block of a program without one.
     pub span: Span,
     /// Blocks after the O word; words on the line of the O word form the first block.
     pub blocks: Vec<Block>,
@@ -51,7 +51,7 @@ impl ProgramName {
 /// One line of a program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Block {
-    /// Place of the block.
+    /// Span of the block.
     pub span: Span,
     /// Block skip switch of `/` or `/n` at the start, 1 to 9.
     pub skip: Option<Spanned<u8>>,
@@ -84,9 +84,9 @@ pub enum Item {
 /// Rest of a line, from the word or statement that cannot be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unreadable {
-    /// Alarm raised when the block is reached, at the place where reading failed.
+    /// Alarm raised when the block is reached, at the span where reading failed.
     pub alarm: Spanned<Alarm>,
-    /// Place of the text.
+    /// Span of the text.
     pub span: Span,
     /// Text as written, comments included.
     pub text: Vec<u8>,
@@ -95,7 +95,7 @@ pub struct Unreadable {
 /// Comment; its bytes are kept in their encoding.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comment {
-    /// Place, brackets included.
+    /// Span, brackets included.
     pub span: Span,
     /// Text between the brackets or after the sign.
     pub text: Vec<u8>,
@@ -128,7 +128,7 @@ pub struct Word {
     pub axis: Option<Box<Expr>>,
     /// Value as written.
     pub value: WordValue,
-    /// Place of the word.
+    /// Span of the word.
     pub span: Span,
 }
 
@@ -154,7 +154,7 @@ pub enum WordValue {
     Name(String),
 }
 
-/// Number as written: `-12.50` has digits 1250 and places 2 and is negative.
+/// Number as written: `-12.50` has digits 1250, decimal places 2 and is negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decimal {
     /// True after a minus sign; separate from the digits, so that -0 prints as written.
@@ -178,12 +178,12 @@ impl Decimal {
     }
 }
 
-/// Expression with its place.
+/// Expression with its span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     /// Expression.
     pub kind: ExprKind,
-    /// Place of the expression.
+    /// Span of the expression.
     pub span: Span,
 }
 
@@ -335,7 +335,7 @@ pub enum Condition {
         spelling: OperatorSpelling,
         /// Right operand.
         right: Expr,
-        /// Place of the comparison without its brackets.
+        /// Span of the comparison without its brackets.
         span: Span,
     },
     /// `[c1] AND [c2]`, with [`BinaryOp::And`], [`BinaryOp::Or`] or [`BinaryOp::Xor`].

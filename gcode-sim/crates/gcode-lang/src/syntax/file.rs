@@ -12,7 +12,7 @@ use crate::source::{SourceId, Span};
 pub(crate) struct ProgramParts<C, B> {
     /// O number or name.
     pub name: ProgramName,
-    /// Place of the O word, or of the first block.
+    /// Span of the O word, or of the first block.
     pub span: Span,
     /// State that the caller keeps for the program.
     pub context: C,

@@ -19,7 +19,7 @@ pub enum FileItem {
     Program {
         /// O number or name.
         name: ProgramName,
-        /// Place of the O word.
+        /// Span of the O word.
         span: Span,
     },
     /// Block with its comments.
@@ -55,17 +55,17 @@ impl<'a> FileItems<'a> {
         Self::starting_at(source, bytes, byte_order_marks(bytes)).skip_leader()
     }
 
-    /// Starts at the line start `place` of a text without its trailer; spaces before the code are skipped.
-    pub(super) fn starting_at(source: SourceId, bytes: &'a [u8], place: usize) -> Self {
+    /// Starts at the line start `offset` of a text without its trailer; spaces before the code are skipped.
+    pub(super) fn starting_at(source: SourceId, bytes: &'a [u8], offset: usize) -> Self {
         Self {
             source,
             bytes,
-            next_line_start: place,
+            next_line_start: offset,
             line_start: 0,
             position: 0,
             line_end: 0,
             code_end: 0,
-            undivided_end: place,
+            undivided_end: offset,
             blanked: None,
             code: Vec::new(),
             comments: VecDeque::new(),
@@ -175,12 +175,12 @@ impl<'a> FileItems<'a> {
     pub(super) fn plain_lines(&mut self, mut each: impl FnMut(Span)) {
         let mut text = &self.bytes[self.next_line_start..];
         while !text.is_empty() {
-            let place = self.bytes.len() - text.len();
-            if self.undivided_end <= place {
-                self.undivided_end = find_divider(self.bytes, place);
+            let offset = self.bytes.len() - text.len();
+            if self.undivided_end <= offset {
+                self.undivided_end = find_divider(self.bytes, offset);
             }
             let (line, behind) = text.split_at(line_length(text));
-            let end = place + line.len();
+            let end = offset + line.len();
             if self.undivided_end < end {
                 break;
             }
@@ -198,7 +198,7 @@ impl<'a> FileItems<'a> {
         self.position == self.line_start
     }
 
-    /// Sets the comments and place of a block, and the text of its unreadable rest.
+    /// Sets the comments and span of a block, and the text of its unreadable rest.
     fn attach_comments(&mut self, block: &mut Block, from: usize, to: usize) {
         let is_last = to == self.code_end;
         let end = if is_last { self.line_end } else { to };
@@ -249,9 +249,9 @@ fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
     Span { source, start: start as u32, end: end as u32 }
 }
 
-/// Returns the end of the text before `place`, without its trailing spaces.
-pub(crate) fn end_without_spaces(bytes: &[u8], place: u32) -> u32 {
-    let text = &bytes[..place as usize];
+/// Returns the end of the text before `offset`, without its trailing spaces.
+pub(crate) fn end_without_spaces(bytes: &[u8], offset: u32) -> u32 {
+    let text = &bytes[..offset as usize];
     text.iter().rposition(|b| !is_space(*b)).map_or(0, |last| last as u32 + 1)
 }
 
@@ -327,7 +327,7 @@ fn find_divider(bytes: &[u8], from: usize) -> usize {
     let divided = |chunk: &[u8; 32]| chunk.iter().fold(false, |any, byte| any | divides(*byte));
     let plain = 32 * text.as_chunks().0.iter().take_while(|chunk| !divided(chunk)).count();
     let found = text[plain..].iter().position(|byte| DIVIDES[usize::from(*byte)]);
-    found.map_or(bytes.len(), |place| from + plain + place)
+    found.map_or(bytes.len(), |offset| from + plain + offset)
 }
 
 #[cfg(test)]
@@ -337,12 +337,12 @@ mod tests {
     #[test]
     fn every_divider_is_found() {
         for byte in *b"(;/%Oo:<DdEe&" {
-            for place in 0..80 {
+            for offset in 0..80 {
                 let mut text = b"N10 G1 X-1.5 Y+2. Z#3 F[100*2]=,\tgzAKQ@\n\r9".repeat(3);
-                text[place] = byte;
-                assert_eq!(find_divider(&text, 0), place);
-                assert_eq!(find_divider(&text, place), place);
-                assert_eq!(find_divider(&text, place + 1), text.len());
+                text[offset] = byte;
+                assert_eq!(find_divider(&text, 0), offset);
+                assert_eq!(find_divider(&text, offset), offset);
+                assert_eq!(find_divider(&text, offset + 1), text.len());
             }
         }
     }

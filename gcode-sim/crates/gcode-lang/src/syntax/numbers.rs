@@ -15,7 +15,7 @@ pub(crate) struct NumberWord {
     pub letter: u8,
     /// Number as written.
     pub number: Decimal,
-    /// Place of the word.
+    /// Span of the word.
     pub span: Span,
 }
 
@@ -78,8 +78,8 @@ impl<'a> NumberWords<'a> {
 
 /// Returns the offset after a word of `length` bytes and one space, the usual separator.
 #[inline(always)]
-fn word_end(window: &Window, length: usize, place: usize) -> usize {
-    place + length + usize::from(window.get(length) == Some(&b' '))
+fn word_end(window: &Window, length: usize, offset: usize) -> usize {
+    offset + length + usize::from(window.get(length) == Some(&b' '))
 }
 
 impl Iterator for NumberWords<'_> {
@@ -156,21 +156,21 @@ pub(super) fn number(window: &Window, first: usize) -> Option<(u64, Option<u8>, 
     (end > first + 1).then_some((digits, Some((end - point - 1) as u8), end))
 }
 
-/// Appends the digits at `place` to `number` and returns their end; `None` for more than eight digits.
+/// Appends the digits at `offset` to `number` and returns their end; `None` for more than eight digits.
 #[inline(always)]
-fn digits(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
-    let bytes = u32::from_le_bytes(*window.get(place..)?.first_chunk()?);
+fn digits(number: u64, window: &Window, offset: usize) -> Option<(u64, usize)> {
+    let bytes = u32::from_le_bytes(*window.get(offset..)?.first_chunk()?);
     // Each digit becomes its value; the top bit marks other bytes. Bytes after the first such byte may be
     // wrong.
     let values = bytes ^ 0x3030_3030;
     let others = (values.wrapping_add(0x7676_7676) | bytes) & 0x8080_8080;
     if others == 0 {
-        return four_and_more(number, values, window, place + 4).filter(|(_, end)| *end <= place + 8);
+        return four_and_more(number, values, window, offset + 4).filter(|(_, end)| *end <= offset + 8);
     }
     // Moves the digits to the top bytes, with zeros before them.
     let top = others.trailing_zeros();
     let (digits, count) = (values << (31 - top) << 8, top as usize / 8);
-    Some((number * POWERS[count] + value(digits), place + count))
+    Some((number * POWERS[count] + value(digits), offset + count))
 }
 
 const POWERS: [u64; 4] = [1, 10, 100, 1_000];
@@ -184,12 +184,12 @@ fn value(digits: u32) -> u64 {
 
 /// Appends four known digits and those that follow; `None` for more than four further digits.
 #[inline(never)]
-fn four_and_more(number: u64, values: u32, window: &Window, place: usize) -> Option<(u64, usize)> {
-    let text = window.get(place..)?;
+fn four_and_more(number: u64, values: u32, window: &Window, offset: usize) -> Option<(u64, usize)> {
+    let text = window.get(offset..)?;
     let count = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
     let further = |number, byte: &u8| number * 10 + u64::from(byte - b'0');
     let known = number * 10_000 + value(values);
-    (count <= 4).then(|| (text[..count].iter().fold(known, further), place + count))
+    (count <= 4).then(|| (text[..count].iter().fold(known, further), offset + count))
 }
 
 #[cfg(test)]

@@ -41,14 +41,14 @@ fn print_block(block: &Block, out: &mut Vec<u8>) {
         out.extend(format!("N{}", number.node).bytes());
     }
     for item in &block.items {
-        let place = match item {
+        let start = match item {
             Item::Word(word) => word.span.start,
             Item::Statement(statement) => statement.span.start,
             Item::Skip(switch) => switch.span.start,
             Item::Unreadable(unreadable) => unreadable.span.start,
         };
         // Only comments in round brackets end before the line does.
-        while let Some(comment) = comments.next_if(|c| c.span.start < place && c.mark == CommentMark::Round) {
+        while let Some(comment) = comments.next_if(|c| c.span.start < start && c.mark == CommentMark::Round) {
             print_comment(comment, begin, out);
         }
         if out.len() > begin {

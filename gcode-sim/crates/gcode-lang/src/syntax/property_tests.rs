@@ -10,8 +10,8 @@ use crate::source::{SourceId, Span, Spanned};
 
 const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
 
-/// Returns the tree as text without its places.
-fn unplaced(programs: &[Program]) -> String {
+/// Returns the tree as text without its spans.
+fn without_spans(programs: &[Program]) -> String {
     let shown = format!("{programs:?}");
     let mut pieces = shown.split("Span {");
     let mut out = pieces.next().unwrap_or("").to_owned();
@@ -261,7 +261,7 @@ proptest! {
     fn a_printed_tree_reads_as_the_same_tree(program in program()) {
         let text = print(&program);
         let read = parse(SourceId(0), &text);
-        prop_assert_eq!(unplaced(&[program]), unplaced(&read), "{}", String::from_utf8_lossy(&text));
+        prop_assert_eq!(without_spans(&[program]), without_spans(&read), "{}", String::from_utf8_lossy(&text));
     }
 
     #[test]
@@ -271,7 +271,7 @@ proptest! {
         for program in parse(SourceId(0), lines.join("\n").as_bytes()) {
             let text = print(&program);
             let again = parse(SourceId(0), &text);
-            prop_assert_eq!(unplaced(&[program]), unplaced(&again), "{}", String::from_utf8_lossy(&text));
+            prop_assert_eq!(without_spans(&[program]), without_spans(&again), "{}", String::from_utf8_lossy(&text));
         }
     }
 
@@ -298,7 +298,7 @@ proptest! {
     }
 
     #[test]
-    fn every_text_gives_a_tree_with_places_inside_it(bytes in vec(any::<u8>(), 0..200)) {
+    fn every_text_gives_a_tree_with_spans_inside_it(bytes in vec(any::<u8>(), 0..200)) {
         for program in parse(SourceId(0), &bytes) {
             for block in &program.blocks {
                 prop_assert!(block.span.start <= block.span.end && block.span.end as usize <= bytes.len());

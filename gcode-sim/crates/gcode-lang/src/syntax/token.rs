@@ -1,4 +1,4 @@
-//! Smallest elements of a line: spaces, keywords, places; and failures of reading.
+//! Smallest elements of a line: spaces, keywords, spans; and failures of reading.
 use nom::error::{ErrorKind, ParseError};
 use nom::{Err, IResult, Parser};
 
@@ -81,7 +81,7 @@ pub(super) fn require<'a, T>(
     }
 }
 
-/// Position of the current line: converts remaining input to places.
+/// Position of the current line: converts remaining input to spans.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineInput {
     pub source: SourceId,

@@ -42,7 +42,7 @@ fn code_fault(settings: &Settings, word: &LoweredWord) -> Option<(String, bool)>
             match found.row_for(settings.codes) {
                 None => Some((format!("{PS0010}: the control has no {name}"), true)),
                 Some(row) if row.effect == Effect::NotSimulated => {
-                    Some((format!("{name} ({}) is not simulated", row.help), false))
+                    Some((format!("{name} ({}) is not simulated", row.description), false))
                 }
                 Some(_) => None,
             }

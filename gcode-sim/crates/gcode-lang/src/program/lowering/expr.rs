@@ -190,9 +190,9 @@ impl Lowering {
                 self.record_syntax(DialectSyntax::NewWord("PRM"), span);
                 let context = context.of_macro().inside(1);
                 let mut depth = self.compile_expr(number, context)?;
-                for (place, part) in bit.iter().chain(axis).enumerate() {
+                for (index, part) in bit.iter().chain(axis).enumerate() {
                     self.emit(UncommonOp::Push, span);
-                    depth = depth.max(self.compile_expr(part, context)? + place + 1);
+                    depth = depth.max(self.compile_expr(part, context)? + index + 1);
                 }
                 self.emit(UncommonOp::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
                 depth

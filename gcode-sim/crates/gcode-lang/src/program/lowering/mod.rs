@@ -75,10 +75,10 @@ impl Lowering {
         let mut words = 0;
         let mut skips = Vec::new();
         let mut statement = None;
-        for (place, item) in block.items.iter().enumerate() {
+        for (index, item) in block.items.iter().enumerate() {
             match item {
                 ast::Item::Word(_) => words += 1,
-                ast::Item::Skip(switch) => skips.push((switch.node, place)),
+                ast::Item::Skip(switch) => skips.push((switch.node, index)),
                 ast::Item::Unreadable(unreadable) => return Err(Box::new(unreadable.alarm.clone())),
                 ast::Item::Statement(_) if statement.is_some() => {
                     let is_word = |item: &ast::Item| matches!(item, ast::Item::Word(_));
@@ -181,8 +181,8 @@ impl Lowering {
     ) -> LoweringResult<Statement> {
         let (to, value) = (self.compile_target(target)?, self.operand(value, ExprContext::MACRO)?);
         Ok(match (to, value) {
-            (AssignmentTarget::Slot(Slot::Free(place)), Operand::Code(code)) => {
-                Statement::AssignFree(Assign { variable: place, code })
+            (AssignmentTarget::Slot(Slot::Free(variable)), Operand::Code(code)) => {
+                Statement::AssignFree(Assign { variable: variable, code })
             }
             (to, value) => {
                 let text = block.comments.iter().find(|c| c.span.start >= span.start);
@@ -229,7 +229,7 @@ fn sixteen_digits(text: &[u8]) -> Option<u64> {
     hexadecimal.then(|| u64::from_str_radix(text, 16).ok()).flatten()
 }
 
-/// Returns the place from the first lower-case letter outside comments to the end of the block.
+/// Returns the span from the first lower-case letter outside comments to the end of the block.
 ///
 /// `None` without one, and for an unreadable block, which has its own alarm.
 pub(super) fn lower_case(block: &ast::Block, bytes: &[u8]) -> Option<Span> {
