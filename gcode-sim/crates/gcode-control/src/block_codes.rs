@@ -135,7 +135,7 @@ impl Planner<'_> {
     /// Raises the alarm of a word that needs a code which the block lacks, or excludes one that it has.
     fn check_misplaced_words(&self, plan: &BlockPlan) -> ExecResult<()> {
         let owned = self.words.letters_of_codes();
-        if let Some(letter) = self.words.first_letter_of(Letters::of(b"ENO").bits() & !owned) {
+        if let Some(letter) = self.words.first_present(Letters::of(b"ENO").bits() & !owned) {
             return Err(self.improper_address(letter));
         }
         if self.words.has_non_motion_code(|effect| effect == Effect::LookAhead)
@@ -158,7 +158,7 @@ impl Planner<'_> {
             return Err(self.improper_address(b'L'));
         }
         let axes = Letters::of(b"ABCUVWXYZ").bits() & !owned;
-        if let Some(letter) = self.words.first_letter_of(axes & !self.data.settings.axes.letter_bits()) {
+        if let Some(letter) = self.words.first_present(axes & !self.data.settings.axes.letter_bits()) {
             return Err(self.improper_address(letter));
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! Execution of calls and returns: finds programs, pushes and pops frames, triggers modal calls.
 use super::control::Control;
 use super::executor::Executor;
-use super::flow::{Frame, FrameKind, ModalCall};
+use super::flow::{CallFrame, FrameKind, ModalMacro};
 use super::functions::{ExecResult, locate};
 use super::notes::Note;
 use super::outcome::RunEnd;
@@ -62,7 +62,7 @@ impl Executor {
         let kind = match call.kind {
             CallKind::Modal | CallKind::EveryBlock => {
                 let is_every_block = call.kind == CallKind::EveryBlock;
-                self.flow.modal_calls.push(ModalCall { program, repeats, locals, is_every_block, origins });
+                self.flow.modal_calls.push(ModalMacro { program, repeats, locals, is_every_block, origins });
                 self.update_modal_code();
                 if call.is_immediate && is_every_block {
                     self.call_every_block_macro(&locals);
@@ -76,7 +76,7 @@ impl Executor {
             self.registers.variables.push_level(&locals);
         }
         let resets_arguments = self.registers.data.settings.undocumented.repeats_reset_locals && repeats > 1;
-        self.flow.push(Frame {
+        self.flow.push(CallFrame {
             next: start,
             start,
             arguments: resets_arguments.then(|| Box::new(locals)),
@@ -155,10 +155,10 @@ impl Executor {
 
     #[inline(never)]
     fn make_modal_call(&mut self, index: usize, kind: FrameKind, locals: &Locals) {
-        let ModalCall { program, repeats, origins, .. } = self.flow.modal_calls[index];
+        let ModalMacro { program, repeats, origins, .. } = self.flow.modal_calls[index];
         let frame = self.flow.callee_frame(program, kind, repeats, origins);
         self.registers.variables.push_level(locals);
-        self.flow.push(Frame { modal_call_count: index, ..frame });
+        self.flow.push(CallFrame { modal_call_count: index, ..frame });
     }
 
     /// Calls the macro of G66.1, if it is active, instead of executing a block of words; returns true if it has. The words,
@@ -224,7 +224,7 @@ impl Control {
     }
 
     /// Returns the frame in which the run continues after M99.
-    fn return_frame(&self) -> &Frame {
+    fn return_frame(&self) -> &CallFrame {
         match self.executor.flow.frame.kind {
             FrameKind::Main => &self.executor.flow.frame,
             _ => self.executor.flow.callers.last().unwrap_or(&self.executor.flow.frame),

@@ -71,35 +71,27 @@ impl CyclePlan {
         let goes_back = match step {
             CycleStep::RapidBack | CycleStep::RapidToInitial => to_initial,
             CycleStep::RapidToInitialAlways => true,
-            _ => false,
+            CycleStep::FeedToBottom
+            | CycleStep::Peck
+            | CycleStep::HighSpeedPeck
+            | CycleStep::Dwell
+            | CycleStep::DwellAtR
+            | CycleStep::FeedToR
+            | CycleStep::Shift
+            | CycleStep::ShiftBack
+            | CycleStep::RapidToR
+            | CycleStep::SpindleStop
+            | CycleStep::SpindleForward
+            | CycleStep::SpindleReverse
+            | CycleStep::ManualRetract => false,
         };
         if goes_back {
             motion.set_work_zero(self.axis, state.cycle.is_initial_unknown);
         }
         match step {
             CycleStep::FeedToBottom => motion.feed(level(z)),
-            CycleStep::Peck => {
-                for_each_peck((r, z), &state.cycle.unscaled(self.scale_factor), |last, next, done| {
-                    if last != r {
-                        let clearance =
-                            (data.settings.g83_clearance / self.scale_factor).min((r - last).abs());
-                        motion.rapid(level(last + clearance.copysign(r - z)));
-                    }
-                    motion.feed(level(next));
-                    if !done {
-                        motion.rapid(level(r + data.settings.g83_above_r.copysign(r - z)));
-                    }
-                });
-            }
-            CycleStep::HighSpeedPeck => {
-                let retract = (data.settings.g73_retract / self.scale_factor).copysign(r - z);
-                for_each_peck((r, z), &state.cycle.unscaled(self.scale_factor), |_, next, done| {
-                    motion.feed(level(next));
-                    if !done {
-                        motion.rapid(level(next + retract));
-                    }
-                });
-            }
+            CycleStep::Peck => self.peck_to_r(level, (r, z), motion),
+            CycleStep::HighSpeedPeck => self.peck_with_retract(level, (r, z), motion),
             CycleStep::Dwell => motion.dwell(self.dwell),
             CycleStep::DwellAtR if data.settings.undocumented.tap_dwells_at_r => motion.dwell(self.dwell),
             CycleStep::DwellAtR => {}
@@ -127,6 +119,45 @@ impl CyclePlan {
                 motion.rapid(level(r));
             }
         }
+    }
+}
+
+impl CyclePlan {
+    /// Emits the pecks of G83, each from the clearance above the last depth and back to R.
+    fn peck_to_r<T: FnMut(EventKind, f64)>(
+        &self,
+        level: &impl Fn(f64) -> Position,
+        (r, z): (f64, f64),
+        motion: &mut CycleMotion<'_, T>,
+    ) {
+        let settings = &motion.data.settings;
+        let clearance = settings.g83_clearance / self.scale_factor;
+        let above_r = settings.g83_above_r;
+        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.scale_factor), |from, to, is_last| {
+            if from != r {
+                motion.rapid(level(from + clearance.min((r - from).abs()).copysign(r - z)));
+            }
+            motion.feed(level(to));
+            if !is_last {
+                motion.rapid(level(r + above_r.copysign(r - z)));
+            }
+        });
+    }
+
+    /// Emits the pecks of G73, each with a short retract.
+    fn peck_with_retract<T: FnMut(EventKind, f64)>(
+        &self,
+        level: &impl Fn(f64) -> Position,
+        (r, z): (f64, f64),
+        motion: &mut CycleMotion<'_, T>,
+    ) {
+        let retract = (motion.data.settings.g73_retract / self.scale_factor).copysign(r - z);
+        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.scale_factor), |_, to, is_last| {
+            motion.feed(level(to));
+            if !is_last {
+                motion.rapid(level(to + retract));
+            }
+        });
     }
 }
 
@@ -165,8 +196,8 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 
     fn feed(&mut self, to: Position) {
         if to != self.at {
-            let squares: f64 = (0..to.0.len()).map(|a| (to[a] - self.at[a]) * (to[a] - self.at[a])).sum();
-            (self.emit)(EventKind::Feed { to, rate: self.rate }, squares.sqrt() / self.rate.0 * 60.0);
+            let travel = self.data.squared_travel(0..self.data.settings.axes.len(), &self.at, &to);
+            (self.emit)(EventKind::Feed { to, rate: self.rate }, travel.seconds_at(self.rate));
             self.at = to;
         }
     }
@@ -179,19 +210,17 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 }
 
 /// Largest number of pecks in one block; a run must end.
-const MAX_PECKS: f64 = 1e6;
+const MAX_PECKS: u32 = 1_000_000;
 
 /// Visits the pecks from R to Z with their start, end and whether they are the last; the last peck is the remainder.
 pub(super) fn for_each_peck((r, z): (f64, f64), data: &CycleState, mut emit: impl FnMut(f64, f64, bool)) {
     let pecks = peck_count(r, z, data);
-    let mut last = r;
-    let mut count = 1.0;
-    while count <= pecks {
+    let mut from = r;
+    for count in 1..=pecks {
         let is_last = count == pecks;
-        let next = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
-        emit(last, next, is_last);
-        last = next;
-        count += 1.0;
+        let to = if is_last { z } else { r + peck_depth(data, f64::from(count)).copysign(z - r) };
+        emit(from, to, is_last);
+        from = to;
     }
 }
 
@@ -207,25 +236,26 @@ fn peck_depth(data: &CycleState, count: f64) -> f64 {
     shrinking * first - decrement * shrinking * (shrinking - 1.0) / 2.0 + (count - shrinking) * minimum
 }
 
-/// Returns the number of pecks of a hole from R to Z.
-fn peck_count(r: f64, z: f64, data: &CycleState) -> f64 {
+/// Returns the number of pecks of a hole from R to Z; the largest integer if there are more.
+fn peck_count(r: f64, z: f64, data: &CycleState) -> u32 {
     let total_depth = (z - r).abs();
     if data.pecks.is_none() {
         return match data.q {
-            Some(q) if q != 0.0 => (total_depth / q.abs() - 1e-9).ceil().max(1.0),
-            _ => 1.0,
+            Some(q) if q != 0.0 => (total_depth / q.abs() - 1e-9).ceil().max(1.0) as u32,
+            _ => 1,
         };
     }
-    let mut count = 1.0;
-    while peck_depth(data, count) < total_depth - 1e-9 && count <= MAX_PECKS {
-        count += 1.0;
+    let mut count = 1;
+    while peck_depth(data, f64::from(count)) < total_depth - 1e-9 && count <= MAX_PECKS {
+        count += 1;
     }
     count
 }
 
 /// Returns true if a block with a number of holes has more than [`MAX_PECKS`] pecks.
 pub(super) fn has_too_many_pecks(data: &CycleState, holes: u32) -> bool {
-    peck_count(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > MAX_PECKS
+    let pecks = u64::from(peck_count(data.r_level(), data.z_level(), data));
+    pecks * u64::from(holes.max(1)) > u64::from(MAX_PECKS)
 }
 
 #[cfg(test)]

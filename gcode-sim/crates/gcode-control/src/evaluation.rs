@@ -69,7 +69,7 @@ impl Registers {
             OperandSource::Number(number) => Value::Number(*number),
             OperandSource::Free(variable) => self.variables.get_free(*variable),
             OperandSource::Computed(ComputedSource::Last) => last.into(),
-            OperandSource::Computed(ComputedSource::Waiting) => self.operand_stack.pop(),
+            OperandSource::Computed(ComputedSource::Stacked) => self.operand_stack.pop(),
         }
     }
 
@@ -80,7 +80,7 @@ impl Registers {
             OperandSource::Free(variable) => self.variables.free_number(*variable),
             OperandSource::Number(number) => *number,
             OperandSource::Computed(ComputedSource::Last) => last.number,
-            OperandSource::Computed(ComputedSource::Waiting) => self.operand_stack.pop().number(),
+            OperandSource::Computed(ComputedSource::Stacked) => self.operand_stack.pop().number(),
         }
     }
 

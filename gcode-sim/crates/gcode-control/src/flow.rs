@@ -11,18 +11,18 @@ use gcode_lang::source::Span;
 pub(super) struct ProgramFlow {
     /// Block that began last.
     pub(super) block: Span,
-    /// Frame of the current program.
-    pub(super) frame: Frame,
+    /// CallFrame of the current program.
+    pub(super) frame: CallFrame,
     /// Frames of its callers, the main program's first.
-    pub(super) callers: Vec<Frame>,
-    pub(super) modal_calls: Vec<ModalCall>,
+    pub(super) callers: Vec<CallFrame>,
+    pub(super) modal_calls: Vec<ModalMacro>,
     /// Number of M99 executed in the main program.
     pub(super) main_passes: u32,
 }
 
 impl ProgramFlow {
     pub(super) fn new(main: ProgramId) -> Self {
-        let frame = Frame::main(main);
+        let frame = CallFrame::main(main);
         Self { block: Span::default(), frame, callers: Vec::new(), modal_calls: Vec::new(), main_passes: 0 }
     }
 
@@ -44,7 +44,7 @@ impl ProgramFlow {
 
 /// One program of the call stack.
 #[derive(Clone, Debug)]
-pub(super) struct Frame {
+pub(super) struct CallFrame {
     pub(super) program: ProgramId,
     pub(super) next: OpIndex,
     pub(super) kind: FrameKind,
@@ -100,7 +100,7 @@ pub(super) enum FrameKind {
     Modal(usize),
 }
 
-impl Frame {
+impl CallFrame {
     pub(super) fn main(program: ProgramId) -> Self {
         Self {
             program,
@@ -158,18 +158,18 @@ impl ProgramFlow {
         kind: FrameKind,
         repeats: u32,
         origins: CallOrigins,
-    ) -> Frame {
+    ) -> CallFrame {
         let calls = Call { calling_block: self.block, outer_calls: self.frame.calls.clone() };
-        Frame {
+        CallFrame {
             kind,
             repeats: repeats.saturating_sub(1),
             calls: Some(Arc::new(calls)),
             origins: self.frame.origins.merged_with(origins),
-            ..Frame::main(program)
+            ..CallFrame::main(program)
         }
     }
 
-    pub(super) fn push(&mut self, frame: Frame) {
+    pub(super) fn push(&mut self, frame: CallFrame) {
         self.callers.push(std::mem::replace(&mut self.frame, frame));
     }
 
@@ -182,7 +182,7 @@ impl ProgramFlow {
 
 /// Stored macro call of G66 or G66.1.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct ModalCall {
+pub(super) struct ModalMacro {
     pub(super) program: ProgramId,
     pub(super) repeats: u32,
     pub(super) locals: Locals,
@@ -197,9 +197,9 @@ mod tests {
     use super::*;
     use crate::variables::VACANT;
 
-    fn modal_call() -> ModalCall {
+    fn modal_call() -> ModalMacro {
         let origins = CallOrigins::default();
-        ModalCall { program: ProgramId(1), repeats: 1, locals: VACANT, is_every_block: false, origins }
+        ModalMacro { program: ProgramId(1), repeats: 1, locals: VACANT, is_every_block: false, origins }
     }
 
     #[test]

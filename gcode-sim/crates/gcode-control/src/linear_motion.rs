@@ -49,6 +49,11 @@ impl SquaredTravel {
         }
     }
 
+    /// Returns the duration at a rate, seconds.
+    pub(super) fn seconds_at(self, rate: MmPerMin) -> f64 {
+        (self.linear + self.rotary).sqrt() / rate.0 * 60.0
+    }
+
     /// Returns true if an axis moves; increments are too large for their squares to underflow.
     pub(super) fn is_some(self) -> bool {
         self.linear + self.rotary > 0.0

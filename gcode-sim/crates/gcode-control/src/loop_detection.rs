@@ -4,7 +4,7 @@
 //! earlier jump, which is kept for longer and longer. If they match, the control is copied; if it equals its copy one
 //! iteration later, all that follows repeats. Between matches a jump costs a few instructions.
 use super::executor::Executor;
-use super::flow::{Frame, ProgramFlow};
+use super::flow::{CallFrame, ProgramFlow};
 use super::outcome::RunEnd;
 use super::registers::Registers;
 use super::variables::Vars;
@@ -123,7 +123,7 @@ impl LoopDetector {
     /// Keeps the jump if it goes further out, or further up, than those since the control was copied.
     #[cold]
     fn record_outer_jump(&mut self, executor: &Executor) {
-        let Frame { program, next: to, .. } = executor.flow.frame;
+        let CallFrame { program, next: to, .. } = executor.flow.frame;
         let callers = executor.flow.callers.len();
         if self.outermost_jump.is_none_or(|jump| (callers, to) < (jump.callers, jump.to)) {
             self.outermost_jump = Some(BackJump { callers, program, to, from: executor.flow.block });

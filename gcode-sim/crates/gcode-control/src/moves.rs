@@ -78,7 +78,7 @@ impl Planner<'_> {
         // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
         let takes_vector = self.words.has_non_motion_code(|effect| effect == Effect::Cutter(CutterSide::Off));
         if !(is_arc || takes_vector || overrules_cycle)
-            && let Some(letter) = self.words.first_letter_of(Letters::of(b"IJKR").bits())
+            && let Some(letter) = self.words.first_present(Letters::of(b"IJKR").bits())
         {
             let what = format!("{} in a block with a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.located_at(self.words.span(letter)));

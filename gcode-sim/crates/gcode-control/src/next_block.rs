@@ -1,6 +1,6 @@
 //! Inspection of the next block before its execution: assignments, modes, positions, codes without an effect in a run.
 use super::control::Control;
-use super::flow::Frame;
+use super::flow::CallFrame;
 use super::registers::Registers;
 use super::words::{computed_row, count};
 use gcode_lang::program::code_facts::{AxisWords, Letters, Unsimulated};
@@ -45,7 +45,7 @@ pub struct UnsimulatedCodes {
 impl Control {
     /// Lowers the next block and returns its index; `None` after the last block.
     pub fn next_block(&mut self) -> Option<Span> {
-        let Frame { program, next, .. } = self.executor.flow.frame;
+        let CallFrame { program, next, .. } = self.executor.flow.frame;
         self.memory.lower_block(program, next).map(|op| op.span)
     }
 
@@ -101,7 +101,7 @@ impl Control {
 
     /// Returns the operation of [`Control::next_block`] if it is lowered.
     fn next_op(&self) -> Option<&Op> {
-        let Frame { program, next, .. } = self.executor.flow.frame;
+        let CallFrame { program, next, .. } = self.executor.flow.frame;
         self.memory.get(program).op(next)
     }
 

@@ -6,7 +6,7 @@ use super::executor::Executor;
 use super::linear_motion::{CoordinateBasis, SquaredTravel};
 use super::registers::Registers;
 use super::variables::Value;
-use super::words::G_CODES;
+use super::words::MAX_G_CODES;
 use gcode_lang::motion::{AxisIndex, EventKind, EventSink, MAX_AXES, Position};
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::{CutterSide, Motion, Polar};
@@ -70,7 +70,8 @@ impl Executor {
     #[inline(never)]
     pub(super) fn plain_move<S: EventSink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
         let basis = self.registers.plain_basis.as_ref()?;
-        if !words.is_plain() || words.list.len() > G_CODES || !self.flow.modal_calls.is_empty() {
+        // A block has at most that number of G codes; one with fewer words can't exceed it.
+        if !words.is_plain() || words.list.len() > MAX_G_CODES || !self.flow.modal_calls.is_empty() {
             return None;
         }
         let state = &*self.registers.state;
@@ -105,7 +106,7 @@ impl Executor {
                 .data
                 .travel_time(state, f, resolved_move.travel, resolved_move.f.is_some())
                 .ok()?,
-            _ => return None,
+            Motion::Clockwise | Motion::Counterclockwise | Motion::Thread => return None,
         };
 
         let state = &mut *self.registers.state;
@@ -121,7 +122,10 @@ impl Executor {
             _ if !resolved_move.travel.is_some() => {}
             _ if !sink.is_active() => self.count_move(seconds),
             Motion::Rapid => self.emit(&EventKind::Rapid { to: *to }, seconds, sink),
-            _ => self.emit(&EventKind::Feed { to: *to, rate }, seconds, sink),
+            // Arcs and threads have returned.
+            Motion::Linear | Motion::Clockwise | Motion::Counterclockwise | Motion::Thread => {
+                self.emit(&EventKind::Feed { to: *to, rate }, seconds, sink)
+            }
         }
         Some(())
     }

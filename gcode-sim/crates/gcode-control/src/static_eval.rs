@@ -22,10 +22,8 @@ impl<'a> VariableTable<'a> {
     /// Raises the alarm of reading a variable, whatever its value.
     pub fn read(&self, number: u32) -> Result<(), Alarm> {
         match self.vars.classify(number) {
-            VariableClass::System if number != 3100 => {
-                system_variables::check_readable(number, self.settings.offset_variables)
-            }
-            _ => Ok(()),
+            VariableClass::System => system_variables::check_readable(number, self.settings.offset_variables),
+            VariableClass::Vacant | VariableClass::Local(_) | VariableClass::Common(_) => Ok(()),
         }
     }
 
@@ -35,7 +33,6 @@ impl<'a> VariableTable<'a> {
             VariableClass::Vacant => Err(Alarm::WriteProtected { number }),
             VariableClass::Local(_) | VariableClass::Common(_) => Ok(()),
             VariableClass::System if matches!(number, 3000 | 3006) => Ok(()),
-            VariableClass::System if number == 3100 => Err(Alarm::WriteProtected { number }),
             VariableClass::System => system_variables::check_writable(number, self.settings.offset_variables),
         }
     }

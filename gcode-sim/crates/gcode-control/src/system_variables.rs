@@ -16,65 +16,84 @@ type WriteVariable = fn(&mut Registers, u32, f64) -> Result<(), Alarm>;
 struct VariableRow {
     from: u32,
     to: u32,
-    read: Option<ReadVariable>,
+    read: ReadRule,
     write: Option<WriteVariable>,
 }
 
+/// Result of reading a variable.
+enum ReadRule {
+    /// PS1115.
+    Protected,
+    /// Always vacant.
+    Vacant,
+    Value(ReadVariable),
+}
+
 const fn row(from: u32, to: u32, read: Option<ReadVariable>, write: Option<WriteVariable>) -> VariableRow {
+    let read = match read {
+        Some(read) => ReadRule::Value(read),
+        None => ReadRule::Protected,
+    };
     VariableRow { from, to, read, write }
+}
+
+/// Returns the row of a variable that is always vacant.
+const fn vacant(number: u32) -> VariableRow {
+    VariableRow { from: number, to: number, read: ReadRule::Vacant, write: None }
 }
 
 /// All ranges in ascending order. A number in none of them is PS0115; without a way to read PS1115, to write PS0116.
 #[rustfmt::skip]
 const ROWS: &[VariableRow] = &[
     // Interface signals.
-    row(1000, 1031, Some(|c, n| Ok(f64::from(c.data.settings.inputs >> n & 1))), None),
-    row(1032, 1035, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.data.settings.inputs as i32))), None),
-    row(1100, 1131, Some(|c, n| Ok(f64::from(c.panel.outputs >> n & 1))), Some(|c, n, v| { c.panel.set_output(n, v != 0.0); Ok(()) })),
-    row(1132, 1135, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.panel.outputs as i32))), Some(|c, n, v| c.panel.set_outputs(n, v))),
+    row(1000, 1031, Some(|r, n| Ok(f64::from(r.data.settings.inputs >> n & 1))), None),
+    row(1032, 1035, Some(|r, n| check_signal_word(n).map(|()| f64::from(r.data.settings.inputs as i32))), None),
+    row(1100, 1131, Some(|r, n| Ok(f64::from(r.panel.outputs >> n & 1))), Some(|r, n, v| { r.panel.set_output(n, v != 0.0); Ok(()) })),
+    row(1132, 1135, Some(|r, n| check_signal_word(n).map(|()| f64::from(r.panel.outputs as i32))), Some(|r, n, v| r.panel.set_outputs(n, v))),
     // Tool offsets, memory C.
-    row(2001, 2200, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
-    row(2201, 2400, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
+    row(2001, 2200, Some(|r, n| r.tool_offset(Register::HWear, n)), Some(|r, n, v| r.set_tool_offset(Register::HWear, n, v))),
+    row(2201, 2400, Some(|r, n| r.tool_offset(Register::HGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::HGeometry, n, v))),
     // Work offsets by axis: EXT, G54 to G59 of axis 1, 2, 3, 4.
-    row(2500, 2506, Some(|c, n| c.work_offset(n as usize, 0)), Some(|c, n, v| c.set_work_offset(n as usize, 0, v))),
-    row(2600, 2606, Some(|c, n| c.work_offset(n as usize, 1)), Some(|c, n, v| c.set_work_offset(n as usize, 1, v))),
-    row(2700, 2706, Some(|c, n| c.work_offset(n as usize, 2)), Some(|c, n, v| c.set_work_offset(n as usize, 2, v))),
-    row(2800, 2806, Some(|c, n| c.work_offset(n as usize, 3)), Some(|c, n, v| c.set_work_offset(n as usize, 3, v))),
+    row(2500, 2506, Some(|r, n| r.work_offset(n as usize, 0)), Some(|r, n, v| r.set_work_offset(n as usize, 0, v))),
+    row(2600, 2606, Some(|r, n| r.work_offset(n as usize, 1)), Some(|r, n, v| r.set_work_offset(n as usize, 1, v))),
+    row(2700, 2706, Some(|r, n| r.work_offset(n as usize, 2)), Some(|r, n, v| r.set_work_offset(n as usize, 2, v))),
+    row(2800, 2806, Some(|r, n| r.work_offset(n as usize, 3)), Some(|r, n, v| r.set_work_offset(n as usize, 3, v))),
     // Alarm, clocks, switches, message.
     row(3000, 3000, None, None),
-    row(3001, 3001, Some(|c, _| Ok(c.clock.milliseconds())), Some(|c, _, v| { c.clock.set_milliseconds(v); Ok(()) })),
-    row(3002, 3002, Some(|c, _| Ok(c.clock.hours())), Some(|c, _, v| { c.clock.set_hours(v); Ok(()) })),
-    row(3003, 3004, Some(|c, n| Ok(c.panel.control_switches[n as usize])), Some(|c, n, v| c.panel.set_switch(n, v))),
+    row(3001, 3001, Some(|r, _| Ok(r.clock.milliseconds())), Some(|r, _, v| { r.clock.set_milliseconds(v); Ok(()) })),
+    row(3002, 3002, Some(|r, _| Ok(r.clock.hours())), Some(|r, _, v| { r.clock.set_hours(v); Ok(()) })),
+    row(3003, 3004, Some(|r, n| Ok(r.panel.control_switches[n as usize])), Some(|r, n, v| r.panel.set_switch(n, v))),
     // Setting data: of its bits only INI (2), inch input, has an effect here.
-    row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
+    row(3005, 3005, Some(|r, _| Ok(if r.state.modal.unit == Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
     row(3006, 3006, None, None),
     // Mirror image by setting or signal: there is none; G51.1 is none of them.
     row(3007, 3007, Some(|_, _| Ok(0.0)), None),
     row(3008, 3008, Some(|_, _| Ok(0.0)), None),
-    row(3011, 3011, Some(|c, _| Ok(f64::from(c.data.settings.date))), None),
-    row(3012, 3012, Some(|c, _| Ok(c.time_of_day())), None),
+    row(3011, 3011, Some(|r, _| Ok(f64::from(r.data.settings.date))), None),
+    row(3012, 3012, Some(|r, _| Ok(r.time_of_day())), None),
+    vacant(3100),
     row(3101, 3101, Some(|_, _| Ok(std::f64::consts::PI)), None),
     row(3102, 3102, Some(|_, _| Ok(std::f64::consts::E)), None),
-    row(3901, 3902, Some(|c, n| Ok(c.panel.part_counters[n as usize])), Some(|c, n, v| c.panel.set_parts(n, v))),
+    row(3901, 3902, Some(|r, n| Ok(r.panel.part_counters[n as usize])), Some(|r, n, v| r.panel.set_parts(n, v))),
     // Modal information: of the block before, and of the block at work. Here they are the same.
-    row(4001, 4130, Some(|c, n| c.modal_information(n + 1)), None),
-    row(4201, 4330, Some(|c, n| c.modal_information(n + 1)), None),
+    row(4001, 4130, Some(|r, n| r.modal_information(n + 1)), None),
+    row(4201, 4330, Some(|r, n| r.modal_information(n + 1)), None),
     // Positions.
-    row(5001, 5020, Some(|c, n| c.position(n, |c, axis| c.end_point()[axis])), None),
-    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.data.wrap_angle(axis, c.tool_centre(axis)))), None),
-    row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.work_coordinate(axis, c.tool_centre(axis)))), None),
-    row(5061, 5080, Some(|c, n| c.position(n, |c, axis| c.work_coordinate(axis, c.state.skip_position[axis]))), None),
-    row(5081, 5100, Some(|c, n| c.position(n, |c, axis| c.state.length_offset[axis])), None),
-    row(5101, 5140, Some(|c, n| c.position(n % 20, |_, _| 0.0)), None),
-    row(5181, 5200, Some(|c, n| c.position(n, |_, _| 0.0)), None),
+    row(5001, 5020, Some(|r, n| r.position(n, |r, axis| r.end_point()[axis])), None),
+    row(5021, 5040, Some(|r, n| r.position(n, |r, axis| r.data.wrap_angle(axis, r.tool_centre(axis)))), None),
+    row(5041, 5060, Some(|r, n| r.position(n, |r, axis| r.work_coordinate(axis, r.tool_centre(axis)))), None),
+    row(5061, 5080, Some(|r, n| r.position(n, |r, axis| r.work_coordinate(axis, r.state.skip_position[axis]))), None),
+    row(5081, 5100, Some(|r, n| r.position(n, |r, axis| r.state.length_offset[axis])), None),
+    row(5101, 5140, Some(|r, n| r.position(n % 20, |_, _| 0.0)), None),
+    row(5181, 5200, Some(|r, n| r.position(n, |_, _| 0.0)), None),
     // Work offsets.
-    row(5201, 5340, Some(|c, n| c.work_offset((n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((n / 20) as usize, n % 20, v))),
-    row(7001, 7960, Some(|c, n| c.work_offset((7 + n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((7 + n / 20) as usize, n % 20, v))),
-    row(10001, 10999, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
-    row(11001, 11999, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
-    row(12001, 12999, Some(|c, n| c.tool_offset(Register::DWear, n)), Some(|c, n, v| c.set_tool_offset(Register::DWear, n, v))),
-    row(13001, 13999, Some(|c, n| c.tool_offset(Register::DGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v))),
-    row(14001, 20000, Some(|c, n| c.work_offset((7 + n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((7 + n / 20) as usize, n % 20, v))),
+    row(5201, 5340, Some(|r, n| r.work_offset((n / 20) as usize, n % 20)), Some(|r, n, v| r.set_work_offset((n / 20) as usize, n % 20, v))),
+    row(7001, 7960, Some(|r, n| r.work_offset((7 + n / 20) as usize, n % 20)), Some(|r, n, v| r.set_work_offset((7 + n / 20) as usize, n % 20, v))),
+    row(10001, 10999, Some(|r, n| r.tool_offset(Register::HWear, n)), Some(|r, n, v| r.set_tool_offset(Register::HWear, n, v))),
+    row(11001, 11999, Some(|r, n| r.tool_offset(Register::HGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::HGeometry, n, v))),
+    row(12001, 12999, Some(|r, n| r.tool_offset(Register::DWear, n)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v))),
+    row(13001, 13999, Some(|r, n| r.tool_offset(Register::DGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v))),
+    row(14001, 20000, Some(|r, n| r.work_offset((7 + n / 20) as usize, n % 20)), Some(|r, n, v| r.set_work_offset((7 + n / 20) as usize, n % 20, v))),
 ];
 
 /// Ranges that a control may have and the simulator lacks.
@@ -84,14 +103,16 @@ const NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (100_001, 100_200, "positions of more than 20 axes"),
 ];
 
-/// Ranges that differ on a Haas: tool offsets, whose diameters are radii here, and the offset of G52.
+/// Ranges that differ on a Haas: tool offsets, whose diameters are radii here, and the offset of G52; and #3100, which its
+/// other timers and switches surround.
 #[rustfmt::skip]
 const HAAS: &[VariableRow] = &[
-    row(2001, 2200, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
-    row(2201, 2400, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
-    row(2401, 2600, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DGeometry, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v / 2.0))),
-    row(2601, 2800, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DWear, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DWear, n, v / 2.0))),
-    row(5201, 5220, Some(|c, n| c.position(n, |c, axis| c.state.local_offset[axis])), Some(|c, n, v| c.set_local(n, v))),
+    row(2001, 2200, Some(|r, n| r.tool_offset(Register::HGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::HGeometry, n, v))),
+    row(2201, 2400, Some(|r, n| r.tool_offset(Register::HWear, n)), Some(|r, n, v| r.set_tool_offset(Register::HWear, n, v))),
+    row(2401, 2600, Some(|r, n| Ok(2.0 * r.tool_offset(Register::DGeometry, n)?)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v / 2.0))),
+    row(2601, 2800, Some(|r, n| Ok(2.0 * r.tool_offset(Register::DWear, n)?)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v / 2.0))),
+    vacant(3100),
+    row(5201, 5220, Some(|r, n| r.position(n, |r, axis| r.state.local_offset[axis])), Some(|r, n, v| r.set_local(n, v))),
 ];
 
 /// Ranges that a Haas has and the simulator lacks; on a Fanuc they have another meaning or none.
@@ -136,7 +157,10 @@ fn find(number: u32, offsets: OffsetVariables) -> Result<&'static VariableRow, A
 
 /// Raises the alarm of reading a number on any control with these offsets.
 pub(super) fn check_readable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
-    find(number, offsets)?.read.map(|_| ()).ok_or(Alarm::ReadProtected { number })
+    match find(number, offsets)?.read {
+        ReadRule::Protected => Err(Alarm::ReadProtected { number }),
+        ReadRule::Vacant | ReadRule::Value(_) => Ok(()),
+    }
 }
 
 /// Raises the alarm of writing a number on any control with these offsets.
@@ -154,18 +178,18 @@ fn variable_alarm(alarm: Alarm, number: u32) -> Alarm {
 
 impl Registers {
     pub(super) fn read_system(&self, number: u32) -> Result<Value, Alarm> {
-        if number == 3100 {
-            return Ok(Value::Vacant);
-        }
         let row = find(number, self.data.settings.offset_variables)?;
-        let read = row.read.ok_or(Alarm::ReadProtected { number })?;
-        read(self, number - row.from).map(Value::Number).map_err(|alarm| variable_alarm(alarm, number))
+        match row.read {
+            ReadRule::Protected => Err(Alarm::ReadProtected { number }),
+            ReadRule::Vacant => Ok(Value::Vacant),
+            ReadRule::Value(read) => {
+                let value = read(self, number - row.from);
+                value.map(Value::Number).map_err(|alarm| variable_alarm(alarm, number))
+            }
+        }
     }
 
     pub(super) fn write_system(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
-        if number == 3100 {
-            return Err(Alarm::WriteProtected { number });
-        }
         let row = find(number, self.data.settings.offset_variables)?;
         let write = row.write.ok_or(Alarm::WriteProtected { number })?;
         write(self, number - row.from, value).map_err(|alarm| variable_alarm(alarm, number))

@@ -37,7 +37,7 @@ impl WordNumber {
 }
 
 /// Largest number of G codes in a block.
-pub(super) const G_CODES: usize = 12;
+pub(super) const MAX_G_CODES: usize = 12;
 
 /// Words of a block by letter. They are kept between blocks, and the mask of letters is all that is cleared of the values.
 #[derive(Clone, Debug, Default)]
@@ -84,7 +84,7 @@ impl BlockWords {
     }
 
     pub(super) fn put_g(&mut self, row: &'static GCodeRow) -> Result<(), Alarm> {
-        if self.g_rows.len() == G_CODES {
+        if self.g_rows.len() == MAX_G_CODES {
             return Err(Alarm::MacroFormat { what: "too many G codes in one block".into() });
         }
         self.g_rows.push(row);
@@ -125,7 +125,7 @@ impl BlockWords {
     }
 
     /// Returns the first of some letters, as bits, in the order of the alphabet, that the block has.
-    pub(super) fn first_letter_of(&self, letters: u32) -> Option<u8> {
+    pub(super) fn first_present(&self, letters: u32) -> Option<u8> {
         let some = self.present_letters & letters;
         (some != 0).then(|| b'A' + some.trailing_zeros() as u8)
     }
@@ -151,7 +151,7 @@ impl BlockWords {
 
     /// Returns the first word, by its letter, that has not been read.
     pub(super) fn first_unread(&self) -> Option<(char, Span)> {
-        let letter = self.first_letter_of(!self.read_letters.get())?;
+        let letter = self.first_present(!self.read_letters.get())?;
         Some((char::from(letter), self.span(letter)))
     }
 

@@ -112,8 +112,8 @@ impl<'a> CheckContext<'a> {
         let written =
             unit.reached_ops().filter_map(|(block, op)| Some((block, written_alarm(op.kind())?.clone())));
         let refused = unit.reached_ops().filter_map(|(block, op)| {
-            let form = op.dialect_syntax().iter().find(|form| !form.node.is_accepted(self.settings))?;
-            Some((block, form.node.alarm().located_at(form.span)))
+            let syntax = op.dialect_syntax().iter().find(|syntax| !syntax.node.is_accepted(self.settings))?;
+            Some((block, syntax.node.alarm().located_at(syntax.span)))
         });
         let selected = written.chain(refused).filter(|(_, alarm)| selects(&alarm.node));
         selected.map(|(block, alarm)| self.alarm_finding(unit, kind, block, &alarm)).collect()

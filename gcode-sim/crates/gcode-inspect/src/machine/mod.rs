@@ -146,10 +146,10 @@ impl Placement {
     /// 0.
     pub fn frame(&self) -> Frame {
         let [x, y, z] = self.tilt;
-        let turn = chain::rotation_about(&Vector3::z_axis(), z)
+        let rotation = chain::rotation_about(&Vector3::z_axis(), z)
             * chain::rotation_about(&Vector3::y_axis(), y)
             * chain::rotation_about(&Vector3::x_axis(), x);
-        Frame::from_parts(Translation3::from(self.origin.coords + self.shift), turn)
+        Frame::from_parts(Translation3::from(self.origin.coords + self.shift), rotation)
     }
 }
 

@@ -24,7 +24,7 @@ pub enum Operand {
 pub enum Slot {
     /// #1 to #33, #100 to #199 and #500 to #999: readable and writable on every control.
     Free(u16),
-    /// #0, system variables, and commons that only some controls have.
+    /// Any other number, whose variable is decided at run time.
     Other(u32),
 }
 
@@ -91,7 +91,7 @@ pub enum ComputedSource {
     /// Result of the preceding instruction.
     Last,
     /// Top of the stack, which is popped.
-    Waiting,
+    Stacked,
 }
 
 /// Operation of the bytecode.

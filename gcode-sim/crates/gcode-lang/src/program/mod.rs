@@ -102,7 +102,7 @@ impl Op {
     pub fn kind(&self) -> &OpKind {
         match &self.body {
             OpBody::Plain(kind) => kind,
-            OpBody::Guarded(asked) => &asked.kind,
+            OpBody::Guarded(guarded) => &guarded.kind,
         }
     }
 
@@ -113,7 +113,7 @@ impl Op {
     }
 
     fn guarded_op(&self) -> Option<&GuardedOp> {
-        if let OpBody::Guarded(asked) = &self.body { Some(asked) } else { None }
+        if let OpBody::Guarded(guarded) = &self.body { Some(guarded) } else { None }
     }
 
     /// Returns the block skip switch at the start of the block.
@@ -123,7 +123,7 @@ impl Op {
 
     /// Returns the syntax of the block that some controls refuse.
     pub fn dialect_syntax(&self) -> &[Spanned<DialectSyntax>] {
-        self.guarded_op().map_or(&[], |asked| &asked.dialect_syntax)
+        self.guarded_op().map_or(&[], |guarded| &guarded.dialect_syntax)
     }
 }
 
@@ -334,7 +334,7 @@ impl Program {
     pub fn find_number(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
         let first = self.numbers().partition_point(|entry| *entry < (number, 0));
         let next = self.numbers().partition_point(|entry| *entry < (number, from as u32));
-        let is_it = |index: usize| self.numbers().get(index).filter(|(n, _)| *n == number);
-        is_it(next).or_else(|| is_it(first)).map(|(_, op)| *op as OpIndex)
+        let entry_at = |index: usize| self.numbers().get(index).filter(|(n, _)| *n == number);
+        entry_at(next).or_else(|| entry_at(first)).map(|(_, op)| *op as OpIndex)
     }
 }

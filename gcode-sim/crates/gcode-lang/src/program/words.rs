@@ -134,8 +134,9 @@ impl CallOp {
 
 impl Words {
     fn new(list: Vec<LoweredWord>, call: Option<CallOp>) -> Self {
-        let rest = call.map(|call| Box::new(UncommonWords { call: Some(call), ..UncommonWords::default() }));
-        Self { list, uncommon: rest }
+        let uncommon =
+            call.map(|call| Box::new(UncommonWords { call: Some(call), ..UncommonWords::default() }));
+        Self { list, uncommon }
     }
 
     /// Returns the list, emptied for the words of another block.
@@ -158,7 +159,9 @@ impl Words {
     /// Returns true if the block has neither a call nor an inner skip.
     #[inline]
     pub fn is_plain(&self) -> bool {
-        self.uncommon.as_ref().is_none_or(|rest| rest.call.is_none() && rest.skipped_form.is_none())
+        self.uncommon
+            .as_ref()
+            .is_none_or(|uncommon| uncommon.call.is_none() && uncommon.skipped_form.is_none())
     }
 
     /// Iterates over the G codes written as numbers, each with its meaning on each control.
@@ -190,7 +193,7 @@ impl Words {
 
     /// Returns the code of a word's value.
     pub fn code(&self, index: u32) -> &[Instruction] {
-        self.uncommon.as_ref().map_or(&[], |rest| &rest.codes[index as usize])
+        self.uncommon.as_ref().map_or(&[], |uncommon| &uncommon.codes[index as usize])
     }
 
     /// Returns the axis number of a word.
@@ -227,10 +230,10 @@ impl Lowering {
         // Macro calls begin with a G code, all other calls with an M code; names occur in calls only.
         let (mut by_g, mut by_m) = (false, false);
         for word in words.clone() {
-            let coded = self.lower_word(word)?;
-            by_g |= matches!(coded.value, WordOperand::G(code, _) if is_call(code));
-            by_m |= coded.letter == b'M' || matches!(word.value, WordValue::Name(_));
-            list.push(coded);
+            let lowered = self.lower_word(word)?;
+            by_g |= matches!(lowered.value, WordOperand::G(code, _) if is_call(code));
+            by_m |= lowered.letter == b'M' || matches!(word.value, WordValue::Name(_));
+            list.push(lowered);
         }
         match (by_g, by_m) {
             (false, false) => return Ok(Words::new(list, None)),
@@ -244,8 +247,8 @@ impl Lowering {
             (MODAL_CALL_END, CallCode::Cancel),
         ];
         for (code, kind) in CALLS {
-            let is_it = |word: &LoweredWord| matches!(word.value, WordOperand::G(c, _) if c == code);
-            let Some(at) = list.iter().position(is_it) else { continue };
+            let is_call_code = |word: &LoweredWord| matches!(word.value, WordOperand::G(c, _) if c == code);
+            let Some(at) = list.iter().position(is_call_code) else { continue };
             let span = list[at].span;
             self.record_syntax(DialectSyntax::GCodeCall(code), span);
             if kind != CallCode::Cancel {
@@ -338,25 +341,25 @@ fn macro_call<'a>(
     }
     list.remove(0);
     let mut call = CallOp::new(kind, span);
-    for (coded, word) in list.into_iter().zip(words.skip(1)) {
-        match (coded.letter, &word.value) {
+    for (lowered, word) in list.into_iter().zip(words.skip(1)) {
+        match (lowered.letter, &word.value) {
             (b'P', WordValue::Name(name)) => call.target = CallTarget::Name(name.clone()),
-            (b'P', _) => call.target = CallTarget::Number(coded),
+            (b'P', _) => call.target = CallTarget::Number(lowered),
             (_, WordValue::Name(_)) => {
-                return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(coded.span));
+                return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(lowered.span));
             }
-            (b'L', _) => call.repeats = Some(coded),
-            (b'G', _) if matches!(coded.value, WordOperand::G(code, _) if is_call(code) && code != MODAL_CALL_END) =>
+            (b'L', _) => call.repeats = Some(lowered),
+            (b'G', _) if matches!(lowered.value, WordOperand::G(code, _) if is_call(code) && code != MODAL_CALL_END) =>
             {
-                return Err(Alarm::TwoMacroCalls.located_at(coded.span));
+                return Err(Alarm::TwoMacroCalls.located_at(lowered.span));
             }
             (b'M', WordValue::Literal(number)) if number.places.is_none() && number.digits == 98 => {
-                return Err(Alarm::TwoMacroCalls.located_at(coded.span));
+                return Err(Alarm::TwoMacroCalls.located_at(lowered.span));
             }
             (b'G', _) if kind != CallCode::EveryBlock => {
-                return Err(Alarm::GAsArgument.located_at(coded.span));
+                return Err(Alarm::GAsArgument.located_at(lowered.span));
             }
-            _ => call.arguments.push(coded),
+            _ => call.arguments.push(lowered),
         }
     }
     Ok(Words::new(Vec::new(), Some(call)))
@@ -391,22 +394,22 @@ fn subprogram<'a>(
     }
     let mut call_op = CallOp::new(calling, call.span);
     let mut other_words = Vec::with_capacity(list.len());
-    for (coded, word) in list.into_iter().zip(words.clone()) {
-        match (coded.letter, &word.value) {
+    for (lowered, word) in list.into_iter().zip(words.clone()) {
+        match (lowered.letter, &word.value) {
             (b'M', _) if kind(word).is_some() => {}
             (b'P', WordValue::Name(name)) => call_op.target = CallTarget::Name(name.clone()),
             (_, WordValue::Name(_)) => {
-                return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(coded.span));
+                return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(lowered.span));
             }
-            (b'P', _) if calling == CallCode::Local => call_op.start = Some(coded),
-            (b'P', _) => call_op.target = CallTarget::Number(coded),
-            (b'L', _) if calling != CallCode::Return => call_op.repeats = Some(coded),
-            (b'Q', _) if calling == CallCode::Subprogram => call_op.start = Some(coded),
+            (b'P', _) if calling == CallCode::Local => call_op.start = Some(lowered),
+            (b'P', _) => call_op.target = CallTarget::Number(lowered),
+            (b'L', _) if calling != CallCode::Return => call_op.repeats = Some(lowered),
+            (b'Q', _) if calling == CallCode::Subprogram => call_op.start = Some(lowered),
             // M98 with H alone: some controls call the subprogram at this N of the same program.
             (b'H', _) if calling == CallCode::Subprogram && !has(b'P') && !has(b'Q') => {
-                call_op.start = Some(coded)
+                call_op.start = Some(lowered)
             }
-            _ => other_words.push(coded),
+            _ => other_words.push(lowered),
         }
     }
     Ok(Words::new(other_words, Some(call_op)))

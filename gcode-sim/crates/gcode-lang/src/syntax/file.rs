@@ -25,13 +25,13 @@ pub(crate) struct ProgramParts<C, B> {
 /// Reads all programs of a file.
 pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
     let mut programs = Programs::<(), Block>::default();
-    for piece in FileItems::new(source, bytes) {
-        match piece {
+    for item in FileItems::new(source, bytes) {
+        match item {
             FileItem::Section => programs.close(),
             FileItem::Program { name, span } => programs.begin(name, span),
             FileItem::Block(block) => {
-                let (span, silent) = (block.span, is_unreadable_block(&block));
-                programs.program_for_block(span, silent).blocks.push(block);
+                let (span, is_unreadable) = (block.span, is_unreadable_block(&block));
+                programs.program_for_block(span, is_unreadable).blocks.push(block);
             }
         }
     }
@@ -57,9 +57,9 @@ impl<C, B> Default for Programs<C, B> {
 impl<C: Default, B> Programs<C, B> {
     pub(super) fn begin(&mut self, name: ProgramName, span: Span) {
         self.close();
-        let silent = name == ProgramName::Unnamed;
+        let is_unreadable = name == ProgramName::Unnamed;
         let (context, blocks) = (C::default(), Vec::new());
-        self.list.push((ProgramParts { name, span, context, blocks, is_closed: false }, silent));
+        self.list.push((ProgramParts { name, span, context, blocks, is_closed: false }, is_unreadable));
         self.is_open = true;
     }
 
@@ -79,8 +79,8 @@ impl<C: Default, B> Programs<C, B> {
             self.begin(ProgramName::Unnamed, span);
         }
         let last = self.list.len() - 1;
-        let (program, all_silent) = &mut self.list[last];
-        *all_silent &= is_unreadable;
+        let (program, all_unreadable) = &mut self.list[last];
+        *all_unreadable &= is_unreadable;
         program
     }
 
@@ -90,7 +90,7 @@ impl<C: Default, B> Programs<C, B> {
         let is_only_program = self.list.len() == 1;
         self.list
             .into_iter()
-            .filter(|(_, silent)| is_only_program || !silent)
+            .filter(|(_, is_unreadable)| is_only_program || !is_unreadable)
             .map(|(program, _)| program)
             .collect()
     }
@@ -124,12 +124,12 @@ pub(crate) fn outline<C: Default, B>(
     mut convert: impl FnMut(&mut C, BlockOutline) -> B,
 ) -> Vec<ProgramParts<C, B>> {
     let mut programs = Programs::default();
-    let mut pieces = FileItems::new(source, bytes);
+    let mut items = FileItems::new(source, bytes);
     // True once the current program has a name or a readable block.
     let mut is_program_known = false;
     loop {
-        let begins_line = pieces.begins_line();
-        match pieces.next_item() {
+        let begins_line = items.begins_line();
+        match items.next_item() {
             Some(FileItem::Section) => {
                 is_program_known = false;
                 programs.close();
@@ -139,9 +139,10 @@ pub(crate) fn outline<C: Default, B>(
                 programs.begin(name, span);
             }
             Some(FileItem::Block(block)) => {
-                let silent = is_unreadable_block(&block);
-                is_program_known |= !silent;
-                let ProgramParts { context, blocks, .. } = programs.program_for_block(block.span, silent);
+                let is_unreadable = is_unreadable_block(&block);
+                is_program_known |= !is_unreadable;
+                let ProgramParts { context, blocks, .. } =
+                    programs.program_for_block(block.span, is_unreadable);
                 let block = Box::new(block);
                 let outlined =
                     if begins_line { BlockOutline::Tree(block) } else { BlockOutline::WithinLine(block) };
@@ -151,9 +152,9 @@ pub(crate) fn outline<C: Default, B>(
                 if is_program_known {
                     let ProgramParts { context, blocks, .. } =
                         programs.program_for_block(Span::default(), false);
-                    pieces.plain_lines(|span| blocks.push(convert(context, BlockOutline::Words(span))));
+                    items.plain_lines(|span| blocks.push(convert(context, BlockOutline::Words(span))));
                 }
-                if pieces.next_line().is_none() {
+                if items.next_line().is_none() {
                     return programs.finish();
                 }
             }
@@ -163,7 +164,7 @@ pub(crate) fn outline<C: Default, B>(
 
 /// Reads the block at the line start `start`, taken from an outline, of a text without its trailer.
 pub(crate) fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
-    FileItems::starting_at(source, bytes, start as usize).find_map(|piece| match piece {
+    FileItems::starting_at(source, bytes, start as usize).find_map(|item| match item {
         FileItem::Block(block) => Some(block),
         _ => None,
     })

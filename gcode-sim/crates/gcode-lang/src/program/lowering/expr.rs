@@ -14,7 +14,7 @@ use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function
 pub(in crate::program) const MAX_BRACKETS: usize = 5;
 
 const LAST: OperandSource = OperandSource::Computed(ComputedSource::Last);
-const WAITING: OperandSource = OperandSource::Computed(ComputedSource::Waiting);
+const STACKED: OperandSource = OperandSource::Computed(ComputedSource::Stacked);
 
 /// Largest number of a variable.
 const MAX_VARIABLE_NUMBER: f64 = 999_999_999.0;
@@ -154,7 +154,7 @@ impl Lowering {
         let behind_left = self.instructions.len();
         let (right_source, right_depth) = self.compile_source(right, context)?;
         if (left_source, right_source) == (LAST, LAST) {
-            left_source = WAITING;
+            left_source = STACKED;
             let wait = Instruction { operation: UncommonOp::Push.into(), span: left.span };
             self.instructions.insert(behind_left, wait);
         }

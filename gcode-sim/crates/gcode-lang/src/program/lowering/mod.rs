@@ -26,8 +26,8 @@ type LoweringResult<T> = Result<T, LocatedAlarm>;
 
 impl Lowering {
     /// Records syntax of the current block that some controls refuse.
-    pub(super) fn record_syntax(&mut self, form: DialectSyntax, span: Span) {
-        self.dialect_syntax.push(Spanned::new(form, span));
+    pub(super) fn record_syntax(&mut self, syntax: DialectSyntax, span: Span) {
+        self.dialect_syntax.push(Spanned::new(syntax, span));
     }
 
     /// Lowers a block; `small` starts at its first lower-case letter, as returned by [`lower_case`].
@@ -40,7 +40,7 @@ impl Lowering {
         }
         let kind = self.lower_kind(block).unwrap_or_else(OpKind::Alarm);
         let skip = block.skip.as_ref().map(|s| s.node);
-        let act = match skip.is_some() || !self.dialect_syntax.is_empty() {
+        let body = match skip.is_some() || !self.dialect_syntax.is_empty() {
             true => OpBody::Guarded(Box::new(GuardedOp {
                 skip,
                 dialect_syntax: self.dialect_syntax.drain(..).collect(),
@@ -48,7 +48,7 @@ impl Lowering {
             })),
             false => OpBody::Plain(kind),
         };
-        Op { ordinal: 0, span: block.span, number: block.number.as_ref().map(|n| n.node), body: act }
+        Op { ordinal: 0, span: block.span, number: block.number.as_ref().map(|n| n.node), body }
     }
 
     fn lower_kind(&mut self, block: &ast::Block) -> LoweringResult<OpKind> {
@@ -96,7 +96,7 @@ impl Lowering {
             // The effect of /n after a statement on a control is unknown, so it must not be ignored.
             (Some(_), true) if !skips.is_empty() => Err(Alarm::MixedStatements.located_at(block.span)),
             (Some(found), true) => match self.lower_statement(&found.node, found.span, block)? {
-                Statement::AssignFree(compute) => Ok(OpKind::AssignFree(compute)),
+                Statement::AssignFree(assign) => Ok(OpKind::AssignFree(assign)),
                 statement => Ok(OpKind::Statement(statement)),
             },
             (None, true) => Ok(OpKind::Empty),
