@@ -8,7 +8,7 @@ use crate::reader::bounds::{
     IndexTolerance, KeyRange, PlungeRate, SideRadius, TableOffset, TipAngle, TipRadius, ToothDepth,
     WheelClearance, WheelSpeed,
 };
-use crate::reader::{AxisSign, FileKey, FixedArray, Optional, Section, Word, Words};
+use crate::reader::{AxisSign, FileKey, FixedArray, Optional, Section, Word, WordList};
 use gcode_lang::control::Dialect;
 use gcode_lang::units::Deg;
 
@@ -103,7 +103,7 @@ impl FluteLaw {
     }
 }
 
-impl Words for FluteLaw {
+impl WordList for FluteLaw {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {
@@ -250,7 +250,7 @@ pub enum ProgramForm {
     Moves,
 }
 
-impl Words for ProgramForm {
+impl WordList for ProgramForm {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {

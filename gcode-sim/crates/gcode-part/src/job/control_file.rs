@@ -16,7 +16,7 @@ use serde_json::{Map, json};
 use toml::Value;
 
 use super::FileError;
-use crate::reader::{Reader, Spanned};
+use crate::reader::{Located, Reader};
 use gcode_lang::control::{
     ADDRESSES, CODE_RANGES, CodeCalls, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues, Settings,
 };
@@ -28,7 +28,7 @@ use gcode_lang::control::{
 /// An unknown key or a value outside the range of its setting, with its line and the allowed values.
 pub fn apply(text: &str, settings: &mut Settings) -> Result<(), FileError> {
     let reader = Reader { text };
-    let entries: BTreeMap<Spanned<String>, Value> = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+    let entries: BTreeMap<Located<String>, Value> = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
     let mut entries: Vec<_> = entries.into_iter().collect();
     entries.sort_by_key(|(key, _)| (!key.as_ref().eq_ignore_ascii_case("DIALECT"), key.span().start));
     for (key, value) in entries {

@@ -10,7 +10,7 @@ use crate::reader::bounds::{
     ClampCode, Depth, Divisions, DrillNumber, FeedRate, KeyRange, Length, OuterDiameter, Radius, Retract,
     SpindleSpeed,
 };
-use crate::reader::{FileKey, Optional, Section, Word, Words};
+use crate::reader::{FileKey, Optional, Section, Word, WordList};
 
 /// A hexagonal pattern of radial holes on a cylinder about x.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -135,7 +135,7 @@ impl Metric {
     }
 }
 
-impl Words for Metric {
+impl WordList for Metric {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {

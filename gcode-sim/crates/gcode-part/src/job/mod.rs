@@ -29,7 +29,7 @@ pub use pin_holes::{
 pub use sheet::{AlternativeMachine, Minutes, Rates, SheetInfo};
 
 use crate::reader::bounds::{DepthTolerance, KeyRange, PositionTolerance, Retract};
-use crate::reader::{AxisSign, FileError, FileKey, Reader, Spanned, Word, Words};
+use crate::reader::{AxisSign, FileError, FileKey, Located, Reader, Word, WordList};
 use gcode_lang::control::{Dialect, Increment};
 
 /// A job of one of the families.
@@ -72,7 +72,7 @@ pub struct Rotary {
 /// Letters of rotary axes.
 enum RotaryLetter {}
 
-impl Words for RotaryLetter {
+impl WordList for RotaryLetter {
     type Value = char;
 
     fn all() -> Vec<(&'static str, char)> {
@@ -124,7 +124,7 @@ trait Family: DeserializeOwned {
 
 #[derive(Deserialize)]
 struct FamilyKey {
-    family: Spanned<String>,
+    family: Located<String>,
 }
 
 /// The job file as a schema: that of one of the families.

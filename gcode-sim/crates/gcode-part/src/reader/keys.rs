@@ -9,7 +9,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{DeserializeOwned, Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serializer};
 
-use super::Spanned;
+use super::Located;
 use gcode_lang::control::{Dialect, Increment};
 
 /// Start of the message for a value that is not allowed; the reader replaces it by the key.
@@ -36,7 +36,7 @@ pub trait FileKey {
 }
 
 /// A list of words, each with the value that it stands for.
-pub trait Words {
+pub trait WordList {
     /// Type of the values.
     type Value: Copy;
 
@@ -48,7 +48,7 @@ pub trait Words {
 #[derive(Clone, Copy, Debug)]
 pub struct Word<W>(PhantomData<W>);
 
-impl<W: Words> FileKey for Word<W> {
+impl<W: WordList> FileKey for Word<W> {
     type Value = W::Value;
 
     fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<W::Value, D::Error> {
@@ -61,7 +61,7 @@ impl<W: Words> FileKey for Word<W> {
     }
 }
 
-impl<W: Words> JsonSchema for Word<W> {
+impl<W: WordList> JsonSchema for Word<W> {
     fn schema_name() -> Cow<'static, str> {
         "Word".into()
     }
@@ -72,7 +72,7 @@ impl<W: Words> JsonSchema for Word<W> {
     }
 }
 
-impl Words for Dialect {
+impl WordList for Dialect {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {
@@ -80,7 +80,7 @@ impl Words for Dialect {
     }
 }
 
-impl Words for Increment {
+impl WordList for Increment {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {
@@ -178,7 +178,7 @@ impl<K: FileKey> FileKey for Items<K> {
 #[derive(Clone, Copy, Debug)]
 pub struct TableOf<W, K>(PhantomData<(W, K)>);
 
-impl<W: Words, K: FileKey> FileKey for TableOf<W, K> {
+impl<W: WordList, K: FileKey> FileKey for TableOf<W, K> {
     type Value = Vec<(W::Value, K::Value)>;
 
     fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self::Value, D::Error> {
@@ -186,7 +186,7 @@ impl<W: Words, K: FileKey> FileKey for TableOf<W, K> {
     }
 }
 
-impl<'de, W: Words, K: FileKey> Visitor<'de> for TableOf<W, K> {
+impl<'de, W: WordList, K: FileKey> Visitor<'de> for TableOf<W, K> {
     type Value = Vec<(W::Value, K::Value)>;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -202,7 +202,7 @@ impl<'de, W: Words, K: FileKey> Visitor<'de> for TableOf<W, K> {
     }
 }
 
-impl<W: Words, K: JsonSchema> JsonSchema for TableOf<W, K> {
+impl<W: WordList, K: JsonSchema> JsonSchema for TableOf<W, K> {
     fn schema_name() -> Cow<'static, str> {
         format!("Table_of_{}", K::schema_name()).into()
     }
@@ -220,9 +220,9 @@ impl<W: Words, K: JsonSchema> JsonSchema for TableOf<W, K> {
 }
 
 /// A key of a table, one word of the list `W`.
-struct TableKey<W: Words>(W::Value);
+struct TableKey<W: WordList>(W::Value);
 
-impl<'de, W: Words> Deserialize<'de> for TableKey<W> {
+impl<'de, W: WordList> Deserialize<'de> for TableKey<W> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let written = String::deserialize(deserializer)?;
         let found = W::all().into_iter().find(|(name, _)| *name == written);
@@ -256,7 +256,7 @@ macro_rules! schema_of {
 schema_of!(Optional: T, Section: T, Items: Vec<T>);
 
 /// A value of kind `K` with its location in the text.
-pub struct Bounded<K: FileKey>(Spanned<Checked<K>>);
+pub struct Bounded<K: FileKey>(Located<Checked<K>>);
 
 /// A value of kind `K`.
 pub struct Checked<K: FileKey>(K::Value);
@@ -269,7 +269,7 @@ impl<'de, K: FileKey> Deserialize<'de> for Checked<K> {
 
 impl<'de, K: FileKey> Deserialize<'de> for Bounded<K> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Spanned::deserialize(deserializer).map(Self)
+        Located::deserialize(deserializer).map(Self)
     }
 }
 
@@ -281,7 +281,7 @@ impl<K: FileKey<Value: Copy>> Bounded<K> {
 }
 
 impl<K: FileKey> Deref for Bounded<K> {
-    type Target = Spanned<Checked<K>>;
+    type Target = Located<Checked<K>>;
 
     fn deref(&self) -> &Self::Target {
         &self.0

@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 
 pub use keys::{
-    AxisSign, Bounded, FileKey, FixedArray, Items, OUT_OF_RANGE, Optional, Section, TableOf, Word, Words,
+    AxisSign, Bounded, FileKey, FixedArray, Items, OUT_OF_RANGE, Optional, Section, TableOf, Word, WordList,
 };
 
 /// Reason for which a file is unusable: one sentence with the key or the place, its line and the allowed
@@ -30,16 +30,16 @@ pub struct FileError {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
 #[serde(transparent)]
 #[schemars(with = "T", bound = "T: JsonSchema")]
-pub struct Spanned<T>(toml::Spanned<T>);
+pub struct Located<T>(toml::Spanned<T>);
 
-impl<T> Spanned<T> {
+impl<T> Located<T> {
     /// Returns the bytes of the value in the text.
     pub fn span(&self) -> Range<usize> {
         self.0.span()
     }
 }
 
-impl<T> AsRef<T> for Spanned<T> {
+impl<T> AsRef<T> for Located<T> {
     fn as_ref(&self) -> &T {
         self.0.as_ref()
     }
@@ -78,7 +78,7 @@ impl Reader<'_> {
     }
 
     /// Returns an error at the line of a value.
-    pub fn error<T>(&self, at: &Spanned<T>, message: impl Into<String>) -> FileError {
+    pub fn error<T>(&self, at: &Located<T>, message: impl Into<String>) -> FileError {
         FileError { line: Some(self.line(at.span().start)), message: message.into() }
     }
 
@@ -132,7 +132,7 @@ impl Reader<'_> {
     pub fn number(
         &self,
         key: &str,
-        value: &Spanned<f64>,
+        value: &Located<f64>,
         allowed: &str,
         within: impl Fn(f64) -> bool,
     ) -> Result<f64, FileError> {
@@ -150,7 +150,7 @@ impl Reader<'_> {
     pub fn choice<T: Copy>(
         &self,
         key: &str,
-        value: &Spanned<String>,
+        value: &Located<String>,
         all: &[(&str, T)],
     ) -> Result<T, FileError> {
         let found = all.iter().find(|(name, _)| name == value.as_ref());

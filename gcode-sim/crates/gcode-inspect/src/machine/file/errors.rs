@@ -8,7 +8,7 @@ use super::spread::{ErrorSpread, Length};
 use crate::machine::{ErrorSource, Machine};
 use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::Bounded;
-use gcode_part::reader::{FileKey, Optional, Reader, Section, Spanned};
+use gcode_part::reader::{FileKey, Located, Optional, Reader, Section};
 
 /// Errors of a touch probe.
 #[derive(Deserialize, JsonSchema)]
@@ -17,7 +17,7 @@ struct FileProbe {
     /// Error of each touch along its direction, mm.
     noise: Option<Bounded<ErrorSpread<Length>>>,
     /// Seed of the random numbers [default: 0].
-    seed: Option<Spanned<u64>>,
+    seed: Option<Located<u64>>,
 }
 
 /// The machine file's `[errors]`.

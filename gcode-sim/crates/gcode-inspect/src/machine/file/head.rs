@@ -10,7 +10,7 @@ use gcode_lang::motion::Axes;
 use gcode_lang::units::Deg;
 use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::{Angle, Bounded, PivotLength, Sign};
-use gcode_part::reader::{FixedArray, Reader, Spanned, names};
+use gcode_part::reader::{FixedArray, Located, Reader, names};
 
 /// The head and the inclination of the tool.
 #[derive(Deserialize, JsonSchema)]
@@ -19,14 +19,14 @@ use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 pub(super) struct FileHead {
     /// free: unknown; fixed: constant; manual: set by hand; axis: by an axis of the control.
     #[schemars(extend("enum" = names(&KINDS)))]
-    kind: Spanned<String>,
+    kind: Located<String>,
     /// From the head's pivot to the spindle's gauge line, mm [default: 0].
     pivot: Option<Bounded<PivotLength>>,
     /// From the tip to the spindle, not all 0.
-    direction: Option<Spanned<FixedArray<f64, 3>>>,
+    direction: Option<Located<FixedArray<f64, 3>>>,
     /// The axis, A, B or C.
     #[schemars(extend("enum" = ROTARY_LETTERS))]
-    letter: Option<Spanned<String>>,
+    letter: Option<Located<String>>,
     /// 1, or -1 if the axis is reversed [default: 1].
     sign: Option<Sign>,
     /// The head's angle with the axis at 0, degrees [default: 0].
@@ -143,6 +143,6 @@ impl FileHead {
     }
 }
 
-fn start<T>(value: &Spanned<T>) -> usize {
+fn start<T>(value: &Located<T>) -> usize {
     value.span().start
 }

@@ -9,7 +9,7 @@ use crate::machine::{AxisLink, Chain};
 use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
-use gcode_part::reader::{FixedArray, Reader, Spanned, names};
+use gcode_part::reader::{FixedArray, Located, Reader, names};
 
 /// An axis that carries the part.
 #[derive(Deserialize, JsonSchema)]
@@ -18,13 +18,13 @@ use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 pub(super) struct FileLink {
     /// The axis.
     #[schemars(extend("enum" = AXES))]
-    letter: Spanned<String>,
+    letter: Located<String>,
     /// The direction x, y or z of a rotary axis: A, B and C.
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
-    turns: Option<Spanned<String>>,
+    turns: Option<Located<String>>,
     /// The direction x, y or z of a linear axis: all other letters.
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
-    slides: Option<Spanned<String>>,
+    slides: Option<Located<String>>,
     /// 1 if a positive command rotates the part right-handed, or moves it in the positive direction; otherwise
     /// -1.
     sign: Sign,

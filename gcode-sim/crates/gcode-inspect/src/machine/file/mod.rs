@@ -31,7 +31,7 @@ use super::{Chain, Head, HeadKind, Machine, Tool};
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex};
 use gcode_part::reader::bounds::{Bounded, KeyRange};
-use gcode_part::reader::{FileError, FileKey, FixedArray, Items, Optional, Reader, Section, Spanned, names};
+use gcode_part::reader::{FileError, FileKey, FixedArray, Items, Located, Optional, Reader, Section, names};
 
 /// The machine of a program. Every section is optional; without any it is the machine of the paper.
 #[derive(Deserialize, JsonSchema)]
@@ -72,13 +72,13 @@ pub struct File {
 struct FileControl {
     /// The family of controls [default: fanuc-31i].
     #[schemars(extend("enum" = names(&Dialect::ALL)))]
-    dialect: Option<Spanned<String>>,
+    dialect: Option<Located<String>>,
     /// The least input increment: IS-A 0.01, IS-B 0.001, IS-C 0.0001 [default: IS-B].
     #[schemars(extend("enum" = names(&Increment::ALL)))]
-    increment: Option<Spanned<String>>,
+    increment: Option<Located<String>>,
     /// Its axis table, axis 1 first: different letters [default: XYZABC].
     #[schemars(regex(pattern = "^[XYZABCUVW]{1,8}$"))]
-    axes: Option<Spanned<String>>,
+    axes: Option<Located<String>>,
 }
 
 /// Letters of axes.
@@ -155,7 +155,7 @@ fn vector<R: KeyRange<Number = f64>>(FixedArray([x, y, z]): &FixedArray<Bounded<
 fn letter(
     reader: &Reader<'_>,
     key: &str,
-    value: &Spanned<String>,
+    value: &Located<String>,
     axes: &Axes,
 ) -> Result<AxisIndex, FileError> {
     let found = match value.as_ref().as_bytes() {

@@ -3,7 +3,7 @@ use super::AXES;
 use crate::machine::WorkOffset;
 use gcode_lang::motion::Axes;
 use gcode_part::reader::bounds::WorkOffsetValue;
-use gcode_part::reader::{FileError, FileKey, Reader, TableOf, Words};
+use gcode_part::reader::{FileError, FileKey, Reader, TableOf, WordList};
 
 /// Work offsets by code, each with its axes.
 pub(super) type FileOffsets = TableOf<WorkCode, TableOf<AxisLetter, WorkOffsetValue>>;
@@ -11,7 +11,7 @@ pub(super) type FileOffsets = TableOf<WorkCode, TableOf<AxisLetter, WorkOffsetVa
 /// Codes of work offsets.
 pub(super) enum WorkCode {}
 
-impl Words for WorkCode {
+impl WordList for WorkCode {
     type Value = u32;
 
     fn all() -> Vec<(&'static str, u32)> {
@@ -22,7 +22,7 @@ impl Words for WorkCode {
 /// Letters of axes.
 pub(super) enum AxisLetter {}
 
-impl Words for AxisLetter {
+impl WordList for AxisLetter {
     type Value = char;
 
     fn all() -> Vec<(&'static str, char)> {

@@ -7,7 +7,7 @@ use crate::machine::sources::SampleParameters;
 use crate::machine::{ErrorSource, HeadKind, Machine, Quantity};
 use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::{Bounded, Wavelength};
-use gcode_part::reader::{FileKey, Optional, Reader, Section, Spanned};
+use gcode_part::reader::{FileKey, Located, Optional, Reader, Section};
 
 /// The set-up of the part.
 #[derive(Deserialize, JsonSchema)]
@@ -36,7 +36,7 @@ pub(super) struct FileLinear {
     /// Wavelength of the error along the axis, mm [default: 500].
     pub(super) wave: Option<Bounded<Wavelength>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
-    pub(super) seed: Option<Spanned<u64>>,
+    pub(super) seed: Option<Located<u64>>,
 }
 
 /// Errors of the axis that rotates the part.
@@ -52,7 +52,7 @@ pub(super) struct FileRotary {
     #[serde(default, with = "Optional::<Section<FileVector<Angle>>>")]
     tilt: Option<FileVector<Angle>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
-    pub(super) seed: Option<Spanned<u64>>,
+    pub(super) seed: Option<Located<u64>>,
 }
 
 /// Errors of a head of kind manual or axis.
@@ -62,7 +62,7 @@ pub(super) struct FileHead {
     /// Error of its angle, degrees.
     angle: Option<Bounded<ErrorSpread<Angle>>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
-    pub(super) seed: Option<Spanned<u64>>,
+    pub(super) seed: Option<Located<u64>>,
 }
 
 /// Collects error sources, and checks that the machine has the parts that they concern.
@@ -77,7 +77,7 @@ pub(super) struct Collector<'r, 'm> {
 }
 
 /// Returns the seed of a section.
-pub(super) fn seed(seed: &Option<Spanned<u64>>) -> u64 {
+pub(super) fn seed(seed: &Option<Located<u64>>) -> u64 {
     seed.as_ref().map_or(0, |seed| *seed.as_ref())
 }
 

@@ -8,7 +8,7 @@ use crate::machine::{Chain, Head, HeadKind, Wheel};
 use gcode_lang::motion::Axes;
 use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::{Bounded, MachinePoint, Sign};
-use gcode_part::reader::{FixedArray, Reader, Spanned};
+use gcode_part::reader::{FixedArray, Located, Reader};
 
 /// A grinder's wheel, stationary while the table moves the part.
 #[derive(Deserialize, JsonSchema)]
@@ -19,7 +19,7 @@ pub(super) struct FileWheel {
     contact: FixedArray<Bounded<MachinePoint>, 3>,
     /// The axis that swivels it about that point, A, B or C [default: none].
     #[schemars(extend("enum" = ROTARY_LETTERS))]
-    letter: Option<Spanned<String>>,
+    letter: Option<Located<String>>,
     /// 1, or -1 if the axis is reversed [default: 1].
     sign: Option<Sign>,
 }

@@ -13,7 +13,7 @@ use crate::reader::bounds::{
     ProbeSearch, Radius, ReadingAngle, ReadingCount, ShiftLimit, SineTableAngle, SineTableLength, TiltLimit,
     Uneven,
 };
-use crate::reader::{AxisSign, FileKey, FixedArray, OUT_OF_RANGE, Optional, Section, Word, Words};
+use crate::reader::{AxisSign, FileKey, FixedArray, OUT_OF_RANGE, Optional, Section, Word, WordList};
 use gcode_lang::units::{Deg, Mm};
 
 /// Least y component of the surface's normal at a point that O8202 touches along y.
@@ -95,7 +95,7 @@ pub struct SineTable {
     pub sign: i8,
 }
 
-impl Words for GaugeSet {
+impl WordList for GaugeSet {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {

@@ -14,7 +14,7 @@ use super::{
     check_retract, retract_height,
 };
 use crate::reader::bounds::{Azimuth, CommonVariable, Depth, Length, Radius, Retract, ToolLength};
-use crate::reader::{FileKey, Items, Optional, Section, Word, Words};
+use crate::reader::{FileKey, Items, Optional, Section, Word, WordList};
 
 /// Pin holes in a surface of revolution: drilled along its axis or its normals.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -171,7 +171,7 @@ impl Default for MacroSettings {
     }
 }
 
-impl Words for HeadKind {
+impl WordList for HeadKind {
     type Value = bool;
 
     fn all() -> Vec<(&'static str, bool)> {
@@ -179,7 +179,7 @@ impl Words for HeadKind {
     }
 }
 
-impl Words for SurfaceKind {
+impl WordList for SurfaceKind {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {
@@ -187,7 +187,7 @@ impl Words for SurfaceKind {
     }
 }
 
-impl Words for AxisDirection {
+impl WordList for AxisDirection {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {
