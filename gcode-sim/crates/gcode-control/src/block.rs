@@ -16,6 +16,7 @@ use super::executor::Executor;
 use super::flow::FrameKind;
 use super::functions::{ExecResult, locate};
 use super::lookahead::Lookahead;
+use super::loop_detection::LoopDetector;
 use super::notes::Note;
 use super::outcome::RunEnd;
 use super::plan::{BlockFlow, BlockPlan};
@@ -24,7 +25,9 @@ use super::words::{BlockWords, CallingWord};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::EventSink;
 use gcode_lang::program::modes::CutterSide;
-use gcode_lang::program::{CallCode, DialectSyntax, GuardedOp, Library, Memory, OpBody, OpKind, Words};
+use gcode_lang::program::{
+    CallCode, DialectSyntax, GuardedOp, Library, Memory, Op, OpBody, OpIndex, OpKind, Program, Words,
+};
 use gcode_lang::source::Span;
 
 impl Control {
@@ -42,47 +45,15 @@ impl Control {
         let Some(program) = memory.get_mut(executor.flow.frame.program) else {
             return executor.end_of_program(memory);
         };
-        let (program, op) = loop {
-            let index = executor.flow.frame.next;
-            let Some((program, op)) = program.lower_block(index) else {
-                return executor.end_of_program(memory);
-            };
-            executor.log.blocks += 1;
-            executor.flow.frame.next = index + 1;
-            let result = match op.body() {
-                OpBody::Plain(OpKind::AssignFree(assign)) => executor.assign(assign),
-                OpBody::Plain(OpKind::Statement(statement)) => {
-                    executor.flow.block = op.span;
-                    executor.statement(program, statement, loop_detector, sink)
-                }
-                OpBody::Plain(OpKind::Words(words)) => {
-                    executor.flow.block = op.span;
-                    if executor.plain_move(op, words, sink).is_some() {
-                        return Ok(());
-                    }
-                    break (program, op);
-                }
-                _ => {
-                    executor.flow.block = op.span;
-                    break (program, op);
-                }
-            };
-            // The span of an assignment is read only after an alarm or an effect.
-            if result.is_err() || executor.registers.block_effects.is_pause(executor.log.blocks) {
-                executor.flow.block = op.span;
-                return result;
-            }
+        let index = match executor.run_statements(program, loop_detector, sink) {
+            Statements::End => return executor.end_of_program(memory),
+            Statements::Done(result) => return result,
+            Statements::Block(index) => index,
         };
-        let mut kind = match op.body() {
-            OpBody::Plain(kind) => kind,
-            OpBody::Guarded(guarded) if executor.check_guards(guarded)? => return Ok(()),
-            OpBody::Guarded(guarded) => &guarded.kind,
+        let Some((program, op)) = program.lower_block(index) else {
+            return executor.end_of_program(memory);
         };
-        if let OpKind::If { condition, then } = kind
-            && executor.registers.evaluate_condition(condition)?
-        {
-            kind = then;
-        }
+        let Some(kind) = executor.unguard(op)? else { return Ok(()) };
         let is_parameter = executor.registers.state.is_in_parameter_input;
         match kind {
             OpKind::AssignFree(assign) => return executor.assign_out_of_line(assign),
@@ -121,7 +92,69 @@ impl Control {
     }
 }
 
+/// End of a row of statements.
+enum Statements {
+    /// The program has no further block.
+    End,
+    /// The run pauses, or a plain move has been executed.
+    Done(ExecResult<()>),
+    /// A block that is neither a statement nor a plain move; it counts as begun.
+    Block(OpIndex),
+}
+
 impl Executor {
+    /// Executes the next blocks while they are statements, and a plain move after them.
+    #[inline(always)]
+    fn run_statements<S: EventSink>(
+        &mut self,
+        program: &mut Program,
+        loop_detector: &mut LoopDetector,
+        sink: &mut S,
+    ) -> Statements {
+        loop {
+            let index = self.flow.frame.next;
+            let Some((program, op)) = program.lower_block(index) else { return Statements::End };
+            self.log.blocks += 1;
+            self.flow.frame.next = index + 1;
+            let result = match op.body() {
+                OpBody::Plain(OpKind::AssignFree(assign)) => self.assign(assign),
+                OpBody::Plain(OpKind::Statement(statement)) => {
+                    self.flow.block = op.span;
+                    self.statement(program, statement, loop_detector, sink)
+                }
+                OpBody::Plain(OpKind::Words(words)) => {
+                    self.flow.block = op.span;
+                    if self.plain_move(op, words, sink).is_some() {
+                        return Statements::Done(Ok(()));
+                    }
+                    return Statements::Block(index);
+                }
+                OpBody::Plain(OpKind::Empty | OpKind::If { .. } | OpKind::Alarm(_)) | OpBody::Guarded(_) => {
+                    self.flow.block = op.span;
+                    return Statements::Block(index);
+                }
+            };
+            // The span of an assignment is read only after an alarm or an effect.
+            if result.is_err() || self.registers.block_effects.is_pause(self.log.blocks) {
+                self.flow.block = op.span;
+                return Statements::Done(result);
+            }
+        }
+    }
+
+    /// Checks the guards and the condition of a block; returns what it executes, `None` if it is skipped.
+    fn unguard<'p>(&mut self, op: &'p Op) -> ExecResult<Option<&'p OpKind>> {
+        let kind = match op.body() {
+            OpBody::Plain(kind) => kind,
+            OpBody::Guarded(guarded) if self.check_guards(guarded)? => return Ok(None),
+            OpBody::Guarded(guarded) => &guarded.kind,
+        };
+        match kind {
+            OpKind::If { condition, then } if self.registers.evaluate_condition(condition)? => Ok(Some(then)),
+            kind => Ok(Some(kind)),
+        }
+    }
+
     /// Checks a block of words and makes its plan. An alarm leaves no trace.
     fn plan_words(
         &self,

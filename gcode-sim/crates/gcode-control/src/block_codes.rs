@@ -3,7 +3,7 @@ use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
-use super::state::{AxisWordUse, CycleState, PolarPoint};
+use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
 use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
@@ -31,8 +31,25 @@ impl Planner<'_> {
     fn apply_all_codes(&self, plan: &mut BlockPlan) -> ExecResult<Option<AxisWordUse>> {
         let state = &mut plan.state;
         let before = state.modal;
+        let (axis_use, is_cycle_active) = self.apply_each_code(state)?;
+        self.check_modes(&before, state)?;
+        self.update_coordinates(&before, state);
+        if state.modal.cycle.is_some() && !is_cycle_active {
+            self.begin_cycle(state)?;
+        }
+        // G54 P is G54.1 P.
+        let selects_additional_work = self.words.has(b'P')
+            && axis_use.is_none()
+            && state.modal.cycle.is_none()
+            && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
+        Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
+    }
+
+    /// Applies the G codes in their order; returns the use of the axis words, and true if a cycle stays active that was
+    /// active before.
+    fn apply_each_code(&self, state: &mut State) -> ExecResult<(Option<AxisWordUse>, bool)> {
         let mut axis_use = None;
-        let mut is_cycle_active = before.cycle.is_some();
+        let mut is_cycle_active = state.modal.cycle.is_some();
         for row in self.words.g_codes() {
             if let Effect::Motion(motion) = row.effect {
                 state.set_motion_mode(motion);
@@ -57,7 +74,12 @@ impl Planner<'_> {
                 is_cycle_active = false;
             }
         }
-        let modal = state.modal;
+        Ok((axis_use, is_cycle_active))
+    }
+
+    /// Raises the alarm of modes that exclude one another or the codes of the block.
+    fn check_modes(&self, before: &Modal, state: &State) -> ExecResult<()> {
+        let modal = &state.modal;
         if modal.plane != before.plane && self.registers.lookahead.is_offset() {
             return Err(Alarm::PlaneInCompensation.located_at(self.block));
         }
@@ -70,7 +92,12 @@ impl Planner<'_> {
         {
             return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(self.block));
         }
-        self.check_transform_order(&before, state)?;
+        self.check_transform_order(before, state)
+    }
+
+    /// Ends transforms whose modes are off, and recomputes the position if the coordinates have changed.
+    fn update_coordinates(&self, before: &Modal, state: &mut State) {
+        let modal = state.modal;
         if modal.scaling == Scaling::Off {
             state.transform.scaling = None;
         }
@@ -87,18 +114,15 @@ impl Planner<'_> {
         } else if state.transform != self.registers.state.transform {
             self.data.apply_transform_change(state);
         }
-        if modal.cycle.is_some() && !is_cycle_active {
-            let axis = self.locate(self.drilling_axis(state))?;
-            state.cycle.axis = Some(axis);
-            state.cycle.initial = state.programmed[axis];
-            state.cycle.is_initial_unknown = state.work_zero_unknown >> axis & 1 == 1;
-        }
-        // G54 P is G54.1 P.
-        let selects_additional_work = self.words.has(b'P')
-            && axis_use.is_none()
-            && modal.cycle.is_none()
-            && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
-        Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
+    }
+
+    /// Stores the drilling axis and the initial level of a cycle that the block begins.
+    fn begin_cycle(&self, state: &mut State) -> ExecResult<()> {
+        let axis = self.locate(self.drilling_axis(state))?;
+        state.cycle.axis = Some(axis);
+        state.cycle.initial = state.programmed[axis];
+        state.cycle.is_initial_unknown = state.work_zero_unknown >> axis & 1 == 1;
+        Ok(())
     }
 
     /// 1. Applies F S T D H, and the radius of D.

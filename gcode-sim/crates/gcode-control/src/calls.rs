@@ -12,75 +12,51 @@ use gcode_lang::program::{CallCode, CallOp, CallTarget, LoweredWord, m_codes};
 impl Planner<'_> {
     /// 7. Plans the call or return of a block.
     pub(super) fn plan_call(&self, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
-        let count = |word: Option<&LoweredWord>| self.registers.count_of_word(self.lowered, word);
-        let refuse = |what: &str| Err(Alarm::NotSimulated { what: what.to_owned() }.located_at(call.span));
-        let kind = match call.kind {
-            CallCode::Return => {
-                let number = match &call.target {
-                    CallTarget::Number(word) => count(Some(word))?,
-                    CallTarget::Name(_) | CallTarget::None => None,
-                };
-                plan.flow = BlockFlow::Return { number, target: None };
-                return Ok(());
-            }
-            CallCode::Cancel => {
-                plan.flow = BlockFlow::CancelModal;
-                if self.flow.modal_calls.is_empty() && self.data.settings.undocumented.g67_alarms {
-                    return Err(Alarm::CancelWithoutModalCall.located_at(call.span));
-                }
-                return Ok(());
-            }
-            // The moves of the macro trigger the calls before its own; a new call would follow those it can't trigger.
-            CallCode::EveryBlock | CallCode::AfterMoves
-                if self.flow.frame.modal_call_count < self.flow.modal_calls.len() =>
-            {
-                return refuse("a modal call inside a macro that a modal call runs");
-            }
-            CallCode::EveryBlock => CallKind::EveryBlock,
-            CallCode::Macro => CallKind::Macro,
-            CallCode::AfterMoves => CallKind::Modal,
-            CallCode::Local if !self.data.settings.has_local_calls => {
-                return refuse("M97 with P (a call of the program itself, with --control M97-CALLS=1)");
-            }
-            CallCode::File if m_codes::find(198, self.data.settings.codes).is_none() => {
-                return refuse("M198 on this control");
-            }
-            CallCode::Subprogram | CallCode::File | CallCode::Local => CallKind::Subprogram,
+        match call.kind {
+            CallCode::Return => self.plan_return(call, plan),
+            CallCode::Cancel => self.plan_cancel(call, plan),
+            CallCode::Macro
+            | CallCode::AfterMoves
+            | CallCode::EveryBlock
+            | CallCode::Subprogram
+            | CallCode::File
+            | CallCode::Local => self.plan_program_call(call, plan),
+        }
+    }
+
+    /// Plans M99.
+    fn plan_return(&self, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
+        let number = match &call.target {
+            CallTarget::Number(word) => self.count_of(Some(word))?,
+            CallTarget::Name(_) | CallTarget::None => None,
         };
-        let undocumented = &self.data.settings.undocumented;
-        let missing = match kind {
-            CallKind::Subprogram if undocumented.missing_p_is_311 => Alarm::NoNameInCall,
-            _ => Alarm::ProgramNotNamed,
-        };
-        let missing = missing.located_at(call.span);
-        let (start, mut repeats) = (count(call.start.as_ref())?, count(call.repeats.as_ref())?);
-        let target = match &call.target {
-            // M98 Q, M98 H and M97 P start in the same program.
-            CallTarget::None if start.is_some() => ProgramRef::Resolved(self.flow.frame.program, 0),
-            CallTarget::None => return Err(missing),
-            CallTarget::Name(name) => ProgramRef::Name(name.clone()),
-            CallTarget::Number(word) => {
-                let number = count(Some(word))?.ok_or(missing)?;
-                // M98 P with more than four digits: repeats in front of a four-digit program number.
-                if call.kind == CallCode::Subprogram
-                    && self.data.settings.reads_repeats_in_p
-                    && repeats.is_none()
-                    && number > 9999
-                {
-                    repeats = Some(number / 10_000);
-                    ProgramRef::Number(number % 10_000)
-                } else {
-                    ProgramRef::Number(number)
-                }
-            }
-        };
+        plan.flow = BlockFlow::Return { number, target: None };
+        Ok(())
+    }
+
+    /// Plans G67.
+    fn plan_cancel(&self, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
+        plan.flow = BlockFlow::CancelModal;
+        if self.flow.modal_calls.is_empty() && self.data.settings.undocumented.g67_alarms {
+            return Err(Alarm::CancelWithoutModalCall.located_at(call.span));
+        }
+        Ok(())
+    }
+
+    /// Plans the call of a program.
+    fn plan_program_call(&self, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
+        let kind = self.call_kind(call)?;
+        let start = self.count_of(call.start.as_ref())?;
+        let repeats = self.count_of(call.repeats.as_ref())?;
+        let (target, repeats) = self.call_target(call, kind, start, repeats)?;
         let is_every_block = kind == CallKind::EveryBlock;
         let locals = self.registers.evaluate_arguments(self.lowered, &call.arguments, is_every_block)?;
-        let has_own_arguments = undocumented.every_block_calls_itself && !call.arguments.is_empty();
+        let has_own_arguments =
+            self.data.settings.undocumented.every_block_calls_itself && !call.arguments.is_empty();
         plan.flow = BlockFlow::Call(Box::new(CallPlan {
             kind,
             target,
-            repeats: repeats.unwrap_or(1),
+            repeats,
             start,
             locals,
             is_immediate: !is_every_block || has_own_arguments,
@@ -89,6 +65,70 @@ impl Planner<'_> {
             span: call.span,
         }));
         Ok(())
+    }
+
+    fn count_of(&self, word: Option<&LoweredWord>) -> ExecResult<Option<u32>> {
+        self.registers.count_of_word(self.lowered, word)
+    }
+
+    /// Returns the kind of a call; an alarm for one that this control lacks or the simulator does not execute.
+    fn call_kind(&self, call: &CallOp) -> ExecResult<CallKind> {
+        let refuse = |what: &str| Err(Alarm::NotSimulated { what: what.to_owned() }.located_at(call.span));
+        // The moves of the macro trigger the calls before its own; a new call would follow those it can't trigger.
+        let is_inside_modal_macro = self.flow.frame.modal_call_count < self.flow.modal_calls.len();
+        match call.kind {
+            CallCode::EveryBlock | CallCode::AfterMoves if is_inside_modal_macro => {
+                refuse("a modal call inside a macro that a modal call runs")
+            }
+            CallCode::EveryBlock => Ok(CallKind::EveryBlock),
+            CallCode::AfterMoves => Ok(CallKind::Modal),
+            CallCode::Macro => Ok(CallKind::Macro),
+            CallCode::Local if !self.data.settings.has_local_calls => {
+                refuse("M97 with P (a call of the program itself, with --control M97-CALLS=1)")
+            }
+            CallCode::File if m_codes::find(198, self.data.settings.codes).is_none() => {
+                refuse("M198 on this control")
+            }
+            CallCode::Subprogram | CallCode::File | CallCode::Local | CallCode::Return | CallCode::Cancel => {
+                Ok(CallKind::Subprogram)
+            }
+        }
+    }
+
+    /// Returns the called program and the number of its passes.
+    fn call_target(
+        &self,
+        call: &CallOp,
+        kind: CallKind,
+        start: Option<u32>,
+        repeats: Option<u32>,
+    ) -> ExecResult<(ProgramRef, u32)> {
+        let missing = match kind {
+            CallKind::Subprogram if self.data.settings.undocumented.missing_p_is_311 => Alarm::NoNameInCall,
+            CallKind::Subprogram | CallKind::Macro | CallKind::Modal | CallKind::EveryBlock => {
+                Alarm::ProgramNotNamed
+            }
+        };
+        let missing = missing.located_at(call.span);
+        let target = match &call.target {
+            // M98 Q, M98 H and M97 P start in the same program.
+            CallTarget::None if start.is_some() => ProgramRef::Resolved(self.flow.frame.program, 0),
+            CallTarget::None => return Err(missing),
+            CallTarget::Name(name) => ProgramRef::Name(name.clone()),
+            CallTarget::Number(word) => {
+                let number = self.count_of(Some(word))?.ok_or(missing)?;
+                // M98 P with more than four digits: repeats in front of a four-digit program number.
+                let has_repeats_in_p = call.kind == CallCode::Subprogram
+                    && self.data.settings.reads_repeats_in_p
+                    && repeats.is_none()
+                    && number > 9999;
+                if has_repeats_in_p {
+                    return Ok((ProgramRef::Number(number % 10_000), number / 10_000));
+                }
+                ProgramRef::Number(number)
+            }
+        };
+        Ok((target, repeats.unwrap_or(1)))
     }
 
     /// Raises the alarm of a block that triggers a modal call by a move and does something else with the program flow.

@@ -69,15 +69,7 @@ impl Planner<'_> {
         endpoint[axis] = from.programmed[axis];
         plan.state.set_work_zero_unknown(axis, from.work_zero_unknown >> axis & 1 == 1);
         self.read_cycle_words(plan, axis, incremental)?;
-        let data = &plan.state.cycle;
-        for (level, letter) in [(data.r, 'R'), (data.z, self.data.settings.axes.letter(axis))] {
-            if !level.is_commanded {
-                plan.notes.push(Note::CycleLevelMissing(letter));
-            }
-        }
-        if !self.data.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
-            plan.notes.push(Note::DrillsAlongZ(plan.state.modal.plane.code()));
-        }
+        self.note_cycle(plan, axis);
         if cycle.needs_q {
             self.check_peck_words(plan, pattern)?;
         }
@@ -110,15 +102,7 @@ impl Planner<'_> {
             self.push_rapid(plan, &to);
             return Ok(());
         }
-        let data = &plan.state.cycle;
-        let (level, is_unknown) = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
-            (data.r_level(), data.is_r_unknown())
-        } else {
-            (data.initial, data.is_initial_unknown)
-        };
-        plan.state.set_work_zero_unknown(axis, is_unknown);
-        plan.state.programmed[axis] = level;
-        plan.state.machine = self.data.to_machine(&plan.state, &plan.state.programmed);
+        self.move_to_return_level(&mut plan.state, cycle, axis);
         plan.cycle_plan = Some(CyclePlan {
             cycle,
             start_state,
@@ -130,6 +114,32 @@ impl Planner<'_> {
             scale_factor,
         });
         Ok(())
+    }
+
+    /// Notes a cycle without R or depth, and one that drills along Z while another plane is active.
+    fn note_cycle(&self, plan: &mut BlockPlan, axis: AxisIndex) {
+        let data = &plan.state.cycle;
+        for (level, letter) in [(data.r, 'R'), (data.z, self.data.settings.axes.letter(axis))] {
+            if !level.is_commanded {
+                plan.notes.push(Note::CycleLevelMissing(letter));
+            }
+        }
+        if !self.data.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
+            plan.notes.push(Note::DrillsAlongZ(plan.state.modal.plane.code()));
+        }
+    }
+
+    /// Sets the position to the R point level or the initial level, where the cycle ends.
+    fn move_to_return_level(&self, state: &mut State, cycle: &Cycle, axis: AxisIndex) {
+        let data = &state.cycle;
+        let (level, is_unknown) = if state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
+            (data.r_level(), data.is_r_unknown())
+        } else {
+            (data.initial, data.is_initial_unknown)
+        };
+        state.set_work_zero_unknown(axis, is_unknown);
+        state.programmed[axis] = level;
+        state.machine = self.data.to_machine(state, &state.programmed);
     }
 
     fn cycle_repeats(&self, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {

@@ -9,6 +9,7 @@ use super::notes::Note;
 use super::registers::Registers;
 use super::variables::{Accumulator, Value, VariableClass};
 use gcode_lang::alarm::Alarm;
+use gcode_lang::program::names::NameRow;
 use gcode_lang::program::{
     AssignmentTarget, ComputedSource, Instruction, Operand, OperandSource, Operation, Slot, UncommonOp,
 };
@@ -230,53 +231,55 @@ impl Registers {
             }
             UncommonOp::RoundTo(_) if rounds == RoundingTarget::Whole => Value::Number(round(last.number())),
             UncommonOp::RoundTo(letter) => Value::Number(self.round_to_address(letter, last.number())),
-            UncommonOp::Logic(op) => {
-                let (left, right) = (is_true(self.operand_stack.pop()), is_true(last));
-                let is_true = match op {
-                    BinaryOp::And => left && right,
-                    BinaryOp::Xor => left != right,
-                    _ => left || right,
-                };
-                Value::Number(truth(is_true))
-            }
-            UncommonOp::Parameter { bit, axis } => {
-                let mut part = last;
-                let mut wait = |is_there: bool| {
-                    is_there.then(|| std::mem::replace(&mut part, self.operand_stack.pop()).number())
-                };
-                let (axis, bit) = (wait(axis), wait(bit));
-                Value::Number(self.data.read_parameter(part.number(), bit, axis)?)
-            }
+            UncommonOp::Logic(op) => Value::Number(truth(self.combine_conditions(op, last))),
+            UncommonOp::Parameter { bit, axis } => Value::Number(self.parameter(bit, axis, last)?),
             UncommonOp::AxisNumber(letter) => {
                 let axis = self.data.settings.axes.find(letter);
                 let unknown = || Alarm::AxisAddress { text: char::from(letter).into() };
                 Value::Number(axis.ok_or_else(unknown)? as f64 + 1.0)
             }
-            UncommonOp::AddPoint => {
-                let number = variable_number(last)?;
-                match self.variables.classify(number) {
-                    VariableClass::Local(local) => Value::Number(self.variables.value_with_point(local)),
-                    _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
+            UncommonOp::AddPoint => match self.variables.classify(variable_number(last)?) {
+                VariableClass::Local(local) => Value::Number(self.variables.value_with_point(local)),
+                VariableClass::Vacant | VariableClass::Common(_) | VariableClass::System => {
+                    return Err(Alarm::ArgumentFormat { function: "ADP".into() });
                 }
-            }
+            },
             UncommonOp::NameNumber(ref name) => {
                 Value::Number(f64::from(self.variables.named_variable(name)?))
             }
-            UncommonOp::SystemNumber(row) => {
-                let number = if self.data.settings.series_15_offsets { row.series_15 } else { row.number };
-                let offset = match row.suffix {
-                    None => 0,
-                    Some((from, to)) => {
-                        let suffix = integer(last.number())?;
-                        if !(i64::from(from)..=i64::from(to)).contains(&suffix) {
-                            return Err(Alarm::Suffix { name: row.name.into() });
-                        }
-                        suffix as u32 - from
-                    }
-                };
-                Value::Number(f64::from(number + offset))
-            }
+            UncommonOp::SystemNumber(row) => Value::Number(f64::from(self.system_number(&row, last)?)),
         })
+    }
+
+    /// Combines the condition on the stack with the last result.
+    fn combine_conditions(&self, op: BinaryOp, last: Value) -> bool {
+        let (left, right) = (is_true(self.operand_stack.pop()), is_true(last));
+        match op {
+            BinaryOp::And => left && right,
+            BinaryOp::Xor => left != right,
+            _ => left || right,
+        }
+    }
+
+    /// Reads a parameter: the last of its number, bit and axis is the last result, the others are on the stack.
+    fn parameter(&self, has_bit: bool, has_axis: bool, last: Value) -> Result<f64, Alarm> {
+        let mut part = last;
+        let mut take = |is_there: bool| {
+            is_there.then(|| std::mem::replace(&mut part, self.operand_stack.pop()).number())
+        };
+        let (axis, bit) = (take(has_axis), take(has_bit));
+        self.data.read_parameter(part.number(), bit, axis)
+    }
+
+    /// Returns the number of a named system variable with its suffix.
+    fn system_number(&self, row: &NameRow, suffix: Value) -> Result<u32, Alarm> {
+        let number = if self.data.settings.series_15_offsets { row.series_15 } else { row.number };
+        let Some((from, to)) = row.suffix else { return Ok(number) };
+        let suffix = integer(suffix.number())?;
+        if !(i64::from(from)..=i64::from(to)).contains(&suffix) {
+            return Err(Alarm::Suffix { name: row.name.into() });
+        }
+        Ok(number + suffix as u32 - from)
     }
 }
 

@@ -7,7 +7,7 @@ use super::lookahead::Lookahead;
 use super::outcome::{BlockEffects, RunEnd, RunLog};
 use super::plan::{BlockPlan, TableWrite};
 use super::planner::Planner;
-use super::registers::{Clock, Registers};
+use super::registers::Registers;
 use super::variables::VariableClass;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
@@ -26,25 +26,23 @@ pub(super) struct Executor {
     pub(super) log: RunLog,
 }
 
-/// Totals of a run to which every event adds: duration, moves and stops.
-struct RunTotals<'a> {
-    clock: &'a mut Clock,
+/// Record of a run to which every event adds: its moves and stops.
+struct EventCounter<'a> {
     log: &'a mut RunLog,
     block_effects: &'a BlockEffects,
 }
 
-impl RunTotals<'_> {
+impl EventCounter<'_> {
     #[inline(always)]
-    fn count_event(&mut self, kind: &EventKind, seconds: f64) {
-        self.count(seconds, u64::from(kind.end().is_some()));
+    fn count_event(&mut self, kind: &EventKind) {
+        self.count_moves(u64::from(kind.end().is_some()));
         if let EventKind::Stop { kind, text, variables } = kind {
             self.log.record_stop(*kind, text, variables);
         }
     }
 
     #[inline(always)]
-    fn count(&mut self, seconds: f64, moves: u64) {
-        self.clock.motion_seconds += seconds;
+    fn count_moves(&mut self, moves: u64) {
         self.log.moves += moves;
         if self.log.moves > self.log.max_moves {
             self.block_effects.end_run(RunEnd::MoveLimit);
@@ -123,12 +121,16 @@ impl Executor {
 
     fn emit_cycle<S: EventSink>(&mut self, cycle_plan: &CyclePlan, sink: &mut S) {
         let Self { registers: Registers { data, clock, block_effects, .. }, flow, log } = self;
-        let mut totals = RunTotals { clock, log, block_effects };
+        let mut counter = EventCounter { log, block_effects };
+        let mut cycle_seconds = 0.0;
         let (block, calls) = (flow.block, &flow.frame.calls);
         cycle_plan.expand(data, &mut |kind, seconds| {
-            totals.count_event(&kind, seconds);
+            cycle_seconds += seconds;
+            counter.count_event(&kind);
             sink.event(&Event { kind: &kind, seconds: Seconds(seconds), block, calls });
         });
+        // The time of a block is one sum.
+        clock.motion_seconds += cycle_seconds;
     }
 
     #[inline(always)]
@@ -146,19 +148,20 @@ impl Executor {
 
     #[inline(always)]
     fn count_event(&mut self, kind: &EventKind, seconds: f64) {
-        self.totals().count_event(kind, seconds);
+        self.registers.clock.motion_seconds += seconds;
+        self.counter().count_event(kind);
     }
 
     #[inline(always)]
-    fn totals(&mut self) -> RunTotals<'_> {
-        let Registers { clock, block_effects, .. } = &mut self.registers;
-        RunTotals { clock, log: &mut self.log, block_effects }
+    fn counter(&mut self) -> EventCounter<'_> {
+        EventCounter { log: &mut self.log, block_effects: &self.registers.block_effects }
     }
 
     /// Counts a move without emitting it, for a sink that isn't active.
     #[inline(always)]
     pub(super) fn count_move(&mut self, seconds: f64) {
-        self.totals().count(seconds, 1);
+        self.registers.clock.motion_seconds += seconds;
+        self.counter().count_moves(1);
     }
 
     /// Replaces the lookahead by that of a plan, and emits the events that no longer wait.

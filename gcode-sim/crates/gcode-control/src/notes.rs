@@ -111,167 +111,37 @@ pub enum Note {
 
 impl Note {
     /// Returns the kind of finding, the message and the remedy.
+    #[rustfmt::skip]
     pub fn describe(self) -> (&'static FindingKind, String, &'static str) {
         match self {
-            Self::MachineMoveIgnored => {
-                let message = "G53 in G91 is ignored: the axes of the block do not move".to_owned();
-                (&G53_IGNORED, message, "command G90 with G53")
-            }
-            Self::MCodeLost(code) => {
-                let message =
-                    format!("M{code:02} is lost: of several M codes in a block only the last counts");
-                (
-                    &M_CODE_LOST,
-                    message,
-                    "write each M code in a block of its own, or give --control M3B=1 for a control that accepts three",
-                )
-            }
-            Self::CycleDataLost => {
-                let message = "P or Q is not stored: the block drills nothing".to_owned();
-                (&CYCLE_DATA_LOST, message, "write P and Q in the block of a hole")
-            }
-            Self::InterruptNotSimulated => {
-                let message = "the macro of M96 is never called: a run has no UINT signal".to_owned();
-                (&NO_INTERRUPT, message, "call the macro with G65 to simulate it")
-            }
-            Self::NoSkipSignal => {
-                let message = "no skip signal is simulated: G31 moves to its end point".to_owned();
-                (
-                    &NO_SIGNAL,
-                    message,
-                    "give the part with --part, or --control SKIP=0.5 for a signal after half of the path",
-                )
-            }
-            Self::WordsPassedOn { code, letter } => {
-                let message = format!("{letter} is passed to the machine builder's logic with M{code:02}");
-                (&WORDS_PASSED_ON, message, "see the machine's manual for the words of this M code")
-            }
-            Self::CornerIgnored => {
-                let message = ",R and ,C are ignored: the block is not a cutting move".to_owned();
-                (&CORNER_IGNORED, message, "write them in a block of G01, G02 or G03")
-            }
-            Self::CycleRepeatsZero => {
-                let message = "K0 stores the cycle without a move to the block's X and Y".to_owned();
-                (&NO_REPEATS, message, "give --control K0-MOVES=1 for a control that moves there")
-            }
-            Self::CallRepeatsZero => {
-                (&NO_PASS, "L0: the program is not called".to_owned(), "omit L to call it once")
-            }
-            Self::NoAxis(code) => {
-                let message = format!("G{} without an axis: nothing moves or is set", spelled(code));
-                (&NO_AXIS, message, "name the axes")
-            }
-            Self::CentreDefaulted(code) => {
-                let message =
-                    format!("G{} without an axis: the programmed position is its centre", spelled(code));
-                (&CENTRE_HERE, message, "name the axes of the centre")
-            }
-            Self::NoAngle => {
-                let message = "G68 without R rotates by 0; a control may have an angle in 5410".to_owned();
-                (&NO_ANGLE, message, "write R")
-            }
-            Self::DuplicateNumber(number) => {
-                let message = format!(
-                    "N{number} is defined more than once: the control decides which one a jump takes"
-                );
-                (&DOUBLED_NUMBER, message, "give each block a number of its own")
-            }
-            Self::JumpIntoLoop(number) => {
-                let message = format!("a jump into the loop DO{number}: its END raises PS1124");
-                (&INTO_LOOP, message, "jump to the block of its DO or WHILE")
-            }
-            Self::TangentOf90 => {
-                let message =
-                    "TAN of 90 degrees is undefined: some controls raise an alarm, here the result is a \
-                     large number"
-                        .to_owned();
-                (
-                    &TANGENT_OF_90,
-                    message,
-                    "test the angle first; give --control TAN-90-ALARM=1 for a control that raises the alarm",
-                )
-            }
-            Self::AtanOf0 => {
-                let message =
-                    "ATAN of 0 and 0 is undefined: some controls raise an alarm, here the result is 0"
-                        .to_owned();
-                (
-                    &ATAN_OF_0,
-                    message,
-                    "test both values first; give --control ATAN-0-ALARM=1 for a control that raises the alarm",
-                )
-            }
-            Self::ParameterWithoutEffect(number) => {
-                let message = format!("parameter {number} is stored for PRM and has no other effect here");
-                (&PARAMETER_WITHOUT_EFFECT, message, "see docs/control.md for what is not simulated")
-            }
-            Self::LowerCase => {
-                let message = "lower case is read as capitals; some controls refuse it".to_owned();
-                (
-                    &LOWER_CASE,
-                    message,
-                    "write capitals; give --control LOWER-CASE=0 for a control that refuses lower case",
-                )
-            }
-            Self::LongMCode(code) => {
-                let message =
-                    format!("M{code} calls no program: it is one M code, left to the machine builder");
-                (&LONG_M_CODE, message, "write P before the program number: M98 P1000")
-            }
-            Self::EndPointBeforeTransform => {
-                let message =
-                    "#5001 and following are the end point of the last move as programmed, before the \
-                     change of G51.1, G51 or G68"
-                        .to_owned();
-                (&END_BEFORE_SWITCH, message, "read them after the next move, or before the change")
-            }
-            Self::AxisLeftOut => {
-                let message =
-                    "an omitted axis keeps its position here; after a change of G51.1, G51 or G68 a \
-                     control may move it"
-                        .to_owned();
-                (&AXIS_LEFT_OUT, message, "name every axis in the first move after the change")
-            }
-            Self::DigitsLost => {
-                let message = "DPRNT prints only the lower digits: the format has too few places".to_owned();
-                (
-                    &DIGITS_LOST,
-                    message,
-                    "give the format more places, or --control PRINT-EXPANDS=1 for a control that prints all digits",
-                )
-            }
-            Self::CycleLevelMissing(letter) => {
-                let message = format!("the cycle drills with {letter} at 0: no value was commanded");
-                (&LEVEL_MISSING, message, "write R and the depth in the block that begins the cycle")
-            }
-            Self::LengthOffsetZero(code) => {
-                let message = format!("G{} with H0 applies no tool length compensation", spelled(code));
-                (&LENGTH_OF_NOTHING, message, "write H with the number of the tool's offset")
-            }
-            Self::BlockSkip { switch, is_on } => {
-                let (is, does) = if is_on { ("on", "skipped") } else { ("off", "executed") };
-                let message = format!(
-                    "the rest of the block after / is {does}: block skip {switch} is {is}; all results \
-                     assume this setting"
-                );
-                (&BLOCK_SKIP, message, "give --control BDT=1 to switch block skip 1 on")
-            }
-            Self::DrillsAlongZ(code) => {
-                let message = format!(
-                    "the cycle drills along Z while G{} is in force: a control may drill along the normal \
-                     of that plane",
-                    spelled(code)
-                );
-                (
-                    &DRILL_PLANE,
-                    message,
-                    "write G17, or give --control FXY=1 for a control that drills along the normal",
-                )
-            }
-            Self::LargeAlarmNumber { number, max } => {
-                let message = format!("#3000={number}: the manuals give numbers up to {max}");
-                (&LARGE_ALARM_NUMBER, message, "use a smaller number")
-            }
+            Self::MachineMoveIgnored => (&G53_IGNORED, "G53 in G91 is ignored: the axes of the block do not move".into(), "command G90 with G53"),
+            Self::MCodeLost(code) => (&M_CODE_LOST, format!("M{code:02} is lost: of several M codes in a block only the last counts"), "write each M code in a block of its own, or give --control M3B=1 for a control that accepts three"),
+            Self::CycleDataLost => (&CYCLE_DATA_LOST, "P or Q is not stored: the block drills nothing".into(), "write P and Q in the block of a hole"),
+            Self::InterruptNotSimulated => (&NO_INTERRUPT, "the macro of M96 is never called: a run has no UINT signal".into(), "call the macro with G65 to simulate it"),
+            Self::NoSkipSignal => (&NO_SIGNAL, "no skip signal is simulated: G31 moves to its end point".into(), "give the part with --part, or --control SKIP=0.5 for a signal after half of the path"),
+            Self::WordsPassedOn { code, letter } => (&WORDS_PASSED_ON, format!("{letter} is passed to the machine builder's logic with M{code:02}"), "see the machine's manual for the words of this M code"),
+            Self::CornerIgnored => (&CORNER_IGNORED, ",R and ,C are ignored: the block is not a cutting move".into(), "write them in a block of G01, G02 or G03"),
+            Self::CycleRepeatsZero => (&NO_REPEATS, "K0 stores the cycle without a move to the block's X and Y".into(), "give --control K0-MOVES=1 for a control that moves there"),
+            Self::CallRepeatsZero => (&NO_PASS, "L0: the program is not called".into(), "omit L to call it once"),
+            Self::NoAxis(code) => (&NO_AXIS, format!("G{} without an axis: nothing moves or is set", spelled(code)), "name the axes"),
+            Self::CentreDefaulted(code) => (&CENTRE_HERE, format!("G{} without an axis: the programmed position is its centre", spelled(code)), "name the axes of the centre"),
+            Self::NoAngle => (&NO_ANGLE, "G68 without R rotates by 0; a control may have an angle in 5410".into(), "write R"),
+            Self::DuplicateNumber(number) => (&DOUBLED_NUMBER, format!("N{number} is defined more than once: the control decides which one a jump takes"), "give each block a number of its own"),
+            Self::JumpIntoLoop(number) => (&INTO_LOOP, format!("a jump into the loop DO{number}: its END raises PS1124"), "jump to the block of its DO or WHILE"),
+            Self::TangentOf90 => (&TANGENT_OF_90, "TAN of 90 degrees is undefined: some controls raise an alarm, here the result is a large number".into(), "test the angle first; give --control TAN-90-ALARM=1 for a control that raises the alarm"),
+            Self::AtanOf0 => (&ATAN_OF_0, "ATAN of 0 and 0 is undefined: some controls raise an alarm, here the result is 0".into(), "test both values first; give --control ATAN-0-ALARM=1 for a control that raises the alarm"),
+            Self::ParameterWithoutEffect(number) => (&PARAMETER_WITHOUT_EFFECT, format!("parameter {number} is stored for PRM and has no other effect here"), "see docs/control.md for what is not simulated"),
+            Self::LowerCase => (&LOWER_CASE, "lower case is read as capitals; some controls refuse it".into(), "write capitals; give --control LOWER-CASE=0 for a control that refuses lower case"),
+            Self::LongMCode(code) => (&LONG_M_CODE, format!("M{code} calls no program: it is one M code, left to the machine builder"), "write P before the program number: M98 P1000"),
+            Self::EndPointBeforeTransform => (&END_BEFORE_SWITCH, "#5001 and following are the end point of the last move as programmed, before the change of G51.1, G51 or G68".into(), "read them after the next move, or before the change"),
+            Self::AxisLeftOut => (&AXIS_LEFT_OUT, "an omitted axis keeps its position here; after a change of G51.1, G51 or G68 a control may move it".into(), "name every axis in the first move after the change"),
+            Self::DigitsLost => (&DIGITS_LOST, "DPRNT prints only the lower digits: the format has too few places".into(), "give the format more places, or --control PRINT-EXPANDS=1 for a control that prints all digits"),
+            Self::CycleLevelMissing(letter) => (&LEVEL_MISSING, format!("the cycle drills with {letter} at 0: no value was commanded"), "write R and the depth in the block that begins the cycle"),
+            Self::LengthOffsetZero(code) => (&LENGTH_OF_NOTHING, format!("G{} with H0 applies no tool length compensation", spelled(code)), "write H with the number of the tool's offset"),
+            Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
+            Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
+            Self::DrillsAlongZ(code) => (&DRILL_PLANE, format!("the cycle drills along Z while G{} is in force: a control may drill along the normal of that plane", spelled(code)), "write G17, or give --control FXY=1 for a control that drills along the normal"),
+            Self::LargeAlarmNumber { number, max } => (&LARGE_ALARM_NUMBER, format!("#3000={number}: the manuals give numbers up to {max}"), "use a smaller number"),
         }
     }
 }

@@ -182,7 +182,7 @@ impl Lowering {
         let (to, value) = (self.compile_target(target)?, self.operand(value, ExprContext::MACRO)?);
         Ok(match (to, value) {
             (AssignmentTarget::Slot(Slot::Free(variable)), Operand::Code(code)) => {
-                Statement::AssignFree(Assign { variable: variable, code })
+                Statement::AssignFree(Assign { variable, code })
             }
             (to, value) => {
                 let text = block.comments.iter().find(|c| c.span.start >= span.start);
