@@ -1,4 +1,4 @@
-//! Rule: a feed move or a drilling cycle that no F precedes on any path, PS0011.
+//! Rule: a feed move or a canned cycle that no F precedes on any path, PS0011.
 //!
 //! The motion mode and the cycle are carried along all paths to a block. They are unknown where a setting of
 //! the control decides them (at power-on), a caller or a called program; an unknown mode is no finding.
@@ -32,7 +32,7 @@ struct PossibleModes {
     has_feed: bool,
     /// The motion mode is G00.
     is_rapid: bool,
-    /// No drilling cycle is in force.
+    /// No canned cycle is in force.
     is_outside_cycle: bool,
     /// No earlier block lacks F. The first that does stops the control, and its F serves the blocks after it.
     is_unreported: bool,
@@ -153,7 +153,7 @@ fn is_computed_g_code(word: &LoweredWord) -> bool {
     word.letter == b'G' && !matches!(word.value, WordOperand::G(..))
 }
 
-/// Returns true if a block is a feed move or a drilling cycle that no F precedes, and no block before it is.
+/// Returns true if a block is a feed move or a canned cycle that no F precedes, and no block before it is.
 fn lacks_feed(
     context: &CheckContext<'_>,
     unit: &ProgramUnit<'_>,
