@@ -55,6 +55,43 @@ impl CyclePlan {
         }
     }
 
+    /// Emits the pecks of G83: each begins above the last depth and ends with a retract to R.
+    fn peck_with_full_retract<T: FnMut(EventKind, f64)>(
+        &self,
+        data: &ControlData,
+        level: &impl Fn(f64) -> Position,
+        (r, z): (f64, f64),
+        motion: &mut CycleMotion<'_, T>,
+    ) {
+        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.stretch), |from, to, is_last| {
+            if from != r {
+                let clearance = (data.settings.g83_clearance / self.stretch).min((r - from).abs());
+                motion.rapid(level(from + clearance.copysign(r - z)));
+            }
+            motion.feed(level(to));
+            if !is_last {
+                motion.rapid(level(r + data.settings.g83_above_r.copysign(r - z)));
+            }
+        });
+    }
+
+    /// Emits the pecks of G73: each ends with a retract of parameter 5114.
+    fn peck_with_short_retract<T: FnMut(EventKind, f64)>(
+        &self,
+        data: &ControlData,
+        level: &impl Fn(f64) -> Position,
+        (r, z): (f64, f64),
+        motion: &mut CycleMotion<'_, T>,
+    ) {
+        let retract = (data.settings.g73_retract / self.stretch).copysign(r - z);
+        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.stretch), |_, to, is_last| {
+            motion.feed(level(to));
+            if !is_last {
+                motion.rapid(level(to + retract));
+            }
+        });
+    }
+
     /// Emits one step of the cycle; `level` is the point of the hole at a height.
     fn drill_step<T: FnMut(EventKind, f64)>(
         &self,
@@ -78,27 +115,8 @@ impl CyclePlan {
         }
         match step {
             CycleStep::FeedToBottom => motion.feed(level(z)),
-            CycleStep::PeckFull => {
-                for_each_peck((r, z), &state.cycle.unscaled(self.stretch), |last, next, done| {
-                    if last != r {
-                        let clearance = (data.settings.g83_clearance / self.stretch).min((r - last).abs());
-                        motion.rapid(level(last + clearance.copysign(r - z)));
-                    }
-                    motion.feed(level(next));
-                    if !done {
-                        motion.rapid(level(r + data.settings.g83_above_r.copysign(r - z)));
-                    }
-                });
-            }
-            CycleStep::PeckShort => {
-                let retract = (data.settings.g73_retract / self.stretch).copysign(r - z);
-                for_each_peck((r, z), &state.cycle.unscaled(self.stretch), |_, next, done| {
-                    motion.feed(level(next));
-                    if !done {
-                        motion.rapid(level(next + retract));
-                    }
-                });
-            }
+            CycleStep::PeckFull => self.peck_with_full_retract(data, level, (r, z), motion),
+            CycleStep::PeckShort => self.peck_with_short_retract(data, level, (r, z), motion),
             CycleStep::Dwell => motion.dwell(self.dwell),
             CycleStep::DwellAtR if data.settings.undocumented.tap_dwells_at_r => motion.dwell(self.dwell),
             CycleStep::DwellAtR => {}
@@ -178,18 +196,18 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 }
 
 /// Largest number of pecks in one block; a run must end.
-const MAX_PECKS: f64 = 1e6;
+const MAX_PECKS: u32 = 1_000_000;
 
 /// Visits the pecks from R to Z with their start, end and whether they are the last; the last peck is the remainder.
 pub(super) fn for_each_peck((r, z): (f64, f64), data: &CycleState, mut emit: impl FnMut(f64, f64, bool)) {
     let pecks = peck_count(r, z, data);
-    let mut last = r;
+    let mut from = r;
     let mut count = 1.0;
     while count <= pecks {
         let is_last = count == pecks;
-        let next = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
-        emit(last, next, is_last);
-        last = next;
+        let to = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
+        emit(from, to, is_last);
+        from = to;
         count += 1.0;
     }
 }
@@ -216,7 +234,7 @@ fn peck_count(r: f64, z: f64, data: &CycleState) -> f64 {
         };
     }
     let mut count = 1.0;
-    while peck_depth(data, count) < total_depth - 1e-9 && count <= MAX_PECKS {
+    while peck_depth(data, count) < total_depth - 1e-9 && count <= f64::from(MAX_PECKS) {
         count += 1.0;
     }
     count
@@ -224,7 +242,7 @@ fn peck_count(r: f64, z: f64, data: &CycleState) -> f64 {
 
 /// Returns true if a block with a number of holes has more than [`MAX_PECKS`] pecks.
 pub(super) fn has_too_many_pecks(data: &CycleState, holes: u32) -> bool {
-    peck_count(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > MAX_PECKS
+    peck_count(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > f64::from(MAX_PECKS)
 }
 
 #[cfg(test)]

@@ -280,7 +280,7 @@ mod tests {
     fn the_range_of_a_graph_contains_its_band_but_no_clipped_curve() {
         let curve = |y: f64, guest: bool| Curve {
             points: vec![[0.0, y], [9.0, y]],
-            pen: Pen::First,
+            pen: Pen::Nominal,
             is_clipped: guest,
         };
         let graph = Graph {

@@ -257,7 +257,7 @@ mod tests {
             }
             DrawCommand::Text { at, align, size, text, .. } => {
                 let width = font.width(text, *size);
-                Rect::new(at.x - align.part() * width, at.y - 0.76 * size, width, 0.98 * size)
+                Rect::new(at.x - align.fraction_left() * width, at.y - 0.76 * size, width, 0.98 * size)
             }
         }
     }

@@ -49,6 +49,6 @@ impl<'f> Words<'f> {
     /// Returns the box of a text on the base line through `at`.
     pub(super) fn place(&self, at: Px, align: Align, size: f64, words: &str) -> Rect {
         let wide = self.font.width(words, size);
-        Rect::new(at.x - align.part() * wide, at.y - size, wide, 1.2 * size)
+        Rect::new(at.x - align.fraction_left() * wide, at.y - size, wide, 1.2 * size)
     }
 }

@@ -23,7 +23,7 @@ pub(super) fn program([old, new]: [&Record; 2]) -> Option<Effect> {
 /// Returns the differences of printed lines and of the final state.
 pub(super) fn compare([old, new]: [&Record; 2], tolerance: f64) -> Vec<Effect> {
     let mut effects: Vec<Effect> = printed(&old.ending.output, &new.ending.output).into_iter().collect();
-    let (was, is) = (&old.ending.left, &new.ending.left);
+    let (was, is) = (&old.ending.residual, &new.ending.residual);
     let names: BTreeSet<&String> = was.keys().chain(is.keys()).collect();
     effects
         .extend(names.into_iter().filter_map(|name| value(name, [was.get(name), is.get(name)], tolerance)));
@@ -55,7 +55,7 @@ fn value(name: &str, entries: [Option<&ResidualEntry>; 2], tolerance: f64) -> Op
         (a, b) => a == b,
     };
     let nothing = if code == "parameter" { "unchanged" } else { "vacant" };
-    let shown = |value: Option<f64>| value.map_or_else(|| nothing.to_owned(), |v| plain(v).to_string());
+    let shown = |value: Option<f64>| value.map_or_else(|| nothing.to_owned(), |v| rounded(v).to_string());
     let message = || match (code, was, is) {
         ("mode", Some(was), Some(is)) => {
             format!("the program ends in {} instead of {}", g_code(is), g_code(was))
@@ -68,11 +68,11 @@ fn value(name: &str, entries: [Option<&ResidualEntry>; 2], tolerance: f64) -> Op
 
 /// Formats a modal code as `G01`, `G54.1`.
 fn g_code(value: f64) -> String {
-    let value = plain(value);
+    let value = rounded(value);
     if value.fract() == 0.0 { format!("G{value:02}") } else { format!("G{value}") }
 }
 
 /// Rounds to nine decimals, and −0 to 0.
-fn plain(value: f64) -> f64 {
+fn rounded(value: f64) -> f64 {
     (value * 1e9).round() / 1e9 + 0.0
 }

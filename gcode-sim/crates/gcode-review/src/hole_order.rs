@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::align::Alignment;
 use super::change::{Effect, grouped};
 use super::cut_settings::changed_cut_settings;
-use super::hole_groups::{HoleEffect, named};
+use super::hole_groups::{HoleEffect, name_holes};
 use super::kinds;
 use super::passes::{Passes, in_words};
 
@@ -107,7 +107,7 @@ fn message(group: &[ReorderedHole], all: &[SharedPass]) -> String {
     };
     let with: String = if with.is_empty() { String::new() } else { format!(", {}", with.join(", ")) };
     let which = if holes.len() == 1 { String::new() } else { format!("hole {} ", holes[0] + 1) };
-    format!("{}: {}made in a different order, {which}{after}{with}", named(&holes), name(passes))
+    format!("{}: {}made in a different order, {which}{after}{with}", name_holes(&holes), name(passes))
 }
 
 /// Returns the indices of a longest increasing subsequence.

@@ -91,7 +91,8 @@ pub(super) struct EndState {
     /// The lines of DPRNT and BPRNT; bytes that are not text as `\xNN`.
     pub output: Vec<String>,
     /// The final state by name: every value that is neither vacant nor 0.
-    pub left: BTreeMap<String, ResidualEntry>,
+    #[serde(rename = "left")]
+    pub residual: BTreeMap<String, ResidualEntry>,
 }
 
 /// A value of the final state.
@@ -342,7 +343,7 @@ fn ending(run: &Run, recorder: &Recorder) -> EndState {
             ("limit", words, Some(Backtrace { block, calls: CallChain::default() }))
         }
     };
-    let left = run.control.residual_values().into_iter().map(|value: ResidualValue| {
+    let residual = run.control.residual_values().into_iter().map(|value: ResidualValue| {
         let place = recorder.written.get(&value.name).map(|place| BlockLocation::of(run, place));
         let code = match value.kind {
             ResidualKind::Variable => &kinds::VARIABLE,
@@ -360,6 +361,6 @@ fn ending(run: &Run, recorder: &Recorder) -> EndState {
         words,
         stopped: stopped.map(|place| BlockLocation::of(run, &place)),
         output: run.control.output().iter().map(|line| gcode_control::printable(line)).collect(),
-        left: left.collect(),
+        residual: residual.collect(),
     }
 }

@@ -204,7 +204,17 @@ impl Recorder {
                 StepKind::Silent(UnsimulatedKind::Speed, text) => {
                     *stays = std::mem::take(&mut speed) != *text
                 }
-                _ => {}
+                StepKind::Rapid
+                | StepKind::Feed(_)
+                | StepKind::Arc(..)
+                | StepKind::Probe(_)
+                | StepKind::Dwell(_)
+                | StepKind::Length(_)
+                | StepKind::Spindle(..)
+                | StepKind::Coolant(..)
+                | StepKind::Auxiliary(_)
+                | StepKind::Stop(..)
+                | StepKind::Silent(..) => {}
             }
         }
         let mut left = vec![0];
@@ -265,7 +275,14 @@ impl Recorder {
             StepKind::Tool(_) => 'T',
             StepKind::Spindle(direction, _) if *direction != SpindleDirection::Off => 'S',
             StepKind::Feed(_) | StepKind::Arc(..) | StepKind::Probe(_) => 'F',
-            _ => return None,
+            StepKind::Rapid
+            | StepKind::Dwell(_)
+            | StepKind::Length(_)
+            | StepKind::Spindle(..)
+            | StepKind::Coolant(..)
+            | StepKind::Auxiliary(_)
+            | StepKind::Stop(..)
+            | StepKind::Silent(..) => return None,
         };
         let has_waited = self.block.as_ref().is_some_and(|block| block.place.block != place.block);
         let set_by = self.set_by.get(&letter).filter(|(block, _)| *block != place.block && !has_waited);

@@ -142,7 +142,14 @@ impl CutState {
             StepKind::Coolant(false, _) => {
                 self.flows.values_mut().for_each(|flow| *flow = (false, link));
             }
-            _ => {}
+            StepKind::Rapid
+            | StepKind::Feed(_)
+            | StepKind::Arc(..)
+            | StepKind::Probe(_)
+            | StepKind::Dwell(_)
+            | StepKind::Auxiliary(_)
+            | StepKind::Stop(..)
+            | StepKind::Silent(..) => {}
         }
     }
 

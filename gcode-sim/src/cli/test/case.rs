@@ -90,7 +90,7 @@ impl Case {
         let nominal = reference.as_deref().map(options::read_nominal).transpose()?;
         let surface = match &nominal {
             Some(NominalPart::Holes(reference)) => {
-                request.conduct = reference.process_limits.clone();
+                request.process_limits = reference.process_limits.clone();
                 reference.surface
             }
             Some(NominalPart::Flutes(_)) | None => None,

@@ -261,7 +261,7 @@ pub(super) fn judged_rows(
                 (HoleRowState::Altered, format!("in tolerance, but: {}", words.join("; ")))
             }
             (Some(hole), None) if hole.ok => (HoleRowState::Good, "in tolerance".to_owned()),
-            (Some(hole), _) => (HoleRowState::Bad, hole.objections.join(", ")),
+            (Some(hole), _) => (HoleRowState::Bad, hole.error_codes.join(", ")),
         };
         let holes = found_by.iter().map(|hole| hole.map(|hole| hole.drilled_index)).collect();
         HoleTableRow { id: shown(id), state, words, cells, holes }

@@ -7,7 +7,7 @@ use crate::verify::rows::{PatternRow, full_azimuth};
 const ROUNDING_ALLOWANCE: f64 = 0.03;
 
 /// Returns a predicate that is true for subjects whose position follows from the rows; `None` without rows.
-pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn(About) -> bool + 'c> {
+pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn(Subject) -> bool + 'c> {
     let comparison = &inspection.comparison;
     let rows = inspection.rows.as_ref()?;
     let pattern = rows.pattern;
@@ -28,9 +28,9 @@ pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn
             (steps - steps.round()).abs() * spacing <= within
         })
     };
-    Some(move |about: About| match about {
-        About::Extra(actual) => places[actual].is_some_and(is_on_grid),
-        About::Nominal(nominal) => {
+    Some(move |subject: Subject| match subject {
+        Subject::Extra(actual) => places[actual].is_some_and(is_on_grid),
+        Subject::Nominal(nominal) => {
             if let Some(actual) = actual_of.get(&nominal) {
                 return places[*actual].is_some_and(is_on_grid);
             }
@@ -46,6 +46,6 @@ pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn
                 |(at, place): &(Deg, f64)| is_near(row, *at, tolerance) && (place - x).abs() <= within;
             places.iter().flatten().any(is_there) || pattern.length < x + within
         }
-        About::Whole | About::Motion => true,
+        Subject::Whole | Subject::Motion => true,
     })
 }

@@ -34,5 +34,5 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
          then the pitch",
     );
     let place = &inspection.comparison.actual[before.first].backtrace;
-    findings.add(About::Whole, locate_at_call(finding, place));
+    findings.add(Subject::Whole, locate_at_call(finding, place));
 }
