@@ -106,8 +106,11 @@ fn findings_of_verify_and_changes_of_diff_are_sarif() {
     let drill = |y: &str| format!("O1\nS500 M3\nG81 X10. Y{y} Z-5. R2. F100\nG80\nM00\nM30\n");
     std::fs::write(place.path().join("old.nc"), drill("0.2")).unwrap();
     std::fs::write(place.path().join("new.nc"), drill("0.").replace("M00\n", "")).unwrap();
-    std::fs::write(place.path().join("reference.csv"), "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n")
-        .unwrap();
+    std::fs::write(
+        place.path().join("reference.csv"),
+        "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n",
+    )
+    .unwrap();
     let expected: [(&str, &[Entry<'_>]); 3] = [
         ("verify old.nc --reference reference.csv", &[]),
         ("diff old.nc new.nc", &[("hole-moved", "new.nc", Some(3)), ("stop", "new.nc", Some(3))]),

@@ -153,7 +153,7 @@ pub enum Pen {
 impl Pen {
     /// Returns true for pens of the tool path, which labels may cover.
     pub(super) fn is_path(self) -> bool {
-        use Pen::{Faulty, Feed, FaultyFarSide, New, Old, Probe, Rapid, Unchanged};
+        use Pen::{Faulty, FaultyFarSide, Feed, New, Old, Probe, Rapid, Unchanged};
         matches!(self, Feed | Faulty | FaultyFarSide | Rapid | Probe | Unchanged | New | Old)
     }
 }

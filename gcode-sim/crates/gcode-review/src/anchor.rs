@@ -1,4 +1,4 @@
-//! The place of a removed block in the new revision.
+//! The neighbour of a removed block in the new revision.
 use super::align::Alignment;
 use super::change::Change;
 

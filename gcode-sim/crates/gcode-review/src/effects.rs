@@ -67,12 +67,12 @@ struct Description {
     text: String,
     numbers: Numbers,
     /// Numbers of the blocks in the records; `None` for the blocks of the steps.
-    numbers_of_blocks: Option<[Option<usize>; 2]>,
+    block_numbers: Option<[Option<usize>; 2]>,
 }
 
 impl Description {
     fn new(kind: &'static FindingKind, step: &Step, text: String) -> Self {
-        Self { kind, name: step.kind.name(), text, numbers: Numbers::None, numbers_of_blocks: None }
+        Self { kind, name: step.kind.name(), text, numbers: Numbers::None, block_numbers: None }
     }
 }
 
@@ -125,7 +125,8 @@ impl<'a> Effects<'a> {
         let group = self.group_of_difference(kind, steps);
         let is_speed = matches!(group.numbers, Numbers::Speeds { .. });
         let is_of_block = ["feed", "move-added", "move-lost"].contains(&group.kind.code) || is_speed;
-        let (text, block_numbers) = ((group.kind.code, group.text.clone()), (group.kind.code, group.block_numbers));
+        let (text, block_numbers) =
+            ((group.kind.code, group.text.clone()), (group.kind.code, group.block_numbers));
         let of_block = || {
             let known = *self.by_blocks.get(&block_numbers).filter(|_| is_of_block)?;
             (!is_speed || self.all[known].numbers == group.numbers).then_some(known)
@@ -147,9 +148,8 @@ impl<'a> Effects<'a> {
         let described = match (kind, old.zip(new)) {
             (StepDifference::Condition(aspect), _) => self.describe_condition(*aspect, step, steps),
             (StepDifference::EndPoint(shift), both) => {
-                let is_compensated = both.is_some_and(|(old, new)| {
-                    near(&old.at, &new.at, self.alignment.tolerance)
-                });
+                let is_compensated =
+                    both.is_some_and(|(old, new)| near(&old.at, &new.at, self.alignment.tolerance));
                 self.describe_end_point(shift, new.unwrap_or(step), is_compensated)
             }
             (StepDifference::MoveKind, Some((old, new))) => {
@@ -167,9 +167,9 @@ impl<'a> Effects<'a> {
             (_, Some((old, new))) => self.describe_replacement(kind, old, new),
             (_, None) => self.describe_unpaired(step, steps),
         };
-        let Description { kind, name, text, numbers, numbers_of_blocks } = described;
+        let Description { kind, name, text, numbers, block_numbers } = described;
         let mut block_numbers =
-            numbers_of_blocks.unwrap_or([old, new].map(|step| step.map(|step| step.block_number)));
+            block_numbers.unwrap_or([old, new].map(|step| step.map(|step| step.block_number)));
         let is_tool = kind == &kinds::TOOL && old.is_some() && new.is_some();
         if matches!(numbers, Numbers::Factor { .. } | Numbers::Speeds { .. }) || is_tool {
             block_numbers = [old, new].map(|step| step.map(|step| step.editable_at()));
@@ -197,12 +197,7 @@ impl<'a> Effects<'a> {
     }
 
     /// Describes a move under another modal condition; its blocks are those that set the condition.
-    fn describe_condition(
-        &self,
-        aspect: ModalAspect,
-        step: &Step,
-        steps: [Option<usize>; 2],
-    ) -> Description {
+    fn describe_condition(&self, aspect: ModalAspect, step: &Step, steps: [Option<usize>; 2]) -> Description {
         let words = [0, 1].map(|side| Some(self.alignment.records[side].under(steps[side]?).word(aspect)));
         let [before, now] = words.map(|word| word.map_or("", |word| &word.text));
         let name = if aspect == ModalAspect::Cycle { "cycle " } else { "" };
@@ -210,7 +205,7 @@ impl<'a> Effects<'a> {
         let old = steps[0].into_iter().collect();
         Description {
             numbers: Numbers::Moves { aspect, old, first_new: steps[1].unwrap_or(0) },
-            numbers_of_blocks: Some(words.map(|word| word?.block_number)),
+            block_numbers: Some(words.map(|word| word?.block_number)),
             ..Description::new(aspect.row().1, step, text)
         }
     }

@@ -62,7 +62,7 @@ fn value(name: &str, entries: [Option<&ResidualEntry>; 2], tolerance: f64) -> Op
         }
         _ => format!("{name} ends as {} instead of {}", shown(is), shown(was)),
     };
-    let blocks = entries.map(|entry| entry?.place.as_ref());
+    let blocks = entries.map(|entry| entry?.location.as_ref());
     (!same).then(|| Effect::new(kind, message(), blocks))
 }
 

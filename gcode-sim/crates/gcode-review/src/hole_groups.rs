@@ -30,9 +30,9 @@ pub(super) struct HoleDifference {
 impl HoleDifference {
     /// Returns the kind of the first difference; `None` if there is none.
     pub(super) fn kind(&self) -> Option<&'static FindingKind> {
-        let place = self.moved.map(|_| &kinds::HOLE_MOVED).or(self.tilted.map(|_| &kinds::HOLE_TILTED));
-        let place = place.or(self.depth_change.map(|_| &kinds::HOLE_DEPTH));
-        let other = place.or(self.tool_differences.first().map(|(kind, _)| *kind));
+        let kind = self.moved.map(|_| &kinds::HOLE_MOVED).or(self.tilted.map(|_| &kinds::HOLE_TILTED));
+        let kind = kind.or(self.depth_change.map(|_| &kinds::HOLE_DEPTH));
+        let other = kind.or(self.tool_differences.first().map(|(kind, _)| *kind));
         other.or(self.passes.first().map(|_| &kinds::HOLE_PASS))
     }
 
@@ -77,7 +77,7 @@ pub(super) fn groups(changed: Vec<ChangedHole>, axes: &Axes, tolerance: f64) -> 
         let text = describe_differences(std::slice::from_ref(&one), true, axes, tolerance);
         let alike = groups.iter().position(|group| group.text == text);
         match alike.or_else(|| groups.iter().position(|group| is_related(&group.all[0], &one, tolerance))) {
-            Some(place) => groups[place].all.push(one),
+            Some(index) => groups[index].all.push(one),
             None => groups.push(HoleGroup { all: vec![one], text }),
         }
     }
@@ -106,7 +106,9 @@ impl HoleGroup {
     /// Formats the numbers of the holes if they are equal, else the largest of each.
     pub(super) fn message(&self, axes: &Axes, tolerance: f64) -> String {
         let holes: Vec<usize> = self.all.iter().map(|one| one.hole).collect();
-        let has_group_text = |one: &ChangedHole| describe_differences(std::slice::from_ref(one), true, axes, tolerance) == self.text;
+        let has_group_text = |one: &ChangedHole| {
+            describe_differences(std::slice::from_ref(one), true, axes, tolerance) == self.text
+        };
         let is_alike = self.all.iter().all(has_group_text);
         format!("{}: {}", name_holes(&holes), describe_differences(&self.all, is_alike, axes, tolerance))
     }
@@ -144,8 +146,8 @@ fn describe_differences(holes: &[ChangedHole], is_alike: bool, axes: &Axes, tole
     let first = &holes[0].difference;
     parts.extend(first.tool_differences.iter().map(|(_, text)| text.clone()));
     // All holes have the same changed passes.
-    for place in 0..first.passes.len() {
-        let alike: Vec<&PassChange> = differences().filter_map(|one| one.passes.get(place)).collect();
+    for index in 0..first.passes.len() {
+        let alike: Vec<&PassChange> = differences().filter_map(|one| one.passes.get(index)).collect();
         parts.push(describe_pass(&alike, is_alike, axes, tolerance));
     }
     parts.join(", ")
@@ -167,11 +169,11 @@ pub(super) fn without_negative_zero(value: f64) -> f64 {
     if value.abs() < 5e-5 { 0.0 } else { value }
 }
 
-/// Returns runs of consecutive holes, or of holes that one block makes; `place` returns the block of each.
+/// Returns runs of consecutive holes, or of holes that one block makes; `block_of` returns the block of each.
 pub(super) fn consecutive_holes(
     holes: &[usize],
     firsts: &[usize],
-    place: impl Fn(usize) -> Option<usize>,
+    block_of: impl Fn(usize) -> Option<usize>,
 ) -> Vec<Vec<usize>> {
     let order = |hole: usize| firsts.binary_search(&hole).unwrap_or(hole);
     let mut runs: Vec<Vec<usize>> = Vec::new();
@@ -180,8 +182,8 @@ pub(super) fn consecutive_holes(
     let mut before: Option<(usize, usize)> = None;
     for hole in holes.iter().copied() {
         let next = before.filter(|(last, _)| order(*last) + 1 == order(hole)).map(|(_, run)| run);
-        let run = of_block.get(&place(hole)).copied().or(next).unwrap_or(runs.len());
-        of_block.insert(place(hole), run);
+        let run = of_block.get(&block_of(hole)).copied().or(next).unwrap_or(runs.len());
+        of_block.insert(block_of(hole), run);
         before = Some((hole, run));
         match runs.get_mut(run) {
             Some(run) => run.push(hole),

@@ -73,8 +73,8 @@ fn of_hole(passes: &[Passes; 2], hole: usize, other: usize) -> Vec<SharedPass> {
     if was.len() != is.len() && !(before.is_empty() && tools.is_empty()) {
         return Vec::new();
     }
-    let pass = |(place, steps)| {
-        let (number, tool) = ((place + 1, was.len().min(is.len())), tools.get(place).copied());
+    let pass = |(index, steps)| {
+        let (number, tool) = ((index + 1, was.len().min(is.len())), tools.get(index).copied());
         SharedPass { hole, number, tool, steps }
     };
     was.iter().copied().zip(is.iter().copied()).enumerate().map(pass).collect()
@@ -115,15 +115,15 @@ fn longest_increasing(values: &[usize]) -> BTreeSet<usize> {
     // Index of the smallest last value of each length, and the predecessor of each index.
     let mut ends: Vec<usize> = Vec::new();
     let mut follows: Vec<Option<usize>> = Vec::with_capacity(values.len());
-    for (place, value) in values.iter().enumerate() {
+    for (index, value) in values.iter().enumerate() {
         let length = ends.partition_point(|end| values[*end] < *value);
         follows.push(length.checked_sub(1).map(|shorter| ends[shorter]));
         match ends.get_mut(length) {
-            Some(end) => *end = place,
-            None => ends.push(place),
+            Some(end) => *end = index,
+            None => ends.push(index),
         }
     }
-    std::iter::successors(ends.last().copied(), |place| follows[*place]).collect()
+    std::iter::successors(ends.last().copied(), |index| follows[*index]).collect()
 }
 
 #[cfg(test)]

@@ -5,7 +5,10 @@ use nalgebra::{Point3, Vector3};
 
 use super::align::Alignment;
 use super::change::Effect;
-use super::hole_groups::{ChangedHole, HoleDifference, HoleEffect, HoleGroup, consecutive_holes, groups, name_holes, without_negative_zero};
+use super::hole_groups::{
+    ChangedHole, HoleDifference, HoleEffect, HoleGroup, consecutive_holes, groups, name_holes,
+    without_negative_zero,
+};
 use super::hole_order::hole_order;
 use super::kinds;
 use super::pass_changes::pass_changes;
@@ -118,7 +121,8 @@ impl HoleComparer<'_> {
             let changed_passes = difference_of.passes.iter().map(|pass| pass.steps);
             let other_pass_feeds: Vec<(usize, usize)> =
                 changed_passes.chain(passes).filter(|feeds| is_shifted(*feeds)).collect();
-            let feeds = if is_shifted(finish) { finish } else { other_pass_feeds.first().copied().unwrap_or(finish) };
+            let feeds =
+                if is_shifted(finish) { finish } else { other_pass_feeds.first().copied().unwrap_or(finish) };
             let cause = cause(old.block(feeds.0), new.block(feeds.1));
             changed.push(ChangedHole {
                 hole,
@@ -133,7 +137,8 @@ impl HoleComparer<'_> {
             let feeds = group.all[0].feeds;
             let is_by_tool = ["hole-tool", "hole-diameter"].contains(&group.kind().code);
             let tools = if is_by_tool { self.tool_changes(feeds) } else { [None, None] };
-            let steps = group.all.iter().flat_map(|one| std::iter::once(&one.feeds).chain(&one.other_pass_feeds));
+            let steps =
+                group.all.iter().flat_map(|one| std::iter::once(&one.feeds).chain(&one.other_pass_feeds));
             let (was_made, is_made) = steps.copied().unzip();
             let blocks = self.alignment.blocks([Some(feeds.0), Some(feeds.1)]);
             let effect = Effect::new(group.kind(), group.message(self.alignment.axes(), tolerance), blocks);
@@ -223,7 +228,9 @@ impl HoleComparer<'_> {
                 |hole: &usize| if side == 0 { partner[*hole].is_none() } else { !known.contains(hole) };
             let firsts = self.passes[side].firsts();
             let alone: Vec<usize> = firsts.iter().copied().filter(is_alone).collect();
-            for run in consecutive_holes(&alone, &firsts, |hole| Some(record.steps[last(record, hole)?].place)) {
+            for run in consecutive_holes(&alone, &firsts, |hole| {
+                Some(record.steps[last(record, hole)?].block_number)
+            }) {
                 let hole = described(&record.holes[run[0]]);
                 let feed = last(record, run[0]);
                 let rapid = if side == 0 { self.rapid_to_bottom(run[0]) } else { None };

@@ -69,14 +69,14 @@ pub(super) struct ModalConditions(pub [ModalSetting; 6]);
 pub(super) struct ModalSetting {
     /// Empty for none.
     pub text: String,
-    pub place: Option<usize>,
+    pub block_number: Option<usize>,
 }
 
 impl ModalConditions {
     /// Returns the conditions before the first block; no block has set them.
     pub(super) fn at_power_on() -> Self {
         let state = State::default();
-        Self(ModalAspect::ALL.map(|aspect| ModalSetting { text: aspect.read(&state), place: None }))
+        Self(ModalAspect::ALL.map(|aspect| ModalSetting { text: aspect.read(&state), block_number: None }))
     }
 
     pub(super) fn word(&self, aspect: ModalAspect) -> &ModalSetting {
@@ -88,12 +88,12 @@ impl ModalConditions {
     }
 
     /// Returns the conditions after a block; unchanged ones keep the block that set them.
-    pub(super) fn after_block(&self, state: &State, place: usize) -> Self {
+    pub(super) fn after_block(&self, state: &State, block_number: usize) -> Self {
         let mut next = self.clone();
         for aspect in ModalAspect::ALL {
             let text = aspect.read(state);
             if next.word(aspect).text != text {
-                next.set(aspect, ModalSetting { text, place: Some(place) });
+                next.set(aspect, ModalSetting { text, block_number: Some(block_number) });
             }
         }
         next

@@ -133,8 +133,8 @@ fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
 /// Returns the end point of a pass on the part; `None` if it is unknown.
 fn tip(record: &Record, hole: usize, step: usize) -> Option<Point3<f64>> {
     let (others, feeds) = (&record.holes[hole].earlier_passes, &record.feeds[hole]);
-    let place = feeds.iter().position(|feed| *feed == step)?;
-    others.get(place).filter(|_| feeds.len() == others.len() + 1).map(|cut| cut.bottom)
+    let index = feeds.iter().position(|feed| *feed == step)?;
+    others.get(index).filter(|_| feeds.len() == others.len() + 1).map(|cut| cut.bottom)
 }
 
 /// Splits a displacement into its parts along and across a feed.

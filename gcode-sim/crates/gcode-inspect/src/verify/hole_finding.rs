@@ -96,7 +96,11 @@ pub(super) fn folded_note(folded: usize) -> Option<String> {
 }
 
 /// Completes a finding about many holes: the note on the findings that it replaces, and its location.
-pub(super) fn finish_group_finding(mut finding: Diagnostic, folded: usize, backtrace: &Backtrace) -> Diagnostic {
+pub(super) fn finish_group_finding(
+    mut finding: Diagnostic,
+    folded: usize,
+    backtrace: &Backtrace,
+) -> Diagnostic {
     finding.notes.extend(folded_note(folded));
     locate_at_call(finding, backtrace)
 }

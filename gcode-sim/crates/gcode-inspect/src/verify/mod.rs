@@ -20,7 +20,7 @@ pub use position::Deviation;
 pub use verdict::{Answer, ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
 use self::checks::mirrored::MirrorImage;
-use self::hole_finding::{Subject, HoleFindings};
+use self::hole_finding::{HoleFindings, Subject};
 use self::rounding::RoundingDeviation;
 use self::rows::PatternRows;
 use crate::holes::HoleExtraction;

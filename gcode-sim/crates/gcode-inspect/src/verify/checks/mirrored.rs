@@ -33,7 +33,8 @@ impl MirrorImage {
                 return None;
             }
             let pairs = compared.pairs.iter().filter(|pair| compared.is_in_place(pair));
-            let in_place = pairs.flat_map(|pair| [Subject::Nominal(pair.nominal), Subject::Extra(pair.actual)]);
+            let in_place =
+                pairs.flat_map(|pair| [Subject::Nominal(pair.nominal), Subject::Extra(pair.actual)]);
             Some(Self { axis, agreeing, in_place: in_place.collect() })
         })
     }

@@ -21,7 +21,9 @@ fn finding(comparison: &Comparison<'_>, pair: &HolePair, nominal: &Hole) -> Diag
     );
     // Over the hole's depth the tilt alone exceeds what the rest of the zone allows.
     let tilt_offset = deviation.tilt.tan() * nominal.depth;
-    if tilt_offset > deviation.at_entry.min(deviation.at_bottom) && tilt_offset > comparison.tolerances.position / 4.0 {
+    if tilt_offset > deviation.at_entry.min(deviation.at_bottom)
+        && tilt_offset > comparison.tolerances.position / 4.0
+    {
         let message = format!("hole {id} is tilted by {:.3}°: {limits}", deviation.tilt.0);
         return Diagnostic::new(&HOLE_TILTED, message)
             .help("check the head angle, and that the feed runs along the hole");

@@ -15,8 +15,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let (Some(&first), Some(&to)) = (rows.first(), rows.last()) else { return };
     let is_gone = |nominal: usize| rows.contains(&row_of(nominal));
     let count = comparison.missing.iter().filter(|nominal| is_gone(**nominal)).count();
-    let folded =
-        findings.fold(&[&HOLE_MISSING], |subject| matches!(subject, Subject::Nominal(nominal) if is_gone(nominal)));
+    let folded = findings
+        .fold(&[&HOLE_MISSING], |subject| matches!(subject, Subject::Nominal(nominal) if is_gone(nominal)));
     let at = |row: usize| 360.0 * row as f64 / f64::from(pattern.rows);
     let message = match rows.as_slice() {
         [one] => format!("row {one} is missing: {count} holes at {:.3}°", at(*one)),
