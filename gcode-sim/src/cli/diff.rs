@@ -138,7 +138,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     Ok(status)
 }
 
-/// Returns the findings for a code review: the changes at their places in the new revision, and its alarm or
+/// Returns the findings for a code review: the changes at their locations in the new revision, and its alarm or
 /// limit.
 fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding> {
     let (files, sources) = (new.files(), new.simulation.run.control.memory().sources());
