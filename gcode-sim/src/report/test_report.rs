@@ -93,6 +93,7 @@ pub(crate) struct FirstFailure {
     pub(crate) code: String,
     pub(crate) message: String,
     /// The block that causes it, if any.
+    #[serde(rename = "place")]
     pub(crate) location: Option<BlockLocation>,
 }
 

@@ -43,7 +43,9 @@ pub(super) fn unset_work_offsets<'r>(
     made: &'r str,
 ) -> impl Iterator<Item = Diagnostic> + 'r {
     let unset = run.control.unset_work_systems().iter();
-    unset.map(move |(system, place)| offset_finding(*system, machine, made).with_backtrace(place.clone()))
+    unset.map(move |(system, backtrace)| {
+        offset_finding(*system, machine, made).with_backtrace(backtrace.clone())
+    })
 }
 
 fn offset_finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {

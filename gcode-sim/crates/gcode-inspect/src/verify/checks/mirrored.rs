@@ -57,8 +57,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         false => Diagnostic::new(&MIRROR_IMAGE, format!("{fault}; no rotation of the table has this effect"))
             .help("check for a mirror image (G51.1) left in force, or a wrong sign of a coordinate"),
     };
-    let place = comparison.actual[comparison.extra[0]].backtrace.clone();
-    findings.add(Subject::Whole, finding.with_backtrace(place));
+    let backtrace = comparison.actual[comparison.extra[0]].backtrace.clone();
+    findings.add(Subject::Whole, finding.with_backtrace(backtrace));
 }
 
 /// Returns true if the opposite direction of the table mirrors the part so: the table rotates between the holes, about
