@@ -84,7 +84,9 @@ pub(super) fn checked_request(
 fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), UsageError> {
     let refused = |why: &dyn std::fmt::Display| UsageError::in_file(path, why);
     if request.settings.skip_signal.is_some() {
-        return Err(UsageError::new("--part: SKIP already sets the skip signal: omit one of them"));
+        return Err(UsageError::new(
+            "--part: --control SKIP=… or --skip already sets the skip signal: omit one of them",
+        ));
     }
     let part = ProbedPart::parse(&input::text(path)?).map_err(|error| refused(&error))?;
     match (&request.machine.probe, part.radius) {

@@ -146,7 +146,7 @@ fn append_entry(text: &mut String, change: &Change, indent: &str) {
     const SHOWN: usize = 6;
     let _ = writeln!(text, "{indent}{:<14} {}", change.code, change.message);
     for Effect { code, message, .. } in change.also.iter().take(SHOWN) {
-        let _ = writeln!(text, "{indent}    also {code}: {message}");
+        let _ = writeln!(text, "{indent}    also {message} [{code}]");
     }
     if SHOWN < change.also.len() {
         let more = change.also.len() - SHOWN;

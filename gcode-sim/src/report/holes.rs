@@ -5,11 +5,14 @@ use gcode_part::HoleList;
 
 /// Formats one line per hole, lengths in mm.
 pub(crate) fn text(list: &HoleList) -> String {
-    let mut text = String::new();
+    // A hole of a program names its block; only a reference knows the surface.
+    let is_from_program = list.holes.iter().any(|hole| hole.from.is_some());
+    let entry = if is_from_program { "start of the cutting feed (R point level)" } else { "on the surface" };
+    let mut text = format!("entry: {entry}; axis: unit vector out of the part; depth: from the entry\n");
     let _ = writeln!(
         text,
         "{:<6}{:>11}{:>11}{:>11}  {:>9}{:>9}{:>9}{:>9}{:>8}  from",
-        "hole", "x", "y", "z", "i", "j", "k", "depth", "Φ"
+        "hole", "entry x", "entry y", "entry z", "axis i", "axis j", "axis k", "depth", "Φ"
     );
     for (index, hole) in list.holes.iter().enumerate() {
         let name = hole.id.clone().unwrap_or_else(|| (index + 1).to_string());

@@ -41,6 +41,9 @@ pub(crate) struct RunReport {
     pub(crate) seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) path: Option<Vec<MoveReport>>,
+    /// Unit of the linear axes in the active work coordinate system.
+    #[serde(skip)]
+    work_unit: &'static str,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -220,6 +223,7 @@ impl RunReport {
             moves: control.moves(),
             seconds: control.seconds().0,
             path,
+            work_unit: if control.is_inch() { "inches" } else { "mm" },
         }
     }
 
@@ -232,8 +236,8 @@ impl RunReport {
             _ => "stopped by an alarm",
         };
         let _ = writeln!(text, "outcome    {word}");
-        let _ = writeln!(text, "position   {}", self.position);
-        let _ = writeln!(text, "machine    {}", self.machine);
+        let _ = writeln!(text, "position   {} ({}, degrees)", self.position, self.work_unit);
+        let _ = writeln!(text, "machine    {} (mm, degrees)", self.machine);
         let _ = writeln!(text, "executed   {} blocks, {} moves", self.blocks, self.moves);
         let _ = writeln!(text, "time       {:.1} s (paths and rapid rates, no acceleration)", self.seconds);
         for stop in &self.stops {
@@ -254,6 +258,9 @@ impl RunReport {
         for (number, value) in &self.system {
             let value = value.map_or_else(|| "vacant".to_owned(), |v| plain(v).to_string());
             let _ = writeln!(text, "{:<11}{value}", format!("#{number}"));
+        }
+        if self.path.is_some() {
+            let _ = writeln!(text, "moves      machine coordinates in mm and degrees");
         }
         for step in self.path.iter().flatten() {
             let feed = step.feed.map(|f| format!("  F{f}")).unwrap_or_default();

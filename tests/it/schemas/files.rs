@@ -1,4 +1,5 @@
 //! Schemas of files against their readers: files of the repository, and each of them changed in every place.
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use gcode_inspect::machine::{Machine, error_file};
@@ -113,15 +114,44 @@ fn the_complete_files_have_every_key() {
     }
 }
 
-/// The numbers just inside and just beyond each bound that a schema has anywhere, and some others.
-fn numbers(name: &str) -> Vec<f64> {
+/// Visits the schemas of one value: those given, and their alternatives.
+fn each<'s>(schemas: &[&'s Json], visit: &mut impl FnMut(&'s Json)) {
+    for schema in schemas {
+        visit(schema);
+        for word in ["anyOf", "oneOf"] {
+            let inner: Vec<_> = schema[word].as_array().into_iter().flatten().collect();
+            each(&inner, visit);
+        }
+    }
+}
+
+/// Returns the schemas of the value of a key.
+fn of_key<'s>(schemas: &[&'s Json], key: &str) -> Vec<&'s Json> {
+    let mut found = Vec::new();
+    each(schemas, &mut |schema| match schema["properties"].get(key) {
+        Some(inner) => found.push(inner),
+        None => found.extend(schema["patternProperties"].as_object().into_iter().flatten().map(|(_, s)| s)),
+    });
+    found
+}
+
+/// Returns the schemas of the items of an array.
+fn of_items<'s>(schemas: &[&'s Json]) -> Vec<&'s Json> {
+    let mut found = Vec::new();
+    each(schemas, &mut |schema| found.extend(schema.get("items")));
+    found
+}
+
+/// Returns the bounds that the schemas of a number have, the numbers just inside and just beyond each, and some others.
+fn numbers(schemas: &[&Json]) -> Vec<f64> {
     let mut all = vec![0.0, -1.0, 1.5, 1e9, -1e9];
-    walk(&schema(name), "", &mut |_, schema| {
-        for word in ["minimum", "maximum"] {
-            if let Some(bound) = schema[word].as_f64() {
-                let little = bound.abs().max(1e-3) * 1e-3;
-                all.extend([bound, bound - little, bound + little]);
-            }
+    each(schemas, &mut |schema| {
+        let bounds = ["minimum", "maximum"].map(|word| &schema[word]);
+        let excluded = schema["not"]["enum"].as_array().into_iter().flatten();
+        let listed = schema["enum"].as_array().into_iter().flatten();
+        for bound in bounds.into_iter().chain(excluded).chain(listed).filter_map(Json::as_f64) {
+            let little = bound.abs().max(1e-3) * 1e-3;
+            all.extend([bound, bound - little, bound + little]);
         }
     });
     all.sort_by(f64::total_cmp);
@@ -129,8 +159,8 @@ fn numbers(name: &str) -> Vec<f64> {
     all
 }
 
-/// Returns other values for the place of a value.
-fn instead(value: &Value, numbers: &[f64]) -> Vec<Value> {
+/// Returns other values for the place of a value with these schemas.
+fn instead(value: &Value, schemas: &[&Json]) -> Vec<Value> {
     let mut all = vec![
         Value::Boolean(true),
         Value::String("X".into()),
@@ -138,14 +168,12 @@ fn instead(value: &Value, numbers: &[f64]) -> Vec<Value> {
         Value::Table(Table::new()),
     ];
     match value {
-        Value::Float(_) => all.extend(numbers.iter().map(|number| Value::Float(*number))),
+        Value::Float(_) => all.extend(numbers(schemas).into_iter().map(Value::Float)),
         Value::Integer(_) => {
-            let whole = numbers.iter().filter(|number| number.fract() == 0.0 || number.abs() > 1.0);
-            all.extend(
-                whole
-                    .flat_map(|number| [number.floor(), number.ceil()])
-                    .map(|number| Value::Integer(number as i64)),
-            );
+            let whole = numbers(schemas).into_iter();
+            let whole = whole.flat_map(|number| [number.floor(), number.ceil()]).map(|number| number as i64);
+            let whole: BTreeSet<_> = whole.collect();
+            all.extend(whole.into_iter().map(Value::Integer));
             all.push(Value::Float(1.5));
         }
         Value::String(text) => all.push(Value::String(format!("{text}x"))),
@@ -159,8 +187,8 @@ fn instead(value: &Value, numbers: &[f64]) -> Vec<Value> {
 }
 
 /// The value changed in one place: a key gone, a key more, another value.
-fn changed(value: &Value, name: &str, numbers: &[f64]) -> Vec<(String, Value)> {
-    let others = instead(value, numbers).into_iter();
+fn changed(value: &Value, name: &str, schemas: &[&Json]) -> Vec<(String, Value)> {
+    let others = instead(value, schemas).into_iter();
     let mut all: Vec<_> = others.map(|other| (format!("{name} = {other}"), other)).collect();
     match value {
         Value::Table(table) => {
@@ -173,14 +201,14 @@ fn changed(value: &Value, name: &str, numbers: &[f64]) -> Vec<(String, Value)> {
             all.push((format!("{name} with another key"), with("another", Some(Value::Integer(1)))));
             for (key, inner) in table {
                 let name = format!("{name}.{key}");
-                let inner = changed(inner, &name, numbers).into_iter();
+                let inner = changed(inner, &name, &of_key(schemas, key)).into_iter();
                 all.extend(inner.map(|(what, inner)| (what, with(key, Some(inner)))));
                 all.push((format!("{name} gone"), with(key, None)));
             }
         }
         Value::Array(items) => {
             for (n, inner) in items.iter().enumerate() {
-                let inner = changed(inner, &format!("{name}.{n}"), numbers).into_iter();
+                let inner = changed(inner, &format!("{name}.{n}"), &of_items(schemas)).into_iter();
                 all.extend(inner.map(|(what, inner)| {
                     let mut copy = items.clone();
                     copy[n] = inner;
@@ -236,9 +264,9 @@ fn readers_and_schemas_refuse_the_same() {
     for (path, name, read) in complete() {
         let text = std::fs::read_to_string(&path).unwrap();
         read(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        let validator = validator(name);
+        let (validator, all) = (validator(name), schema(name));
         let root = Value::Table(toml::from_str(&text).unwrap());
-        for (what, document) in changed(&root, "", &numbers(name)) {
+        for (what, document) in changed(&root, "", &[&all]) {
             let Value::Table(table) = document else { continue };
             tried += 1;
             let text = toml::to_string(&table).unwrap();
@@ -255,4 +283,60 @@ fn readers_and_schemas_refuse_the_same() {
     }
     println!("{tried} files tried");
     assert!(wrong.is_empty(), "{} of {tried}:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+/// Tries a list at every key of a table, and in every list of tables.
+#[test]
+fn a_list_in_place_of_a_table_is_refused() {
+    fn tables(value: &Value, name: &str, found: &mut Vec<(String, Value)>) {
+        if let Value::Array(items) = value {
+            items.iter().for_each(|item| tables(item, name, found));
+        }
+        let Value::Table(table) = value else { return };
+        for (key, inner) in table {
+            let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+            let with = |inner: Value| {
+                let mut copy = table.clone();
+                copy.insert(key.clone(), inner);
+                Value::Table(copy)
+            };
+            match inner {
+                Value::Table(_) => found.push((name.clone(), with(Value::Array(Vec::new())))),
+                Value::Array(items) if items.iter().any(Value::is_table) => {
+                    found.push((name.clone(), with(Value::Array(vec![Value::Array(Vec::new())]))));
+                }
+                _ => {}
+            }
+            let mut below = Vec::new();
+            tables(inner, &name, &mut below);
+            let is_list = inner.is_array();
+            found.extend(
+                below.into_iter().map(|(name, inner)| {
+                    (name, with(if is_list { Value::Array(vec![inner]) } else { inner }))
+                }),
+            );
+        }
+    }
+    let mut tried = BTreeSet::new();
+    for (path, name, read) in complete() {
+        let root = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let mut changed = Vec::new();
+        tables(&Value::Table(root), "", &mut changed);
+        for (key, document) in changed {
+            let error = read(&toml::to_string(&document).unwrap()).unwrap_err();
+            let expected = format!("key '{key}' is a list: a table, {{ key = value }}, is required");
+            assert!(error.ends_with(&expected), "{}: {key}: {error}", path.display());
+            tried.insert(format!("{name}.{key}"));
+        }
+    }
+    for key in [
+        "job.control",
+        "job.hole",
+        "machine.tool",
+        "machine.offsets.G54",
+        "errors.part.tilt.z",
+        "rates.beside",
+    ] {
+        assert!(tried.contains(key), "{key} is in no complete file: {tried:?}");
+    }
 }

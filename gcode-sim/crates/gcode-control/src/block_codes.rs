@@ -48,7 +48,8 @@ impl Planner<'_> {
             }
             let new = state.modal.apply(row.effect);
             if new.is_some() && axis_use.is_some() && new != axis_use {
-                return Err(self.not_simulated("several one-shot G codes in one block"));
+                return Err(self
+                    .not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68) in one block"));
             }
             axis_use = new.or(axis_use);
             if row.effect == Effect::Cycle(None) {

@@ -40,7 +40,7 @@ impl Planner<'_> {
             CallCode::Macro => CallKind::Macro,
             CallCode::AfterMoves => CallKind::Modal,
             CallCode::Local if !self.data.settings.has_local_calls => {
-                return refuse("M97 with P (a call of the program itself, for M97-CALLS=1)");
+                return refuse("M97 with P (a call of the program itself, with --control M97-CALLS=1)");
             }
             CallCode::File if m_codes::find(198, self.data.settings.codes).is_none() => {
                 return refuse("M198 on this control");

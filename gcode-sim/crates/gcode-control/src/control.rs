@@ -16,7 +16,7 @@ use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{AxisIndex, Backtrace, EventSink, Position};
-use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::modes::{Unit, WorkSystem};
 use gcode_lang::program::{Library, Memory, Slot};
 use gcode_lang::source::Span;
 use gcode_lang::units::Seconds;
@@ -267,6 +267,11 @@ impl Control {
     pub fn work_position(&self, axis: AxisIndex) -> f64 {
         let state = &self.executor.registers.state;
         self.executor.registers.data.to_program_unit(state, Some(axis), state.programmed[axis])
+    }
+
+    /// Returns true if G20 is in force: lengths are programmed in inches.
+    pub fn is_inch(&self) -> bool {
+        self.executor.registers.state.modal.unit == Unit::Inch
     }
 
     /// Returns the tool centre in machine coordinates, mm and degrees.

@@ -1,4 +1,4 @@
-//! Expands a checked drilling block: its holes, and the steps of the cycle at each of them.
+//! Expands a checked block of a canned cycle: its holes, and the steps of the cycle at each of them.
 use super::data::ControlData;
 use super::state::{CycleState, PeckSchedule, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
@@ -6,7 +6,7 @@ use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::ReturnTo;
 use gcode_lang::units::{MmPerMin, Rpm, Seconds};
 
-/// Checked drilling block; its expansion can't fail.
+/// Checked block of a canned cycle; its expansion can't fail.
 #[derive(Clone, Debug)]
 pub(super) struct CyclePlan {
     pub(super) cycle: &'static Cycle,
@@ -19,8 +19,8 @@ pub(super) struct CyclePlan {
     pub(super) rate: MmPerMin,
     /// Dwell, seconds.
     pub(super) dwell: f64,
-    /// Scale of G51 along the drilling axis; Q, 5114 and 5115 are not scaled.
-    pub(super) stretch: f64,
+    /// Scale factor of G51 along the drilling axis; Q, 5114 and 5115 are not scaled.
+    pub(super) scale_factor: f64,
 }
 
 impl CyclePlan {
@@ -56,16 +56,16 @@ impl CyclePlan {
     }
 
     /// Emits the pecks of G83: each begins above the last depth and ends with a retract to R.
-    fn peck_with_full_retract<T: FnMut(EventKind, f64)>(
+    fn peck<T: FnMut(EventKind, f64)>(
         &self,
         data: &ControlData,
         level: &impl Fn(f64) -> Position,
         (r, z): (f64, f64),
         motion: &mut CycleMotion<'_, T>,
     ) {
-        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.stretch), |from, to, is_last| {
+        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.scale_factor), |from, to, is_last| {
             if from != r {
-                let clearance = (data.settings.g83_clearance / self.stretch).min((r - from).abs());
+                let clearance = (data.settings.g83_clearance / self.scale_factor).min((r - from).abs());
                 motion.rapid(level(from + clearance.copysign(r - z)));
             }
             motion.feed(level(to));
@@ -76,15 +76,15 @@ impl CyclePlan {
     }
 
     /// Emits the pecks of G73: each ends with a retract of parameter 5114.
-    fn peck_with_short_retract<T: FnMut(EventKind, f64)>(
+    fn high_speed_peck<T: FnMut(EventKind, f64)>(
         &self,
         data: &ControlData,
         level: &impl Fn(f64) -> Position,
         (r, z): (f64, f64),
         motion: &mut CycleMotion<'_, T>,
     ) {
-        let retract = (data.settings.g73_retract / self.stretch).copysign(r - z);
-        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.stretch), |_, to, is_last| {
+        let retract = (data.settings.g73_retract / self.scale_factor).copysign(r - z);
+        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.scale_factor), |_, to, is_last| {
             motion.feed(level(to));
             if !is_last {
                 motion.rapid(level(to + retract));
@@ -115,8 +115,8 @@ impl CyclePlan {
         }
         match step {
             CycleStep::FeedToBottom => motion.feed(level(z)),
-            CycleStep::PeckFull => self.peck_with_full_retract(data, level, (r, z), motion),
-            CycleStep::PeckShort => self.peck_with_short_retract(data, level, (r, z), motion),
+            CycleStep::Peck => self.peck(data, level, (r, z), motion),
+            CycleStep::HighSpeedPeck => self.high_speed_peck(data, level, (r, z), motion),
             CycleStep::Dwell => motion.dwell(self.dwell),
             CycleStep::DwellAtR if data.settings.undocumented.tap_dwells_at_r => motion.dwell(self.dwell),
             CycleStep::DwellAtR => {}
@@ -280,7 +280,7 @@ mod tests {
             shift: (0, 0.0),
             rate: MmPerMin(100.0),
             dwell: 0.0,
-            stretch: 1.0,
+            scale_factor: 1.0,
         };
         let mut moves = Vec::new();
         plan.expand(&ControlData::new(Settings::default()), &mut |kind, _| match kind {
@@ -294,8 +294,11 @@ mod tests {
     #[test]
     fn a_hole_is_drilled_from_r_to_z_and_left_to_the_active_return_level() {
         let down = [("rapid", 50.0), ("rapid", 2.0), ("feed", -10.0)];
-        assert_eq!(moves(&cycles::DRILL, ReturnTo::Initial, None), [&down[..], &[("rapid", 50.0)]].concat());
-        assert_eq!(moves(&cycles::DRILL, ReturnTo::R, None), [&down[..], &[("rapid", 2.0)]].concat());
+        assert_eq!(
+            moves(&cycles::DRILLING, ReturnTo::Initial, None),
+            [&down[..], &[("rapid", 50.0)]].concat()
+        );
+        assert_eq!(moves(&cycles::DRILLING, ReturnTo::R, None), [&down[..], &[("rapid", 2.0)]].concat());
     }
 
     #[test]
@@ -304,7 +307,7 @@ mod tests {
             let moves = moves(cycle, ReturnTo::R, Some(5.0)).into_iter();
             moves.filter(|(kind, _)| *kind == "feed").map(|(_, z)| z).collect::<Vec<_>>()
         };
-        assert_eq!(feeds(&cycles::PECK_DRILL), [-3.0, -8.0, -10.0]);
-        assert_eq!(feeds(&cycles::PECK_DRILL_SHORT), [-3.0, -8.0, -10.0]);
+        assert_eq!(feeds(&cycles::PECK_DRILLING), [-3.0, -8.0, -10.0]);
+        assert_eq!(feeds(&cycles::HIGH_SPEED_PECK_DRILLING), [-3.0, -8.0, -10.0]);
     }
 }

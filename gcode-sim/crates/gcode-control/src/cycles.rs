@@ -1,4 +1,4 @@
-//! Checks a drilling block: its axis, words, repeats and end; G70 and G71 of a Haas repeat it round a centre.
+//! Checks a block of a canned cycle: its axis, words, repeats and end; G70 and G71 of a Haas repeat it round a centre.
 use super::cycle_expansion::{CyclePlan, has_too_many_pecks};
 use super::functions::ExecResult;
 use super::notes::Note;
@@ -52,7 +52,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Checks a drilling block and computes its end.
+    /// Checks a block of a canned cycle and computes its end.
     pub(super) fn plan_cycle(
         &self,
         plan: &mut BlockPlan,
@@ -60,7 +60,7 @@ impl Planner<'_> {
         pattern: Option<BoltHolePattern>,
     ) -> ExecResult<()> {
         let axis = self.locate(self.drilling_axis(&plan.state))?;
-        let stretch = self.locate(stretch_along(plan, cycle, axis))?;
+        let scale_factor = self.locate(scale_factor_along(plan, cycle, axis))?;
         let repeats = self.cycle_repeats(pattern)?;
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = *plan.state;
@@ -83,11 +83,11 @@ impl Planner<'_> {
         }
         let (rate, _) = self.locate(self.data.path_time(&plan.state, 1.0, self.words.has(b'F')))?;
         plan.commands_axes = true;
-        if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.unscaled(stretch), repeats) {
+        if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.unscaled(scale_factor), repeats) {
             return Err(self.not_simulated("more than a million pecks in one block"));
         }
         if incremental && self.named_axes().any(|axis| self.data.settings.rolls_over[axis]) {
-            return Err(self.not_simulated("a drilling cycle with an incremental axis that rolls over"));
+            return Err(self.not_simulated("a canned cycle with an incremental axis that rolls over"));
         }
         if repeats == 0 && !self.data.settings.undocumented.k0_positions {
             plan.notes.push(Note::CycleRepeatsZero);
@@ -127,7 +127,7 @@ impl Planner<'_> {
             shift: (if first == axis { other } else { first }, shift),
             rate,
             dwell: plan.state.cycle.p,
-            stretch,
+            scale_factor,
         });
         Ok(())
     }
@@ -220,18 +220,18 @@ impl Planner<'_> {
     }
 }
 
-/// Returns the scale of G51 along the drilling axis; an alarm for a combination that isn't simulated.
-fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64, Alarm> {
+/// Returns the scale factor of G51 along the drilling axis; an alarm for a combination that isn't simulated.
+fn scale_factor_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64, Alarm> {
     let transform = &plan.state.transform;
-    let stretch = transform.scaling.map_or(1.0, |s| s.factor[axis]);
-    let is_mirrored = stretch < 0.0 || transform.mirrored_axes >> axis & 1 == 1;
+    let scale_factor = transform.scaling.map_or(1.0, |s| s.factor[axis]);
+    let is_mirrored = scale_factor < 0.0 || transform.mirrored_axes >> axis & 1 == 1;
     // G51 excepts cycles with a shift; the manual doesn't say how far.
-    let has_scaled_shift = stretch != 1.0 && cycle.steps.contains(&CycleStep::Shift);
+    let has_scaled_shift = scale_factor != 1.0 && cycle.steps.contains(&CycleStep::Shift);
     if transform.tilt.is_some() || is_mirrored || has_scaled_shift {
-        let what = "a drilling cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
+        let what = "a canned cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
         return Err(Alarm::NotSimulated { what: what.into() });
     }
-    Ok(stretch)
+    Ok(scale_factor)
 }
 
 impl Planner<'_> {
@@ -244,7 +244,7 @@ impl Planner<'_> {
         let pecks = match (first, decrement, minimum) {
             (None, None, None) => return Ok(()),
             (Some(first), None, None) => PeckSchedule { first, decrement: 0.0, minimum: first },
-            (Some(first), Some(less), Some(least)) => PeckSchedule { first, decrement: less, minimum: least },
+            (Some(first), Some(decrement), Some(minimum)) => PeckSchedule { first, decrement, minimum },
             _ => return Err(self.not_simulated("I, J and K of G73 and G83 in part, or K with Q")),
         };
         if self.words.has(b'Q') {

@@ -46,7 +46,7 @@ impl Planner<'_> {
         Ok(changed)
     }
 
-    /// 4. Plans a move by the modal codes: a drilling cycle, or group 01.
+    /// 4. Plans a move by the modal codes: a canned cycle, or group 01.
     pub(super) fn plan_motion(&self, plan: &mut BlockPlan, has_new_length: bool) -> ExecResult<()> {
         if let Some(cycle) = plan.state.modal.cycle {
             // A block drills if it names an axis or R.
@@ -378,7 +378,7 @@ impl Planner<'_> {
             && plan.state.transform.is_none();
         if !is_allowed || self.words.has_any(b"XY") {
             return Err(self.not_simulated(format!(
-                "{code} with X, Y, another plane, compensation, rotation or a drilling cycle"
+                "{code} with X, Y, another plane, compensation, rotation or a canned cycle"
             )));
         }
         let radii = self.radii(code, plan)?;
@@ -392,13 +392,14 @@ impl Planner<'_> {
             plan.state.programmed = endpoint.programmed;
             for radius in &radii {
                 let start = plan.state.machine;
-                let (centre, half) = ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
+                let (centre, half_circle_centre) =
+                    ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
                 let mut edge = start;
                 edge[0] = self.data.remove_residue(centre.0 + radius);
                 let arcs = [
-                    (edge, half, radius / 2.0, 180.0),
+                    (edge, half_circle_centre, radius / 2.0, 180.0),
                     (edge, centre, *radius, 360.0),
-                    (start, half, radius / 2.0, 180.0),
+                    (start, half_circle_centre, radius / 2.0, 180.0),
                 ];
                 for (to, centre, radius, degrees) in arcs {
                     let sweep = Deg(if clockwise { -degrees } else { degrees });

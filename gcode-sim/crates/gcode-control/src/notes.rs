@@ -9,7 +9,7 @@ gcode_lang::finding_kinds! {
     AXIS_LEFT_OUT = "axis-left-out", Warning, "a first move that omits an axis";
     BLOCK_SKIP = "block-skip", Note, "the result holds for one position of the block skip switch";
     CENTRE_HERE = "centre-here", Note, "a centre at the current point";
-    CORNER_IGNORED = "corner-ignored", Warning, "a corner word without effect";
+    CORNER_IGNORED = "corner-ignored", Warning, ",R or ,C without effect";
     CYCLE_DATA_LOST = "cycle-data-lost", Warning, "P or Q in a block that does not drill";
     DIGITS_LOST = "digits-lost", Warning, "DPRNT without the upper digits";
     DOUBLED_NUMBER = "doubled-number", Warning, "a jump to one of several N";
@@ -19,7 +19,7 @@ gcode_lang::finding_kinds! {
     INTO_LOOP = "into-loop", Warning, "a jump into a loop";
     LARGE_ALARM_NUMBER = "large-alarm-number", Warning, "the number of #3000 exceeds its range";
     LENGTH_OF_NOTHING = "length-of-nothing", Warning, "G43 without H";
-    LEVEL_MISSING = "level-missing", Warning, "a drilling cycle without R or without its depth";
+    LEVEL_MISSING = "level-missing", Warning, "a canned cycle without R or without its depth";
     LONG_M_CODE = "long-m-code", Warning, "an M code with more than four digits";
     LOWER_CASE = "lower-case", Note, "lower-case letters are read as capitals";
     M_CODE_LOST = "m-code-lost", Warning, "only the last M code of a block counts";
@@ -56,7 +56,7 @@ pub enum Note {
     },
     /// `,R` or `,C` in a block that is no cutting move is ignored.
     CornerIgnored,
-    /// A drilling block with K0 stores its data and drills nothing, as K0 should; whether it moves to its X and Y differs
+    /// A canned cycle with K0 stores its data and drills nothing, as K0 should; whether it moves to its X and Y differs
     /// between controls.
     CycleRepeatsZero,
     /// A call with L0 calls nothing.
@@ -87,7 +87,7 @@ pub enum Note {
     AxisLeftOut,
     /// DPRNT has printed only the lower digits of a number.
     DigitsLost,
-    /// A drilling cycle drills before this level, its R or its depth, is commanded.
+    /// A canned cycle drills before this level, its R or its depth, is commanded.
     CycleLevelMissing(char),
     /// G43 or G44, × 10, with H0, which is no offset.
     LengthOffsetZero(u32),
@@ -98,7 +98,7 @@ pub enum Note {
         /// Its position.
         is_on: bool,
     },
-    /// A drilling cycle drills along Z while G18 or G19, × 10, is active, as with FXY 5101#0 = 0.
+    /// A canned cycle drills along Z while G18 or G19, × 10, is active, as with FXY 5101#0 = 0.
     DrillsAlongZ(u32),
     /// `#3000=n` with a number beyond those of the manuals.
     LargeAlarmNumber {
@@ -118,11 +118,12 @@ impl Note {
                 (&G53_IGNORED, message, "command G90 with G53")
             }
             Self::MCodeLost(code) => {
-                let message = format!("M{code} is lost: of several M codes in a block only the last counts");
+                let message =
+                    format!("M{code:02} is lost: of several M codes in a block only the last counts");
                 (
                     &M_CODE_LOST,
                     message,
-                    "write each M code in a block of its own, or set M3B=1 if the control accepts three",
+                    "write each M code in a block of its own, or give --control M3B=1 for a control that accepts three",
                 )
             }
             Self::CycleDataLost => {
@@ -138,7 +139,7 @@ impl Note {
                 (
                     &NO_SIGNAL,
                     message,
-                    "give the part with --part, or SKIP, the fraction of the path where the signal comes",
+                    "give the part with --part, or --control SKIP=0.5 for a signal after half of the path",
                 )
             }
             Self::WordsPassedOn { code, letter } => {
@@ -151,7 +152,7 @@ impl Note {
             }
             Self::CycleRepeatsZero => {
                 let message = "K0 stores the cycle without a move to the block's X and Y".to_owned();
-                (&NO_REPEATS, message, "use K0-MOVES=1 for a control that moves there")
+                (&NO_REPEATS, message, "give --control K0-MOVES=1 for a control that moves there")
             }
             Self::CallRepeatsZero => {
                 (&NO_PASS, "L0: the program is not called".to_owned(), "omit L to call it once")
@@ -187,7 +188,7 @@ impl Note {
                 (
                     &TANGENT_OF_90,
                     message,
-                    "test the angle first; TAN-90-ALARM=1 is for a control that raises the alarm",
+                    "test the angle first; give --control TAN-90-ALARM=1 for a control that raises the alarm",
                 )
             }
             Self::AtanOf0 => {
@@ -197,7 +198,7 @@ impl Note {
                 (
                     &ATAN_OF_0,
                     message,
-                    "test both values first; ATAN-0-ALARM=1 is for a control that raises the alarm",
+                    "test both values first; give --control ATAN-0-ALARM=1 for a control that raises the alarm",
                 )
             }
             Self::ParameterWithoutEffect(number) => {
@@ -206,7 +207,11 @@ impl Note {
             }
             Self::LowerCase => {
                 let message = "lower case is read as capitals; some controls refuse it".to_owned();
-                (&LOWER_CASE, message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
+                (
+                    &LOWER_CASE,
+                    message,
+                    "write capitals; give --control LOWER-CASE=0 for a control that refuses lower case",
+                )
             }
             Self::LongMCode(code) => {
                 let message =
@@ -232,7 +237,7 @@ impl Note {
                 (
                     &DIGITS_LOST,
                     message,
-                    "give the format more places; PRINT-EXPANDS=1 is for a control that expands it",
+                    "give the format more places, or --control PRINT-EXPANDS=1 for a control that prints all digits",
                 )
             }
             Self::CycleLevelMissing(letter) => {
@@ -249,7 +254,7 @@ impl Note {
                     "the rest of the block after / is {does}: block skip {switch} is {is}; all results \
                      assume this setting"
                 );
-                (&BLOCK_SKIP, message, "use --control BDT=1 to switch block skip 1 on")
+                (&BLOCK_SKIP, message, "give --control BDT=1 to switch block skip 1 on")
             }
             Self::DrillsAlongZ(code) => {
                 let message = format!(
@@ -257,7 +262,11 @@ impl Note {
                      of that plane",
                     spelled(code)
                 );
-                (&DRILL_PLANE, message, "write G17, or set FXY=1 if the control drills along the normal")
+                (
+                    &DRILL_PLANE,
+                    message,
+                    "write G17, or give --control FXY=1 for a control that drills along the normal",
+                )
             }
             Self::LargeAlarmNumber { number, max } => {
                 let message = format!("#3000={number}: the manuals give numbers up to {max}");

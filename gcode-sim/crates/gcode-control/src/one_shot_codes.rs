@@ -75,31 +75,35 @@ impl Planner<'_> {
             },
             OneShot::FromReference => self.plan_return_from_reference(plan),
             OneShot::Skip => self.plan_skip(plan),
-            OneShot::LocalSystem => {
-                self.shift_system(plan, |state, axis, value| state.local_offset[axis] = value)
+            OneShot::SetLocalCoordinateSystem => {
+                self.shift_coordinate_system(plan, |state, axis, value| state.local_offset[axis] = value)
             }
             // The programmed position gets these coordinates, without the length offset; G52 ends on these axes.
-            OneShot::SetSystem => self.shift_system(plan, |state, axis, value| {
+            OneShot::SetWorkCoordinateSystem => self.shift_coordinate_system(plan, |state, axis, value| {
                 let work = state.transform.forward(state.programmed)[axis];
                 let shift = state.coordinate_shift[axis] + state.local_offset[axis] + work - value;
                 state.coordinate_shift[axis] = self.data.remove_residue(shift);
                 state.local_offset[axis] = 0.0;
             }),
-            OneShot::PresetSystem => self.shift_system(plan, |state, axis, _| {
+            OneShot::PresetWorkCoordinateSystem => self.shift_coordinate_system(plan, |state, axis, _| {
                 (state.coordinate_shift[axis], state.local_offset[axis]) = (0.0, 0.0);
             }),
-            OneShot::OneSide if cycle => Err(self.not_simulated("G60 (in a drilling cycle)")),
-            OneShot::OneSide => self.plan_one_side(plan),
+            OneShot::SingleDirection if cycle => Err(self.not_simulated("G60 (in a canned cycle)")),
+            OneShot::SingleDirection => self.plan_single_direction(plan),
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
-            OneShot::MachineSystem => self.plan_machine_move(plan),
+            OneShot::MachineCoordinateSystem => self.plan_machine_move(plan),
             OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),
             OneShot::CornerArc => Err(self.not_simulated("G39 without cutter compensation")),
         }
     }
 
     /// Applies the values of the named axes to the shifts of the coordinate system.
-    fn shift_system(&self, plan: &mut BlockPlan, shift: impl Fn(&mut State, usize, f64)) -> ExecResult<()> {
+    fn shift_coordinate_system(
+        &self,
+        plan: &mut BlockPlan,
+        shift: impl Fn(&mut State, usize, f64),
+    ) -> ExecResult<()> {
         for axis in 0..self.data.settings.axes.len() {
             if let Some(value) = self.axis_dimension(axis, &plan.state)? {
                 shift(&mut plan.state, axis, value);
@@ -112,7 +116,7 @@ impl Planner<'_> {
     fn plan_dwell(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         self.check_skip_signal_set(b'Q')?;
         if self.words.has(b'Q') {
-            let what = "G4 (dwell until a skip signal)".into();
+            let what = "G04 (dwell until a skip signal)".into();
             return Err(Alarm::NotSimulated { what }.located_at(self.words.span(b'Q')));
         }
         let seconds = match self.dwell_seconds()? {
@@ -129,12 +133,13 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// G60: by rapid to a point before the end by 5440, whose sign is the side, and on to the end.
-    fn plan_one_side(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+    /// G60, single direction positioning: by rapid to a point before the end by 5440, whose sign is the side, and on to the end.
+    fn plan_single_direction(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let endpoint = self.resolve_endpoint(&mut plan.state)?;
         let mut before = endpoint.machine;
         for axis in self.named_axes() {
-            before[axis] = self.data.remove_residue(before[axis] - self.data.settings.one_side_overrun[axis]);
+            before[axis] =
+                self.data.remove_residue(before[axis] - self.data.settings.single_direction_overrun[axis]);
         }
         self.push_rapid(plan, &before);
         self.push_rapid(plan, &endpoint.machine);

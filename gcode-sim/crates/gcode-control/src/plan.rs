@@ -23,7 +23,7 @@ pub(super) struct BlockPlan {
     pub(super) skip_plan: Option<SkipPlan>,
     /// Events after the motion: spindle and coolant off.
     pub(super) events_after_motion: Vec<(EventKind, f64)>,
-    /// Drilling cycle, expanded while it is emitted because its length has no bound.
+    /// Canned cycle, expanded while it is emitted because its length has no bound.
     pub(super) cycle_plan: Option<CyclePlan>,
     pub(super) writes: Vec<TableWrite>,
     /// The word `,R` or `,C` of a cutting move.

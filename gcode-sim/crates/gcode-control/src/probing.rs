@@ -56,7 +56,7 @@ impl Registers {
     ) -> Option<LocatedAlarm> {
         let SkipPlan { event, from, to, rate, seconds, span } = plan.skip_plan.take()?;
         let signal = match self.data.settings.skip_signal {
-            Some(part) => SkipSignal::Received { latched: part, stop_fraction: part },
+            Some(fraction) => SkipSignal::Received { latched: fraction, stop_fraction: fraction },
             None => {
                 match sink.skip_signal(&SkipMove { from: &from, to: &to, rate, seconds: Seconds(seconds) }) {
                     Some(signal) => {
@@ -81,8 +81,8 @@ impl Registers {
                 (stopped, stopped, Some(alarm))
             }
         };
-        let point_at = |part: f64| {
-            let at = |axis| self.data.remove_residue(from[axis] + part * (to[axis] - from[axis]));
+        let point_at = |fraction: f64| {
+            let at = |axis| self.data.remove_residue(from[axis] + fraction * (to[axis] - from[axis]));
             Position(std::array::from_fn(at))
         };
         let end = point_at(stopped);

@@ -119,7 +119,7 @@ impl Panel {
     /// Sets #3901 or #3902.
     pub(super) fn set_parts(&mut self, counter: u32, value: f64) -> Result<(), Alarm> {
         if value < 0.0 {
-            return Err(Alarm::OutOfRange { function: format!("#{}", 3901 + counter), value });
+            return Err(Alarm::NegativeVariable { number: 3901 + counter });
         }
         self.part_counters[counter as usize] = value.round();
         Ok(())

@@ -37,7 +37,7 @@ pub struct State {
     /// Radius of cutter compensation, read by D or G41, G42; negative if it swaps sides.
     pub(super) cutter_radius: f64,
     pub(super) transform: Transform,
-    /// Modal data of the drilling cycle.
+    /// Modal data of the canned cycle.
     pub cycle: CycleState,
     /// Codes with a number.
     pub codes: Codes,
@@ -56,7 +56,7 @@ impl State {
         self.work_zero_unknown = self.work_zero_unknown & !(1 << axis) | u8::from(is_unknown) << axis;
     }
 
-    /// Applies a code of group 01, which ends a drilling cycle (operator's manual, canned cycle for drilling).
+    /// Applies a code of group 01, which ends a canned cycle (operator's manual, canned cycle for drilling).
     #[inline]
     pub(super) fn set_motion_mode(&mut self, motion: Motion) {
         self.modal.motion = motion;
@@ -117,7 +117,7 @@ pub struct Codes {
     pub o: u32,
 }
 
-/// Modal data of a drilling cycle; G80 and group 01 clear it.
+/// Modal data of a canned cycle; G80 and group 01 clear it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CycleState {
     /// Drilling axis, from the first block of the cycle on.
@@ -153,14 +153,14 @@ pub(super) struct CycleLevel {
 }
 
 impl CycleState {
-    /// Returns the cycle with pecks that have their commanded length after the scaling of the levels by `stretch`.
-    pub(super) fn unscaled(self, stretch: f64) -> Self {
+    /// Returns the cycle with pecks that have their commanded length after the scaling of the levels by `scale_factor`.
+    pub(super) fn unscaled(self, scale_factor: f64) -> Self {
         let pecks = self.pecks.map(|pecks| PeckSchedule {
-            first: pecks.first / stretch,
-            decrement: pecks.decrement / stretch,
-            minimum: pecks.minimum / stretch,
+            first: pecks.first / scale_factor,
+            decrement: pecks.decrement / scale_factor,
+            minimum: pecks.minimum / scale_factor,
         });
-        Self { q: self.q.map(|q| q / stretch), pecks, ..self }
+        Self { q: self.q.map(|q| q / scale_factor), pecks, ..self }
     }
 
     pub(super) fn is_r_unknown(&self) -> bool {
@@ -198,7 +198,7 @@ pub struct Modal {
     pub(super) unit: Unit,
     pub(super) cutter: CutterSide,
     pub(super) length: Length,
-    /// Group 09: drilling cycle; `None` is G80.
+    /// Group 09: canned cycle; `None` is G80.
     pub cycle: Option<&'static Cycle>,
     pub(super) return_to: ReturnTo,
     pub(super) scaling: Scaling,

@@ -108,7 +108,7 @@ impl Planner<'_> {
         let is_scaled = was_scaled && modal.scaling == Scaling::On;
         for row in self.words.g_codes() {
             // G53 without an axis only waits.
-            if row.effect == Effect::OneShot(OneShot::MachineSystem) && !self.names_axis() {
+            if row.effect == Effect::OneShot(OneShot::MachineCoordinateSystem) && !self.names_axis() {
                 continue;
             }
             let is_bound = row.facts.coordinates == CoordinateUse::NotTransformed;

@@ -205,6 +205,9 @@ pub(super) fn computed_row(raw: WordNumber, dialect: Dialect) -> Result<&'static
     };
     // A computed code is rounded to one decimal.
     let tenths = round(value * 10.0);
+    if tenths < 0.0 {
+        return Err(Alarm::IllegalMinus { letter: 'G' });
+    }
     if !(0.0..=9999.0).contains(&tenths) {
         return Err(Alarm::ImproperGCode { code: value.to_string() });
     }

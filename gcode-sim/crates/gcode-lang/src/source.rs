@@ -143,13 +143,13 @@ pub(crate) fn line_length(text: &[u8]) -> usize {
             continue;
         }
         let (words, _) = chunk.as_chunks::<8>();
-        for (half, word) in words.iter().enumerate() {
+        for (nth_word, word) in words.iter().enumerate() {
             let word = u64::from_le_bytes(*word);
             let mut found = low_byte_bits(word);
             while found != 0 {
                 let bits = found.trailing_zeros() & !7;
                 if is_line_end(&((word >> bits) as u8)) {
-                    return 16 * place + 8 * half + bits as usize / 8;
+                    return 16 * place + 8 * nth_word + bits as usize / 8;
                 }
                 found &= found - 1;
             }

@@ -336,7 +336,7 @@ impl<'a> Effects<'a> {
             }
             ModalAspect::Level => {
                 let is_r_level = new.under(first).word(aspect).text == "G99";
-                let level = if is_r_level { "R" } else { "initial" };
+                let level = if is_r_level { "R point" } else { "initial" };
                 format!(": the rapids between holes run at the {level} level ({count})")
             }
             ModalAspect::Cycle => format!(" ({})", self.holes_of_cycle(moves)),

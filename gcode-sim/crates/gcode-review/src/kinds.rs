@@ -38,7 +38,7 @@ change_kinds! {
     WORK_SYSTEM = "work-system", "another work offset is active";
     TOOL_LENGTH = "tool-length", "another tool length offset";
     CUTTER_SIDE = "cutter-side", "another cutter compensation";
-    CYCLE = "cycle", "another drilling cycle, or another Q";
+    CYCLE = "cycle", "another canned cycle, or another Q";
     RETURN_LEVEL = "return-level", "the rapids between holes run at another level";
     PATH_MODE = "path-mode", "corners are cut in another mode";
     TOOL = "tool", "another tool is called";

@@ -5,7 +5,7 @@ use super::modal_conditions::{ModalAspect, ModalSetting};
 use super::record::Record;
 use super::steps::{StepKind, UNSIMULATED, UnsimulatedKind};
 
-/// Former and present messages of alarms, one row per line; `{}` is a value.
+/// Former and later messages of alarms, one row per line, the oldest first; `{}` is a value.
 const ALARMS: &str = include_str!("former_alarms.tsv");
 
 /// Former and present message of `#3000` without a text.
@@ -17,8 +17,10 @@ pub(super) fn present_words(words: &str) -> String {
     let present = || {
         let (code, message) = words.strip_prefix("alarm ")?.split_once(' ')?;
         let table = if code.starts_with("MC") { NO_TEXT } else { ALARMS };
-        let mut rows = table.lines().filter_map(|row| row.split_once('\t'));
-        let message = rows.find_map(|(was, is)| reworded(message, was, is))?;
+        let rows = table.lines().filter_map(|row| row.split_once('\t'));
+        // A later row may reword the message of an earlier one.
+        let message = rows
+            .fold(message.to_owned(), |message, (was, is)| reworded(&message, was, is).unwrap_or(message));
         Some(format!("alarm {code} {message}"))
     };
     present().unwrap_or_else(|| words.to_owned())
@@ -118,11 +120,21 @@ mod tests {
     #[test]
     fn an_alarm_with_a_former_message_has_its_present_one() {
         for (was, is) in [
-            ("alarm PS1124 the drilling axis can't be told", "alarm PS1124 the drilling axis is ambiguous"),
-            ("alarm PS0119 SQRT can't take -4", "alarm PS0119 SQRT is not defined for -4"),
+            (
+                "alarm PS1196 the drilling axis can't be told",
+                "alarm PS1196 the drilling axis is ambiguous or changes without G80",
+            ),
+            (
+                "alarm PS1196 the drilling axis is ambiguous",
+                "alarm PS1196 the drilling axis is ambiguous or changes without G80",
+            ),
+            ("alarm PS0119 SQRT can't take -4", "alarm PS0119 SQRT: -4 is out of range"),
+            ("alarm PS0119 SQRT is not defined for -4", "alarm PS0119 SQRT: -4 is out of range"),
+            ("alarm PS0010 no G code 5.5 on this control", "alarm PS0010 the control has no G05.5"),
+            ("alarm PS0010 the control has no G12", "alarm PS0010 the control has no G12"),
             (
                 "alarm PS0020 the arc starts 5.0000 mm from its centre and ends 4.9000 mm from it (0.05 allowed)",
-                "alarm PS0020 the arc starts 5.0000 mm from its centre and ends 4.9000 mm from it (tolerance 0.05)",
+                "alarm PS0020 the radius of the arc is 5.0000 mm at its start and 4.9000 mm at its end (tolerance 0.05 mm)",
             ),
             (
                 "alarm MC3001 the program stops itself and does not say why",

@@ -38,7 +38,7 @@ impl ModalAspect {
             Self::Cutter => (7, &kinds::CUTTER_SIDE, "the cutter's side and D"),
             Self::Path => (15, &kinds::PATH_MODE, "G61 to G64"),
             Self::Level => (10, &kinds::RETURN_LEVEL, "G98 and G99"),
-            Self::Cycle => (9, &kinds::CYCLE, "the drilling cycle"),
+            Self::Cycle => (9, &kinds::CYCLE, "the canned cycle"),
         }
     }
 

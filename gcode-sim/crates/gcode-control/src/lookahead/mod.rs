@@ -54,7 +54,7 @@ pub(super) struct LookaheadRequest {
     pub(super) wall_direction: Option<Point>,
     /// The block repeats G41 or G42 that was active before.
     pub(super) is_restated: bool,
-    /// G28, G53, a drilling cycle…: the block moves without compensation and ends lookahead.
+    /// G28, G53, a canned cycle…: the block moves without compensation and ends lookahead.
     pub(super) suspends_compensation: bool,
     /// M00, M01, M02, M30: no later block is read before this one is executed.
     pub(super) blocks_lookahead: bool,
@@ -255,7 +255,7 @@ impl Lookahead {
         position
     }
 
-    /// Ends the path for a drilling cycle and returns the tool centre; events that are ready stay.
+    /// Ends the path for a canned cycle and returns the tool centre; events that are ready stay.
     pub(super) fn end_path(&mut self) -> Position {
         let (centre, ready) = (self.tool_centre, self.take_ready());
         *self = Self { ready, ..Self::default() };

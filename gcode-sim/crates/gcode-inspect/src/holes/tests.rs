@@ -56,7 +56,7 @@ G83 retracts to R after each peck, and returns by rapid to just above the depth 
 rapid Z50; rapid Z2; feed Z-3; rapid Z2; rapid Z-2.5; feed Z-6; rapid Z2; rapid Z-5.5; feed Z-8; rapid Z50
 0 0 2, 0 0 1, 10
 
-pecks are fed from the R level
+pecks are fed from the R point level
 rapid Z2; feed Z-3; rapid Z2; feed Z-6; rapid Z50; rapid X7
 0 0 2, 0 0 1, 8
 

@@ -105,7 +105,7 @@ pub(super) fn finish_group_finding(
     locate_at_call(finding, backtrace)
 }
 
-/// Locates a finding at the outermost call, which has the arguments; the drilling block is a secondary location.
+/// Locates a finding at the outermost call, which has the arguments; the block of the hole is a secondary location.
 pub(super) fn locate_at_call(finding: Diagnostic, backtrace: &Backtrace) -> Diagnostic {
     let calls = std::iter::successors(backtrace.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
     match calls.last() {

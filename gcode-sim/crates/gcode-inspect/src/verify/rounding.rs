@@ -52,8 +52,12 @@ impl<'a> RoundingDeviation<'a> {
         let out = Vector3::from(nominal.axis);
         let ends = [(Point3::from(nominal.entry), nominal.depth), (bottom(nominal), 0.0)];
         let of_axis = |axis: &AxisIndex| {
-            let effects = ends.map(|end| {
-                let shift = half_increment_shift(self.machine, *axis, drilled, &frame, end);
+            let moved = half_increment_frame(self.machine, *axis, drilled);
+            let effects = ends.map(|(point, height)| {
+                let shift = match &moved {
+                    Some(moved) => moved.inverse_transform_point(&(frame * point)) - point,
+                    None => half_increment_shift(self.machine, *axis, drilled, &frame, height),
+                };
                 shift - out * shift.dot(&out)
             });
             (Some(self.machine.axes.letter(*axis)), effects)
@@ -75,22 +79,24 @@ fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<AxisIndex
     machine.axes.iter().map(|(axis, _)| axis).filter(is_rounded).collect()
 }
 
+/// Returns the part's frame with an axis half an increment farther; `None` for an axis that does not carry the part.
+fn half_increment_frame(machine: &Machine, axis: AxisIndex, drilled: &DrilledHole) -> Option<Frame> {
+    let mut next = drilled.axis_position;
+    next[axis] += machine.increment.size() / 2.0;
+    machine.table.has_axis(axis).then(|| machine.part_frame(&next))
+}
+
 /// Returns the displacement on the part of a point of the hole's axis, at `height` above the bottom, by half an increment of
-/// an axis; `frame` is the part's.
+/// an axis that carries the tool; `frame` is the part's.
 fn half_increment_shift(
     machine: &Machine,
     axis: AxisIndex,
     drilled: &DrilledHole,
     frame: &Frame,
-    (point, height): (Point3<f64>, f64),
+    height: f64,
 ) -> Vector3<f64> {
     let mut half = Position::default();
     half[axis] = machine.increment.size() / 2.0;
-    if machine.table.has_axis(axis) {
-        let mut next = drilled.axis_position;
-        next[axis] += half[axis];
-        return machine.part_frame(&next).inverse_transform_point(&(frame * point)) - point;
-    }
     let shift = match machine.head.kind {
         HeadKind::Axis { axis: head, .. } if head == axis => {
             let lever = machine.head.pivot + machine.length_of(drilled.tool).unwrap_or(0.0) - height;

@@ -65,7 +65,7 @@ pub enum Alarm {
         /// Letter of the missing word.
         letter: char,
     },
-    /// A pattern of holes has no drilling cycle.
+    /// A pattern of holes has no canned cycle.
     NoCycle {
         /// Code of the pattern.
         code: &'static str,
@@ -74,6 +74,11 @@ pub enum Alarm {
     IllegalMinus {
         /// Letter of the address.
         letter: char,
+    },
+    /// A system variable does not allow a negative value.
+    NegativeVariable {
+        /// Number of the variable.
+        number: u32,
     },
     /// An address does not allow a decimal point, or a number has two.
     IllegalPoint {
@@ -208,7 +213,7 @@ pub enum Alarm {
         /// Description of the error.
         what: String,
     },
-    /// G27 to G30 are commanded in a drilling cycle.
+    /// G27 to G30 are commanded in a canned cycle.
     ReferenceReturnInCycle,
     /// G73 or G83 has no peck depth Q.
     NoPeckDepth,
@@ -384,11 +389,13 @@ pub enum Alarm {
     },
     /// An opening bracket is missing.
     MissingOpenBracket,
-    /// A comment takes the place of a value or `[`, after an address or in an expression.
+    /// A comment takes the place of a value after an address, or of the `[` of a function or a condition.
     RoundBrackets {
-        /// Letter of the address; `None` in an expression.
+        /// Letter of the address; `None` for a function or a condition.
         letter: Option<char>,
     },
+    /// A comment takes the place of a value in an expression.
+    RoundBracketsForValue,
     /// A condition has a relation sign that the control refuses, such as `<=`.
     RelationSymbol,
     /// A closing bracket is missing.

@@ -25,6 +25,7 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         zero_divisor,
         radius_without_point,
         dwell_with_two_times,
+        work_offset_range,
     ];
     rules.into_iter().find_map(|rule| rule(alarm, &place)).or_else(|| alarm.row().help)
 }
@@ -218,6 +219,26 @@ fn dwell_with_two_times(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<Str
         .then(|| "write one time for a dwell: X in seconds or P in milliseconds".to_owned())
 }
 
+/// Detects the P of G10 L2 or of an additional work coordinate system, whose ranges differ from those of H and D.
+fn work_offset_range(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let Alarm::OffsetNumber { number } = alarm else { return None };
+    let line = alarm_line.whole.replace(' ', "").to_ascii_uppercase();
+    let has = |letter: char, number: f64| {
+        let mut texts = line.split(letter).skip(1);
+        texts.any(|text| leading(text, |c| c.is_ascii_digit() || c == '.').parse() == Ok(number))
+    };
+    if !has('P', *number as f64) {
+        return None;
+    }
+    if has('G', 10.0) && has('L', 2.0) {
+        return Some("write P0 for the external offset, P1 to P6 for G54 to G59".to_owned());
+    }
+    let is_additional = has('G', 54.0) || has('G', 54.1) || has('G', 154.0) || has('L', 20.0);
+    is_additional.then(|| {
+        "write P1 to P300 (P48 on a 0i-F, P99 on a Haas; --control WORK-SYSTEMS=… sets the number)".to_owned()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -308,5 +329,18 @@ mod tests {
         assert!(!help(small(4.0), "G02 X10. R4", "R4").contains("without"));
         let alarm = Alarm::NotSimulated { what: "X in this block".into() };
         assert!(help(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));
+    }
+
+    #[test]
+    fn an_offset_number_has_the_range_of_its_code() {
+        let remedy = |number, line| help(Alarm::OffsetNumber { number }, line, line);
+        for line in ["G90 G54.1 P400", "G10 L20 P400 X0", "G10L20P400.X0", "G54 P0400", "g154 p400"] {
+            assert!(remedy(400, line).contains("P1 to P300"), "{line}");
+        }
+        assert!(remedy(0, "G54.1 P0").contains("P1 to P300"));
+        assert!(remedy(7, "G10 L2 P7 X0").contains("P0 for the external offset"));
+        for line in ["G54 G43 H400", "G54.1 P1 G43 H400", "G10 L10 P400 R0", "G54.1 P#1"] {
+            assert!(remedy(400, line).contains("OFFSETS"), "{line}");
+        }
     }
 }

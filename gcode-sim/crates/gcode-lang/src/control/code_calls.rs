@@ -248,8 +248,8 @@ impl CodeCalls {
             return Some(());
         }
         if let Some((range, place)) = range_parameter(number) {
-            let least = if place == 0 && CODE_RANGES[range].letter == b'G' { -9999 } else { 0 };
-            let kept = (least..=99_999_999).contains(&value).then_some(value)?;
+            let min = if place == 0 && CODE_RANGES[range].letter == b'G' { -9999 } else { 0 };
+            let kept = (min..=99_999_999).contains(&value).then_some(value)?;
             self.ranges[range][place] = kept;
             return Some(());
         }

@@ -237,7 +237,7 @@ with_defaults! {
         /// 3410: largest difference between the radii at start and end of an arc, mm.
         pub arc_tolerance: f64 = 0.02,
         /// 5440: final approach of G60 with its direction, mm or degrees.
-        pub one_side_overrun: Position = Default::default(),
+        pub single_direction_overrun: Position = Default::default(),
         /// M97 P calls the subprogram at a sequence number of its own program.
         pub has_local_calls: bool = false,
         /// 5114: retract of G73, mm.
@@ -262,7 +262,7 @@ with_defaults! {
         pub allows_parameter_input: bool = true,
         /// `M98 P` with five digits or more is repeats and program.
         pub reads_repeats_in_p: bool = true,
-        /// Letter that repeats a drilling block, K or L.
+        /// Letter for the number of repeats of a canned cycle, K or L.
         pub cycle_repeat_letter: u8 = b'K',
         /// G28 without an axis moves all axes to the reference position.
         pub homes_all_axes: bool = false,

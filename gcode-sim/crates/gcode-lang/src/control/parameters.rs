@@ -91,7 +91,7 @@ const ROWS: &[ParameterRow] = &[
     length_row(5114, ParameterAccess::Key("5114", |s| s.g73_retract)),
     length_row(5115, ParameterAccess::Key("5115", |s| s.g83_clearance)),
     bit_row(5400, 7, ParameterAccess::Key("SCR", |s| f64::from(s.has_coarse_scaling))),
-    length_row(5440, ParameterAccess::PerAxis(|s, axis| s.one_side_overrun[axis], Some(|s, axis, v| { s.one_side_overrun[axis] = v; Some(()) }))),
+    length_row(5440, ParameterAccess::PerAxis(|s, axis| s.single_direction_overrun[axis], Some(|s, axis, v| { s.single_direction_overrun[axis] = v; Some(()) }))),
     bit_row(6000, 3, ParameterAccess::Key("V15", |s| f64::from(s.series_15_offsets))),
     bit_row(6001, 1, ParameterAccess::Key("PRT", |s| f64::from(s.omits_print_blanks))),
     bit_row(6001, 5, ParameterAccess::Key("TCS", |s| f64::from(s.code_calls.t_calls_program))),

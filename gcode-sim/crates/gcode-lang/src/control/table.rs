@@ -68,8 +68,8 @@ impl std::fmt::Display for SettingValues {
                 [only] => f.write_str(only),
                 [others @ .., last] => write!(f, "{} or {last}", others.join(", ")),
             },
-            Self::Whole(least, most) => write!(f, "{least} to {most}"),
-            Self::Number(_, _, said) | Self::Text(_, said) => f.write_str(said),
+            Self::Whole(min, max) => write!(f, "{min} to {max}"),
+            Self::Number(_, _, wording) | Self::Text(_, wording) => f.write_str(wording),
         }
     }
 }
@@ -106,18 +106,18 @@ macro_rules! choice {
 }
 
 macro_rules! whole {
-    ($key:literal, $meaning:literal, $least:literal, $most:literal, |$s:ident, $v:ident| $set:expr) => {
-        row!($key, $meaning, SettingValues::Whole($least, $most), |$s, text| {
-            let $v = whole(text, $least, $most)?;
+    ($key:literal, $meaning:literal, $min:literal, $max:literal, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, SettingValues::Whole($min, $max), |$s, text| {
+            let $v = whole(text, $min, $max)?;
             $set;
         })
     };
 }
 
 macro_rules! number {
-    ($key:literal, $meaning:literal, $least:expr, $most:expr, $said:expr, |$s:ident, $v:ident| $set:expr) => {
-        row!($key, $meaning, SettingValues::Number($least, $most, $said), |$s, text| {
-            let $v = between(text, $least, $most)?;
+    ($key:literal, $meaning:literal, $min:expr, $max:expr, $wording:expr, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, SettingValues::Number($min, $max, $wording), |$s, text| {
+            let $v = between(text, $min, $max)?;
             $set;
         })
     };
@@ -164,7 +164,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("SCS", "S calls O9029 with its number in #147", code_calls.s_calls_program),
     switch!("BCS", "B, unless it is an axis, calls O9028 with its number in #146", code_calls.b_calls_program),
     switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has no effect", converts_arguments),
-    switch!("FXY", "5101#0: cycles drill along the normal of the plane, not always Z", drills_by_plane),
+    switch!("FXY", "5101#0: canned cycles drill along the normal of the plane, not always Z", drills_by_plane),
     switch!("V15", "6000#3: geometry and wear are exchanged in tool offset variables", series_15_offsets),
     switch!("AD2", "3403#6: a repeated address in a block raises an alarm", alarms_on_repeated_address),
     switch!("M3B", "3404#7: up to three M codes in a block", allows_three_m_codes),
@@ -199,7 +199,7 @@ const DOCUMENTED: &[SettingRow] = &[
     number!("RAPID", "1420: rapid rate of linear axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
     number!("RAPID-ROTARY", "1420: rapid rate of rotary axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
     number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
-    row!("5440", "the final approach of G60, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.one_side_overrun = point(s, v)?),
+    row!("5440", "overrun of G60 single direction positioning, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.single_direction_overrun = point(s, v)?),
     switch!("M97-CALLS", "M97 P calls the subprogram at N of the same program", has_local_calls),
     number!("5114", "retract of G73; setting 22 of a Haas", 0.0, 1e6, LENGTH, |s, v| s.g73_retract = v),
     number!("5115", "clearance of G83", 0.0, 1e6, LENGTH, |s, v| s.g83_clearance = v),
@@ -212,7 +212,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("MORE-FUNCTIONS", "FUP, LN, EXP, BIN, BCD, POW, ADP, ATAN[a,b] are available", has_extended_functions),
     switch!("G10-PARAMETERS", "G10 accepts L3, L14, L50, L52 and L85", allows_parameter_input),
     switch!("REPEATS-IN-P", "M98 P with more than four digits is repeats and program", reads_repeats_in_p),
-    choice!("CYCLE-REPEATS", "the address that repeats a drilling block", REPEAT_LETTERS, |s, v| s.cycle_repeat_letter = v),
+    choice!("CYCLE-REPEATS", "the address for the number of repeats of a canned cycle", REPEAT_LETTERS, |s, v| s.cycle_repeat_letter = v),
     switch!("HOME-ALL", "G28 without an axis moves all axes to the reference position", homes_all_axes),
     switch!("DWELL-SECONDS", "P of a dwell with a decimal point is seconds; G04 takes no X and U", dwell_in_seconds),
     switch!("PECK-IJK", "G73 and G83 accept I, J, K for decreasing pecks", has_shrinking_pecks),
@@ -269,10 +269,10 @@ undocumented_choices! {
     "ATAN-0-ALARM" atan_of_zeros_alarms = false, "ATAN[0]/[0] raises PS0119 instead of returning 0";
     "TAN-90-ALARM" tan_90_alarms = false, "TAN[90] raises PS0119 instead of returning a large number";
     "G53-IN-G91" g53_moves_in_g91 = false, "G53 in G91 moves by the increment instead of not moving";
-    "K0-MOVES" k0_positions = false, "a drilling block with K0 moves in the plane";
+    "K0-MOVES" k0_positions = false, "a canned cycle with K0 moves in the plane";
     "SKIP-KEEPS-END" skip_keeps_end = false, "#5001.. after a skipped G31 are the commanded end, not the position of the signal";
     "G43-MOVES" length_moves_at_once = true, "G43 H without an axis moves by the offset at once";
-    "TAP-DWELL-R" tap_dwells_at_r = true, "G84 and G74 dwell at R as well";
+    "TAP-DWELL-R" tap_dwells_at_r = true, "G84 and G74 dwell at the R point level as well";
     "G67-ALARM" g67_alarms = true, "G67 without G66 raises PS1100";
     "SMALL-R-ALARM" small_radius_alarms = true, "an arc whose R is too small raises PS0020 instead of becoming a half circle";
     "TWO-ASSIGNMENTS" allows_several_assignments = false, "several assignments in a block are accepted";
@@ -330,12 +330,12 @@ fn choice<T: Copy>(value: &str, all: &[(&str, T)]) -> Option<T> {
     all.iter().find(|(name, _)| name.eq_ignore_ascii_case(value)).map(|(_, choice)| *choice)
 }
 
-fn between(value: &str, least: f64, most: f64) -> Option<f64> {
-    value.parse().ok().filter(|v| (least..=most).contains(v))
+fn between(value: &str, min: f64, max: f64) -> Option<f64> {
+    value.parse().ok().filter(|v| (min..=max).contains(v))
 }
 
-fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
-    value.parse().ok().filter(|v| (least..=most).contains(v))
+fn whole(value: &str, min: usize, max: usize) -> Option<usize> {
+    value.parse().ok().filter(|v| (min..=max).contains(v))
 }
 
 /// Reads a position, `X10,Z-5`; axes not named are at 0.

@@ -34,7 +34,7 @@ impl Letters {
 pub enum AxisWords {
     /// Move by the modal codes.
     Move,
-    /// Hole of a drilling cycle.
+    /// Hole of a canned cycle.
     Hole,
     /// End position that does not depend on the start position.
     Position,
@@ -278,8 +278,8 @@ pub(super) const SKIP: CodeFacts = CodeFacts {
     timing: Waits,
     ..ONE_SHOT
 };
-pub(super) const MACHINE_SYSTEM: CodeFacts = CodeFacts { coordinates: NotTransformed, ..SKIP };
-pub(super) const ONE_SIDE: CodeFacts = CodeFacts {
+pub(super) const MACHINE_COORDINATE_SYSTEM: CodeFacts = CodeFacts { coordinates: NotTransformed, ..SKIP };
+pub(super) const SINGLE_DIRECTION: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     without_axes: Nothing,
     lookahead: Refused,
@@ -288,7 +288,7 @@ pub(super) const ONE_SIDE: CodeFacts = CodeFacts {
     ..ONE_SHOT
 };
 /// G52, G92 and G92.1.
-pub(super) const SET_SYSTEM: CodeFacts = CodeFacts {
+pub(super) const SET_COORDINATE_SYSTEM: CodeFacts = CodeFacts {
     without_axes: Nothing,
     coordinates: NotTransformed,
     timing: MovesNothing,

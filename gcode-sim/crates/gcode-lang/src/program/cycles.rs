@@ -1,21 +1,21 @@
-//! Drilling cycles G73 to G89, each a sequence of steps that the control expands.
+//! Canned cycles G73 to G89, each a sequence of steps that the control expands.
 
-/// Step of a cycle at a hole, after the tool has reached the R level.
+/// Step of a cycle at a hole, after the tool has reached the R point level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleStep {
     /// Feed to the bottom.
     FeedToBottom,
     /// G83: feed by Q, rapid back to R, rapid to the clearance above the last depth.
-    PeckFull,
+    Peck,
     /// G73: feed by Q, rapid back by the retract.
-    PeckShort,
+    HighSpeedPeck,
     /// Dwell P.
     Dwell,
-    /// Dwell P at the R level if the setting requires it.
+    /// Dwell P at the R point level if the setting requires it.
     DwellAtR,
     /// Feed back to R.
     FeedToR,
-    /// Rapid to R, or to the initial level in G98.
+    /// Rapid to the R point level, or to the initial level in G98.
     RapidBack,
     /// After [`CycleStep::FeedToR`]: rapid on to the initial level in G98.
     RapidToInitial,
@@ -37,7 +37,7 @@ pub enum CycleStep {
     ManualRetract,
 }
 
-/// Drilling cycle.
+/// Canned cycle.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Cycle {
     /// G code × 10.
@@ -55,12 +55,12 @@ pub struct Cycle {
 impl Cycle {
     /// Returns true if Q is a length of the cycle: the depth of a peck, or the shift off the wall.
     pub fn uses_q(&self) -> bool {
-        self.steps.iter().any(|step| matches!(step, PeckFull | PeckShort | Shift))
+        self.steps.iter().any(|step| matches!(step, Peck | HighSpeedPeck | Shift))
     }
 }
 
 use CycleStep::{
-    Dwell, DwellAtR, FeedToBottom, FeedToR, ManualRetract, PeckFull, PeckShort, RapidBack, RapidToInitial,
+    Dwell, DwellAtR, FeedToBottom, FeedToR, HighSpeedPeck, ManualRetract, Peck, RapidBack, RapidToInitial,
     RapidToInitialAlways, RapidToR, Shift, ShiftBack, SpindleForward, SpindleReverse, SpindleStop,
 };
 
@@ -68,33 +68,36 @@ const fn row(code: u32, steps: &'static [CycleStep], help: &'static str) -> Cycl
     Cycle { code, starts_at_r: true, needs_q: false, steps, help }
 }
 
-/// G73.
-pub const PECK_DRILL_SHORT: Cycle =
-    Cycle { needs_q: true, ..row(730, &[PeckShort, RapidBack], "drill in pecks, short retract") };
+/// G73: high-speed peck drilling cycle.
+pub const HIGH_SPEED_PECK_DRILLING: Cycle =
+    Cycle { needs_q: true, ..row(730, &[HighSpeedPeck, RapidBack], "high-speed peck drilling cycle") };
 #[rustfmt::skip]
-pub(super) const TAP_LEFT_HAND: Cycle = row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitial], "tap, left hand");
+pub(super) const LEFT_HANDED_TAPPING: Cycle = row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitial], "left-handed tapping cycle");
 #[rustfmt::skip]
-pub(super) const BORE_SHIFT: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidBack, ShiftBack, SpindleForward], "bore, shift off the wall at the bottom");
-/// G81.
-pub const DRILL: Cycle = row(810, &[FeedToBottom, RapidBack], "drill");
-pub(super) const DRILL_DWELL: Cycle =
-    row(820, &[FeedToBottom, Dwell, RapidBack], "drill, dwell at the bottom");
-/// G83.
-pub const PECK_DRILL: Cycle =
-    Cycle { needs_q: true, ..row(830, &[PeckFull, RapidBack], "drill in pecks, retract to R") };
-/// G84.
+pub(super) const FINE_BORING: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidBack, ShiftBack, SpindleForward], "fine boring cycle");
+/// G81: drilling cycle.
+pub const DRILLING: Cycle = row(810, &[FeedToBottom, RapidBack], "drilling cycle, spot drilling");
+pub(super) const COUNTER_BORING: Cycle =
+    row(820, &[FeedToBottom, Dwell, RapidBack], "drilling cycle, counter boring");
+/// G83: peck drilling cycle.
+pub const PECK_DRILLING: Cycle =
+    Cycle { needs_q: true, ..row(830, &[Peck, RapidBack], "peck drilling cycle") };
+/// G84: tapping cycle.
 #[rustfmt::skip]
-pub const TAP: Cycle = row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitial], "tap");
-pub(super) const BORE_FEED_BACK: Cycle =
-    row(850, &[FeedToBottom, FeedToR, RapidToInitial], "bore, feed back");
-pub(super) const BORE_SPINDLE_STOP: Cycle =
-    row(860, &[FeedToBottom, SpindleStop, RapidBack, SpindleForward], "bore, stop the spindle at the bottom");
+pub const TAPPING: Cycle = row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitial], "tapping cycle");
+pub(super) const BORING_FEED_RETRACT: Cycle =
+    row(850, &[FeedToBottom, FeedToR, RapidToInitial], "boring cycle, retract by feed");
+pub(super) const BORING_SPINDLE_STOP: Cycle = row(
+    860,
+    &[FeedToBottom, SpindleStop, RapidBack, SpindleForward],
+    "boring cycle, retract with the spindle stopped",
+);
 #[rustfmt::skip]
-pub(super) const BACK_BORE: Cycle = Cycle { starts_at_r: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitialAlways, ShiftBack, SpindleForward], "bore from the back") };
-pub(super) const BORE_BY_HAND: Cycle = row(
+pub(super) const BACK_BORING: Cycle = Cycle { starts_at_r: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitialAlways, ShiftBack, SpindleForward], "back boring cycle") };
+pub(super) const BORING_MANUAL_RETRACT: Cycle = row(
     880,
     &[FeedToBottom, Dwell, SpindleStop, ManualRetract, RapidToInitial, SpindleForward],
-    "bore, retract by hand",
+    "boring cycle, manual retract",
 );
-pub(super) const BORE_DWELL: Cycle =
-    row(890, &[FeedToBottom, Dwell, FeedToR, RapidToInitial], "bore, dwell, feed back");
+pub(super) const BORING_DWELL: Cycle =
+    row(890, &[FeedToBottom, Dwell, FeedToR, RapidToInitial], "boring cycle, dwell, retract by feed");

@@ -26,9 +26,9 @@ pub enum Effect {
     Cutter(CutterSide),
     /// Group 08: tool length compensation.
     Length(Length),
-    /// Group 09: drilling cycle; `None` is G80.
+    /// Group 09: canned cycle; `None` is G80.
     Cycle(Option<&'static Cycle>),
-    /// Group 10: return level of cycles.
+    /// Group 10: return level of canned cycles.
     ReturnTo(ReturnTo),
     /// Group 11: scaling.
     Scaling(Scaling),
@@ -112,18 +112,18 @@ pub enum OneShot {
     SecondReference,
     /// G31: skip.
     Skip,
-    /// G52: local coordinate system.
-    LocalSystem,
-    /// G53: machine coordinates.
-    MachineSystem,
-    /// G92: set the coordinate system.
-    SetSystem,
+    /// G52: set the local coordinate system.
+    SetLocalCoordinateSystem,
+    /// G53: machine coordinate system.
+    MachineCoordinateSystem,
+    /// G92: set the work coordinate system.
+    SetWorkCoordinateSystem,
     /// G39: corner arc in cutter compensation.
     CornerArc,
-    /// G92.1: preset the coordinate system.
-    PresetSystem,
-    /// G60: positioning from one side.
-    OneSide,
+    /// G92.1: preset the work coordinate system.
+    PresetWorkCoordinateSystem,
+    /// G60: single direction positioning.
+    SingleDirection,
     /// G12 and G13 of a Haas.
     CirclePocket(Motion),
     /// G70 and G71 of a Haas.
@@ -161,12 +161,13 @@ impl GCodeRow {
     }
 }
 
-/// Returns the number of a code × 10 as written, `54.1`.
+/// Returns the number of a code × 10 as manuals write it: `00`, `02.2`, `54.1`.
 pub fn spelled(code: u32) -> String {
-    if code.is_multiple_of(10) { format!("{}", code / 10) } else { format!("{}.{}", code / 10, code % 10) }
+    let (whole, tenth) = (code / 10, code % 10);
+    if tenth == 0 { format!("{whole:02}") } else { format!("{whole:02}.{tenth}") }
 }
 
-/// Returns a code × 10 as programs write it: `G28`, `G00`, `G05.1`.
+/// Returns a code × 10 with its letter: `G28`, `G00`, `G05.1`.
 pub fn name(code: u32) -> String {
-    if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
+    format!("G{}", spelled(code))
 }

@@ -6,6 +6,8 @@ pub(super) enum LoopRole {
     /// DO or WHILE.
     Begin,
     End,
+    /// END beside words: its block raises an alarm, and the loop ends before it.
+    MixedEnd,
 }
 
 #[derive(Debug, Default)]
@@ -21,7 +23,7 @@ impl Loops {
     /// reaches it.
     pub(super) fn pair(parts: &[(OpIndex, LoopRole, u8)]) -> Self {
         let mut open: Vec<(u8, OpIndex)> = Vec::new();
-        let mut pairs = Vec::new();
+        let (mut pairs, mut ends) = (Vec::new(), Vec::new());
         for &(block, part, number) in parts {
             // A loop inside one of the same number makes the END of the outer loop ambiguous: the outer loop
             // and all loops open in it have no END.
@@ -31,15 +33,20 @@ impl Loops {
                     open.truncate(outer.unwrap_or(open.len()));
                     open.push((number, block));
                 }
-                LoopRole::End => {
+                LoopRole::End | LoopRole::MixedEnd => {
                     let Some(outer) = outer else { continue };
-                    pairs.push((open[outer].1, block, number));
+                    let begin = open[outer].1;
+                    if part == LoopRole::End {
+                        pairs.push((begin, block, number));
+                        ends.push((block, begin));
+                    } else {
+                        pairs.push((begin, block - 1, number));
+                    }
                     open.truncate(outer);
                 }
             }
         }
         pairs.sort_unstable();
-        let mut ends: Vec<_> = pairs.iter().map(|(begin, end, _)| (*end, *begin)).collect();
         ends.sort_unstable();
         Self { pairs, ends }
     }

@@ -72,6 +72,7 @@ impl OutlineBuilder {
                 Some((LoopRole::Begin, *number))
             }
             OpKind::Statement(Statement::End { number, .. }) => Some((LoopRole::End, *number)),
+            OpKind::Alarm(_) => mixed_end(block).map(|number| (LoopRole::MixedEnd, number)),
             _ => None,
         };
         self.loops.extend(part.map(|(part, number)| (place as OpIndex, part, number)));
@@ -82,6 +83,18 @@ impl OutlineBuilder {
 fn is_loop_item(item: &ast::Item) -> bool {
     use ast::Statement::{Do, End, While};
     matches!(item, ast::Item::Statement(found) if matches!(found.node, While { .. } | Do(_) | End(_)))
+}
+
+/// Returns the number of an END beside words.
+fn mixed_end(block: &ast::Block) -> Option<u8> {
+    let has_words = block.items.iter().any(|item| matches!(item, ast::Item::Word(_)));
+    block.items.iter().filter(|_| has_words).find_map(|item| match item {
+        ast::Item::Statement(found) => match &found.node {
+            ast::Statement::End(number) => u8::try_from(number.node).ok(),
+            _ => None,
+        },
+        _ => None,
+    })
 }
 
 fn finish(

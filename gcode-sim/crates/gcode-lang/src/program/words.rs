@@ -260,6 +260,9 @@ impl Lowering {
     fn lower_word(&mut self, word: &Word) -> Result<LoweredWord, LocatedAlarm> {
         let letter = word.address.letter;
         let value = match &word.value {
+            WordValue::Literal(number) if letter == b'G' && number.negative => {
+                return Err(Alarm::IllegalMinus { letter: 'G' }.located_at(word.span));
+            }
             WordValue::Literal(number) => literal(letter, *number).ok_or_else(|| {
                 Alarm::ImproperGCode { code: number.value().to_string() }.located_at(word.span)
             })?,

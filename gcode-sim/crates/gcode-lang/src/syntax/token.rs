@@ -54,10 +54,15 @@ pub(super) fn no_expression<T>(input: Input<'_>) -> ReadResult<'_, T> {
     fail(input, Alarm::Expression { text: String::new() })
 }
 
-/// Fails at `(` where a value or `[` must follow. The input satisfies [`comment_before`].
+/// Fails at `(` where the value of an address or `[` must follow. The input satisfies [`comment_before`].
 pub(super) fn round_brackets<T>(input: Input<'_>, letter: Option<char>) -> ReadResult<'_, T> {
+    fail(comment(input), Alarm::RoundBrackets { letter })
+}
+
+/// Returns the input from the comment on. The input satisfies [`comment_before`].
+pub(super) fn comment(input: Input<'_>) -> Input<'_> {
     let gap = input.iter().take_while(|b| is_space(**b)).count();
-    fail(&input[gap..], Alarm::RoundBrackets { letter })
+    &input[gap..]
 }
 
 /// Reports a mismatch; another alternative may match.

@@ -7,19 +7,21 @@ use crate::prelude::*;
 pub(super) static RULE: Rule = Rule::new("missing-feed", Severity::Error, "a feed move before any F", find);
 
 /// G01, G02 and G03, × 10.
-const FEEDS: [u32; 3] = [10, 20, 30];
+const FEED_MOVES: [u32; 3] = [10, 20, 30];
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     // The caller of a program may have set the feed.
     if unit.role != Role::Main {
         return Vec::new();
     }
-    let fed = feed_before(context, unit);
-    let unfed = unit.reached_words().filter(|(block, words)| {
-        fed[*block] == Some(false) && !has_feed_word(words) && is_feed_move(context, words)
+    let may_have_feed = feed_before(context, unit);
+    let moves_without_feed = unit.reached_words().filter(|(block, words)| {
+        may_have_feed[*block] == Some(false) && !has_feed_word(words) && is_feed_move(context, words)
     });
     let alarm = |block| Alarm::FeedZero.located_at(unit.op(block).span);
-    unfed.map(|(block, _)| context.alarm_finding(unit, &RULE.kind, block, &alarm(block))).collect()
+    moves_without_feed
+        .map(|(block, _)| context.alarm_finding(unit, &RULE.kind, block, &alarm(block)))
+        .collect()
 }
 
 /// Returns, for each block, whether some path to it may have an F; `None` for an unreachable block.
@@ -55,16 +57,16 @@ fn has_feed_word(words: &Words) -> bool {
 
 /// Returns true for G01, G02 or G03 with an axis, without another code that uses the axis words.
 fn is_feed_move(context: &CheckContext<'_>, words: &Words) -> bool {
-    let axis = words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
-    let mut feeds = false;
+    let has_axis = words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
+    let mut has_feed_code = false;
     for word in &words.list {
         let WordOperand::G(code, row) = word.value else { continue };
-        feeds |= FEEDS.contains(&code);
+        has_feed_code |= FEED_MOVES.contains(&code);
         if row.row_for(context.settings.codes).is_none_or(|row| row.facts.axis_words != AxisWords::Move) {
             return false;
         }
     }
-    feeds && axis && words.call().is_none()
+    has_feed_code && has_axis && words.call().is_none()
 }
 
 #[cfg(test)]

@@ -72,7 +72,7 @@ fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator
     // The arguments of a macro call that a control scales: all but D E F H M S T.
     let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
     let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
-    // K of a drilling cycle counts repeats; it is a length only in an arc or with I or J.
+    // K of a canned cycle counts repeats; it is a length only in an arc or with I or J.
     plain.filter(move |word| word.letter != b'K' || !is_drilling(words)).chain(scaled)
 }
 

@@ -5,7 +5,9 @@ pub(super) static RULE: Rule =
     Rule::new("round-brackets", Severity::Error, "( ) instead of [ ]: round brackets are a comment", find);
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    context.reading_findings(unit, &RULE.kind, |alarm| matches!(alarm, Alarm::RoundBrackets { .. }))
+    context.reading_findings(unit, &RULE.kind, |alarm| {
+        matches!(alarm, Alarm::RoundBrackets { .. } | Alarm::RoundBracketsForValue)
+    })
 }
 
 #[cfg(test)]

@@ -26,8 +26,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
                 let alarm = Alarm::PluralM { first, second: code }.located_at(word.span);
                 found.push(context.alarm_finding(unit, &RULE.kind, block, &alarm));
             } else {
-                let message = format!("M{first} is lost: of several M codes in a block only the last counts");
-                let help = "write each in a block of its own; M3B=1 is for a control that accepts three";
+                let message =
+                    format!("M{first:02} is lost: of several M codes in a block only the last counts");
+                let help = "write each M code in a block of its own, or give --control M3B=1 for a control that accepts three";
                 let finding = unit.finding(&RULE.kind, block, message).with_span(word.span).help(help);
                 found.push(finding.with_severity(Severity::Warning));
             }
@@ -47,7 +48,7 @@ mod tests {
     #[test]
     fn the_code_that_is_lost_is_reported() {
         let found = messages(&RULE, "O1\nM3 S100 M8\nM30 M5\nM30\n");
-        assert_eq!(found[0], "M3 is lost: of several M codes in a block only the last counts");
+        assert_eq!(found[0], "M03 is lost: of several M codes in a block only the last counts");
         assert!(found[1].starts_with("PS0335: ") && found.len() == 2, "{found:?}");
     }
 

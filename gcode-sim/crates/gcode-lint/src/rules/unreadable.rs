@@ -10,13 +10,17 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 
 /// Returns true for the alarms that `loop-pairs`, `round-brackets`, `relation-symbol` and `unknown-code` report.
 fn has_own_rule(alarm: &Alarm) -> bool {
-    use Alarm::{ImproperGCode, LoopNumber, MissingDo, MissingEnd, RelationSymbol, RoundBrackets};
+    use Alarm::{
+        ImproperGCode, LoopNumber, MissingDo, MissingEnd, RelationSymbol, RoundBrackets,
+        RoundBracketsForValue,
+    };
     matches!(
         alarm,
         MissingEnd { .. }
             | MissingDo { .. }
             | LoopNumber { .. }
             | RoundBrackets { .. }
+            | RoundBracketsForValue
             | RelationSymbol
             | ImproperGCode { .. }
     )

@@ -120,11 +120,13 @@ pub(super) struct File {
     #[schemars(extend("enum" = ["burr"]))]
     _family: String,
     /// The control the programs are for [default: fanuc-31i, IS-B].
-    #[serde(default)]
+    #[serde(default, with = "Section::<JobControl>")]
     control: JobControl,
     /// The burr.
+    #[serde(with = "Section::<FileBurr>")]
     burr: FileBurr,
     /// The grinder.
+    #[serde(with = "Section::<Grinder>")]
     machine: Grinder,
     /// Form and conditions of the program.
     #[serde(default, with = "Section::<BurrProgram>")]
@@ -133,7 +135,7 @@ pub(super) struct File {
     #[serde(default, with = "Section::<BurrTolerance>")]
     tolerance: BurrTolerance,
     /// Additional data for the set-up sheet.
-    #[serde(default)]
+    #[serde(default, with = "Section::<SheetInfo>")]
     sheet: SheetInfo,
 }
 
@@ -166,6 +168,7 @@ struct FileBurr {
     #[serde(default = "ToothDepth::default", with = "ToothDepth")]
     tooth_depth: f64,
     /// Instead of the ball: the tooth-bottom ellipse as two tangent arcs.
+    #[serde(default, with = "Optional::<Section<FileProfile>>")]
     profile: Option<FileProfile>,
 }
 
@@ -195,6 +198,7 @@ pub struct Grinder {
     #[serde(default, with = "Optional::<WheelClearance>")]
     pub(crate) clearance: Option<f64>,
     /// Profile as in [burr]; allowed once.
+    #[serde(default, with = "Optional::<Section<FileProfile>>")]
     profile: Option<FileProfile>,
 }
 

@@ -10,7 +10,7 @@ use crate::reader::bounds::{
     ClampCode, Depth, Divisions, DrillNumber, FeedRate, KeyRange, Length, OuterDiameter, Radius, Retract,
     SpindleSpeed,
 };
-use crate::reader::{FileKey, Optional, Word, Words};
+use crate::reader::{FileKey, Optional, Section, Word, Words};
 
 /// A hexagonal pattern of radial holes on a cylinder about x.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -21,19 +21,25 @@ pub struct Honeycomb {
     #[schemars(extend("enum" = ["honeycomb"]))]
     _family: String,
     /// The control of the programs.
+    #[serde(with = "Section::<JobControl>")]
     pub control: JobControl,
     /// The machine.
+    #[serde(with = "Section::<CombMachine>")]
     pub machine: CombMachine,
     /// Tolerances of the holes.
+    #[serde(with = "Section::<HoleTolerance>")]
     pub tolerance: HoleTolerance,
     /// The part.
+    #[serde(with = "Section::<Cylinder>")]
     pub cylinder: Cylinder,
     /// The pattern of the holes.
+    #[serde(with = "Section::<HolePattern>")]
     pub pattern: HolePattern,
     /// The tool and the holes it makes.
+    #[serde(with = "Section::<Drill>")]
     pub drill: Drill,
     /// Additional data for the set-up sheet.
-    #[serde(default)]
+    #[serde(default, with = "Section::<SheetInfo>")]
     pub sheet: SheetInfo,
 }
 
@@ -42,6 +48,7 @@ pub struct Honeycomb {
 #[serde(deny_unknown_fields)]
 pub struct CombMachine {
     /// The axis that rotates the part.
+    #[serde(with = "Section::<Rotary>")]
     pub rotary: Rotary,
     /// Distance from the surface where the feed begins, mm [default: 2].
     #[serde(default, with = "Optional::<Depth>")]
@@ -50,6 +57,7 @@ pub struct CombMachine {
     #[serde(default, with = "Optional::<Retract>")]
     pub(crate) retract: Option<f64>,
     /// The M codes that clamp and release the rotary [default: none].
+    #[serde(default, with = "Optional::<Section<Clamp>>")]
     pub clamp: Option<Clamp>,
 }
 

@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::reader::bounds::{DurationMinutes, HourlyRate};
-use crate::reader::{FileError, FileKey, Optional, Reader};
+use crate::reader::{FileError, FileKey, Items, Optional, Reader, Section};
 
 /// Additional data for the set-up sheet. Omitted fields are printed empty, for entry by hand.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
@@ -29,6 +29,7 @@ pub struct SheetInfo {
     #[serde(default, with = "Optional::<DurationMinutes>")]
     tool_change_minutes: Option<f64>,
     /// Machine-hour rates.
+    #[serde(default, with = "Optional::<Section<Rates>>")]
     pub rates: Option<Rates>,
 }
 
@@ -53,7 +54,7 @@ pub struct Rates {
     #[serde(with = "HourlyRate")]
     pub rate: f64,
     /// Alternative machines for the part.
-    #[serde(default, rename = "beside")]
+    #[serde(default, rename = "beside", with = "Items::<Section<AlternativeMachine>>")]
     pub alternatives: Vec<AlternativeMachine>,
 }
 

@@ -282,5 +282,11 @@ ranges! {
     ToolDiameter: Any f64, 0.001, 10_000.0, "mm";
     StylusLength: Any f64, 0.0, 1000.0, "mm";
     ProbeDelay: Any f64, 0.0, 10.0, "seconds";
+    PivotLength: Any f64, 0.0, 100_000.0, "mm";
+    WorkOffsetValue: Any f64, -100_000.0, 100_000.0, "(mm and degrees)";
+    LengthError: Any f64, -100.0, 100.0, "mm";
+    LengthSpread: Any f64, 0.0, 100.0, "mm";
+    AngleError: Any f64, -45.0, 45.0, "degrees";
+    AngleSpread: Any f64, 0.0, 45.0, "degrees";
     Wavelength: Any f64, 1.0, 100_000.0, "mm";
 }

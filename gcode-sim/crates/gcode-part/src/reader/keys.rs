@@ -13,7 +13,7 @@ use super::Spanned;
 use gcode_lang::control::{Dialect, Increment};
 
 /// Start of the message for a value that is not allowed; the reader replaces it by the key.
-pub(crate) const OUT_OF_RANGE: &str = "out of range: ";
+pub const OUT_OF_RANGE: &str = "out of range: ";
 
 /// A kind of value that a key takes.
 pub trait FileKey {
@@ -126,8 +126,7 @@ impl JsonSchema for AxisSign {
 }
 
 /// A value of a key that may be left out; the field has `default` as well.
-#[derive(Clone, Copy, Debug, JsonSchema)]
-#[schemars(with = "K", bound = "K: JsonSchema")]
+#[derive(Clone, Copy, Debug)]
 pub struct Optional<K>(PhantomData<K>);
 
 impl<K: FileKey> FileKey for Optional<K> {
@@ -139,8 +138,7 @@ impl<K: FileKey> FileKey for Optional<K> {
 }
 
 /// A table; serde's own structs take a list of their fields as well.
-#[derive(Clone, Copy, Debug, JsonSchema)]
-#[schemars(with = "T", bound = "T: JsonSchema")]
+#[derive(Clone, Copy, Debug)]
 pub struct Section<T>(PhantomData<T>);
 
 impl<T: DeserializeOwned> FileKey for Section<T> {
@@ -162,6 +160,100 @@ impl<'de, T: DeserializeOwned> Visitor<'de> for Section<T> {
         T::deserialize(MapAccessDeserializer::new(table))
     }
 }
+
+/// A list of values of kind `K`.
+#[derive(Clone, Copy, Debug)]
+pub struct Items<K>(PhantomData<K>);
+
+impl<K: FileKey> FileKey for Items<K> {
+    type Value = Vec<K::Value>;
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<K::Value>, D::Error> {
+        let items = Vec::<Checked<K>>::deserialize(deserializer)?;
+        Ok(items.into_iter().map(|item| item.0).collect())
+    }
+}
+
+/// A table whose keys are words of the list `W`, with values of kind `K`.
+#[derive(Clone, Copy, Debug)]
+pub struct TableOf<W, K>(PhantomData<(W, K)>);
+
+impl<W: Words, K: FileKey> FileKey for TableOf<W, K> {
+    type Value = Vec<(W::Value, K::Value)>;
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_map(Self(PhantomData))
+    }
+}
+
+impl<'de, W: Words, K: FileKey> Visitor<'de> for TableOf<W, K> {
+    type Value = Vec<(W::Value, K::Value)>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a table")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<Self::Value, A::Error> {
+        let mut entries = Vec::new();
+        while let Some((TableKey::<W>(key), Checked::<K>(value))) = table.next_entry()? {
+            entries.push((key, value));
+        }
+        Ok(entries)
+    }
+}
+
+impl<W: Words, K: JsonSchema> JsonSchema for TableOf<W, K> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Table_of_{}", K::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let names: Vec<_> = W::all().into_iter().map(|(name, _)| name).collect();
+        let pattern = format!("^({})$", names.join("|"));
+        let value = generator.subschema_for::<K>();
+        json_schema!({
+            "type": "object",
+            "patternProperties": { pattern: value },
+            "additionalProperties": false
+        })
+    }
+}
+
+/// A key of a table, one word of the list `W`.
+struct TableKey<W: Words>(W::Value);
+
+impl<'de, W: Words> Deserialize<'de> for TableKey<W> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let written = String::deserialize(deserializer)?;
+        let found = W::all().into_iter().find(|(name, _)| *name == written);
+        found.map(|(_, value)| Self(value)).ok_or_else(|| {
+            let names: Vec<_> = W::all().into_iter().map(|(name, _)| format!("`{name}`")).collect();
+            D::Error::custom(format!("unknown field `{written}`, expected one of {}", names.join(", ")))
+        })
+    }
+}
+
+/// Gives a kind of value the schema of another type. A derived one has no name of its own for each `T`, so that
+/// nested ones count as recursion.
+macro_rules! schema_of {
+    ($($kind:ident: $schema:ty),+) => {$(
+        impl<T: JsonSchema> JsonSchema for $kind<T> {
+            fn schema_name() -> Cow<'static, str> {
+                <$schema>::schema_name()
+            }
+
+            fn schema_id() -> Cow<'static, str> {
+                <$schema>::schema_id()
+            }
+
+            fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+                <$schema>::json_schema(generator)
+            }
+        }
+    )+};
+}
+
+schema_of!(Optional: T, Section: T, Items: Vec<T>);
 
 /// A value of kind `K` with its location in the text.
 pub struct Bounded<K: FileKey>(Spanned<Checked<K>>);

@@ -11,8 +11,9 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 
-pub(crate) use keys::OUT_OF_RANGE;
-pub use keys::{AxisSign, Bounded, FileKey, FixedArray, Optional, Section, Word, Words};
+pub use keys::{
+    AxisSign, Bounded, FileKey, FixedArray, Items, OUT_OF_RANGE, Optional, Section, TableOf, Word, Words,
+};
 
 /// Reason for which a file is unusable: one sentence with the key or the place, its line and the allowed
 /// values.

@@ -39,10 +39,11 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         "i64" | "u32" => "a whole number",
         "a string" => "text in quotes",
         "a sequence" => "a list in brackets",
-        other if other.starts_with("struct") => "a table",
+        "a table" => "a table, { key = value },",
         other => other,
     };
-    format!("key '{name}' is {}: {expected} is required", found.replace('`', ""))
+    let found = if found == "sequence" { "a list".to_owned() } else { found.replace('`', "") };
+    format!("key '{name}' is {found}: {expected} is required")
 }
 
 /// Returns the path of the key that begins at this byte, or whose value or an item of it does.

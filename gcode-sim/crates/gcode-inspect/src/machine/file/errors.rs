@@ -4,18 +4,18 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::sections::{Collector, FileHead, FileLinear, FilePart, FileRotary, seed};
-use super::spread::{FileSpread, LENGTH};
+use super::spread::{ErrorSpread, Length};
 use crate::machine::{ErrorSource, Machine};
 use gcode_part::reader::FileError;
-use gcode_part::reader::{Reader, Spanned};
+use gcode_part::reader::bounds::Bounded;
+use gcode_part::reader::{FileKey, Optional, Reader, Section, Spanned};
 
 /// Errors of a touch probe.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProbe {
     /// Error of each touch along its direction, mm.
-    #[schemars(transform = LENGTH.bounds())]
-    noise: Option<Spanned<FileSpread>>,
+    noise: Option<Bounded<ErrorSpread<Length>>>,
     /// Seed of the random numbers [default: 0].
     seed: Option<Spanned<u64>>,
 }
@@ -25,12 +25,16 @@ struct FileProbe {
 #[serde(deny_unknown_fields)]
 pub(super) struct FileErrors {
     /// Errors of the linear axes.
+    #[serde(default, with = "Optional::<Section<FileLinear>>")]
     linear: Option<FileLinear>,
     /// Errors of the axis that rotates the part.
+    #[serde(default, with = "Optional::<Section<FileRotary>>")]
     rotary: Option<FileRotary>,
     /// Errors of a head of kind manual or axis.
+    #[serde(default, with = "Optional::<Section<FileHead>>")]
     head: Option<FileHead>,
     /// Errors of a touch probe.
+    #[serde(default, with = "Optional::<Section<FileProbe>>")]
     probe: Option<FileProbe>,
 }
 
@@ -39,14 +43,18 @@ pub(super) struct FileErrors {
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// Errors of the set-up of the part.
+    #[serde(default, with = "Optional::<Section<FilePart>>")]
     part: Option<FilePart>,
     /// Errors of the linear axes.
+    #[serde(default, with = "Optional::<Section<FileLinear>>")]
     #[schemars(transform = without_draws)]
     linear: Option<FileLinear>,
     /// Errors of the axis that rotates the part.
+    #[serde(default, with = "Optional::<Section<FileRotary>>")]
     #[schemars(transform = without_draws)]
     rotary: Option<FileRotary>,
     /// Errors of a head of kind manual or axis.
+    #[serde(default, with = "Optional::<Section<FileHead>>")]
     #[schemars(transform = without_draws)]
     head: Option<FileHead>,
 }
@@ -74,11 +82,10 @@ impl FileErrors {
     fn probe(&self, reader: &Reader<'_>, machine: &mut Machine) -> Result<(), FileError> {
         let Some(FileProbe { noise: Some(noise), seed: drawn }) = &self.probe else { return Ok(()) };
         let key = "errors.probe.noise";
-        let spread = noise.as_ref().check(reader, key, noise.span().start, LENGTH)?;
         let Some(probe) = &mut machine.probe else {
             return Err(reader.error(noise, format!("key '{key}' needs a [probe]")));
         };
-        (probe.noise, probe.seed) = (spread, seed(drawn));
+        (probe.noise, probe.seed) = (noise.get(), seed(drawn));
         Ok(())
     }
 }
@@ -166,11 +173,16 @@ seed = 2
         let machine = r#"
 [errors.linear]
 x = { normal = -0.1 }
-=> line 2: key 'errors.linear.x.normal' is -0.1: mm, 100 at most
+=> line 2: key 'errors.linear.x.normal' is -0.1: 0 to 100 mm
 
 [errors.linear]
 x = { normal = 0.1, fixed = 1 }
-=> line 2: key 'errors.linear.x' needs one of normal (standard deviation), uniform (plus and minus), fixed
+=> line 2: key 'errors.linear.x' is not one distribution: one of normal (standard deviation), uniform (plus and minus), fixed
+
+[errors.linear]
+x.normal = 0.1
+x.fixed = 1
+=> line 2: key 'errors.linear.x' is not one distribution: one of normal (standard deviation), uniform (plus and minus), fixed
 
 [errors.part]
 runout = { normal = 1 }
@@ -196,7 +208,7 @@ seed = 3
 
 [part]
 tilt.z = { normal = 46 }
-=> line 2: key 'part.tilt.z.normal' is 46: degrees, 45 at most"#;
+=> line 2: key 'part.tilt.z.normal' is 46: 0 to 45 degrees"#;
         let check = |cases: &str, error: &dyn Fn(&str) -> FileError| {
             for case in cases.trim().split("\n\n") {
                 let (text, expected) = case.split_once("=> ").unwrap();

@@ -9,7 +9,7 @@ use crate::machine::{Chain, Head, HeadKind};
 use gcode_lang::motion::Axes;
 use gcode_lang::units::Deg;
 use gcode_part::reader::FileError;
-use gcode_part::reader::bounds::{Angle, Bounded, Sign};
+use gcode_part::reader::bounds::{Angle, Bounded, PivotLength, Sign};
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
 /// The head and the inclination of the tool.
@@ -21,8 +21,7 @@ pub(super) struct FileHead {
     #[schemars(extend("enum" = names(&KINDS)))]
     kind: Spanned<String>,
     /// From the head's pivot to the spindle's gauge line, mm [default: 0].
-    #[schemars(range(min = 0.0))]
-    pivot: Option<Spanned<f64>>,
+    pivot: Option<Bounded<PivotLength>>,
     /// From the tip to the spindle, not all 0.
     direction: Option<Spanned<FixedArray<f64, 3>>>,
     /// The axis, A, B or C.
@@ -85,10 +84,7 @@ impl FileHead {
     pub(super) fn check(&self, reader: &Reader<'_>, axes: &Axes, table: &Chain) -> Result<Head, FileError> {
         let kind = reader.choice("head.kind", &self.kind, &KINDS)?;
         self.check_keys(reader, kind)?;
-        let pivot = match &self.pivot {
-            Some(pivot) => reader.number("head.pivot", pivot, "mm, 0 or more", |v| v >= 0.0)?,
-            None => 0.0,
-        };
+        let pivot = self.pivot.as_ref().map_or(0.0, Bounded::get);
         let needs = |key: &str| {
             reader.error(&self.kind, format!("kind = \"{}\" needs the key 'head.{key}'", self.kind.as_ref()))
         };
@@ -128,7 +124,7 @@ impl FileHead {
     /// Rejects a key that has no meaning for this kind of head.
     fn check_keys(&self, reader: &Reader<'_>, kind: FileHeadKind) -> Result<(), FileError> {
         let given = [
-            self.pivot.as_ref().map(start),
+            self.pivot.as_ref().map(|pivot| start(pivot)),
             self.direction.as_ref().map(start),
             self.letter.as_ref().map(start),
             self.sign.as_ref().map(|sign| start(sign)),

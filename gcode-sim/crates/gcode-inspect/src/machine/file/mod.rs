@@ -31,29 +31,38 @@ use super::{Chain, Head, HeadKind, Machine, Tool};
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex};
 use gcode_part::reader::bounds::{Bounded, KeyRange};
-use gcode_part::reader::{FileError, FixedArray, Reader, Spanned, names};
+use gcode_part::reader::{FileError, FileKey, FixedArray, Items, Optional, Reader, Section, Spanned, names};
 
 /// The machine of a program. Every section is optional; without any it is the machine of the paper.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// The control.
+    #[serde(default, with = "Optional::<Section<FileControl>>")]
     control: Option<FileControl>,
     /// The axes that carry the part, from the bed outwards.
+    #[serde(default, with = "Optional::<Items<Section<FileLink>>>")]
     table: Option<Vec<FileLink>>,
     /// The head and the inclination of the tool.
+    #[serde(default, with = "Optional::<Section<FileHead>>")]
     head: Option<FileHead>,
     /// A grinder's wheel, stationary while the table moves the part.
+    #[serde(default, with = "Optional::<Section<FileWheel>>")]
     wheel: Option<FileWheel>,
     /// The tools.
+    #[serde(default, with = "Optional::<Items<Section<FileTool>>>")]
     tool: Option<Vec<FileTool>>,
-    /// The work offsets G54 to G59 at the start of the run, by axis.
-    offsets: Option<Spanned<FileOffsets>>,
+    /// The work offsets G54 to G59 at the start of the run, by axis, mm and degrees; axes that are not named are 0.
+    #[serde(default, with = "Optional::<FileOffsets>")]
+    offsets: Option<<FileOffsets as FileKey>::Value>,
     /// Nominal position of the part on the machine, and its misalignment.
+    #[serde(default, with = "Optional::<Section<FilePart>>")]
     part: Option<FilePart>,
     /// A touch probe.
+    #[serde(default, with = "Optional::<Section<FileProbe>>")]
     probe: Option<FileProbe>,
     /// The errors of the machine.
+    #[serde(default, with = "Optional::<Section<FileErrors>>")]
     errors: Option<FileErrors>,
 }
 
@@ -124,7 +133,7 @@ impl Machine {
             },
             slides: Chain::default_slides(&axes, &table),
             wheel: file.wheel.map(|wheel| wheel.check(&reader, &axes, &table, &head)).transpose()?,
-            offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, &offsets))?,
+            offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, offsets))?,
             axes,
             table,
             head,
@@ -271,7 +280,7 @@ sign = 1
 => line 2: key 'table.letter' is 'V': one of the control's axes XYZABC
 
 head = { kind = "manual", pivot = -1.0 }
-=> line 1: key 'head.pivot' is -1: mm, 0 or more
+=> line 1: key 'head.pivot' is -1: 0 to 100000 mm
 
 [head]
 kind = "axis"
@@ -293,7 +302,15 @@ direction = [0.0, 1.0, 0.0]
 
 [offsets]
 G53 = { X = 1.0 }
-=> line 1: key 'offsets.G53' is unknown: G54 to G59
+=> line 2: key 'offsets.G53' is unknown; allowed: G54, G55, G56, G57, G58, G59
+
+[offsets]
+G54 = { V = 1.0 }
+=> line 2: key 'offsets.G54.V': the control has no axis V
+
+[offsets]
+G54.X = 100001
+=> line 2: key 'offsets.G54.X' is 100001: -100000 to 100000 (mm and degrees)
 
 [part]
 tilt = [0.0, nan, 0.0]

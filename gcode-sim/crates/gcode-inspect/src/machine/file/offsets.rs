@@ -1,77 +1,50 @@
 //! `[offsets]`: the work offsets G54 to G59.
-use std::borrow::Cow;
-
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::Deserialize;
-use toml::Table;
-
+use super::AXES;
 use crate::machine::WorkOffset;
 use gcode_lang::motion::Axes;
-use gcode_part::reader::FileError;
-use gcode_part::reader::{Reader, Spanned};
+use gcode_part::reader::bounds::WorkOffsetValue;
+use gcode_part::reader::{FileError, FileKey, Reader, TableOf, Words};
 
 /// Work offsets by code, each with its axes.
-#[derive(Deserialize)]
-#[serde(transparent)]
-pub(super) struct FileOffsets(Table);
+pub(super) type FileOffsets = TableOf<WorkCode, TableOf<AxisLetter, WorkOffsetValue>>;
 
-impl JsonSchema for FileOffsets {
-    fn schema_name() -> Cow<'static, str> {
-        "Offsets".into()
-    }
+/// Codes of work offsets.
+pub(super) enum WorkCode {}
 
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let length = json_schema!({ "type": "number", "minimum": -MAX_OFFSET, "maximum": MAX_OFFSET });
-        json_schema!({
-            "type": "object",
-            "patternProperties": {
-                "^G5[4-9]$": {
-                    "description": "Axes that are not named are 0; mm and degrees.",
-                    "type": "object",
-                    "patternProperties": { "^[XYZABCUVW]$": length },
-                    "additionalProperties": false
-                }
-            },
-            "additionalProperties": false
-        })
+impl Words for WorkCode {
+    type Value = u32;
+
+    fn all() -> Vec<(&'static str, u32)> {
+        vec![("G54", 54), ("G55", 55), ("G56", 56), ("G57", 57), ("G58", 58), ("G59", 59)]
     }
 }
 
-/// Largest offset, either way, mm or degrees.
-const MAX_OFFSET: f64 = 100_000.0;
+/// Letters of axes.
+pub(super) enum AxisLetter {}
+
+impl Words for AxisLetter {
+    type Value = char;
+
+    fn all() -> Vec<(&'static str, char)> {
+        AXES.iter().flat_map(|name| name.chars().map(|letter| (*name, letter))).collect()
+    }
+}
 
 /// Returns the offsets of `G54 = { X = 500.0, B = 12.0 }`; axes that are not named are 0.
 pub(super) fn work_offsets(
     reader: &Reader<'_>,
     axes: &Axes,
-    offsets: &Spanned<FileOffsets>,
+    offsets: <FileOffsets as FileKey>::Value,
 ) -> Result<Vec<WorkOffset>, FileError> {
-    let fail = |message: String| reader.error(offsets, message);
-    let mut found = Vec::new();
-    for (name, values) in &offsets.as_ref().0 {
-        let code = name.strip_prefix('G').and_then(|code| code.parse::<u32>().ok());
-        let code = code
-            .filter(|code| (54..=59).contains(code))
-            .ok_or_else(|| fail(format!("key 'offsets.{name}' is unknown: G54 to G59")))?;
-        let values = values
-            .as_table()
-            .ok_or_else(|| fail(format!("key 'offsets.{name}' gives axes: {{ X = 0.0, Y = 0.0 }}")))?;
-        let mut offset = WorkOffset { code, values: Vec::new() };
-        for (letter, value) in values {
-            let axis = match letter.as_bytes() {
-                [letter] => axes.find(*letter),
-                _ => None,
-            };
-            let axis = axis.ok_or_else(|| {
-                fail(format!("key 'offsets.{name}.{letter}': the control has no axis {letter}"))
-            })?;
-            let number = value.as_float().or_else(|| value.as_integer().map(|v| v as f64));
-            let number = number.filter(|v| v.abs() <= MAX_OFFSET).ok_or_else(|| {
-                fail(format!("key 'offsets.{name}.{letter}' is {value}: a number, -100000 to 100000"))
-            })?;
-            offset.values.push((axis, number));
-        }
-        found.push(offset);
-    }
-    Ok(found)
+    let axis = |code: u32, letter: char| {
+        axes.find(letter as u8).ok_or_else(|| {
+            let key = format!("offsets.G{code}.{letter}");
+            reader.error_at(&key, format!("key '{key}': the control has no axis {letter}"))
+        })
+    };
+    let offset = |(code, values): (u32, Vec<(char, f64)>)| {
+        let values = values.into_iter().map(|(letter, value)| Ok((axis(code, letter)?, value)));
+        Ok(WorkOffset { code, values: values.collect::<Result<_, FileError>>()? })
+    };
+    offsets.into_iter().map(offset).collect()
 }

@@ -2,26 +2,25 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::spread::{ANGLE, FileSpread, FileVector, LENGTH, QuantityLimits};
+use super::spread::{Angle, ErrorRanges, ErrorSpread, FileVector, Length};
 use crate::machine::sources::SampleParameters;
 use crate::machine::{ErrorSource, HeadKind, Machine, Quantity};
 use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::{Bounded, Wavelength};
-use gcode_part::reader::{Reader, Spanned};
+use gcode_part::reader::{FileKey, Optional, Reader, Section, Spanned};
 
 /// The set-up of the part.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FilePart {
     /// Its shift, mm.
-    #[schemars(transform = LENGTH.bounds())]
-    shift: Option<FileVector>,
+    #[serde(default, with = "Optional::<Section<FileVector<Length>>>")]
+    shift: Option<FileVector<Length>>,
     /// Its tilt, degrees.
-    #[schemars(transform = ANGLE.bounds())]
-    tilt: Option<FileVector>,
+    #[serde(default, with = "Optional::<Section<FileVector<Angle>>>")]
+    tilt: Option<FileVector<Angle>>,
     /// Offset of its axis from the table's, mm, in any direction.
-    #[schemars(transform = LENGTH.bounds())]
-    runout: Option<Spanned<FileSpread>>,
+    runout: Option<Bounded<ErrorSpread<Length>>>,
 }
 
 /// Errors of the linear axes.
@@ -29,14 +28,11 @@ pub(super) struct FilePart {
 #[serde(deny_unknown_fields)]
 pub(super) struct FileLinear {
     /// Position error of X, mm.
-    #[schemars(transform = LENGTH.bounds())]
-    x: Option<Spanned<FileSpread>>,
+    x: Option<Bounded<ErrorSpread<Length>>>,
     /// Position error of Y, mm.
-    #[schemars(transform = LENGTH.bounds())]
-    y: Option<Spanned<FileSpread>>,
+    y: Option<Bounded<ErrorSpread<Length>>>,
     /// Position error of Z, mm.
-    #[schemars(transform = LENGTH.bounds())]
-    z: Option<Spanned<FileSpread>>,
+    z: Option<Bounded<ErrorSpread<Length>>>,
     /// Wavelength of the error along the axis, mm [default: 500].
     pub(super) wave: Option<Bounded<Wavelength>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
@@ -48,14 +44,13 @@ pub(super) struct FileLinear {
 #[serde(deny_unknown_fields)]
 pub(super) struct FileRotary {
     /// Error of its commanded angle, degrees.
-    #[schemars(transform = ANGLE.bounds())]
-    index: Option<Spanned<FileSpread>>,
+    index: Option<Bounded<ErrorSpread<Angle>>>,
     /// Offset of the axis from its centre, mm.
-    #[schemars(transform = LENGTH.bounds())]
-    centre: Option<FileVector>,
+    #[serde(default, with = "Optional::<Section<FileVector<Length>>>")]
+    centre: Option<FileVector<Length>>,
     /// Tilt of its direction, degrees.
-    #[schemars(transform = ANGLE.bounds())]
-    tilt: Option<FileVector>,
+    #[serde(default, with = "Optional::<Section<FileVector<Angle>>>")]
+    tilt: Option<FileVector<Angle>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
@@ -65,8 +60,7 @@ pub(super) struct FileRotary {
 #[serde(deny_unknown_fields)]
 pub(super) struct FileHead {
     /// Error of its angle, degrees.
-    #[schemars(transform = ANGLE.bounds())]
-    angle: Option<Spanned<FileSpread>>,
+    angle: Option<Bounded<ErrorSpread<Angle>>>,
     /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
@@ -93,16 +87,15 @@ impl<'r, 'm> Collector<'r, 'm> {
         Self { reader, machine, prefix, parameters, sources: Vec::new() }
     }
 
-    fn add(
+    fn add<R: ErrorRanges>(
         &mut self,
         key: &str,
-        spread: &Option<Spanned<FileSpread>>,
+        spread: &Option<Bounded<ErrorSpread<R>>>,
         quantity: Quantity,
-        kind: QuantityLimits,
     ) -> Result<(), FileError> {
         let Some(spread) = spread else { return Ok(()) };
         let key = format!("{}{key}", self.prefix);
-        let distribution = spread.as_ref().check(self.reader, &key, spread.span().start, kind)?;
+        let distribution = spread.get();
         if let Some(lacking) = self.missing_part(quantity) {
             return Err(self.reader.error(spread, format!("key '{key}': {lacking}")));
         }
@@ -110,26 +103,25 @@ impl<'r, 'm> Collector<'r, 'm> {
         Ok(())
     }
 
-    fn add_vector(
+    fn add_vector<R: ErrorRanges>(
         &mut self,
         key: &str,
-        vector: &Option<FileVector>,
+        vector: &Option<FileVector<R>>,
         quantity: impl Fn(usize) -> Quantity,
-        kind: QuantityLimits,
     ) -> Result<(), FileError> {
         let Some(vector) = vector else { return Ok(()) };
         for (direction, spread) in [&vector.x, &vector.y, &vector.z].into_iter().enumerate() {
             let letter = ["x", "y", "z"][direction];
-            self.add(&format!("{key}.{letter}"), spread, quantity(direction), kind)?;
+            self.add(&format!("{key}.{letter}"), spread, quantity(direction))?;
         }
         Ok(())
     }
 
     pub(super) fn part(&mut self, part: Option<&FilePart>) -> Result<(), FileError> {
         let Some(part) = part else { return Ok(()) };
-        self.add_vector("part.shift", &part.shift, Quantity::Shift, LENGTH)?;
-        self.add_vector("part.tilt", &part.tilt, Quantity::Tilt, ANGLE)?;
-        self.add("part.runout", &part.runout, Quantity::RunOut, LENGTH)
+        self.add_vector("part.shift", &part.shift, Quantity::Shift)?;
+        self.add_vector("part.tilt", &part.tilt, Quantity::Tilt)?;
+        self.add("part.runout", &part.runout, Quantity::RunOut)
     }
 
     pub(super) fn linear(&mut self, linear: Option<&FileLinear>) -> Result<(), FileError> {
@@ -146,7 +138,7 @@ impl<'r, 'm> Collector<'r, 'm> {
                 );
                 return Err(self.reader.error(written, message));
             };
-            self.add(&format!("linear.{name}"), spread, Quantity::Linear(axis), LENGTH)?;
+            self.add(&format!("linear.{name}"), spread, Quantity::Linear(axis))?;
         }
         Ok(())
     }
@@ -154,15 +146,15 @@ impl<'r, 'm> Collector<'r, 'm> {
     pub(super) fn rotary(&mut self, rotary: Option<&FileRotary>) -> Result<(), FileError> {
         let Some(rotary) = rotary else { return Ok(()) };
         self.parameters.seed = seed(&rotary.seed);
-        self.add("rotary.index", &rotary.index, Quantity::Index, ANGLE)?;
-        self.add_vector("rotary.centre", &rotary.centre, Quantity::Centre, LENGTH)?;
-        self.add_vector("rotary.tilt", &rotary.tilt, Quantity::AxisTilt, ANGLE)
+        self.add("rotary.index", &rotary.index, Quantity::Index)?;
+        self.add_vector("rotary.centre", &rotary.centre, Quantity::Centre)?;
+        self.add_vector("rotary.tilt", &rotary.tilt, Quantity::AxisTilt)
     }
 
     pub(super) fn head(&mut self, head: Option<&FileHead>) -> Result<(), FileError> {
         let Some(head) = head else { return Ok(()) };
         self.parameters.seed = seed(&head.seed);
-        self.add("head.angle", &head.angle, Quantity::Head, ANGLE)
+        self.add("head.angle", &head.angle, Quantity::Head)
     }
 
     /// Returns a message about the part that an error needs and the machine lacks.

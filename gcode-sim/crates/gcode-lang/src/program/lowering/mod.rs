@@ -81,6 +81,10 @@ impl Lowering {
                 ast::Item::Skip(switch) => skips.push((switch.node, place)),
                 ast::Item::Unreadable(unreadable) => return Err(Box::new(unreadable.alarm.clone())),
                 ast::Item::Statement(_) if statement.is_some() => {
+                    let is_word = |item: &ast::Item| matches!(item, ast::Item::Word(_));
+                    if block.items.iter().any(is_word) {
+                        return Err(Alarm::MixedStatements.located_at(block.span));
+                    }
                     let what = "two statements in one block".into();
                     return Err(Alarm::MacroFormat { what }.located_at(block.span));
                 }

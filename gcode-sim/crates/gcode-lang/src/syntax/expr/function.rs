@@ -52,10 +52,10 @@ pub(in crate::syntax) fn call(line: LineInput, input: Input<'_>, depth: u8) -> R
         (count >= enough(name)).then_some((rest, *function))
     });
     let Some((rest, function)) = found else { return no_expression(input) };
-    let (rest, (first, second)) = arguments(line, rest, depth)?;
+    let (rest, (first, second)) = arguments(line, rest, function.name(), depth)?;
     let (rest, form) = match second {
         Some(second) => (rest, CallForm::Comma(first, second)),
-        None if function == Function::Atan => match divided_by(line, rest, depth)? {
+        None if function == Function::Atan => match divided_by(line, rest, function.name(), depth)? {
             (rest, Some(second)) => (rest, CallForm::Slash(first, second)),
             (rest, None) => (rest, CallForm::One(first)),
         },
@@ -73,7 +73,7 @@ pub(in crate::syntax) fn call(line: LineInput, input: Input<'_>, depth: u8) -> R
 type Arguments = (Box<Expr>, Option<Box<Expr>>);
 
 /// Reads `[a]` or `[a,b]`.
-fn arguments(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Arguments> {
+fn arguments<'a>(line: LineInput, input: Input<'a>, name: &str, depth: u8) -> ReadResult<'a, Arguments> {
     let Some((b'[', inside)) = next(input) else {
         if comment_before(input) {
             return round_brackets(input, None);
@@ -83,15 +83,23 @@ fn arguments(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Arg
     let depth = increase_depth(spaces(input), depth)?;
     let argument = |input| require_value(expr(line, input, depth), input);
     let (rest, (first, second)) = pair(argument, opt(preceded(sign(b','), argument))).parse(inside)?;
+    if let (Some(_), Some((b',', _))) = (&second, next(rest)) {
+        return fail(spaces(rest), Alarm::ArgumentFormat { function: name.to_owned() });
+    }
     let (rest, ()) = close(rest)?;
     Ok((rest, (Box::new(first), second.map(Box::new))))
 }
 
 /// Reads `/[b]`, the second argument of the function before it.
-fn divided_by(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Option<Box<Expr>>> {
+fn divided_by<'a>(
+    line: LineInput,
+    input: Input<'a>,
+    name: &str,
+    depth: u8,
+) -> ReadResult<'a, Option<Box<Expr>>> {
     match next(input) {
         Some((b'/', after)) if matches!(next(after), Some((b'[', _))) => {
-            match arguments(line, after, depth)? {
+            match arguments(line, after, name, depth)? {
                 (rest, (value, None)) => Ok((rest, Some(value))),
                 _ => no_expression(spaces(after)),
             }
@@ -102,8 +110,8 @@ fn divided_by(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Op
 
 /// Reads the rest of `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]` or `PRM[n,bit]/[axis]`.
 fn parameter<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> ReadResult<'a, Expr> {
-    let (rest, (number, bit)) = arguments(line, after, depth)?;
-    let (rest, axis) = divided_by(line, rest, depth)?;
+    let (rest, (number, bit)) = arguments(line, after, "PRM", depth)?;
+    let (rest, axis) = divided_by(line, rest, "PRM", depth)?;
     Ok((rest, Expr { kind: ExprKind::Parameter { number, bit, axis }, span: line.span(input, rest) }))
 }
 

@@ -7,8 +7,8 @@ mod function;
 use super::ast::{BinaryOp, Condition, Expr, ExprKind, OperatorSpelling, Relation};
 use super::number::{EXPRESSION_LIMIT, decimal};
 use super::token::{
-    Input, LineInput, ReadResult, comment_before, fail, next, no_expression, no_match, require,
-    round_brackets, sign, spaces, word,
+    Input, LineInput, ReadResult, comment, comment_before, fail, next, no_expression, no_match, require,
+    sign, spaces, word,
 };
 use crate::alarm::Alarm;
 use function::{call, named};
@@ -140,7 +140,7 @@ fn chain<'a>(
 /// Turns a mismatch into an alarm where a value must follow; round brackets, a comment, have their own alarm.
 pub(super) fn require_value<'a, T>(read: ReadResult<'a, T>, at: Input<'a>) -> ReadResult<'a, T> {
     match read {
-        Err(nom::Err::Error(_)) if comment_before(at) => round_brackets(at, None),
+        Err(nom::Err::Error(_)) if comment_before(at) => fail(comment(at), Alarm::RoundBracketsForValue),
         Err(nom::Err::Error(_)) => no_expression(spaces(at)),
         read => read,
     }
@@ -241,7 +241,9 @@ fn numbered(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr
             let (rest, mixed) = require_value(signed(line, &input[1..], depth), input)?;
             number(rest, input, mixed)?
         }
-        _ if comment_before(&input[1..]) => return round_brackets(&input[1..], None),
+        _ if comment_before(&input[1..]) => {
+            return fail(comment(&input[1..]), Alarm::RoundBracketsForValue);
+        }
         _ => return no_expression(input),
     };
     Ok((rest, Expr { kind: ExprKind::Variable(Box::new(index)), span: line.span(input, rest) }))

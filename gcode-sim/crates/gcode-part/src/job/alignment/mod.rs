@@ -28,18 +28,25 @@ pub struct Alignment {
     #[schemars(extend("enum" = ["alignment"]))]
     _family: String,
     /// The control of the programs.
+    #[serde(with = "Section::<JobControl>")]
     pub control: JobControl,
     /// The machine.
+    #[serde(with = "Section::<PinMachine>")]
     pub machine: PinMachine,
     /// The surface that is measured.
+    #[serde(with = "Section::<Surface>")]
     pub surface: Surface,
     /// The touch probe.
+    #[serde(with = "Section::<TouchProbe>")]
     pub probe: TouchProbe,
     /// The table that sets the angle of the part's axis.
+    #[serde(with = "Section::<SineTable>")]
     pub sine_table: SineTable,
     /// The chord between two points of the surface.
+    #[serde(with = "Section::<Chord>")]
     pub chord: Chord,
     /// An indicator on the part while the table rotates.
+    #[serde(with = "Section::<Runout>")]
     pub runout: Runout,
     /// The outline that an edge finder follows.
     #[serde(default, with = "Section::<FileEllipse>")]
@@ -48,7 +55,7 @@ pub struct Alignment {
     #[serde(default, with = "Section::<FileLimits>")]
     limits: FileLimits,
     /// Additional data for the set-up sheet.
-    #[serde(default)]
+    #[serde(default, with = "Section::<SheetInfo>")]
     pub sheet: SheetInfo,
 }
 

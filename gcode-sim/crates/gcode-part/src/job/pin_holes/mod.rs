@@ -14,7 +14,7 @@ use super::{
     check_retract, retract_height,
 };
 use crate::reader::bounds::{Azimuth, CommonVariable, Depth, Length, Radius, Retract, ToolLength};
-use crate::reader::{FileKey, Optional, Word, Words};
+use crate::reader::{FileKey, Items, Optional, Section, Word, Words};
 
 /// Pin holes in a surface of revolution: drilled along its axis or its normals.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -25,26 +25,30 @@ pub struct PinHoles {
     #[schemars(extend("enum" = ["pin-holes"]))]
     _family: String,
     /// The control of the programs.
+    #[serde(with = "Section::<JobControl>")]
     pub control: JobControl,
     /// The machine.
+    #[serde(with = "Section::<PinMachine>")]
     pub machine: PinMachine,
     /// The surface that the holes begin in.
+    #[serde(with = "Section::<Surface>")]
     pub surface: Surface,
     /// Tolerances of the holes.
+    #[serde(with = "Section::<HoleTolerance>")]
     pub tolerance: HoleTolerance,
     /// The holes, in the order in which they are drilled.
-    #[serde(rename = "hole")]
+    #[serde(rename = "hole", with = "Items::<Section<HoleSpec>>")]
     #[schemars(length(min = 1))]
     pub holes: Vec<HoleSpec>,
     /// The tools in the order of use [default: a drill and an end mill for each diameter].
-    #[serde(rename = "tool", default)]
+    #[serde(rename = "tool", default, with = "Items::<Section<Tool>>")]
     #[schemars(length(min = 1))]
     pub tools: Vec<Tool>,
     /// The common variables of the macros.
-    #[serde(rename = "macro", default)]
+    #[serde(rename = "macro", default, with = "Section::<MacroSettings>")]
     pub macros: MacroSettings,
     /// Additional data for the set-up sheet.
-    #[serde(default)]
+    #[serde(default, with = "Section::<SheetInfo>")]
     pub sheet: SheetInfo,
     /// True if the job specifies the tools; those of the paper do not constrain other programs.
     #[serde(skip)]
@@ -56,9 +60,10 @@ pub struct PinHoles {
 #[serde(deny_unknown_fields)]
 pub struct PinMachine {
     /// The axis that rotates the part.
+    #[serde(with = "Section::<Rotary>")]
     pub rotary: Rotary,
     /// Head that inclines the tool [default: by hand].
-    #[serde(default)]
+    #[serde(default, with = "Section::<Head>")]
     pub head: Head,
     /// Distance from the surface where the feed begins, mm [default: 2].
     #[serde(default, with = "Optional::<Depth>")]
