@@ -238,7 +238,7 @@ impl Recorder {
                 self.written.insert(mode_name(group), self.backtraces[block_number].clone());
             }
             let before = self.conditions.last().cloned().unwrap_or_else(ModalConditions::at_power_on);
-            let next = before.after_block(state, block_number);
+            let next = before.after_block(state, control.settings().dialect, block_number);
             if self.conditions.last() != Some(&next) {
                 self.conditions.push(next);
             }

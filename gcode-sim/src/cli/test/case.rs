@@ -120,12 +120,12 @@ impl Case {
                     let remedy = "delete it, run with --accept, and review what was accepted";
                     UsageError::new(format!("{}: {error}; {remedy}", path.display()))
                 })?;
-                not_compared = accepted.unrecorded_aspects().into_iter().map(str::to_owned).collect();
+                not_compared = accepted.unrecorded_aspects(&revision.record);
                 let found = changes(&accepted, &revision.record.reduced_to(&accepted), tolerance);
-                let answer = match (found.is_empty(), accepted.is_legacy()) {
+                let answer = match (found.is_empty(), not_compared.is_empty()) {
                     (false, _) => CaseAnswer::Changed,
-                    (true, true) => CaseAnswer::Older,
-                    (true, false) => CaseAnswer::Same,
+                    (true, false) => CaseAnswer::Older,
+                    (true, true) => CaseAnswer::Same,
                 };
                 (answer, found)
             }
