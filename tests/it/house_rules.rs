@@ -1,4 +1,5 @@
 //! House rules: dependencies, opening sentences, no unfinished work.
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use gcode_tests::{files_below, workspace};
@@ -32,11 +33,68 @@ fn uses_only(dir: &str, root: &str, may: &[&str]) {
     }
 }
 
-/// The crates that a crate of gcode-sim depends on, as its Cargo.toml lists them.
-fn dependencies(name: &str) -> Vec<String> {
-    let path = workspace().join("gcode-sim/crates").join(name).join("Cargo.toml");
+/// Returns the folder of a crate.
+fn crate_folder(name: &str) -> PathBuf {
+    let program = workspace().join(name);
+    if program.is_dir() { program } else { workspace().join("gcode-sim/crates").join(name) }
+}
+
+/// Returns the crates that a Cargo.toml lists in one of its sections.
+fn listed_dependencies(folder: &Path, section: &str) -> Vec<String> {
+    let path = folder.join("Cargo.toml");
     let file: toml::Table = std::fs::read_to_string(path).unwrap().parse().unwrap();
-    file["dependencies"].as_table().unwrap().keys().cloned().collect()
+    let listed = file.get(section).and_then(toml::Value::as_table);
+    listed.into_iter().flat_map(toml::Table::keys).cloned().collect()
+}
+
+fn dependencies(name: &str) -> Vec<String> {
+    listed_dependencies(&crate_folder(name), "dependencies")
+}
+
+/// Returns the crates in the order of the table in ARCHITECTURE.md.
+fn crates_of_the_table() -> Vec<String> {
+    let text = std::fs::read_to_string(workspace().join("ARCHITECTURE.md")).unwrap();
+    let (_, section) = text.split_once("\n## Crates\n").unwrap();
+    let table = section.split("\n## ").next().unwrap();
+    let names = table.lines().filter_map(|line| line.strip_prefix("| `")?.split_once('`'));
+    names.map(|(name, _)| name.to_owned()).collect()
+}
+
+#[test]
+fn a_crate_depends_only_on_crates_above_it_in_the_table() {
+    let table = crates_of_the_table();
+    let mut crates = BTreeSet::from(["gcode-gen".to_owned(), "gcode-sim".to_owned()]);
+    for entry in std::fs::read_dir(workspace().join("gcode-sim/crates")).unwrap() {
+        crates.insert(entry.unwrap().file_name().into_string().unwrap());
+    }
+    assert_eq!(BTreeSet::from_iter(table.iter().cloned()), crates, "the table of crates in ARCHITECTURE.md");
+    for (index, name) in table.iter().enumerate() {
+        for section in ["dependencies", "dev-dependencies", "build-dependencies"] {
+            for other in listed_dependencies(&crate_folder(name), section) {
+                assert!(
+                    !crates.contains(&other) || table[..index].contains(&other),
+                    "{name} depends on {other}, which is not above it in the table of ARCHITECTURE.md"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_dependency_is_used() {
+    let crates = crates_of_the_table();
+    let folders = crates.iter().map(|name| crate_folder(name)).chain([workspace().join("tests")]);
+    for folder in folders {
+        let inner_crates = folder.join("crates");
+        let files = files_below(&folder, "rs").into_iter().filter(|path| !path.starts_with(&inner_crates));
+        let sources: String = files.map(|path| std::fs::read_to_string(path).unwrap()).collect();
+        for section in ["dependencies", "dev-dependencies"] {
+            for name in listed_dependencies(&folder, section) {
+                let path = name.replace('-', "_") + "::";
+                assert!(sources.contains(&path), "{}: {name} is not used", folder.display());
+            }
+        }
+    }
 }
 
 /// The text side has no geometry, no command line, no picture and no page.

@@ -1,26 +1,26 @@
-//! Runs a program on a control and compares the end of the run with what was worked out for it.
+//! Runs a program on a control and compares the end of the run with an expectation that is computed by hand.
 //!
-//! What is expected is a list with `; ` between its items:
+//! An expectation is a list with `; ` between its items:
 //!
 //! | item | holds when |
 //! |---|---|
 //! | `end=normal` | M30, M02 or the end of the program was reached without an alarm |
-//! | `end=repeats` | the run was ended because the program provably repeats for ever |
-//! | `alarm=PS0112` | the control stopped with this alarm; with one of several, `PS0112\|PS0119`, where `why` says what is open |
+//! | `end=repeats` | the run ended because the program provably repeats for ever |
+//! | `alarm=PS0112` | the control stopped with this alarm; with one of several, `PS0112\|PS0119`, if `why` states the open point |
 //! | `msg="TEXT"` | the alarm's text |
 //! | `stop=TEXT` | an operator stop with this text |
 //! | `note=lower-case` | the run has this note, by its name; `note=none` if it has none |
 //! | `stops=M00,M01` | all operator stops, in their order; `stops=` if there is none |
 //! | `passed_on=M77,M78` | the M codes left to the machine builder, in ascending order |
-//! | `printed="LINE\|LINE"` | what DPRNT printed, all of it |
+//! | `printed="LINE\|LINE"` | all lines that DPRNT printed |
 //! | `#100=1.5`, `#100=vacant` | the variable at the end; locals are those of the main program; `#501-#560=vacant` all of these, `=known` if not vacant, `=#574` the value of another |
 //! | `abs.X=1`, `mach.X=1` | work and machine position |
 //! | `path=R(x,y,z) F(…) A(…) D(s)` | all rapids, cutting feeds, arcs (by their ends, machine X Y Z) and dwells |
 //! | `time_min=0.5` | the time of all blocks in minutes |
 //! | `amove=-10,20` | the moves of the A axis |
 //! | `moves=0`, `moves=41..` | the number of moves, exactly or at least; `feeds=0` that of cutting feeds |
-//! | `within=0.001` | the tolerance of all numbers, 1e-6 if it isn't stated; `0.1±0.002` that of one number |
-//! | `why=TEXT` | always: the reason for the alarm, the last item. It begins with `open:` where several are right |
+//! | `within=0.001` | the tolerance of all numbers, 1e-6 by default; `0.1±0.002` that of one number |
+//! | `why=TEXT` | always: the reason for the alarm, the last item. It begins with `open:` if several are right |
 //!
 //! A comment `(@KEY=VALUE)` in the program is a setting of the control, by the name it has on the command line.
 use std::collections::BTreeSet;
@@ -32,7 +32,7 @@ use gcode_lang::motion::{Event, EventKind, EventSink, Position};
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_lang::source::Span;
 
-/// The events of a run: block, kind, seconds.
+/// Events of a run: block, kind, seconds.
 #[derive(Debug, Default, PartialEq)]
 pub struct Recorder(pub Vec<(Span, EventKind, f64)>);
 
@@ -43,7 +43,7 @@ impl EventSink for Recorder {
 }
 
 impl Recorder {
-    /// The ends of all moves, each with R for a rapid, F for a feed and A for an arc.
+    /// Iterates over the end positions of all moves, each with R for a rapid, F for a feed and A for an arc.
     pub fn moves(&self) -> impl Iterator<Item = (char, &Position)> {
         self.0.iter().filter_map(|(_, kind, _)| match kind {
             EventKind::Rapid { to } => Some(('R', to)),
@@ -53,20 +53,20 @@ impl Recorder {
         })
     }
 
-    /// The ends of all rapids and feeds from one to the next.
+    /// Returns the end positions of all moves in their order.
     pub fn positions(&self) -> Vec<Position> {
         self.moves().map(|(_, to)| *to).collect()
     }
 }
 
-/// A control at the end of its run, and the events of the run.
+/// Control at the end of its run, and the events of the run.
 pub struct Ran {
     pub control: Control,
     pub outcome: Outcome,
     pub recorder: Recorder,
 }
 
-/// The default control with the settings that the program's comments name.
+/// Returns the default settings with those that the program's comments name.
 pub fn settings(program: &[u8]) -> Settings {
     let text = String::from_utf8_lossy(program);
     let mut settings = Settings::default();
@@ -100,7 +100,7 @@ impl Ran {
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 
-    /// What differs from `expected`, one line each.
+    /// Returns the differences from `expected`, one line each.
     pub fn differences(&self, expected: &str) -> Vec<String> {
         let (demands, why) = expected.split_once("; why=").unwrap_or((expected, ""));
         let within = items(demands).find(|(key, _)| *key == "within");
@@ -150,7 +150,7 @@ impl Ran {
         (!is_met).then(|| format!("{key} is {found}, expected is {expected}; {}", self.end()))
     }
 
-    /// What an item with a text compares.
+    /// Returns the text that an item compares; `None` for an item with numbers.
     fn text(&self, key: &str) -> Option<String> {
         let alarm = match &self.outcome {
             Outcome::Alarm(stopped) => Some(&stopped.alarm),
@@ -208,7 +208,7 @@ impl Ran {
         wrong.map(|(number, found)| format!("#{number} is {found}, expected is {expected}; {}", self.end()))
     }
 
-    /// The value of the variable that an expectation begins with, as `#574±0.0006`.
+    /// Replaces the variable that an expectation begins with, as in `#574±0.0006`, by its value.
     fn resolved(&self, expected: &str) -> String {
         let Some(variable) = expected.strip_prefix('#') else { return expected.to_owned() };
         let digits = variable.find(|c: char| !c.is_ascii_digit()).unwrap_or(variable.len());
@@ -222,7 +222,7 @@ impl Ran {
         positions.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| *way != 0.0).collect()
     }
 
-    /// Moves and dwells as `path` has them, and whether they are those.
+    /// Compares moves and dwells with a `path`; also returns them in its form.
     fn path(&self, expected: &str, tolerance: f64) -> (bool, String) {
         let found: Vec<(char, Vec<f64>)> = self
             .recorder
@@ -252,12 +252,12 @@ impl Ran {
     }
 }
 
-/// The items of an expectation.
+/// Iterates over the items of an expectation, key and value.
 fn items(expected: &str) -> impl Iterator<Item = (&str, &str)> {
     expected.split("; ").map(|item| item.trim().split_once('=').unwrap_or_else(|| panic!("item {item}")))
 }
 
-/// Whether a count is the number, or at least the number before `..`.
+/// Compares a count with a number, or with the least number before `..`; also returns the count as text.
 fn at_least(found: u64, expected: &str) -> (bool, String) {
     let is_met = match expected.strip_suffix("..") {
         Some(least) => least.parse::<u64>().unwrap() <= found,
@@ -266,7 +266,7 @@ fn at_least(found: u64, expected: &str) -> (bool, String) {
     (is_met, found.to_string())
 }
 
-/// Whether numbers are those of a list, and the numbers as text.
+/// Compares numbers with a list; also returns them as text.
 fn close(found: &[f64], expected: &str, tolerance: f64) -> (bool, String) {
     let tolerated = |number: &str| {
         let (number, own) = number.split_once('±').unwrap_or((number, ""));

@@ -14,7 +14,6 @@ mod cli;
 mod control;
 mod exec;
 pub mod expect;
-mod expected_verdict;
 pub mod fuzz;
 mod r#gen;
 mod macros;

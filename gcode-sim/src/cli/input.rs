@@ -1,4 +1,6 @@
 //! Reads the files that the user names: programs, jobs, references, machine files. Errors are one sentence.
+#![expect(clippy::disallowed_methods, reason = "the command line reads files")]
+
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -8,7 +10,6 @@ use super::UsageError;
 const LARGEST: u64 = 1 << 30;
 
 /// Reads a file's bytes; `-` is standard input.
-#[expect(clippy::disallowed_methods, reason = "the command line reads files")]
 pub fn bytes(path: &Path) -> Result<Vec<u8>, UsageError> {
     if path == Path::new("-") {
         let mut bytes = Vec::new();

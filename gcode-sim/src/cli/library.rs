@@ -1,4 +1,6 @@
 //! Finds called programs in folders: `O8101.nc` and `PROBE.nc` by file name, all others by contents.
+#![expect(clippy::disallowed_methods, reason = "the command line finds files")]
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,6 @@
 //! Writes results to standard output, or to a file that is either complete or absent.
+#![expect(clippy::disallowed_methods, reason = "the command line writes files")]
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

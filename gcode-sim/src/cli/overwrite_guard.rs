@@ -1,4 +1,6 @@
 //! Guards inputs: a result never overwrites one of them, and standard input is read once.
+#![expect(clippy::disallowed_methods, reason = "the command line compares files")]
+
 use std::path::Path;
 
 use super::UsageError;

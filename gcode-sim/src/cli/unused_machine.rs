@@ -1,4 +1,6 @@
 //! Warns of an unused machine file: `--machine` is easily forgotten, and another machine makes other holes.
+#![expect(clippy::disallowed_methods, reason = "the command line finds files")]
+
 use std::path::Path;
 
 use super::conditions::ProgramArguments;

@@ -5,7 +5,10 @@ use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::Backtrace;
-use gcode_lang::program::{CallCode, Memory, Op, OpIndex, OpKind, Program, ProgramId, Statement, Words};
+use gcode_lang::program::g_codes::{Effect, GCodeRow};
+use gcode_lang::program::{
+    CallCode, LoweredWord, Memory, Op, OpIndex, OpKind, Program, ProgramId, Statement, WordOperand, Words,
+};
 use gcode_lang::source::Spanned;
 use gcode_lang::syntax::ast;
 
@@ -138,6 +141,32 @@ impl<'a> CheckContext<'a> {
         let id = call.target.find(self.memory)?;
         self.unit_indices.get(&id).copied()
     }
+
+    /// Returns the row of a G code written as a number; `None` if this control lacks the code, or for another word.
+    pub(crate) fn g_code_row(&self, word: &LoweredWord) -> Option<&'static GCodeRow> {
+        match word.value {
+            WordOperand::G(_, found) => found.row_for(self.settings.codes),
+            WordOperand::Literal(_)
+            | WordOperand::Number(_)
+            | WordOperand::Variable { .. }
+            | WordOperand::Code(_) => None,
+        }
+    }
+
+    /// Iterates over the rows of a block's G codes, see [`CheckContext::g_code_row`].
+    pub(crate) fn g_code_rows(&self, words: &Words) -> impl Iterator<Item = &'static GCodeRow> {
+        words.list.iter().filter_map(|word| self.g_code_row(word))
+    }
+
+    /// Returns true if `is_effect` accepts the effect of one of a block's G codes on this control.
+    pub(crate) fn has_effect(&self, words: &Words, is_effect: impl Fn(Effect) -> bool) -> bool {
+        self.g_code_rows(words).any(|row| is_effect(row.effect))
+    }
+}
+
+/// Returns true if a block commands F, beside the arguments of a call.
+pub(crate) fn has_feed_word(words: &Words) -> bool {
+    words.list.iter().any(|word| word.letter == b'F')
 }
 
 fn written_alarm(kind: &OpKind) -> Option<&LocatedAlarm> {

@@ -1,4 +1,6 @@
 //! One case of `gcode-sim test`: a folder with a program, its inputs, and its accepted result.
+#![expect(clippy::disallowed_methods, reason = "the command line finds files")]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,6 @@
 //! `gcode-sim test --watch`: re-runs the cases affected by a saved file, until Ctrl-C.
+#![expect(clippy::disallowed_methods, reason = "the command line watches files")]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};

@@ -6,7 +6,6 @@
 //! #5001… (end of the preceding block) and #5061… (latched by G31) do not depend on the instant.
 use std::ops::RangeInclusive;
 
-use gcode_lang::control::Settings;
 use gcode_lang::program::code_facts::Timing;
 use gcode_lang::program::{Statement, WordOperand, Words};
 
@@ -25,7 +24,7 @@ const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    let pending = pending_moves(context.settings, unit);
+    let pending = pending_moves(context, unit);
     let mut found = Vec::new();
     for (block, written) in unit.reached_blocks() {
         let Some(motion) = pending[block].flatten() else { continue };
@@ -48,10 +47,10 @@ const HELP: &str = "insert a block before it that waits for the move: G53, M00 o
 
 /// Returns, for each block, a move that may still be in progress before it; the outer `None` is an unreachable
 /// block.
-fn pending_moves(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<Option<OpIndex>>> {
+fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<Option<OpIndex>>> {
     let next = |block: OpIndex, before: &Option<OpIndex>| {
         let op = unit.program.ops().get(block);
-        let after = match op.and_then(|op| move_effect(settings, op.kind())) {
+        let after = match op.and_then(|op| move_effect(context, op.kind())) {
             Some(true) => Some(block),
             Some(false) => None,
             None => *before,
@@ -63,21 +62,21 @@ fn pending_moves(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<Opti
 }
 
 /// Returns true if a block starts a move, false if it waits for all preceding moves.
-fn move_effect(settings: &Settings, kind: &OpKind) -> Option<bool> {
+fn move_effect(context: &CheckContext<'_>, kind: &OpKind) -> Option<bool> {
     match kind {
-        OpKind::Words(words) => of_words(settings, words),
+        OpKind::Words(words) => words_effect(context, words),
         // A message stops until the operator restarts.
         OpKind::Statement(Statement::Assign { target, .. }) if target.is_variable(3006) => Some(false),
         _ => None,
     }
 }
 
-fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
+fn words_effect(context: &CheckContext<'_>, words: &Words) -> Option<bool> {
     let mut has_axis = false;
     for word in &words.list {
         match (word.letter, word.value) {
-            (b'G', WordOperand::G(_, found)) => {
-                match found.row_for(settings.codes).map(|row| row.facts.timing) {
+            (b'G', WordOperand::G(..)) => {
+                match context.g_code_row(word).map(|row| row.facts.timing) {
                     // G53 waits; G31 ends at its signal; G04 and G10 wait on some controls.
                     Some(Timing::Waits) => return Some(false),
                     // These codes only set coordinates.
@@ -89,7 +88,7 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
             (b'M', _) if !matches!(literal::word_count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => {
                 return Some(false);
             }
-            (letter, _) => has_axis |= word.axis.is_some() || settings.axes.find(letter).is_some(),
+            (letter, _) => has_axis |= word.axis.is_some() || context.settings.axes.find(letter).is_some(),
         }
     }
     has_axis.then_some(true)

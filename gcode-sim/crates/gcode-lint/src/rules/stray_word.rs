@@ -34,13 +34,12 @@ fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Optio
         // `,A` is an angle of direct drawing dimension programming, which the simulator does not execute.
         return (!matches!(word.letter, b'R' | b'C' | b'A')).then_some(Alarm::CornerWords);
     }
-    let mut codes = words.g_codes().filter_map(|found| found.row_for(context.settings.codes));
     let is_refused = match word.letter {
         b'E' => true,
         b'A'..=b'C' | b'U'..=b'Z' => axes.find(word.letter).is_none(),
         _ => false,
     };
-    (is_refused && !codes.any(|row| row.facts.words.own.has(word.letter)))
+    (is_refused && !context.g_code_rows(words).any(|row| row.facts.words.own.has(word.letter)))
         .then_some(Alarm::ImproperAddress { letter: char::from(word.letter) })
 }
 

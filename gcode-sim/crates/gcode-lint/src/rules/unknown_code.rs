@@ -4,7 +4,6 @@
 use std::collections::BTreeSet;
 
 use gcode_lang::alarm::kinds::PS0010;
-use gcode_lang::control::Settings;
 use gcode_lang::program::g_codes::{Effect, spelled};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::{LoweredWord, WordOperand};
@@ -21,7 +20,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut reported = BTreeSet::new();
     for (block, words) in unit.reached_words() {
         for word in &words.list {
-            let Some((message, raises_alarm)) = code_fault(context.settings, word) else { continue };
+            let Some((message, raises_alarm)) = code_fault(context, word) else { continue };
             let finding = unit.finding(&RULE.kind, block, message.clone()).with_span(word.span);
             if raises_alarm {
                 found.push(finding.help("correct it, or name the macro it calls with --code"));
@@ -34,12 +33,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 }
 
 /// Returns the message for a code that does not run as written, and true if it raises an alarm.
-fn code_fault(settings: &Settings, word: &LoweredWord) -> Option<(String, bool)> {
+fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, bool)> {
+    let settings = context.settings;
     let is_call = |code: u32| settings.code_calls.find_call(word.letter, code).is_some();
     match (word.letter, word.value) {
-        (b'G', WordOperand::G(code, found)) if !is_call(code) => {
+        (b'G', WordOperand::G(code, _)) if !is_call(code) => {
             let name = format!("G{}", spelled(code));
-            match found.row_for(settings.codes) {
+            match context.g_code_row(word) {
                 None => Some((format!("{PS0010}: the control has no {name}"), true)),
                 Some(row) if row.effect == Effect::NotSimulated => {
                     Some((format!("{name} ({}) is not simulated", row.help), false))

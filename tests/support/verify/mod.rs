@@ -1,9 +1,11 @@
-//! Cases of kind `verify`: a program compared with a reference, and what has to be found, as it was worked out by hand.
+//! Cases of kind `verify`: a program compared with a reference; the expected findings are computed by hand.
 //!
-//! `case.nc` is the program (programs it calls stand in the same file). `expect.txt` has in the words of
-//! `expected_verdict` which machine and which reference, of those in `suite/verify/`, and what comes out.
+//! `case.nc` is the program (programs it calls stand in the same file). `expect.txt` names, in the words of
+//! `expected_verdict`, the machine and the reference in `suite/verify/`, and the verdict.
 //! A machine or a reference that only one case has stands beside its program: `machine.toml`, `reference.toml` or `.csv`.
-//! Without a reference the holes are listed that the program makes.
+//! Without a reference the case lists the holes that the program makes.
+mod expected_verdict;
+
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -17,20 +19,20 @@ use gcode_session::{GrindingRun, Request, Run, Simulation, grind, simulate};
 use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
 
+use self::expected_verdict::{ActualVerdict, FindingLine, has_layout};
 use crate::Case;
-use crate::expected_verdict::{FindingLine, Outcome, has_layout};
 
 pub(crate) fn run(case: &Case) {
     let text = case.text("expect.txt");
     let machine = machine_of(&case.dir).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
-    let wanted = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
-    let (outcome, layout) = match wanted {
+    let nominal = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
+    let (actual, layout) = match nominal {
         Some(NominalPart::Flutes(flutes)) => {
             inspect_flutes(&grind(&request, &mut NoLibrary, &flutes).unwrap())
         }
-        Some(wanted) => {
-            let reference = wanted.into_holes().unwrap();
+        Some(nominal) => {
+            let reference = nominal.into_holes().unwrap();
             request.process_limits = reference.process_limits.clone();
             let simulation = simulate(&request, &mut NoLibrary, reference.surface).unwrap();
             let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
@@ -38,7 +40,7 @@ pub(crate) fn run(case: &Case) {
         }
         None => list_holes(&simulate(&request, &mut NoLibrary, None).unwrap()),
     };
-    let differences = outcome.differences(&text);
+    let differences = actual.differences(&text);
     assert!(differences.is_empty(), "{}:\n{}\n{layout}", case.name(), differences.join("\n"));
     let has_layout = has_layout(&text);
     assert!(has_layout || case.optional("verdict.snap").is_none(), "{}: no line 'layout'", case.name());
@@ -47,17 +49,17 @@ pub(crate) fn run(case: &Case) {
     }
 }
 
-/// The machine file of a program in `folder`.
+/// Returns the machine file of a program in `folder`.
 pub fn machine_of(folder: &Path) -> Option<String> {
     file_of(folder, "machine", &["machine.toml"])
 }
 
-/// The reference of a program in `folder`.
+/// Returns the reference of a program in `folder`.
 pub fn reference_of(folder: &Path) -> Option<String> {
     file_of(folder, "reference", &["reference.toml", "reference.csv", "reference.json"])
 }
 
-/// The file beside the folders of the cases that a line of `expect.txt` names, else the folder's own.
+/// Returns the file beside the folders of the cases that a line of `expect.txt` names, else the folder's own.
 fn file_of(folder: &Path, word: &str, own: &[&str]) -> Option<String> {
     let expected = std::fs::read_to_string(folder.join("expect.txt")).unwrap_or_default();
     let named = expected.lines().find_map(|line| line.strip_prefix(word)?.strip_prefix(' '));
@@ -68,7 +70,7 @@ fn file_of(folder: &Path, word: &str, own: &[&str]) -> Option<String> {
     own.iter().find_map(|name| std::fs::read_to_string(folder.join(name)).ok())
 }
 
-fn inspect_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
+fn inspect_holes(verdict: &Verdict, run: &Run) -> (ActualVerdict, String) {
     let good = verdict.holes.iter().filter(|hole| hole.ok).count();
     let mut summary =
         format!("{} {good} of {}", answer(verdict.verdict), verdict.holes.len() + verdict.missing.len());
@@ -93,7 +95,7 @@ fn inspect_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
         ];
         facts.push(("neighbours".to_owned(), known_facts(found)));
     }
-    let outcome = Outcome {
+    let actual = ActualVerdict {
         summary: Some(summary),
         findings: finding_lines(&verdict.diagnostics, &verdict.findings, run),
         missing: verdict.missing.clone(),
@@ -102,7 +104,7 @@ fn inspect_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
         made: Vec::new(),
     };
     let shown = table(verdict, Layout::default());
-    (outcome, with_findings(shown, &verdict.diagnostics, run))
+    (actual, with_findings(shown, &verdict.diagnostics, run))
 }
 
 fn deviations(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
@@ -119,7 +121,7 @@ fn deviations(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
     ]
 }
 
-fn inspect_flutes(grinding: &GrindingRun) -> (Outcome, String) {
+fn inspect_flutes(grinding: &GrindingRun) -> (ActualVerdict, String) {
     let verdict = grinding.verify();
     let found = [
         ("contact", verdict.surface_deviation),
@@ -132,7 +134,7 @@ fn inspect_flutes(grinding: &GrindingRun) -> (Outcome, String) {
         ("passes", Some(verdict.passes as f64)),
         ("moves", Some(verdict.moves as f64)),
     ];
-    let outcome = Outcome {
+    let actual = ActualVerdict {
         summary: Some(format!(
             "{} {} of {}",
             answer(verdict.verdict),
@@ -146,11 +148,11 @@ fn inspect_flutes(grinding: &GrindingRun) -> (Outcome, String) {
         made: Vec::new(),
     };
     let shown = flute_table::table(&verdict);
-    (outcome, with_findings(shown, &verdict.diagnostics, &grinding.run))
+    (actual, with_findings(shown, &verdict.diagnostics, &grinding.run))
 }
 
-/// Of a program without a reference: the holes it makes.
-fn list_holes(simulation: &Simulation) -> (Outcome, String) {
+/// Lists the holes that a program without a reference makes.
+fn list_holes(simulation: &Simulation) -> (ActualVerdict, String) {
     let mut text = String::new();
     let mut made = Vec::new();
     for hole in simulation.hole_list().holes {
@@ -168,7 +170,7 @@ fn list_holes(simulation: &Simulation) -> (Outcome, String) {
         made.push((at, numbers.to_vec()));
     }
     let findings = &simulation.extracted.findings;
-    let outcome = Outcome {
+    let actual = ActualVerdict {
         summary: None,
         findings: finding_lines(findings, &[], &simulation.run),
         missing: Vec::new(),
@@ -176,7 +178,7 @@ fn list_holes(simulation: &Simulation) -> (Outcome, String) {
         facts: Vec::new(),
         made,
     };
-    (outcome, with_findings(text, findings, &simulation.run))
+    (actual, with_findings(text, findings, &simulation.run))
 }
 
 fn answer(answer: Answer) -> &'static str {
@@ -190,7 +192,7 @@ fn known_facts<const N: usize>(facts: [(&'static str, Option<f64>); N]) -> Vec<(
     facts.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
 }
 
-/// Findings as `error hole-depth at O6:13 from O5:6 of r1h0`, with their messages and notes.
+/// Returns findings as `error hole-depth at O6:13 from O5:6 of r1h0`, with their messages and notes.
 fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<FindingLine> {
     let one = |finding: &Diagnostic| {
         let mut head = format!("{} {}", finding.severity.name(), finding.code());
@@ -210,13 +212,13 @@ fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<Findi
     shown.iter().map(one).collect()
 }
 
-/// `O5:6` of line 6 in O0005.
+/// Returns `O5:6` for line 6 of O0005.
 fn place_label(program: &str, line: u32) -> String {
     let number = program.strip_prefix('O').map(|digits| digits.trim_start_matches('0'));
     number.map_or_else(|| format!("{program}:{line}"), |number| format!("O{number}:{line}"))
 }
 
-/// The table and what was found, with its places.
+/// Appends the findings with their blocks to the table.
 fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> String {
     for finding in findings {
         let severity = finding.severity.name();
@@ -234,7 +236,7 @@ fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> Strin
     shown
 }
 
-/// Program, line and text of a block, and of the calls that led to it, innermost first.
+/// Returns program, line and text of a block, and of the calls that led to it, innermost first.
 fn places(run: &Run, place: &Backtrace) -> Vec<(String, u32, String)> {
     let calls = std::iter::successors(place.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
     let blocks = std::iter::once(place.block).chain(calls.map(|call| call.calling_block));

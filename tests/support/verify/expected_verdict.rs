@@ -1,52 +1,52 @@
-//! What `verify` has to find in a program, in the words of a case's `expect.txt`.
+//! Expected verdict of `verify` on a program, in the words of a case's `expect.txt`.
 //!
-//! Each line is one thing; a line that begins with `#` explains how its numbers were worked out.
+//! Each line is one item; a line that begins with `#` explains how its numbers are computed.
 //!
 //! | line | holds when |
 //! |---|---|
-//! | `machine grinder.toml` | the machine file in `suite/verify/` that the program runs on |
-//! | `reference burr.toml` | the reference there that it is compared with |
-//! | `FAIL 16 of 28, 12 missing, 16 extra, 28 folded` | the verdict; how many wanted holes are good, or how many flutes there are; the counts that aren't 0; folded are the findings on single holes for which one on several of them stands |
+//! | `machine grinder.toml` | always: the program runs on this machine file in `suite/verify/` |
+//! | `reference burr.toml` | always: the program is compared with this reference there |
+//! | `FAIL 16 of 28, 12 missing, 16 extra, 28 folded` | the verdict, the number of good nominal holes or of flutes, and the counts other than 0 agree; folded findings are those on single holes that one on several holes replaces |
 //! | `error row-group at O5:6 with 4.069 9.069` | the next finding: its severity, its code, its line, the calls that led there (`from O1:7`), its hole (`of r1h0`); its message or its notes have these numbers and names |
 //! | `missing r3h0 r3h1` | these holes are missing, in the order of the reference |
 //! | `hole r1h0 phi=0.70 depth=+1.000` | deviations of that hole: `phi`, `entry`, `bottom`, `tilt`, `depth`, `dx`, `dy`, `dz`; `hole *` is every one that was found |
-//! | `neighbours six=7 inner=12 nearest=18.138` | how many of the inner holes have six neighbours; least and greatest distance (`farthest`) |
-//! | `burr index=0.300 passes=5` | of flutes: `contact`, `helix_min`, `helix_max`, `index`, `speed_min`, `speed_max`, `nearest`, `passes`, `moves` |
+//! | `neighbours six=7 inner=12 nearest=18.138` | the nominal number of inner holes, and the number of those that are drilled and have six neighbours; least and greatest distance (`farthest`) |
+//! | `burr index=0.300 passes=5` | numbers of the flutes: `contact`, `helix_min`, `helix_max`, `index`, `speed_min`, `speed_max`, `nearest`, `passes`, `moves` |
 //! | `made x=10.000 … depth=7.000 at O1:8 by T1` | without a reference: the next hole, by `x`, `y`, `z`, `i`, `j`, `k`, `depth` |
 //! | `not-checked with Z 29` | a line on what isn't checked has these numbers and names |
-//! | `layout` | all of it, printed for people, is `verdict.snap` |
+//! | `layout` | the printed verdict is `verdict.snap` |
 //!
 //! The findings and the holes made are all there are, in this order. A number agrees to half a unit of its last decimal, one
 //! without a point exactly.
 
-/// What came out of a run.
-pub(crate) struct Outcome {
-    /// Verdict and counts; none without a reference.
+/// Verdict of a run, in the form of the lines of `expect.txt`.
+pub(crate) struct ActualVerdict {
+    /// Verdict and counts; `None` without a reference.
     pub(crate) summary: Option<String>,
     pub(crate) findings: Vec<FindingLine>,
     pub(crate) missing: Vec<String>,
     pub(crate) not_checked: Vec<String>,
-    /// Numbers by what they are of.
+    /// Numbers by subject.
     pub(crate) facts: Vec<(String, Facts)>,
-    /// The holes of a program without a reference: place and numbers.
+    /// Holes of a program without a reference: block and numbers.
     pub(crate) made: Vec<(String, Facts)>,
 }
 
 type Facts = Vec<(&'static str, f64)>;
 
-/// A finding: severity, code and place as a line of `expect.txt` has them, and message and notes.
+/// A finding: severity, code and block as in a line of `expect.txt`, and message and notes.
 pub(crate) struct FindingLine {
     pub(crate) head: String,
     pub(crate) text: String,
 }
 
-/// Whether `expect.txt` has a printed layout to compare.
+/// Returns true if `expect.txt` has the line `layout`.
 pub(crate) fn has_layout(expected: &str) -> bool {
     expected.lines().any(|line| line == "layout")
 }
 
-impl Outcome {
-    /// What differs from the lines of `expect.txt`, one line each.
+impl ActualVerdict {
+    /// Returns the differences from the lines of `expect.txt`, one line each.
     pub(crate) fn differences(&self, expected: &str) -> Vec<String> {
         let mut wrong = Vec::new();
         let (mut verdicts, mut findings, mut made) = (Vec::new(), Vec::new(), Vec::new());
@@ -131,7 +131,7 @@ impl Outcome {
     }
 }
 
-/// `facts` are of the form `key=number`.
+/// Compares numbers with `facts` of the form `key=number`.
 fn compare(subject: &str, facts: &str, found: &[(&'static str, f64)], wrong: &mut Vec<String>) {
     for fact in facts.split_whitespace() {
         let (key, number) = fact.split_once('=').unwrap();
@@ -143,7 +143,7 @@ fn compare(subject: &str, facts: &str, found: &[(&'static str, f64)], wrong: &mu
     }
 }
 
-/// Whether a value is the stated number, to half a unit of its last decimal.
+/// Returns true if a value is the stated number, to half a unit of its last decimal.
 fn agrees(value: f64, stated: &str) -> bool {
     let number: f64 = stated.parse().unwrap_or_else(|_| panic!("{stated} is no number"));
     let decimals = stated.split_once('.').map_or(0, |(_, decimals)| decimals.len());
@@ -151,7 +151,7 @@ fn agrees(value: f64, stated: &str) -> bool {
     (value - number).abs() <= half + 1e-9
 }
 
-/// Whether a text has a number, or a name such as `T1`.
+/// Returns true if a text has a number, or a name such as `T1`.
 fn mentions(text: &str, stated: &str) -> bool {
     if stated.parse::<f64>().is_ok() {
         return numbers(text).iter().any(|number| agrees(*number, stated));
@@ -160,7 +160,7 @@ fn mentions(text: &str, stated: &str) -> bool {
         .any(|word| word.trim_end_matches('.') == stated)
 }
 
-/// The numbers in a text, with the signs that stand right before them.
+/// Returns the numbers in a text, each with the sign directly before it.
 fn numbers(text: &str) -> Vec<f64> {
     let mut all = Vec::new();
     let mut rest = text;
