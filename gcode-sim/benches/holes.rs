@@ -32,7 +32,7 @@ impl Case {
         assert_eq!(reference.holes.len() as u32, rows * along);
         let program = program(&reference, along as usize);
         let mut request = Request::new("O1.nc", program.into_bytes(), machine);
-        request.conduct = reference.process_limits.clone();
+        request.process_limits = reference.process_limits.clone();
         Self { request, reference }
     }
 

@@ -124,7 +124,7 @@ fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
     if let (Some(surface), Some(probe)) = (surface, &machine.probe) {
         return read_stylus(&request, &mut NoLibrary, surface, probe.radius).unwrap().readings.findings;
     }
-    request.conduct =
+    request.process_limits =
         reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     match reference {

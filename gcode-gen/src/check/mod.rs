@@ -107,7 +107,7 @@ fn check_holes(
     stem: &str,
     reference: &Reference,
 ) -> Result<CheckedPackage, CheckError> {
-    request.conduct = reference.process_limits.clone();
+    request.process_limits = reference.process_limits.clone();
     let simulation = simulate(&request, &mut Programs(package), reference.surface)
         .map_err(|e| broken_package("the main program", &e))?;
     let verdict = simulation.verify(reference, Tolerances::of(reference, None), &request.machine);

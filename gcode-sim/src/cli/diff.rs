@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     for request in [&mut old_request, &mut new_request] {
-        request.conduct =
+        request.process_limits =
             reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     }
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
@@ -138,7 +138,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     Ok(status)
 }
 
-/// Returns the findings for a code review: the changes at their places in the new revision, and its alarm or
+/// Returns the findings for a code review: the changes at their locations in the new revision, and its alarm or
 /// limit.
 fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding> {
     let (files, sources) = (new.files(), new.simulation.run.control.memory().sources());

@@ -143,11 +143,11 @@ mod tests {
 
     #[test]
     fn an_unreadable_folder_is_reported() {
-        let place = tempfile::tempdir().unwrap();
-        let mut folders = Folders::new(&place.path().join("main.nc"), &[]).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let mut folders = Folders::new(&folder.path().join("main.nc"), &[]).unwrap();
         assert!(folders.program(1).is_none());
         assert_eq!(folders.read_error(), None, "an empty folder has been read");
-        place.close().unwrap();
+        folder.close().unwrap();
         assert!(folders.program(1).is_none());
         let error = folders.read_error().unwrap();
         assert!(error.contains("cannot be read"), "{error}");

@@ -73,8 +73,8 @@ pub fn write_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(),
             write_through(path, bytes).map_err(|e| unwritable(&e))?;
             continue;
         }
-        let place = place(path);
-        let folder = match place.parent() {
+        let target = resolve_link(path);
+        let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
@@ -87,10 +87,10 @@ pub fn write_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(),
             .map_err(|e| unwritable(&plain(&e)))?;
         file.write_all(bytes).map_err(|e| unwritable(&e))?;
         allow_reading(file.as_file()).map_err(|e| unwritable(&e))?;
-        waiting.push((place, file));
+        waiting.push((target, file));
     }
-    for (place, file) in waiting {
-        file.persist(&place).map_err(|e| UsageError::unwritable(&place, e.error))?;
+    for (target, file) in waiting {
+        file.persist(&target).map_err(|e| UsageError::unwritable(&target, e.error))?;
     }
     Ok(())
 }
@@ -114,7 +114,7 @@ fn write_through(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 }
 
 /// Resolves a link, so that it stays a link.
-fn place(path: &Path) -> PathBuf {
+fn resolve_link(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 

@@ -8,9 +8,9 @@ use super::UsageError;
 /// Refuses a `result` that is one of `inputs`, with links resolved.
 pub fn check_not_input(result: &Path, inputs: &[&Path]) -> Result<(), UsageError> {
     // A path that cannot be resolved does not exist yet.
-    let Ok(place) = result.canonicalize() else { return Ok(()) };
-    let is_it = |input: &&&Path| input.canonicalize().is_ok_and(|other| other == place);
-    match inputs.iter().find(is_it) {
+    let Ok(result_path) = result.canonicalize() else { return Ok(()) };
+    let is_result = |input: &&&Path| input.canonicalize().is_ok_and(|other| other == result_path);
+    match inputs.iter().find(is_result) {
         None => Ok(()),
         Some(input) => {
             let (result, input) = (result.display(), input.display());

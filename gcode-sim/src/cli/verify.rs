@@ -132,7 +132,7 @@ fn holes(
     reference: &Reference,
     tolerances: Tolerances,
 ) -> Result<ExitStatus, UsageError> {
-    request.conduct = reference.process_limits.clone();
+    request.process_limits = reference.process_limits.clone();
     let machine = request.machine.clone();
     let name = render::name(request);
     let print = |simulation: &Simulation, verdict: &Verdict| {

@@ -127,12 +127,12 @@ struct Path {
 fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Path {
     let mut has_other_rapids = false;
     let mut pieces: BTreeMap<Pen, Vec<Vec<[f64; 3]>>> = BTreeMap::new();
-    for (place, side) in sides.into_iter().enumerate() {
-        let different: BTreeSet<usize> = compared.steps[place].iter().copied().collect();
+    for (side_index, side) in sides.into_iter().enumerate() {
+        let different: BTreeSet<usize> = compared.steps[side_index].iter().copied().collect();
         let legs = side.record.path(machine, MAX_MOVES, MAX_POINTS);
         has_other_rapids |= legs.iter().any(|leg| leg.kind == "rapid" && different.contains(&leg.step));
         for leg in legs.iter().filter(|leg| leg.kind != "rapid" && !leg.is_of_hole) {
-            let pen = match (different.contains(&leg.step), place) {
+            let pen = match (different.contains(&leg.step), side_index) {
                 (false, 0) => continue,
                 (false, _) => Pen::Unchanged,
                 (true, 0) => Pen::Old,

@@ -107,9 +107,9 @@ impl ChangesReport {
         }
         let _ = writeln!(text, "changed blocks that neither run executed (effect unknown): {}", all.len());
         for UnexecutedChange { old, new } in all.iter().take(SHOWN) {
-            for (word, place) in [("old", old), ("new", new)] {
-                let Some(place) = place else { continue };
-                let _ = writeln!(text, "    {word} {}", line(place));
+            for (word, location) in [("old", old), ("new", new)] {
+                let Some(location) = location else { continue };
+                let _ = writeln!(text, "    {word} {}", line(location));
             }
         }
         if SHOWN < all.len() {
@@ -152,34 +152,34 @@ fn append_entry(text: &mut String, change: &Change, indent: &str) {
         let more = change.also.len() - SHOWN;
         let _ = writeln!(text, "{indent}    … and {more} more: --format json has them all");
     }
-    for (word, place) in [("old", &change.old), ("new", &change.new)] {
-        let Some(place) = place else { continue };
-        let _ = writeln!(text, "{indent}    {word} {}", line(place));
-        for call in &place.calls {
+    for (word, location) in [("old", &change.old), ("new", &change.new)] {
+        let Some(location) = location else { continue };
+        let _ = writeln!(text, "{indent}    {word} {}", line(location));
+        for call in &location.calls {
             let _ = writeln!(text, "{indent}        called from {}", line(call));
         }
     }
 }
 
 /// Returns `O8101:12  G1 X#11`.
-fn line(place: &BlockLocation) -> String {
-    format!("{}:{}  {}", place.program, place.line, place.block)
+fn line(location: &BlockLocation) -> String {
+    format!("{}:{}  {}", location.program, location.line, location.block)
 }
 
-/// Returns a change for a code review, at its place in the new revision; `files` are those of the programs by name.
+/// Returns a change for a code review, at its location in the new revision; `files` are those of the programs by name.
 pub(crate) fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
     let Change { code, message, old, new, anchor: near, also } = change;
     // A deleted block has no line in the new file: the message gives its old line.
     let was = old.as_ref().filter(|_| new.is_none());
-    let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
+    let was = was.map(|location| format!(" (was {}:{} {})", location.program, location.line, location.block));
     let also: String =
         also.iter().map(|effect| format!("\nalso {}: {}", effect.code, effect.message)).collect();
-    let calls = new.as_ref().map_or(&[][..], |place| &place.calls);
+    let calls = new.as_ref().map_or(&[][..], |location| &location.calls);
     Finding {
         code: code.to_string().into(),
         severity: Severity::Error,
         message: format!("{before}{message}{}{also}", was.unwrap_or_default()),
-        at: new.as_ref().or(near.as_ref()).and_then(|place| place_in(place, files)),
+        at: new.as_ref().or(near.as_ref()).and_then(|location| location_in(location, files)),
         related: calls_in(calls, files),
     }
 }
@@ -189,12 +189,15 @@ pub(super) fn calls_in(
     calls: &[BlockLocation],
     files: &BTreeMap<String, String>,
 ) -> Vec<(FileLocation, String)> {
-    let called = |call| Some((place_in(call, files)?, "called from here".to_owned()));
+    let called = |call| Some((location_in(call, files)?, "called from here".to_owned()));
     calls.iter().filter_map(called).collect()
 }
 
 /// Returns the line of a block in its file; `None` if the file is unknown.
-pub(super) fn place_in(place: &BlockLocation, files: &BTreeMap<String, String>) -> Option<FileLocation> {
-    let file = files.get(&place.program)?.clone();
-    Some(FileLocation { file, line: Some(place.line), column: None })
+pub(super) fn location_in(
+    location: &BlockLocation,
+    files: &BTreeMap<String, String>,
+) -> Option<FileLocation> {
+    let file = files.get(&location.program)?.clone();
+    Some(FileLocation { file, line: Some(location.line), column: None })
 }

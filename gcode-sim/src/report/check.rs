@@ -1,4 +1,4 @@
-//! The result of `check`: findings with their places, and a line that counts them.
+//! The result of `check`: findings with their locations, and a line that counts them.
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -49,7 +49,7 @@ impl CheckReport {
 
 fn report(checked: &CheckResult, finding: &Diagnostic) -> FindingReport {
     let sources = checked.memory.sources();
-    let block = finding.backtrace.as_ref().map(|place| place.block);
+    let block = finding.backtrace.as_ref().map(|backtrace| backtrace.block);
     let at = finding.span.or(block);
     let file = |span: Span| sources.get(span.source).name.clone();
     FindingReport {

@@ -20,14 +20,14 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
         .primary_title(escape(&diagnostic.message))
         .id(diagnostic.code())
         .elements(Vec::<Snippet<'_, Annotation<'_>>>::new());
-    if let Some(place) = &diagnostic.backtrace {
-        group = group.element(snippet(sources, diagnostic.span.unwrap_or(place.block)));
-        for call in calls(place, sources) {
+    if let Some(backtrace) = &diagnostic.backtrace {
+        group = group.element(snippet(sources, diagnostic.span.unwrap_or(backtrace.block)));
+        for call in calls(backtrace, sources) {
             group = group.element(Level::NOTE.no_name().message(call));
         }
     }
     for (span, label) in &diagnostic.labels {
-        group = group.element(Level::NOTE.message(format!("{}: {label}", place_name(sources, *span))));
+        group = group.element(Level::NOTE.message(format!("{}: {label}", format_location(sources, *span))));
     }
     for note in &diagnostic.notes {
         group = group.element(Level::NOTE.message(escape(note)));
@@ -47,20 +47,20 @@ fn escape(text: &str) -> String {
 }
 
 /// Returns `O8101.nc:12`.
-pub fn place_name(sources: &Sources, span: Span) -> String {
+pub fn format_location(sources: &Sources, span: Span) -> String {
     format!("{}:{}", sources.get(span.source).name, sources.line_column(span).line)
 }
 
 /// Returns the chain of calls, innermost first, one line each.
-fn calls(place: &Backtrace, sources: &Sources) -> Vec<String> {
+fn calls(backtrace: &Backtrace, sources: &Sources) -> Vec<String> {
     let mut lines = Vec::new();
     let mut left = 0;
-    let mut next: &CallChain = &place.calls;
+    let mut next: &CallChain = &backtrace.calls;
     while let Some(call) = next {
         if lines.len() < CALLS_SHOWN {
             lines.push(format!(
                 "called from {}: {}",
-                place_name(sources, call.calling_block),
+                format_location(sources, call.calling_block),
                 escape(sources.text(call.calling_block).trim())
             ));
         } else {

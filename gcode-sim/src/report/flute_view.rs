@@ -60,7 +60,7 @@ fn flute_point(profile: &Profile, at: Point3<f64>) -> FlutePoint {
     FlutePoint { position: at.coords.into(), normal: profile.normal(&at).into_inner().into() }
 }
 
-/// Returns the places of the findings; several at one place of a pass are merged.
+/// Returns the sites of the findings; several at one site of a pass are merged.
 fn faults(profile: &Profile, verdict: &FluteVerdict) -> Vec<Fault> {
     let mut faults: Vec<Fault> = Vec::new();
     for finding in &verdict.findings {

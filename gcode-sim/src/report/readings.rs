@@ -98,7 +98,7 @@ impl ReadingsReport {
         let whole = ended && findings.iter().all(|finding| finding.severity < Severity::Error);
         let verdict = tolerance.map(|t| if whole && within(t) { Answer::Pass } else { Answer::Fail });
         let rows = findings.iter().map(|finding| {
-            let at = finding.backtrace.as_ref().map(|place| following.run.locate(place.block));
+            let at = finding.backtrace.as_ref().map(|backtrace| following.run.locate(backtrace.block));
             let (program, line) = at.unzip();
             let (code, message) = (finding.code().into_owned(), finding.message.clone());
             FindingRow { code, severity: finding.severity.name(), message, program, line }

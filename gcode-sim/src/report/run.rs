@@ -264,8 +264,9 @@ impl RunReport {
         }
         for step in self.path.iter().flatten() {
             let feed = step.feed.map(|f| format!("  F{f}")).unwrap_or_default();
-            let place = format!("{}:{}", step.program, step.line);
-            let _ = writeln!(text, "{place:<14} {:<6} {}{feed}  {:.2} s", step.kind, step.to, step.seconds);
+            let location = format!("{}:{}", step.program, step.line);
+            let _ =
+                writeln!(text, "{location:<14} {:<6} {}{feed}  {:.2} s", step.kind, step.to, step.seconds);
         }
         text
     }

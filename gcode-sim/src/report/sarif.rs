@@ -1,4 +1,4 @@
-//! Findings as SARIF 2.1.0 for code reviews, each with its rule, its place and the rule's page.
+//! Findings as SARIF 2.1.0 for code reviews, each with its rule, its location and the rule's page.
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::explain;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::source::{Sources, Span};
 
-/// One finding of any command, with its place in a file.
+/// One finding of any command, with its location in a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
     /// Name of its rule: a code that `explain` knows.
@@ -16,11 +16,11 @@ pub(crate) struct Finding {
     pub(crate) severity: Severity,
     pub(crate) message: String,
     pub(crate) at: Option<FileLocation>,
-    /// Further places, each with its text.
+    /// Further locations, each with its text.
     pub(crate) related: Vec<(FileLocation, String)>,
 }
 
-/// A place in a file; lines and columns count from 1.
+/// A location in a file; lines and columns count from 1.
 #[derive(Clone, Debug)]
 pub(crate) struct FileLocation {
     /// The file's name as the user gave it.
@@ -30,17 +30,18 @@ pub(crate) struct FileLocation {
 }
 
 impl Finding {
-    /// Converts a diagnostic, with its labels and calls as further places.
+    /// Converts a diagnostic, with its labels and calls as further locations.
     pub(crate) fn of(diagnostic: &Diagnostic, sources: &Sources) -> Self {
         let at = |span: Span| {
-            let place = sources.line_column(span);
+            let position = sources.line_column(span);
             let file = sources.get(span.source).name.clone();
-            FileLocation { file, line: Some(place.line), column: Some(place.column) }
+            FileLocation { file, line: Some(position.line), column: Some(position.column) }
         };
-        let place = diagnostic.backtrace.as_ref();
-        let chain = std::iter::successors(place.and_then(|place| place.calls.as_deref()), |call| {
-            call.outer_calls.as_deref()
-        });
+        let backtrace = diagnostic.backtrace.as_ref();
+        let chain =
+            std::iter::successors(backtrace.and_then(|backtrace| backtrace.calls.as_deref()), |call| {
+                call.outer_calls.as_deref()
+            });
         let calls = chain.map(|call| (at(call.calling_block), "called from here".to_owned()));
         let labels = diagnostic.labels.iter().map(|(span, text)| (at(*span), text.clone()));
         let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
@@ -48,7 +49,7 @@ impl Finding {
             code: diagnostic.code(),
             severity: diagnostic.severity,
             message: format!("{}{help}", diagnostic.message),
-            at: diagnostic.span.or(place.map(|place| place.block)).map(at),
+            at: diagnostic.span.or(backtrace.map(|backtrace| backtrace.block)).map(at),
             related: labels.chain(calls).collect(),
         }
     }
@@ -148,12 +149,12 @@ struct Region {
 
 /// Builds the log of all findings. Files below `root`, the working directory, have relative names.
 pub(crate) fn log(findings: &[Finding], root: &str) -> Log {
-    let mut places: BTreeMap<&str, usize> = findings.iter().map(|finding| (&*finding.code, 0)).collect();
-    places.values_mut().enumerate().for_each(|(number, place)| *place = number);
-    let rules = places.keys().map(|code| rule(code)).collect();
+    let mut indices: BTreeMap<&str, usize> = findings.iter().map(|finding| (&*finding.code, 0)).collect();
+    indices.values_mut().enumerate().for_each(|(number, index)| *index = number);
+    let rules = indices.keys().map(|code| rule(code)).collect();
     let outcome = |finding: &Finding| Outcome {
         rule_id: finding.code.to_string(),
-        rule_index: places[&*finding.code],
+        rule_index: indices[&*finding.code],
         level: match finding.severity {
             Severity::Note => "note",
             Severity::Warning => "warning",

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::changes::{append_entries, calls_in, change_found, place_in};
+use super::changes::{append_entries, calls_in, change_found, location_in};
 use super::figures::count;
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::alarm::kinds::PS0076;
@@ -93,7 +93,8 @@ pub(crate) struct FirstFailure {
     pub(crate) code: String,
     pub(crate) message: String,
     /// The block that causes it, if any.
-    pub(crate) place: Option<BlockLocation>,
+    #[serde(rename = "place")]
+    pub(crate) location: Option<BlockLocation>,
 }
 
 impl TestReport {
@@ -218,12 +219,12 @@ impl CaseReport {
 
     fn findings(&self) -> Vec<Finding> {
         let whole = || self.file.clone().map(|file| FileLocation { file, line: Some(1), column: None });
-        let found = |code: &str, message: String, place: Option<&BlockLocation>| Finding {
+        let found = |code: &str, message: String, location: Option<&BlockLocation>| Finding {
             code: code.to_owned().into(),
             severity: Severity::Error,
             message: format!("{}: {message}", self.name),
-            at: place.and_then(|place| place_in(place, &self.files)).or_else(whole),
-            related: place.map_or_else(Vec::new, |place| calls_in(&place.calls, &self.files)),
+            at: location.and_then(|location| location_in(location, &self.files)).or_else(whole),
+            related: location.map_or_else(Vec::new, |location| calls_in(&location.calls, &self.files)),
         };
         let mut all = Vec::new();
         match self.answer {
@@ -241,8 +242,8 @@ impl CaseReport {
             let found = change_found(change, &before, &self.files);
             all.push(Finding { at: found.at.or_else(whole), ..found });
         }
-        if let Some(FirstFailure { code, message, place }) = &self.against {
-            all.push(found(code, message.clone(), place.as_ref()));
+        if let Some(FirstFailure { code, message, location }) = &self.against {
+            all.push(found(code, message.clone(), location.as_ref()));
         }
         all
     }

@@ -51,7 +51,7 @@ pub fn of_verdict(
     let by_id: BTreeMap<_, _> = reference.holes.iter().map(|hole| (hole.id.as_deref(), hole)).collect();
     let nominal = |id: &str| by_id.get(&Some(id)).copied();
     let judged = verdict.holes.iter().map(|hole| {
-        let remark = hole.objections.first().map(|code| match *code {
+        let remark = hole.error_codes.first().map(|code| match *code {
             "hole-depth" => format!("depth {}", with_sign(hole.depth_error)),
             other => other.trim_start_matches("hole-").to_owned(),
         });

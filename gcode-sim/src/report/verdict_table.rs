@@ -129,7 +129,7 @@ fn off(hole: &HoleVerdict) -> [f64; 3] {
 }
 
 fn remarks_of(hole: &HoleVerdict) -> String {
-    let why: Vec<_> = hole.objections.iter().map(|code| code.trim_start_matches("hole-")).collect();
+    let why: Vec<_> = hole.error_codes.iter().map(|code| code.trim_start_matches("hole-")).collect();
     if hole.ok { "pass".to_owned() } else { format!("FAIL {}", why.join(", ")) }
 }
 
@@ -239,7 +239,7 @@ mod tests {
     use super::*;
     use gcode_part::Origin;
 
-    fn hole(id: &str, phi: f64, objections: &[&'static str]) -> HoleVerdict {
+    fn hole(id: &str, phi: f64, error_codes: &[&'static str]) -> HoleVerdict {
         let placed = |x: f64| HoleGeometry {
             entry: [x, 674.93, 0.0],
             axis: [0.0, 1.0, 0.0],
@@ -253,7 +253,7 @@ mod tests {
             at_bottom: phi / 2.0,
             depth_error: -0.00002,
             drilled_index: 0,
-            ok: objections.is_empty(),
+            ok: error_codes.is_empty(),
             tilt: 0.0,
             out_of_tolerance: (phi - 0.1).max(0.0),
             rounding: 0.0211,
@@ -262,7 +262,7 @@ mod tests {
             from: Origin { program: "O8101".into(), line: 31, tool: Some(2) },
             calls: vec![Origin { program: "O8100".into(), line: 20, tool: None }],
             neighbours: None,
-            objections: objections.to_vec(),
+            error_codes: error_codes.to_vec(),
         }
     }
 

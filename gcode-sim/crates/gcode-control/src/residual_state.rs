@@ -1,7 +1,7 @@
 //! State that a run leaves for the next program: variables, modes, offsets, parameters, outputs and counters.
 use super::control::Control;
 use super::data::{STANDARD_SYSTEMS, system_index};
-use gcode_lang::control::ParameterId;
+use gcode_lang::control::{Dialect, ParameterId};
 use gcode_lang::program::modes::{GROUPS, WorkSystem};
 
 /// Value that is no longer as it is when the control is switched on.
@@ -39,6 +39,12 @@ pub fn mode_name(group: u32) -> String {
     format!("the mode of group {group:02}")
 }
 
+/// Returns the name of an additional work coordinate system by its P: `G54.1 P9`, on a Haas `G154 P9`.
+pub fn additional_system_name(dialect: Dialect, number: usize) -> String {
+    let code = if dialect == Dialect::HaasNgc { "G154" } else { "G54.1" };
+    format!("{code} P{number}")
+}
+
 impl Control {
     /// Returns all values that aren't vacant or 0, and all modes.
     pub fn residual_values(&self) -> Vec<ResidualValue> {
@@ -60,7 +66,10 @@ impl Control {
         let system_name = |index| match index {
             0 => "the external work offset".to_owned(),
             _ if index < STANDARD_SYSTEMS => format!("G{}", 53 + index),
-            _ => format!("G54.1 P{}", index - system_index(WorkSystem::Additional(0))),
+            _ => {
+                let number = index - system_index(WorkSystem::Additional(0));
+                additional_system_name(data.settings.dialect, number)
+            }
         };
         let systems =
             data.offsets.work.iter().enumerate().map(|(index, values)| (system_name(index), values));

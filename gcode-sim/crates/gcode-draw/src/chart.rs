@@ -79,8 +79,8 @@ impl Chart {
         for (index, (graph, range)) in self.graphs.iter().zip(&ranges).enumerate() {
             let frame = Rect { left: west, top: top + head, right: east, bottom: top + head + tall };
             words.write(px(area.left, top + text), Align::Left, text, soft, &graph.y_label, area.width());
-            let place = ChartArea { frame, x: &x, range };
-            graph.draw_band(&place, words);
+            let area = ChartArea { frame, x: &x, range };
+            graph.draw_band(&area, words);
             let grid = palette::pen(Pen::Grid, text);
             for at in across.all().map(x) {
                 words.sheet.commands.push(upright(&frame, at, grid));
@@ -92,8 +92,8 @@ impl Chart {
                     words.write_if_free(px(x(*at), frame.top - 0.5 * text), Align::Centre, text, soft, name);
                 }
             }
-            self.draw_gaps(&place, words);
-            graph.draw(&place, words);
+            self.draw_gaps(&area, words);
+            graph.draw(&area, words);
             top = frame.bottom + gap;
         }
         let bottom = top - gap;
@@ -106,12 +106,12 @@ impl Chart {
     }
 
     /// Draws two vertical lines for each gap and a thick line at zero between them.
-    fn draw_gaps(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
-        let (text, frame) = (words.text_size, place.frame);
+    fn draw_gaps(&self, area: &ChartArea<'_>, words: &mut Words<'_>) {
+        let (text, frame) = (words.text_size, area.frame);
         let color = palette::status_colour(HoleStatus::Bad);
         let edge = Ink::dashed(0.1 * text, color, [0.25 * text, 0.35 * text]);
-        let level = place.px([0.0, 0.0]).y.clamp(frame.top, frame.bottom);
-        for [from, to] in self.gaps.iter().map(|gap| gap.map(place.x)) {
+        let level = area.px([0.0, 0.0]).y.clamp(frame.top, frame.bottom);
+        for [from, to] in self.gaps.iter().map(|gap| gap.map(area.x)) {
             words.sheet.commands.extend([from, to].map(|x| upright(&frame, x, edge)));
             let along = Ink::solid(0.4 * text, color);
             words.sheet.commands.push(DrawCommand::line(px(from, level), px(to, level), along));
@@ -140,8 +140,8 @@ impl ChartArea<'_> {
 }
 
 impl Graph {
-    fn draw_band(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
-        let edge = |which: usize| self.band.iter().map(move |at| place.px([at[0], at[which]]));
+    fn draw_band(&self, area: &ChartArea<'_>, words: &mut Words<'_>) {
+        let edge = |which: usize| self.band.iter().map(move |at| area.px([at[0], at[which]]));
         if 1 < self.band.len() {
             let (low, high): (Vec<Px>, Vec<Px>) = (edge(1).collect(), edge(2).collect());
             let points = low.iter().chain(high.iter().rev()).copied().collect();
@@ -151,43 +151,43 @@ impl Graph {
         }
     }
 
-    fn draw(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
-        let (text, ticks) = (words.text_size, &place.range.ticks);
+    fn draw(&self, area: &ChartArea<'_>, words: &mut Words<'_>) {
+        let (text, ticks) = (words.text_size, &area.range.ticks);
         for at in ticks.all() {
-            words.sheet.commands.push(place.level(at, palette::pen(Pen::Grid, text)));
-            let beside = px(place.frame.left - 0.5 * text, place.px([0.0, at]).y + 0.36 * text);
-            let room = place.frame.left;
+            words.sheet.commands.push(area.level(at, palette::pen(Pen::Grid, text)));
+            let beside = px(area.frame.left - 0.5 * text, area.px([0.0, at]).y + 0.36 * text);
+            let room = area.frame.left;
             words.write(beside, Align::Right, text, palette::SOFT_TEXT, &ticks.name(at), room);
         }
         if self.has_zero_line {
-            words.sheet.commands.push(place.level(0.0, Ink::solid(0.08 * text, palette::TEXT)));
+            words.sheet.commands.push(area.level(0.0, Ink::solid(0.08 * text, palette::TEXT)));
         }
         for curve in &self.curves {
-            let Range { low, high, .. } = *place.range;
+            let Range { low, high, .. } = *area.range;
             for piece in between(&curve.points, low, high) {
-                let points = piece.into_iter().map(|point| place.px(point)).collect();
+                let points = piece.into_iter().map(|point| area.px(point)).collect();
                 words.sheet.commands.push(DrawCommand::path(points, palette::pen(curve.pen, text)));
             }
         }
         for sign in &self.markers {
-            let at = place.px(sign.position);
+            let at = area.px(sign.position);
             words.sheet.commands.extend(symbol::status_sign(sign.status, at, 0.55 * text));
-            self.name(sign, at, place, words);
+            self.name(sign, at, area, words);
         }
     }
 
     /// Writes a marker's name where no curve runs: beside the symbol, else above or below it.
-    fn name(&self, sign: &ChartMarker, at: Px, place: &ChartArea<'_>, words: &mut Words<'_>) {
+    fn name(&self, sign: &ChartMarker, at: Px, area: &ChartArea<'_>, words: &mut Words<'_>) {
         let text = words.text_size;
         let beside = [(Align::Left, 0.8), (Align::Right, -0.8)];
         let level = beside.map(|(align, x)| (align, px(at.x + x * text, at.y + 0.36 * text)));
         let above = beside.map(|(align, x)| (align, px(at.x - x * text, at.y - text)));
         let below = beside.map(|(align, x)| (align, px(at.x - x * text, at.y + 1.6 * text)));
         let is_free = |(align, at): &(Align, Px)| {
-            let rect = words.place(*at, *align, text, &sign.name);
+            let rect = words.rect(*at, *align, text, &sign.name);
             let pairs = self.curves.iter().flat_map(|curve| curve.points.windows(2));
-            let mut lines = pairs.map(|pair| Obstacle::Segment(place.px(pair[0]), place.px(pair[1])));
-            place.frame.contains(&rect) && !lines.any(|line| line.hits(&rect))
+            let mut lines = pairs.map(|pair| Obstacle::Segment(area.px(pair[0]), area.px(pair[1])));
+            area.frame.contains(&rect) && !lines.any(|line| line.hits(&rect))
         };
         if let Some((align, at)) = [level, above, below].into_iter().flatten().find(is_free) {
             words.write_if_free(at, align, text, palette::TEXT, &sign.name);
@@ -280,7 +280,7 @@ mod tests {
     fn the_range_of_a_graph_contains_its_band_but_no_clipped_curve() {
         let curve = |y: f64, guest: bool| Curve {
             points: vec![[0.0, y], [9.0, y]],
-            pen: Pen::First,
+            pen: Pen::Nominal,
             is_clipped: guest,
         };
         let graph = Graph {

@@ -115,18 +115,18 @@ impl DeviationDials {
 /// Returns the distance from each hole to its nearest neighbour, pixels. An extra hole at the position of
 /// another does not count: its symbol moves aside.
 fn gaps(scene: &Scene, frame: &Frame) -> Vec<f64> {
-    let places: Vec<Px> = scene.marks.iter().map(|mark| frame.scale.px(mark.position)).collect();
-    let flat = |place: &Px| Point3::new(place.x, place.y, 0.0);
-    let tree = PointTree::new(places.iter().map(flat));
+    let points: Vec<Px> = scene.marks.iter().map(|mark| frame.scale.px(mark.position)).collect();
+    let flat = |point: &Px| Point3::new(point.x, point.y, 0.0);
+    let tree = PointTree::new(points.iter().map(flat));
     let is_extra = |index: usize| scene.marks[index].status == HoleStatus::Extra;
-    let gap = |(index, place): (usize, &Px)| {
+    let gap = |(index, point): (usize, &Px)| {
         let counts = |other: usize, distance: f64| {
             other != index
                 && (MIN_SIGN_DISTANCE * frame.text_size <= distance || !is_extra(index) && !is_extra(other))
         };
-        tree.nearest_matching(&flat(place), &counts).map_or(f64::INFINITY, |(_, distance)| distance)
+        tree.nearest_matching(&flat(point), &counts).map_or(f64::INFINITY, |(_, distance)| distance)
     };
-    places.iter().enumerate().map(gap).collect()
+    points.iter().enumerate().map(gap).collect()
 }
 
 #[cfg(test)]

@@ -144,7 +144,7 @@ pub(super) fn caption_strokes(
         let Some(caption) = &stroke.caption else { continue };
         let lines = vec![caption.clone()];
         let size = text_box(&lines, frame);
-        let places: Vec<Px> = match &stroke.shape {
+        let points: Vec<Px> = match &stroke.shape {
             Shape::Circle { centre, radius } => {
                 let (centre, radius) = (frame.scale.px(*centre), radius * frame.scale.factor);
                 let angles = (0..48).map(|i| Deg(f64::from(i) * 7.5 + 225.0));
@@ -154,13 +154,13 @@ pub(super) fn caption_strokes(
             // The number of one path must not cover another path, to which a reader would assign it.
             Shape::Line(_) if stroke.pen.is_path() => {
                 let own = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke));
-                let mut places = own.into_iter().flat_map(|path| path.points.iter().copied());
-                let apart = |place: &Px| {
-                    let rect = Rect::around(*place, size).grown(0.1 * frame.text_size);
+                let mut points = own.into_iter().flat_map(|path| path.points.iter().copied());
+                let apart = |point: &Px| {
+                    let rect = Rect::around(*point, size).grown(0.1 * frame.text_size);
                     let mut others = paths.iter().filter(|path| !std::ptr::eq(path.stroke, stroke));
                     field.is_free(&rect) && !others.any(|path| path.runs_through(&rect))
                 };
-                places.find(apart).into_iter().collect()
+                points.find(apart).into_iter().collect()
             }
             Shape::Line(points) => points
                 .windows(2)
@@ -174,7 +174,7 @@ pub(super) fn caption_strokes(
                 .flatten()
                 .collect(),
         };
-        let spot = field.place_on(places, size).or_else(|| {
+        let spot = field.place_on(points, size).or_else(|| {
             let path = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke))?;
             let at = path.points[path.points.len() / 2];
             let symbol = Symbol { position: at, clearance: 0.0, leader_rule: LeaderRule::ThroughAll };
@@ -270,7 +270,7 @@ mod tests {
         lay_out(&Picture { scene, ..Picture::default() }, Size::new(480, 360).unwrap()).unwrap()
     }
 
-    fn place(sheet: &Sheet, words: &str) -> Rect {
+    fn rect_of(sheet: &Sheet, words: &str) -> Rect {
         sheet.labels.iter().find(|(_, lines)| lines[0] == words).unwrap_or_else(|| panic!("{words}")).0
     }
 
@@ -284,9 +284,9 @@ mod tests {
         let names = ["1", "2", "3", "4", "5"];
         let sheet = sheet(names.iter().enumerate().map(|(n, name)| (path(n), Pen::Feed, *name)).collect());
         assert!(sheet.notes.is_empty(), "{:?}", sheet.notes);
-        let places: Vec<Rect> = names.iter().map(|name| place(&sheet, name)).collect();
+        let rects: Vec<Rect> = names.iter().map(|name| rect_of(&sheet, name)).collect();
         let ends = sheet.commands.iter().filter(|ink| matches!(ink, DrawCommand::Disc { .. })).count();
-        assert!(3 <= ends, "{places:?}");
+        assert!(3 <= ends, "{rects:?}");
     }
 
     /// The number of the left tick continues it to the left; the number of the upper tick interrupts it.
@@ -295,7 +295,7 @@ mod tests {
         let tick = |from: Point, to: Point, name: &'static str| (vec![from, to], Pen::Scale, name);
         let sheet =
             sheet(vec![tick([-1.0, 30.0], [-4.0, 30.0], "left"), tick([50.0, 61.0], [50.0, 68.0], "over")]);
-        let (left, over) = (place(&sheet, "left"), place(&sheet, "over"));
+        let (left, over) = (rect_of(&sheet, "left"), rect_of(&sheet, "over"));
         let ends = |upright: bool| {
             let lines = sheet.commands.iter().filter_map(|ink| match ink {
                 DrawCommand::Line { points, .. } if points.len() == 2 => Some((points[0], points[1])),

@@ -251,14 +251,14 @@ mod tests {
     proptest! {
         #[test]
         fn no_two_labels_overlap_and_none_leaves_the_area(
-            places in prop::collection::vec((0.0f64..400.0, 0.0f64..300.0, 8.0f64..70.0), 1..60),
+            symbols in prop::collection::vec((0.0f64..400.0, 0.0f64..300.0, 8.0f64..70.0), 1..60),
         ) {
             let mut field = field();
-            for (x, y, _) in &places {
+            for (x, y, _) in &symbols {
                 field.block(Obstacle::Disc { centre: px(*x, *y), radius: 5.0 });
             }
             let mut placed: Vec<LabelPlacement> = Vec::new();
-            for (x, y, width) in &places {
+            for (x, y, width) in &symbols {
                 placed.extend(field.place(symbol(*x, *y, 6.0), (*width, 12.0), 12.0));
             }
             for (i, spot) in placed.iter().enumerate() {
@@ -266,7 +266,7 @@ mod tests {
                 for other in &placed[i + 1..] {
                     prop_assert!(!spot.rect.overlaps(&other.rect));
                 }
-                for (x, y, _) in &places {
+                for (x, y, _) in &symbols {
                     prop_assert!(5.0 <= spot.rect.nearest(px(*x, *y)).distance(px(*x, *y)) + 1e-9);
                 }
             }

@@ -144,9 +144,9 @@ fn check(scene: &Scene) -> Result<(), PictureError> {
         }
     }
     for mark in &scene.marks {
-        let places =
+        let positions =
             [mark.actual, mark.direction, mark.deviation.map(|m| m.entry), mark.deviation.map(|m| m.bottom)];
-        if !(fits(&mark.position) && fits(&[mark.radius, 0.0]) && places.iter().flatten().all(fits)) {
+        if !(fits(&mark.position) && fits(&[mark.radius, 0.0]) && positions.iter().flatten().all(fits)) {
             return Err(PictureError::OffTheSheet(format!(
                 "hole {}",
                 mark.label.first().map_or("", String::as_str)
@@ -168,8 +168,8 @@ fn extent(scene: &Scene) -> (Point, Point) {
         }
     }
     for mark in &scene.marks {
-        let places = [Some(mark.position), mark.actual].into_iter().flatten();
-        seen.extend(places.map(|place| (place, mark.radius)));
+        let positions = [Some(mark.position), mark.actual].into_iter().flatten();
+        seen.extend(positions.map(|position| (position, mark.radius)));
     }
     if !scene.axes.is_empty() || seen.is_empty() {
         seen.push(([0.0, 0.0], 0.0));
@@ -257,7 +257,7 @@ mod tests {
             }
             DrawCommand::Text { at, align, size, text, .. } => {
                 let width = font.width(text, *size);
-                Rect::new(at.x - align.part() * width, at.y - 0.76 * size, width, 0.98 * size)
+                Rect::new(at.x - align.fraction_left() * width, at.y - 0.76 * size, width, 0.98 * size)
             }
         }
     }
@@ -287,10 +287,10 @@ mod tests {
 
         #[test]
         fn nothing_is_clipped_and_no_label_covers_another(
-            places in prop::collection::vec((-480.0f64..480.0, -480.0f64..480.0), 0..40),
+            positions in prop::collection::vec((-480.0f64..480.0, -480.0f64..480.0), 0..40),
             which in 0usize..5,
         ) {
-            let marks = places.iter().enumerate().map(|(i, (x, y))| mark(i, [*x, *y])).collect();
+            let marks = positions.iter().enumerate().map(|(i, (x, y))| mark(i, [*x, *y])).collect();
             let (width, height) = SIZES[which];
             holds(&picture(marks), Size::new(width, height).unwrap())?;
         }
@@ -298,11 +298,11 @@ mod tests {
 
     #[test]
     fn every_hole_of_a_ring_of_24_has_its_number() {
-        let places = (0..24).map(|i| {
+        let positions = (0..24).map(|i| {
             let angle = gcode_lang::units::Deg(15.0 * f64::from(i));
             [300.0 * angle.cos(), 300.0 * angle.sin()]
         });
-        let picture = picture(places.enumerate().map(|(i, at)| mark(i, at)).collect());
+        let picture = picture(positions.enumerate().map(|(i, at)| mark(i, at)).collect());
         for (width, height) in SIZES {
             let sheet = lay_out(&picture, Size::new(width, height).unwrap()).unwrap();
             assert_eq!(numbered(&sheet), 24, "{width}x{height}: {:?}", sheet.notes);
@@ -311,8 +311,9 @@ mod tests {
 
     #[test]
     fn a_note_counts_the_holes_without_a_number() {
-        let places = (0..900).map(|i| [f64::from(i % 30) * 30.0 - 435.0, f64::from(i / 30) * 30.0 - 435.0]);
-        let marks = places.enumerate().map(|(i, at)| Mark { status: HoleStatus::Good, ..mark(i, at) });
+        let positions =
+            (0..900).map(|i| [f64::from(i % 30) * 30.0 - 435.0, f64::from(i / 30) * 30.0 - 435.0]);
+        let marks = positions.enumerate().map(|(i, at)| Mark { status: HoleStatus::Good, ..mark(i, at) });
         let sheet = lay_out(&picture(marks.collect()), Size::new(480, 360).unwrap()).unwrap();
         let note = format!("{} of 900 holes without a number: no room.", 900 - numbered(&sheet));
         assert!(sheet.notes.contains(&note), "{note} {:?}", sheet.notes);

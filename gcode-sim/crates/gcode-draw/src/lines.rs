@@ -48,7 +48,7 @@ pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame
         Shape::Text { at, align, text } => {
             let wide = frame.font.width(text, frame.text_size);
             let at = frame.scale.px(*at);
-            let (left, top) = (at.x - align.part() * wide, at.y - frame.text_size);
+            let (left, top) = (at.x - align.fraction_left() * wide, at.y - frame.text_size);
             vec![Obstacle::Box(Rect::new(left, top, wide, 1.2 * frame.text_size))]
         }
     };

@@ -167,7 +167,7 @@ fn draw_sign(
     field: &mut LabelArea,
 ) -> DrawnMark {
     let text = frame.text_size;
-    let place = frame.scale.px(mark.position);
+    let nominal = frame.scale.px(mark.position);
     let true_radius = mark.radius * frame.scale.factor;
     let badge = dials.badge(index, text);
     let is_dot = dials.is_dot(index);
@@ -177,28 +177,28 @@ fn draw_sign(
         false => true_radius.min(1.2 * text).max(badge),
     };
     let mut inks = Vec::new();
-    let mut centre = place;
+    let mut centre = nominal;
     if mark.status == HoleStatus::Extra
         && !is_dot
-        && let Some(other) = before.iter().find(|d| d.centre.distance(place) < MIN_SIGN_DISTANCE * text)
+        && let Some(other) = before.iter().find(|d| d.centre.distance(nominal) < MIN_SIGN_DISTANCE * text)
     {
         let step = other.label_clearance + radius + 0.3 * text;
         let free = |c: &Px| before.iter().all(|d| d.label_clearance + radius <= c.distance(d.centre));
         let mut around =
             (0..8).map(|i| other.centre.toward(symbol::direction(Deg(200.0 + 45.0 * f64::from(i))), step));
         if let Some(beside) = around.find(free) {
-            inks.push(DrawCommand::line(place, beside, palette::thin(text, palette::TEXT)));
+            inks.push(DrawCommand::line(nominal, beside, palette::thin(text, palette::TEXT)));
             centre = beside;
         }
     }
     if radius < true_radius {
         let ink = palette::thin(text, palette::TEXT);
-        inks.push(DrawCommand::Ring { centre: place, radius: true_radius, ink });
+        inks.push(DrawCommand::Ring { centre: nominal, radius: true_radius, ink });
     }
-    let far = mark.actual.map(|found| frame.scale.px(found)).filter(|found| text < place.distance(*found));
+    let far = mark.actual.map(|found| frame.scale.px(found)).filter(|found| text < nominal.distance(*found));
     let strayed = far.is_some();
     if let Some(found) = far {
-        inks.extend(displacement_line(place, found, true_radius, text, field));
+        inks.extend(displacement_line(nominal, found, true_radius, text, field));
     }
     if is_dot {
         let (along, projected) = projected_axis(mark).unwrap_or(([0.0, 1.0], 0.0));

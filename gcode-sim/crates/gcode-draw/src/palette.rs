@@ -55,17 +55,17 @@ pub(super) fn pen(pen: Pen, text: f64) -> Ink {
         Pen::Scale => (Rgb(120, 120, 120), 0.06, None),
         Pen::Feed => (Rgb(0, 158, 115), 0.1, None),
         Pen::Faulty | Pen::New => (VERMILION, 0.24, None),
-        Pen::Hidden => (VERMILION, 0.08, dashed(0.4, 0.3)),
+        Pen::FaultyFarSide => (VERMILION, 0.08, dashed(0.4, 0.3)),
         Pen::Rapid => (Rgb(86, 180, 233), 0.07, dashed(0.25, 0.25)),
         Pen::Probe => (Rgb(204, 121, 167), 0.1, dashed(0.15, 0.2)),
         Pen::Unchanged => (Rgb(150, 150, 150), 0.07, None),
         Pen::Old => (TEXT, 0.09, dashed(0.4, 0.3)),
         Pen::Grid => (Rgb(205, 205, 205), 0.05, None),
-        Pen::First => (TEXT, 0.12, dashed(0.8, 0.5)),
+        Pen::Nominal => (TEXT, 0.12, dashed(0.8, 0.5)),
         Pen::Measured => (BLUE, 0.14, None),
-        Pen::Others => (Rgb(150, 150, 150), 0.05, None),
+        Pen::MeasuredOther => (Rgb(150, 150, 150), 0.05, None),
         Pen::Limit => (VERMILION, 0.12, dashed(0.8, 0.5)),
-        Pen::Second => (Rgb(204, 121, 167), 0.14, dashed(0.22, 0.3)),
+        Pen::Comparison => (Rgb(204, 121, 167), 0.14, dashed(0.22, 0.3)),
     };
     Ink { color, width: width * text, dash: dash.map(|lengths| lengths.map(|length| length * text)) }
 }

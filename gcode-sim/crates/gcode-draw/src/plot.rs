@@ -118,7 +118,7 @@ mod tests {
         Chart {
             gaps: vec![[length / 3.0, length / 2.0]],
             x_label: "Path of the ball, mm".to_owned(),
-            guides: vec![(0.3 * length, "a place".to_owned()), (0.31 * length, "another".to_owned())],
+            guides: vec![(0.3 * length, "a label".to_owned()), (0.31 * length, "another".to_owned())],
             graphs: vec![Graph {
                 y_label: "Reading, mm".to_owned(),
                 curves: vec![Curve { points: curve.collect(), pen: Pen::Measured, is_clipped: false }],
@@ -152,9 +152,9 @@ mod tests {
             let size = Size::new(width, height).unwrap();
             for plot in &plots {
                 let sheet = plot.lay_out(size);
-                for (index, (place, words)) in sheet.labels.iter().enumerate() {
-                    assert!(size.page().contains(place), "{words:?} at {place:?}");
-                    let free = sheet.labels[..index].iter().all(|(other, _)| !place.overlaps(other));
+                for (index, (rect, words)) in sheet.labels.iter().enumerate() {
+                    assert!(size.page().contains(rect), "{words:?} at {rect:?}");
+                    let free = sheet.labels[..index].iter().all(|(other, _)| !rect.overlaps(other));
                     assert!(free, "{words:?} covers another, {width}x{height}");
                 }
                 if let PlotBody::Bars(bars) = &plot.body {

@@ -47,7 +47,7 @@ fn put(pixmap: &mut Pixmap, font: &Font, command: &DrawCommand) {
         DrawCommand::Disc { centre, radius, color } => fill(pixmap, circle(*centre, *radius), *color),
         DrawCommand::Text { at, align, size, text, color } => {
             // A base line on whole pixels keeps small text sharp.
-            let at = Px { x: at.x - align.part() * font.width(text, *size), y: at.y.round() };
+            let at = Px { x: at.x - align.fraction_left() * font.width(text, *size), y: at.y.round() };
             font.cover(text, *size, at, |x, y, coverage| blend(pixmap, x, y, coverage, *color));
         }
     }

@@ -92,8 +92,8 @@ pub enum Align {
 }
 
 impl Align {
-    /// Returns the part of the text's width that lies left of its reference point.
-    pub(super) fn part(self) -> f64 {
+    /// Returns the fraction of the text's width that lies left of its reference point.
+    pub(super) fn fraction_left(self) -> f64 {
         match self {
             Self::Left => 0.0,
             Self::Centre => 0.5,
@@ -125,7 +125,7 @@ pub enum Pen {
     /// Tool path with a fault.
     Faulty,
     /// Tool path with a fault, on the far side.
-    Hidden,
+    FaultyFarSide,
     /// Tool path in rapid motion.
     Rapid,
     /// Path of a probing move.
@@ -141,20 +141,20 @@ pub enum Pen {
     /// Actual curve of a graph.
     Measured,
     /// Further actual curves of a graph.
-    Others,
+    MeasuredOther,
     /// Tolerance limit in a graph.
     Limit,
     /// Nominal curve of a graph.
-    First,
+    Nominal,
     /// Second curve of a graph, for comparison.
-    Second,
+    Comparison,
 }
 
 impl Pen {
     /// Returns true for pens of the tool path, which labels may cover.
     pub(super) fn is_path(self) -> bool {
-        use Pen::{Faulty, Feed, Hidden, New, Old, Probe, Rapid, Unchanged};
-        matches!(self, Feed | Faulty | Hidden | Rapid | Probe | Unchanged | New | Old)
+        use Pen::{Faulty, FaultyFarSide, Feed, New, Old, Probe, Rapid, Unchanged};
+        matches!(self, Feed | Faulty | FaultyFarSide | Rapid | Probe | Unchanged | New | Old)
     }
 }
 

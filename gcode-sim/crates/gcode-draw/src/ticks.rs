@@ -37,8 +37,8 @@ impl Ticks {
     /// Formats a tick with the decimals that distinguish it from the next one.
     pub(super) fn name(&self, at: f64) -> String {
         let power = if self.of < 10.0 { self.power } else { self.power + 1 };
-        let places = usize::try_from(-power).unwrap_or(0);
-        let name = format!("{at:.places$}");
+        let decimals = usize::try_from(-power).unwrap_or(0);
+        let name = format!("{at:.decimals$}");
         if name.bytes().all(|b| matches!(b, b'-' | b'0' | b'.')) {
             "0".to_owned()
         } else {

@@ -32,8 +32,8 @@ impl<'f> Words<'f> {
 
     /// Writes a text on the base line through `at` unless it would cover another.
     pub(super) fn write_if_free(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str) {
-        let place = self.place(at, align, size, words);
-        if self.sheet.labels.iter().all(|(other, _)| !other.overlaps(&place)) {
+        let rect = self.rect(at, align, size, words);
+        if self.sheet.labels.iter().all(|(other, _)| !other.overlaps(&rect)) {
             self.write(at, align, size, color, words, f64::INFINITY);
         }
     }
@@ -41,14 +41,14 @@ impl<'f> Words<'f> {
     /// Writes a text on the base line through `at`, shortened to `width`.
     pub(super) fn write(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str, width: f64) {
         let words = self.font.fitted(words, size, width);
-        let place = self.place(at, align, size, &words);
-        self.sheet.labels.push((place, vec![words.clone()]));
+        let rect = self.rect(at, align, size, &words);
+        self.sheet.labels.push((rect, vec![words.clone()]));
         self.sheet.commands.push(DrawCommand::Text { at, align, size, text: words, color });
     }
 
     /// Returns the box of a text on the base line through `at`.
-    pub(super) fn place(&self, at: Px, align: Align, size: f64, words: &str) -> Rect {
+    pub(super) fn rect(&self, at: Px, align: Align, size: f64, words: &str) -> Rect {
         let wide = self.font.width(words, size);
-        Rect::new(at.x - align.part() * wide, at.y - size, wide, 1.2 * size)
+        Rect::new(at.x - align.fraction_left() * wide, at.y - size, wide, 1.2 * size)
     }
 }

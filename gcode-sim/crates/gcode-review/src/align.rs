@@ -350,19 +350,19 @@ fn search(
 ) -> Result<Pairs, (Pairs, (usize, usize))> {
     let (n, m) = (rows as isize, columns as isize);
     let most = (rows + columns).min(most) as isize;
-    let place = |k: isize| (k + most + 1) as usize;
+    let index = |k: isize| (k + most + 1) as usize;
     let mut farthest = vec![0_isize; 2 * most as usize + 3];
     let mut history: Vec<Vec<isize>> = Vec::new();
     let (mut reached, mut by) = ((0, 0), 0);
     for edits in 0..=most {
-        history.push(farthest[place(-edits - 1)..=place(edits + 1)].to_vec());
+        history.push(farthest[index(-edits - 1)..=index(edits + 1)].to_vec());
         for k in (-edits..=edits).step_by(2) {
-            let down = k == -edits || k != edits && farthest[place(k - 1)] < farthest[place(k + 1)];
-            let mut x = if down { farthest[place(k + 1)] } else { farthest[place(k - 1)] + 1 };
+            let down = k == -edits || k != edits && farthest[index(k - 1)] < farthest[index(k + 1)];
+            let mut x = if down { farthest[index(k + 1)] } else { farthest[index(k - 1)] + 1 };
             while x < n && x - k < m && same(x as usize, (x - k) as usize) {
                 x += 1;
             }
-            farthest[place(k)] = x;
+            farthest[index(k)] = x;
             if let (Ok(row), Ok(column)) = (usize::try_from(x), usize::try_from(x - k))
                 && row <= rows
                 && column <= columns

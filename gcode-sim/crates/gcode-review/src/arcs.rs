@@ -56,10 +56,10 @@ mod tests {
     fn arc(x: f64, other: impl Fn(&mut PlanarArc)) -> (Step, PlanarArc) {
         let mut arc = PlanarArc { plane: (0, 1), centre: (x, 0.0), sweep: Deg(90.0) };
         other(&mut arc);
-        let place = |x: f64, y: f64| Position([x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let (from, to) = (place(10.0 + x, 0.0), place(x, 10.0));
+        let point = |x: f64, y: f64| Position([x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let (from, to) = (point(10.0 + x, 0.0), point(x, 10.0));
         let kind = StepKind::Arc(arc, 100.0);
-        (Step { kind, from, to, at: to, place: 0, set_by: None, condition: 0 }, arc)
+        (Step { kind, from, to, at: to, block_number: 0, set_by: None, condition: 0 }, arc)
     }
 
     fn differs(x: f64, other: impl Fn(&mut PlanarArc)) -> bool {

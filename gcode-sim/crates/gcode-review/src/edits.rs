@@ -57,10 +57,10 @@ impl Edits {
         }
         let first = |blocks: &[TextBlock]| {
             let executed = blocks.iter().find(|block| block.reached.is_some());
-            executed.or(blocks.first()).map(|block| block.place.clone())
+            executed.or(blocks.first()).map(|block| block.location.clone())
         };
         for (blocks, of_block) in sides.iter().zip(&mut self.of_block) {
-            for BlockLocation { program, line, .. } in blocks.iter().map(|block| &block.place) {
+            for BlockLocation { program, line, .. } in blocks.iter().map(|block| &block.location) {
                 of_block.entry(program.clone()).or_default().insert(*line, self.all.len());
             }
         }
@@ -127,13 +127,13 @@ impl Edits {
     pub(super) fn of_lines(lines: &[u32]) -> Self {
         let mut edits = Self::default();
         for line in lines {
-            let place = |block: &str| BlockLocation {
+            let location = |block: &str| BlockLocation {
                 program: "O0001".to_owned(),
                 line: *line,
                 block: block.to_owned(),
                 calls: Vec::new(),
             };
-            let [old, new] = ["X1.", "X2."].map(|block| [TextBlock::new(place(block), Some(0))]);
+            let [old, new] = ["X1.", "X2."].map(|block| [TextBlock::new(location(block), Some(0))]);
             edits.add([&old, &new]);
         }
         edits
@@ -153,7 +153,7 @@ impl<'a> Causes<'a> {
         let first = records.map(|record| {
             let mut first = BTreeMap::new();
             for (number, step) in record.steps.iter().enumerate() {
-                first.entry(&record.places[step.place]).or_insert(number);
+                first.entry(&record.blocks[step.block_number]).or_insert(number);
             }
             first
         });
@@ -174,12 +174,12 @@ impl<'a> Causes<'a> {
 
     /// Returns the edits of an effect on holes: those of its feeds and tools.
     pub(super) fn of_holes(&self, HoleEffect { effect, steps, tools }: &HoleEffect) -> Vec<usize> {
-        let place =
-            |side: usize, place: usize| self.edits.of_side(side, self.records[side].places.get(place)?);
-        let tools = (0..2).filter_map(|side| place(side, tools[side]?));
+        let edit =
+            |side: usize, number: usize| self.edits.of_side(side, self.records[side].blocks.get(number)?);
+        let tools = (0..2).filter_map(|side| edit(side, tools[side]?));
         let feed = |side: usize| {
-            let places = steps[side].iter().map(move |step| self.records[side].steps[*step].place);
-            places.filter_map(move |one| place(side, one))
+            let numbers = steps[side].iter().map(move |step| self.records[side].steps[*step].block_number);
+            numbers.filter_map(move |number| edit(side, number))
         };
         let edits: BTreeSet<usize> = tools.chain((0..2).flat_map(feed)).collect();
         if edits.is_empty() { self.of(effect) } else { edits.into_iter().collect() }

@@ -7,11 +7,11 @@ use super::descriptions::{coordinates, describe, point, short};
 use super::differences::{Difference, StepDifference};
 use super::edits::{Causes, Edits};
 use super::entries::CausedEffect;
-use super::hole_groups::named;
+use super::hole_groups::name_holes;
 use super::kinds;
 use super::modal_conditions::ModalAspect;
 use super::redundant_commands::is_speed_alone;
-use super::steps::{StepKind, difference, near, with_article};
+use super::steps::{Step, StepKind, difference, near, with_article};
 use gcode_lang::diag::FindingKind;
 use gcode_lang::motion::{MAX_AXES, Position};
 
@@ -29,7 +29,7 @@ struct Group {
     causes: Vec<usize>,
     is_direct: bool,
     /// Numbers of the first blocks in the records.
-    places: [Option<usize>; 2],
+    block_numbers: [Option<usize>; 2],
 }
 
 /// Numbers that a group collects.
@@ -41,12 +41,39 @@ enum Numbers {
         most: Position,
         is_compensated: bool,
     },
-    /// Smallest and largest ratio of feeds.
-    Factor(f64, f64),
-    /// Spindle speeds before and now.
-    Speeds(f64, f64),
+    /// Ratios of new to old feeds.
+    Factor {
+        smallest: f64,
+        largest: f64,
+    },
+    /// Spindle speeds of the old and the new run, rpm.
+    Speeds {
+        old: f64,
+        new: f64,
+    },
     /// Moves under another condition by their numbers in the old run, and the first in the new run.
-    Moves(ModalAspect, Vec<usize>, usize),
+    Moves {
+        aspect: ModalAspect,
+        old: Vec<usize>,
+        first_new: usize,
+    },
+}
+
+/// Description of one difference, from which its group begins.
+struct Description {
+    kind: &'static FindingKind,
+    /// Name of the step.
+    name: &'static str,
+    text: String,
+    numbers: Numbers,
+    /// Numbers of the blocks in the records; `None` for the blocks of the steps.
+    block_numbers: Option<[Option<usize>; 2]>,
+}
+
+impl Description {
+    fn new(kind: &'static FindingKind, step: &Step, text: String) -> Self {
+        Self { kind, name: step.kind.name(), text, numbers: Numbers::None, block_numbers: None }
+    }
 }
 
 /// More shifts of one edit than this are one effect, by up to the largest.
@@ -56,7 +83,7 @@ const MOST_SHIFTS: usize = 4;
 pub(super) struct Effects<'a> {
     all: Vec<Group>,
     by_text: BTreeMap<(&'static str, String), usize>,
-    by_places: BTreeMap<(&'static str, [Option<usize>; 2]), usize>,
+    by_blocks: BTreeMap<(&'static str, [Option<usize>; 2]), usize>,
     alignment: Alignment<'a>,
     edits: &'a Edits,
 }
@@ -70,8 +97,8 @@ impl<'a> Effects<'a> {
         edits: &'a Edits,
     ) -> Vec<CausedEffect> {
         let causes = Causes::new(edits, alignment.records);
-        let (by_text, by_places) = Default::default();
-        let mut groups = Self { all: Vec::new(), by_text, by_places, alignment, edits };
+        let (by_text, by_blocks) = Default::default();
+        let mut groups = Self { all: Vec::new(), by_text, by_blocks, alignment, edits };
         let mut effects: Vec<CausedEffect> = Vec::new();
         let mut of_steps = None;
         for difference in differences {
@@ -86,27 +113,28 @@ impl<'a> Effects<'a> {
         }
         groups.join_shifts();
         let effect = |group: &Group| {
-            let effect = Effect::new(group.kind, groups.message(group), groups.blocks(group.places));
+            let effect = Effect::new(group.kind, groups.message(group), groups.blocks(group.block_numbers));
             (group.causes.clone(), effect)
         };
-        let place = of_steps.unwrap_or(effects.len());
-        effects.splice(place..place, groups.all.iter().map(effect));
+        let index = of_steps.unwrap_or(effects.len());
+        effects.splice(index..index, groups.all.iter().map(effect));
         effects
     }
 
     fn add(&mut self, kind: &StepDifference, steps: [Option<usize>; 2]) {
-        let group = self.group(kind, steps);
-        let is_speed = matches!(group.numbers, Numbers::Speeds(..));
+        let group = self.group_of_difference(kind, steps);
+        let is_speed = matches!(group.numbers, Numbers::Speeds { .. });
         let is_of_block = ["feed", "move-added", "move-lost"].contains(&group.kind.code) || is_speed;
-        let (text, places) = ((group.kind.code, group.text.clone()), (group.kind.code, group.places));
+        let (text, block_numbers) =
+            ((group.kind.code, group.text.clone()), (group.kind.code, group.block_numbers));
         let of_block = || {
-            let known = *self.by_places.get(&places).filter(|_| is_of_block)?;
+            let known = *self.by_blocks.get(&block_numbers).filter(|_| is_of_block)?;
             (!is_speed || self.all[known].numbers == group.numbers).then_some(known)
         };
         let known = self.by_text.get(&text).copied().or_else(of_block);
         let number = known.unwrap_or(self.all.len());
         self.by_text.entry(text).or_insert(number);
-        self.by_places.entry(places).or_insert(number);
+        self.by_blocks.entry(block_numbers).or_insert(number);
         match known {
             Some(known) => self.all[known].join(group),
             None => self.all.push(group),
@@ -114,88 +142,116 @@ impl<'a> Effects<'a> {
     }
 
     /// Returns the group of one difference.
-    fn group(&self, kind: &StepDifference, steps: [Option<usize>; 2]) -> Group {
-        let Alignment { records, tolerance, .. } = self.alignment;
-        let axes = self.alignment.axes();
-        let [was, is] = self.alignment.steps(steps);
-        let Some(step) = was.or(is) else { unreachable!("a difference has a step") };
-        let mut numbers = Numbers::None;
-        let mut what = step.kind.name();
-        let mut places = [was, is].map(|step| step.map(|step| step.place));
-        let change = || step.kind.change().unwrap_or(&kinds::MOVE_SHIFTED);
-        let (kind, text) = match (kind, was.zip(is)) {
-            (StepDifference::Condition(aspect), _) => {
-                let words = [0, 1].map(|side| Some(records[side].under(steps[side]?).word(*aspect)));
-                let [before, now] = words.map(|word| word.map_or("", |word| &word.text));
-                let name = if *aspect == ModalAspect::Cycle { "cycle " } else { "" };
-                places = words.map(|word| word?.place);
-                numbers = Numbers::Moves(*aspect, steps[0].into_iter().collect(), steps[1].unwrap_or(0));
-                (aspect.row().1, format!("{name}{now} instead of {before}"))
-            }
+    fn group_of_difference(&self, kind: &StepDifference, steps: [Option<usize>; 2]) -> Group {
+        let [old, new] = self.alignment.steps(steps);
+        let Some(step) = old.or(new) else { unreachable!("a difference has a step") };
+        let described = match (kind, old.zip(new)) {
+            (StepDifference::Condition(aspect), _) => self.describe_condition(*aspect, step, steps),
             (StepDifference::EndPoint(shift), both) => {
-                what = is.unwrap_or(step).kind.name();
-                let is_compensated = both.is_some_and(|(was, is)| near(&was.at, &is.at, tolerance));
-                let most = Position(shift.0.map(f64::abs));
-                numbers = Numbers::Shift { most, is_compensated };
-                (&kinds::MOVE_SHIFTED, coordinates(shift, axes, tolerance, true))
+                let is_compensated =
+                    both.is_some_and(|(old, new)| near(&old.at, &new.at, self.alignment.tolerance));
+                self.describe_end_point(shift, new.unwrap_or(step), is_compensated)
             }
-            (StepDifference::MoveKind, Some((was, is))) => {
-                what = "move";
-                (&kinds::MOVE_KIND, format!("{} instead of {}", is.kind.one(), was.kind.one()))
+            (StepDifference::MoveKind, Some((old, new))) => {
+                let text = format!("{} instead of {}", new.kind.one(), old.kind.one());
+                Description { name: "move", ..Description::new(&kinds::MOVE_KIND, step, text) }
             }
             (StepDifference::ArcShape(text), _) => {
-                what = is.unwrap_or(step).kind.name();
-                (&kinds::MOVE_ARC, text.clone())
+                Description::new(&kinds::MOVE_ARC, new.unwrap_or(step), text.clone())
             }
-            (StepDifference::Feed { was, is }, _) => {
-                what = "move";
-                numbers = Numbers::Factor(is / was, is / was);
-                (&kinds::FEED, format!("feed F{} instead of F{}", short(*is), short(*was)))
-            }
+            (StepDifference::Feed { was, is }, _) => describe_feed(step, *was, *is),
             (StepDifference::Shifted(word), _) => {
-                (change(), format!("{} is executed {word} than before", self.called(steps)))
+                let text = format!("{} is executed {word} than before", self.describe_command(steps));
+                Description::new(change(step), step, text)
             }
-            (_, Some((was, is))) => {
-                if let StepDifference::Speed { was, is } = kind {
-                    numbers = Numbers::Speeds(*was, *is);
-                }
-                let [is, before] = [is, was].map(|step| describe(&step.kind, axes));
-                (change(), format!("{is} instead of {before}"))
-            }
-            (_, None) => {
-                let (whether, of_moves) = match was {
-                    Some(_) => ("is removed", &kinds::MOVE_LOST),
-                    None => ("is added", &kinds::MOVE_ADDED),
-                };
-                if step.is_move() {
-                    what = "move";
-                    (of_moves, format!("{} to {} {whether}", step.kind.one(), point(step, axes)))
-                } else {
-                    (change(), format!("{} {whether}", self.called(steps)))
-                }
-            }
+            (_, Some((old, new))) => self.describe_replacement(kind, old, new),
+            (_, None) => self.describe_unpaired(step, steps),
         };
-        let is_tool = kind == &kinds::TOOL && was.is_some() && is.is_some();
-        if matches!(numbers, Numbers::Factor(..) | Numbers::Speeds(..)) || is_tool {
-            places = [was, is].map(|step| step.map(|step| step.editable_at()));
+        let Description { kind, name, text, numbers, block_numbers } = described;
+        let mut block_numbers =
+            block_numbers.unwrap_or([old, new].map(|step| step.map(|step| step.block_number)));
+        let is_tool = kind == &kinds::TOOL && old.is_some() && new.is_some();
+        if matches!(numbers, Numbers::Factor { .. } | Numbers::Speeds { .. }) || is_tool {
+            block_numbers = [old, new].map(|step| step.map(|step| step.editable_at()));
         }
-        let mut causes = self.edits.cause(self.blocks(places), steps);
-        let mut is_direct = self.edits.is_single() || self.edits.of(self.blocks(places)).is_some();
-        if let Numbers::Moves(..) = numbers {
-            let set = self.edits.of(self.blocks(places));
-            causes = set.or_else(|| self.edits.cause(self.alignment.blocks(steps), steps));
-            is_direct = false;
-        }
-        let causes = causes.into_iter().collect();
-        Group { kind, text, counts: vec![(what, 1)], varies: false, numbers, causes, is_direct, places }
+        let (causes, is_direct) = self.causes_of_difference(&numbers, block_numbers, steps);
+        let counts = vec![(name, 1)];
+        Group { kind, text, counts, varies: false, numbers, causes, is_direct, block_numbers }
     }
 
-    fn blocks(&self, places: [Option<usize>; 2]) -> [Option<&'a super::record::BlockLocation>; 2] {
-        [0, 1].map(|side| self.alignment.records[side].places.get(places[side]?))
+    /// Returns the edits that cause a difference, and whether its blocks are part of them.
+    fn causes_of_difference(
+        &self,
+        numbers: &Numbers,
+        block_numbers: [Option<usize>; 2],
+        steps: [Option<usize>; 2],
+    ) -> (Vec<usize>, bool) {
+        let blocks = self.blocks(block_numbers);
+        let edit = self.edits.of(blocks);
+        if let Numbers::Moves { .. } = numbers {
+            let cause = edit.or_else(|| self.edits.cause(self.alignment.blocks(steps), steps));
+            return (cause.into_iter().collect(), false);
+        }
+        let is_direct = self.edits.is_single() || edit.is_some();
+        (self.edits.cause(blocks, steps).into_iter().collect(), is_direct)
+    }
+
+    /// Describes a move under another modal condition; its blocks are those that set the condition.
+    fn describe_condition(&self, aspect: ModalAspect, step: &Step, steps: [Option<usize>; 2]) -> Description {
+        let words = [0, 1].map(|side| Some(self.alignment.records[side].under(steps[side]?).word(aspect)));
+        let [before, now] = words.map(|word| word.map_or("", |word| &word.text));
+        let name = if aspect == ModalAspect::Cycle { "cycle " } else { "" };
+        let text = format!("{name}{now} instead of {before}");
+        let old = steps[0].into_iter().collect();
+        Description {
+            numbers: Numbers::Moves { aspect, old, first_new: steps[1].unwrap_or(0) },
+            block_numbers: Some(words.map(|word| word?.block_number)),
+            ..Description::new(aspect.row().1, step, text)
+        }
+    }
+
+    /// Describes a move that ends at another point.
+    fn describe_end_point(&self, shift: &Position, step: &Step, is_compensated: bool) -> Description {
+        let Alignment { tolerance, .. } = self.alignment;
+        let text = coordinates(shift, self.alignment.axes(), tolerance, true);
+        let most = Position(shift.0.map(f64::abs));
+        Description {
+            numbers: Numbers::Shift { most, is_compensated },
+            ..Description::new(&kinds::MOVE_SHIFTED, step, text)
+        }
+    }
+
+    /// Describes a command in place of another.
+    fn describe_replacement(&self, kind: &StepDifference, old: &Step, new: &Step) -> Description {
+        let axes = self.alignment.axes();
+        let text = format!("{} instead of {}", describe(&new.kind, axes), describe(&old.kind, axes));
+        let numbers = match kind {
+            StepDifference::Speed { was, is } => Numbers::Speeds { old: *was, new: *is },
+            _ => Numbers::None,
+        };
+        Description { numbers, ..Description::new(change(old), old, text) }
+    }
+
+    /// Describes a move or a command that only one run has.
+    fn describe_unpaired(&self, step: &Step, steps: [Option<usize>; 2]) -> Description {
+        let (verb, kind_of_move) = match steps[0] {
+            Some(_) => ("is removed", &kinds::MOVE_LOST),
+            None => ("is added", &kinds::MOVE_ADDED),
+        };
+        if step.is_move() {
+            let text = format!("{} to {} {verb}", step.kind.one(), point(step, self.alignment.axes()));
+            Description { name: "move", ..Description::new(kind_of_move, step, text) }
+        } else {
+            Description::new(change(step), step, format!("{} {verb}", self.describe_command(steps)))
+        }
+    }
+
+    fn blocks(&self, block_numbers: [Option<usize>; 2]) -> [Option<&'a super::record::BlockLocation>; 2] {
+        [0, 1].map(|side| self.alignment.records[side].blocks.get(block_numbers[side]?))
     }
 
     /// Describes a command of either run; if the spindle turns already, its speed alone.
-    fn called(&self, steps: [Option<usize>; 2]) -> String {
+    fn describe_command(&self, steps: [Option<usize>; 2]) -> String {
         let side = usize::from(steps[0].is_none());
         let (steps, step) = (&self.alignment.records[side].steps, steps[side].unwrap_or(0));
         match &steps[step].kind {
@@ -209,9 +265,9 @@ impl<'a> Effects<'a> {
         let mut alike: BTreeMap<_, Vec<usize>> = BTreeMap::new();
         let shifts = self.all.iter().enumerate().filter(|(_, group)| group.kind == &kinds::MOVE_SHIFTED);
         for (number, group) in shifts {
-            let places = if group.is_direct { [None, None] } else { group.places };
+            let blocks = if group.is_direct { [None, None] } else { group.block_numbers };
             let edit = group.causes.first().filter(|_| group.is_direct).copied();
-            alike.entry((edit, places)).or_default().push(number);
+            alike.entry((edit, blocks)).or_default().push(number);
         }
         let many = alike.into_values().filter(|numbers| MOST_SHIFTS < numbers.len());
         let into: BTreeMap<usize, usize> = many
@@ -234,8 +290,8 @@ impl<'a> Effects<'a> {
             counts.join(", ")
         };
         match (&group.numbers, group.varies, &group.counts[..]) {
-            (Numbers::Moves(aspect, moves, first), ..) => {
-                format!("{text}{}", self.under_condition(*aspect, moves, *first))
+            (Numbers::Moves { aspect, old, first_new }, ..) => {
+                format!("{text}{}", self.under_condition(*aspect, old, *first_new))
             }
             (Numbers::Shift { most, is_compensated }, varies, counts) => {
                 let Alignment { tolerance, .. } = self.alignment;
@@ -248,14 +304,14 @@ impl<'a> Effects<'a> {
                 };
                 shifted(counts, &format!("{by}{as_programmed}"))
             }
-            (Numbers::Factor(least, most), true, _) => {
-                let by = match (most - least).abs() <= 1e-6 * most.abs() {
+            (Numbers::Factor { smallest, largest }, true, _) => {
+                let by = match (largest - smallest).abs() <= 1e-6 * largest.abs() {
                     true => "the same factor".to_owned(),
-                    false => format!("factors of {least:.4} to {most:.4}"),
+                    false => format!("factors of {smallest:.4} to {largest:.4}"),
                 };
                 format!("{text} ({}, all by {by})", counts())
             }
-            (Numbers::Speeds(was, is), true, _) => format!("S{is} instead of S{was} ({})", counts()),
+            (Numbers::Speeds { old, new }, true, _) => format!("S{new} instead of S{old} ({})", counts()),
             (_, true, _) => format!("{text} ({} of its block)", counts()),
             (_, false, [(_, 1)]) => text.clone(),
             (_, false, _) => format!("{text} ({})", counts()),
@@ -293,13 +349,13 @@ impl<'a> Effects<'a> {
     fn holes_of_cycle(&self, moves: &[usize]) -> String {
         let old = self.alignment.records[0];
         let cycle = |step: usize| &old.under(step).word(ModalAspect::Cycle).text;
-        let with = |is_it: &dyn Fn(&usize) -> bool| -> Vec<usize> {
-            (0..old.feeds.len()).filter(|hole| old.feeds[*hole].iter().any(is_it)).collect()
+        let with = |is_member: &dyn Fn(&usize) -> bool| -> Vec<usize> {
+            (0..old.feeds.len()).filter(|hole| old.feeds[*hole].iter().any(is_member)).collect()
         };
         let all = with(&|step| cycle(*step) == cycle(moves[0]));
         let these = with(&|step| moves.binary_search(step).is_ok());
         match all.len() {
-            _ if !these.is_empty() && these != all => named(&these),
+            _ if !these.is_empty() && these != all => name_holes(&these),
             1 => "1 hole".to_owned(),
             n => format!("{n} holes"),
         }
@@ -328,10 +384,11 @@ impl Group {
                 (0..MAX_AXES).for_each(|axis| most[axis] = most[axis].max(others[axis]));
                 *is_compensated &= is_other;
             }
-            (Numbers::Factor(least, most), Numbers::Factor(low, high)) => {
-                (*least, *most) = (least.min(low), most.max(high));
-            }
-            (Numbers::Moves(_, moves, _), Numbers::Moves(_, more, _)) => moves.extend(more),
+            (
+                Numbers::Factor { smallest, largest },
+                Numbers::Factor { smallest: other_smallest, largest: other_largest },
+            ) => (*smallest, *largest) = (smallest.min(other_smallest), largest.max(other_largest)),
+            (Numbers::Moves { old, .. }, Numbers::Moves { old: others, .. }) => old.extend(others),
             _ => {}
         }
         for (what, times) in other.counts {
@@ -340,6 +397,22 @@ impl Group {
                 None => self.counts.push((what, times)),
             }
         }
+    }
+}
+
+/// Returns the kind of a change of a command.
+fn change(step: &Step) -> &'static FindingKind {
+    step.kind.change().unwrap_or(&kinds::MOVE_SHIFTED)
+}
+
+/// Describes a move with another feed, mm/min.
+fn describe_feed(step: &Step, old: f64, new: f64) -> Description {
+    let ratio = new / old;
+    let text = format!("feed F{} instead of F{}", short(new), short(old));
+    Description {
+        name: "move",
+        numbers: Numbers::Factor { smallest: ratio, largest: ratio },
+        ..Description::new(&kinds::FEED, step, text)
     }
 }
 

@@ -26,5 +26,6 @@ pub(super) struct FirstCommand {
     /// Number of moves before it.
     pub moves: usize,
     /// Its block, by its number in the record.
-    pub place: usize,
+    #[serde(rename = "place")]
+    pub block_number: usize,
 }

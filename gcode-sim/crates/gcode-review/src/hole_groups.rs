@@ -20,9 +20,9 @@ pub(super) struct HoleDifference {
     /// Angle between the axes, degrees.
     pub tilted: Option<f64>,
     /// Displacement of the bottom along the axis, mm.
-    pub deeper: Option<f64>,
+    pub depth_change: Option<f64>,
     /// Differences of its diameter and its tools, in words.
-    pub others: Vec<(&'static FindingKind, String)>,
+    pub tool_differences: Vec<(&'static FindingKind, String)>,
     /// Passes that changed, unlike the hole.
     pub passes: Vec<PassChange>,
 }
@@ -30,15 +30,15 @@ pub(super) struct HoleDifference {
 impl HoleDifference {
     /// Returns the kind of the first difference; `None` if there is none.
     pub(super) fn kind(&self) -> Option<&'static FindingKind> {
-        let place = self.moved.map(|_| &kinds::HOLE_MOVED).or(self.tilted.map(|_| &kinds::HOLE_TILTED));
-        let place = place.or(self.deeper.map(|_| &kinds::HOLE_DEPTH));
-        let other = place.or(self.others.first().map(|(kind, _)| *kind));
+        let kind = self.moved.map(|_| &kinds::HOLE_MOVED).or(self.tilted.map(|_| &kinds::HOLE_TILTED));
+        let kind = kind.or(self.depth_change.map(|_| &kinds::HOLE_DEPTH));
+        let other = kind.or(self.tool_differences.first().map(|(kind, _)| *kind));
         other.or(self.passes.first().map(|_| &kinds::HOLE_PASS))
     }
 
     /// Returns true if the hole begins or ends at another point.
     pub(super) fn is_displaced(&self) -> bool {
-        self.moved.is_some() || self.tilted.is_some() || self.deeper.is_some()
+        self.moved.is_some() || self.tilted.is_some() || self.depth_change.is_some()
     }
 }
 
@@ -60,7 +60,7 @@ pub(super) struct ChangedHole {
     /// Displacement of the finishing feed's end point, in machine coordinates.
     pub shift: Position,
     /// Passes that end at other points too.
-    pub others: Vec<(usize, usize)>,
+    pub other_pass_feeds: Vec<(usize, usize)>,
     pub cause: Cause,
 }
 
@@ -74,10 +74,10 @@ pub(super) struct HoleGroup {
 pub(super) fn groups(changed: Vec<ChangedHole>, axes: &Axes, tolerance: f64) -> Vec<HoleGroup> {
     let mut groups: Vec<HoleGroup> = Vec::new();
     for one in changed {
-        let text = text(std::slice::from_ref(&one), true, axes, tolerance);
+        let text = describe_differences(std::slice::from_ref(&one), true, axes, tolerance);
         let alike = groups.iter().position(|group| group.text == text);
         match alike.or_else(|| groups.iter().position(|group| is_related(&group.all[0], &one, tolerance))) {
-            Some(place) => groups[place].all.push(one),
+            Some(index) => groups[index].all.push(one),
             None => groups.push(HoleGroup { all: vec![one], text }),
         }
     }
@@ -91,7 +91,7 @@ fn is_related(first: &ChangedHole, other: &ChangedHole, tolerance: f64) -> bool 
     let is_shifted = (other.difference.is_displaced() || !other.difference.passes.is_empty())
         && !near(&other.shift, &Position::default(), tolerance)
         && near(&first.shift, &other.shift, tolerance);
-    first.difference.others == other.difference.others
+    first.difference.tool_differences == other.difference.tool_differences
         && numbers(first) == numbers(other)
         && (is_shifted || first.cause == other.cause)
 }
@@ -106,14 +106,16 @@ impl HoleGroup {
     /// Formats the numbers of the holes if they are equal, else the largest of each.
     pub(super) fn message(&self, axes: &Axes, tolerance: f64) -> String {
         let holes: Vec<usize> = self.all.iter().map(|one| one.hole).collect();
-        let is_it = |one: &ChangedHole| text(std::slice::from_ref(one), true, axes, tolerance) == self.text;
-        let is_alike = self.all.iter().all(is_it);
-        format!("{}: {}", named(&holes), text(&self.all, is_alike, axes, tolerance))
+        let has_group_text = |one: &ChangedHole| {
+            describe_differences(std::slice::from_ref(one), true, axes, tolerance) == self.text
+        };
+        let is_alike = self.all.iter().all(has_group_text);
+        format!("{}: {}", name_holes(&holes), describe_differences(&self.all, is_alike, axes, tolerance))
     }
 }
 
 /// Formats the differences of holes, with the numbers of the first if all of them are equal, else with the largest.
-fn text(holes: &[ChangedHole], is_alike: bool, axes: &Axes, tolerance: f64) -> String {
+fn describe_differences(holes: &[ChangedHole], is_alike: bool, axes: &Axes, tolerance: f64) -> String {
     let up_to = if is_alike { "" } else { "up to " };
     let differences = || holes.iter().map(|one| &one.difference);
     let mut parts = Vec::new();
@@ -121,57 +123,57 @@ fn text(holes: &[ChangedHole], is_alike: bool, axes: &Axes, tolerance: f64) -> S
     if let Some((hole, shift)) = moved.max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm())) {
         let first = &holes[0].shift;
         parts.push(if is_alike {
-            format!("moved by {}", shown(&shift))
+            format!("moved by {}", format_shift(&shift))
         } else if holes.iter().all(|one| near(&one.shift, first, tolerance)) {
             let by = coordinates(first, axes, tolerance, true);
             format!(
                 "moved by {by} of the machine, up to {:.4} mm (hole {}: {})",
                 shift.norm(),
                 hole + 1,
-                shown(&shift)
+                format_shift(&shift)
             )
         } else {
-            format!("moved by up to {:.4} mm (hole {}: {})", shift.norm(), hole + 1, shown(&shift))
+            format!("moved by up to {:.4} mm (hole {}: {})", shift.norm(), hole + 1, format_shift(&shift))
         });
     }
     let tilted = differences().filter_map(|one| one.tilted).max_by(f64::total_cmp);
     parts.extend(tilted.map(|angle| format!("tilted by {up_to}{angle:.4}°")));
     for is_less in [false, true] {
-        let depths = differences().filter_map(|one| one.deeper).filter(|mm| (*mm < 0.0) == is_less);
+        let depths = differences().filter_map(|one| one.depth_change).filter(|mm| (*mm < 0.0) == is_less);
         let most = depths.max_by(|a, b| a.abs().total_cmp(&b.abs()));
         parts.extend(most.map(|mm| format!("{up_to}{:.4} mm {}", mm.abs(), deeper(mm))));
     }
     let first = &holes[0].difference;
-    parts.extend(first.others.iter().map(|(_, text)| text.clone()));
+    parts.extend(first.tool_differences.iter().map(|(_, text)| text.clone()));
     // All holes have the same changed passes.
-    for place in 0..first.passes.len() {
-        let alike: Vec<&PassChange> = differences().filter_map(|one| one.passes.get(place)).collect();
+    for index in 0..first.passes.len() {
+        let alike: Vec<&PassChange> = differences().filter_map(|one| one.passes.get(index)).collect();
         parts.push(describe_pass(&alike, is_alike, axes, tolerance));
     }
     parts.join(", ")
 }
 
-fn shown(shift: &Vector3<f64>) -> String {
-    let [x, y, z] = [shift.x, shift.y, shift.z].map(plain);
+fn format_shift(shift: &Vector3<f64>) -> String {
+    let [x, y, z] = [shift.x, shift.y, shift.z].map(without_negative_zero);
     format!("{x:+.4} {y:+.4} {z:+.4} mm")
 }
 
 /// Formats holes as `hole 5`, `holes 1, 2, 5`.
-pub(super) fn named(holes: &[usize]) -> String {
+pub(super) fn name_holes(holes: &[usize]) -> String {
     let names: Vec<String> = holes.iter().map(|hole| (hole + 1).to_string()).collect();
     format!("{} {}", if holes.len() == 1 { "hole" } else { "holes" }, listed(&names))
 }
 
 /// Returns 0 instead of −0 and of values that would be printed as −0.
-pub(super) fn plain(value: f64) -> f64 {
+pub(super) fn without_negative_zero(value: f64) -> f64 {
     if value.abs() < 5e-5 { 0.0 } else { value }
 }
 
-/// Returns runs of consecutive holes, or of holes that one block makes; `place` returns the block of each.
-pub(super) fn runs(
+/// Returns runs of consecutive holes, or of holes that one block makes; `block_of` returns the block of each.
+pub(super) fn consecutive_holes(
     holes: &[usize],
     firsts: &[usize],
-    place: impl Fn(usize) -> Option<usize>,
+    block_of: impl Fn(usize) -> Option<usize>,
 ) -> Vec<Vec<usize>> {
     let order = |hole: usize| firsts.binary_search(&hole).unwrap_or(hole);
     let mut runs: Vec<Vec<usize>> = Vec::new();
@@ -180,8 +182,8 @@ pub(super) fn runs(
     let mut before: Option<(usize, usize)> = None;
     for hole in holes.iter().copied() {
         let next = before.filter(|(last, _)| order(*last) + 1 == order(hole)).map(|(_, run)| run);
-        let run = of_block.get(&place(hole)).copied().or(next).unwrap_or(runs.len());
-        of_block.insert(place(hole), run);
+        let run = of_block.get(&block_of(hole)).copied().or(next).unwrap_or(runs.len());
+        of_block.insert(block_of(hole), run);
         before = Some((hole, run));
         match runs.get_mut(run) {
             Some(run) => run.push(hole),
@@ -200,7 +202,7 @@ mod tests {
         let all: Vec<usize> = (0..8).collect();
         let block = |hole: usize| Some([1, 2, 3, 4, 1, 5, 6, 6][hole]);
         // 0 and 4 are of one block, 4 and 5 follow one another; 7 is of the block of none of these.
-        assert_eq!(runs(&[0, 2, 4, 5, 7], &all, block), [vec![0, 4, 5], vec![2], vec![7]]);
-        assert_eq!(runs(&[1, 2, 3], &all, block), [vec![1, 2, 3]]);
+        assert_eq!(consecutive_holes(&[0, 2, 4, 5, 7], &all, block), [vec![0, 4, 5], vec![2], vec![7]]);
+        assert_eq!(consecutive_holes(&[1, 2, 3], &all, block), [vec![1, 2, 3]]);
     }
 }

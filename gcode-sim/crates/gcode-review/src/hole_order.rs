@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::align::Alignment;
 use super::change::{Effect, grouped};
 use super::cut_settings::changed_cut_settings;
-use super::hole_groups::{HoleEffect, named};
+use super::hole_groups::{HoleEffect, name_holes};
 use super::kinds;
 use super::passes::{Passes, in_words};
 
@@ -73,8 +73,8 @@ fn of_hole(passes: &[Passes; 2], hole: usize, other: usize) -> Vec<SharedPass> {
     if was.len() != is.len() && !(before.is_empty() && tools.is_empty()) {
         return Vec::new();
     }
-    let pass = |(place, steps)| {
-        let (number, tool) = ((place + 1, was.len().min(is.len())), tools.get(place).copied());
+    let pass = |(index, steps)| {
+        let (number, tool) = ((index + 1, was.len().min(is.len())), tools.get(index).copied());
         SharedPass { hole, number, tool, steps }
     };
     was.iter().copied().zip(is.iter().copied()).enumerate().map(pass).collect()
@@ -107,7 +107,7 @@ fn message(group: &[ReorderedHole], all: &[SharedPass]) -> String {
     };
     let with: String = if with.is_empty() { String::new() } else { format!(", {}", with.join(", ")) };
     let which = if holes.len() == 1 { String::new() } else { format!("hole {} ", holes[0] + 1) };
-    format!("{}: {}made in a different order, {which}{after}{with}", named(&holes), name(passes))
+    format!("{}: {}made in a different order, {which}{after}{with}", name_holes(&holes), name(passes))
 }
 
 /// Returns the indices of a longest increasing subsequence.
@@ -115,15 +115,15 @@ fn longest_increasing(values: &[usize]) -> BTreeSet<usize> {
     // Index of the smallest last value of each length, and the predecessor of each index.
     let mut ends: Vec<usize> = Vec::new();
     let mut follows: Vec<Option<usize>> = Vec::with_capacity(values.len());
-    for (place, value) in values.iter().enumerate() {
+    for (index, value) in values.iter().enumerate() {
         let length = ends.partition_point(|end| values[*end] < *value);
         follows.push(length.checked_sub(1).map(|shorter| ends[shorter]));
         match ends.get_mut(length) {
-            Some(end) => *end = place,
-            None => ends.push(place),
+            Some(end) => *end = index,
+            None => ends.push(index),
         }
     }
-    std::iter::successors(ends.last().copied(), |place| follows[*place]).collect()
+    std::iter::successors(ends.last().copied(), |index| follows[*index]).collect()
 }
 
 #[cfg(test)]

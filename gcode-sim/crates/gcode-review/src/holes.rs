@@ -5,7 +5,10 @@ use nalgebra::{Point3, Vector3};
 
 use super::align::Alignment;
 use super::change::Effect;
-use super::hole_groups::{ChangedHole, HoleDifference, HoleEffect, HoleGroup, groups, named, plain, runs};
+use super::hole_groups::{
+    ChangedHole, HoleDifference, HoleEffect, HoleGroup, consecutive_holes, groups, name_holes,
+    without_negative_zero,
+};
 use super::hole_order::hole_order;
 use super::kinds;
 use super::pass_changes::pass_changes;
@@ -116,15 +119,16 @@ impl HoleComparer<'_> {
             let is_one_by_one = difference_of.is_displaced() && was.len() == is.len();
             let passes = was.iter().copied().zip(is.iter().copied()).filter(|_| is_one_by_one);
             let changed_passes = difference_of.passes.iter().map(|pass| pass.steps);
-            let others: Vec<(usize, usize)> =
+            let other_pass_feeds: Vec<(usize, usize)> =
                 changed_passes.chain(passes).filter(|feeds| is_shifted(*feeds)).collect();
-            let feeds = if is_shifted(finish) { finish } else { others.first().copied().unwrap_or(finish) };
+            let feeds =
+                if is_shifted(finish) { finish } else { other_pass_feeds.first().copied().unwrap_or(finish) };
             let cause = cause(old.block(feeds.0), new.block(feeds.1));
             changed.push(ChangedHole {
                 hole,
                 difference: difference_of,
                 feeds,
-                others,
+                other_pass_feeds,
                 shift: shift(feeds),
                 cause,
             });
@@ -133,7 +137,8 @@ impl HoleComparer<'_> {
             let feeds = group.all[0].feeds;
             let is_by_tool = ["hole-tool", "hole-diameter"].contains(&group.kind().code);
             let tools = if is_by_tool { self.tool_changes(feeds) } else { [None, None] };
-            let steps = group.all.iter().flat_map(|one| std::iter::once(&one.feeds).chain(&one.others));
+            let steps =
+                group.all.iter().flat_map(|one| std::iter::once(&one.feeds).chain(&one.other_pass_feeds));
             let (was_made, is_made) = steps.copied().unzip();
             let blocks = self.alignment.blocks([Some(feeds.0), Some(feeds.1)]);
             let effect = Effect::new(group.kind(), group.message(self.alignment.axes(), tolerance), blocks);
@@ -159,8 +164,8 @@ impl HoleComparer<'_> {
         let [old, new] = self.alignment.records;
         for first in self.passes[0].firsts() {
             let Some(other) = partner[first] else { continue };
-            let again = self.passes[0].again[first].iter().zip(&self.passes[1].again[other]);
-            again.for_each(|(old, new)| partner[*old] = Some(*new));
+            let repeats = self.passes[0].repeats[first].iter().zip(&self.passes[1].repeats[other]);
+            repeats.for_each(|(old, new)| partner[*old] = Some(*new));
         }
         let pair = |(hole, other): (usize, &Option<usize>)| {
             let Some(other) = *other else { return Paired { old: Some(hole), ..alone } };
@@ -188,11 +193,11 @@ impl HoleComparer<'_> {
             return HoleDifference::default();
         }
         let far = |mm: f64| mm.abs() > tolerance;
-        let mut others = Vec::new();
+        let mut tool_differences = Vec::new();
         if let (Some(before), Some(now)) = (old.diameter, new.diameter)
             && far(before - now)
         {
-            others.push((&kinds::HOLE_DIAMETER, format!("Φ{now} instead of Φ{before}")));
+            tool_differences.push((&kinds::HOLE_DIAMETER, format!("Φ{now} instead of Φ{before}")));
         }
         let (was, is) = (&self.passes[0].tools[hole], &self.passes[1].tools[other]);
         let made = more_or_fewer(was, is).or_else(|| {
@@ -204,12 +209,12 @@ impl HoleComparer<'_> {
                 _ => Some(format!("made by {} instead of {}", in_words(is), in_words(was))),
             }
         });
-        others.extend(made.map(|text| (&kinds::HOLE_TOOL, text)));
+        tool_differences.extend(made.map(|text| (&kinds::HOLE_TOOL, text)));
         HoleDifference {
             moved: far(offset.entry.norm()).then_some(offset.entry),
             tilted: far((offset.bottom - offset.entry).norm()).then(|| tilt(old, new).0),
-            deeper: far(offset.deeper).then_some(offset.deeper),
-            others,
+            depth_change: far(offset.deeper).then_some(offset.deeper),
+            tool_differences,
             passes: pass_changes(&self.alignment, &self.passes, [hole, other], offset.deeper),
         }
     }
@@ -223,7 +228,9 @@ impl HoleComparer<'_> {
                 |hole: &usize| if side == 0 { partner[*hole].is_none() } else { !known.contains(hole) };
             let firsts = self.passes[side].firsts();
             let alone: Vec<usize> = firsts.iter().copied().filter(is_alone).collect();
-            for run in runs(&alone, &firsts, |hole| Some(record.steps[last(record, hole)?].place)) {
+            for run in consecutive_holes(&alone, &firsts, |hole| {
+                Some(record.steps[last(record, hole)?].block_number)
+            }) {
                 let hole = described(&record.holes[run[0]]);
                 let feed = last(record, run[0]);
                 let rapid = if side == 0 { self.rapid_to_bottom(run[0]) } else { None };
@@ -231,9 +238,9 @@ impl HoleComparer<'_> {
                 let (kind, message) = match (side, rapid, run.len()) {
                     (0, Some(_), _) => {
                         let lost = "a rapid instead of a feed goes to the bottom";
-                        (&kinds::HOLE_LOST, format!("{}: {lost}, {first}{hole}", named(&run)))
+                        (&kinds::HOLE_LOST, format!("{}: {lost}, {first}{hole}", name_holes(&run)))
                     }
-                    (0, None, _) => (&kinds::HOLE_LOST, format!("{}: lost, {first}{hole}", named(&run))),
+                    (0, None, _) => (&kinds::HOLE_LOST, format!("{}: lost, {first}{hole}", name_holes(&run))),
                     (_, _, 1) => (&kinds::HOLE_ADDED, format!("a hole added: {hole}")),
                     (_, _, n) => (&kinds::HOLE_ADDED, format!("{n} holes added: {first}{hole}")),
                 };
@@ -293,7 +300,7 @@ impl HoleOffset {
 
 /// Formats a hole with its diameter, entry and depth.
 fn described(found: &DrilledHole) -> String {
-    let [x, y, z] = [found.entry.x, found.entry.y, found.entry.z].map(plain);
+    let [x, y, z] = [found.entry.x, found.entry.y, found.entry.z].map(without_negative_zero);
     let diameter = found.diameter.map(|d| format!("Φ{d} ")).unwrap_or_default();
     format!("{diameter}at {x:.3} {y:.3} {z:.3}, fed {:.3} mm", found.depth)
 }

@@ -22,11 +22,11 @@ pub(super) fn compare(alignment: &Alignment<'_>) -> Vec<Effect> {
         };
         let relying: Vec<&SharedMove> = moves.iter().filter(is_relying).collect();
         let first = *relying.first()?;
-        Some(((command.what, command.place, first.steps), (command, first, relying.len())))
+        Some(((command.what, command.block_number, first.steps), (command, first, relying.len())))
     });
-    let effect = |((what, place, steps), all): ((CommandKind, usize, _), Vec<_>)| {
+    let effect = |((what, block_number, steps), all): ((CommandKind, usize, _), Vec<_>)| {
         let message = message(what, &all);
-        Effect::new(&kinds::START, message, [Some(&old.places[place]), alignment.blocks(steps)[1]])
+        Effect::new(&kinds::START, message, [Some(&old.blocks[block_number]), alignment.blocks(steps)[1]])
     };
     grouped(missing).into_iter().map(effect).collect()
 }
@@ -74,7 +74,8 @@ fn is_already_reported(command: &FirstCommand, alignment: &Alignment<'_>, pair: 
         }
         CommandKind::Axis | CommandKind::Offset if !pair.is_same => true,
         CommandKind::Axis => alignment.links.iter().any(|link| {
-            let is_of_block = link.sides()[0].is_some_and(|i| old.steps[i].place == command.place);
+            let is_of_block =
+                link.sides()[0].is_some_and(|i| old.steps[i].block_number == command.block_number);
             is_of_block && !matches!(link, StepPair::Same(..))
         }),
         CommandKind::Offset => false,

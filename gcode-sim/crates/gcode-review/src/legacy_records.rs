@@ -1,6 +1,7 @@
 //! Accepted results of earlier versions, which recorded less of a run: what they lack is named and not compared.
 use std::collections::BTreeMap;
 
+use super::kinds;
 use super::modal_conditions::{ModalAspect, ModalSetting};
 use super::record::Record;
 use super::steps::{StepKind, UNSIMULATED, UnsimulatedKind};
@@ -11,6 +12,12 @@ const ALARMS: &str = include_str!("former_alarms.tsv");
 /// Former and present message of `#3000` without a text.
 const NO_TEXT: &str =
     "the program stops itself and does not say why\tthe program raises an alarm without a text";
+
+/// Beginning of the name of an additional work coordinate system on a Haas.
+const HAAS_SYSTEM: &str = "G154 P";
+
+/// Beginning of the same name in records of earlier versions, that of a Fanuc.
+const FORMER_SYSTEM: &str = "G54.1 P";
 
 /// Returns the words of an accepted end with the present message of its alarm. A text of `#3000` stays.
 pub(super) fn present_words(words: &str) -> String {
@@ -49,11 +56,24 @@ impl Record {
         self.first_commands.is_none()
     }
 
-    /// Names what a record of an earlier version lacks; it may lack it because the run had none of it.
-    pub fn unrecorded_aspects(&self) -> Vec<&'static str> {
-        if !self.is_legacy() {
-            return Vec::new();
+    /// Names what a record of an earlier version lacks and `current` may have; a record may lack it because its run
+    /// had none of it.
+    pub fn unrecorded_aspects(&self, current: &Self) -> Vec<String> {
+        let mut all = Vec::new();
+        if self.is_legacy() {
+            all.extend(self.unrecorded_legacy_aspects().into_iter().map(str::to_owned));
         }
+        all.extend(self.unrecorded_modes(current).map(|mode| format!("{mode} at the end")));
+        all
+    }
+
+    /// Returns the names of the modes in the final state of `current` that this record lacks.
+    fn unrecorded_modes<'r>(&'r self, current: &'r Self) -> impl Iterator<Item = &'r String> {
+        let modes = current.ending.residual.iter().filter(|(_, entry)| entry.code == kinds::MODE.code);
+        modes.map(|(name, _)| name).filter(|name| !self.ending.residual.contains_key(*name))
+    }
+
+    fn unrecorded_legacy_aspects(&self) -> Vec<&'static str> {
         let mut all = vec!["the state required at the program's start"];
         all.extend(self.program.is_none().then_some("its O number"));
         let conditions = ModalAspect::ALL.into_iter().filter(|what| self.lacks_condition(*what));
@@ -69,6 +89,9 @@ impl Record {
     #[must_use]
     pub fn reduced_to(&self, accepted: &Self) -> Self {
         let mut record = self.clone();
+        if accepted.has_systems_named(FORMER_SYSTEM) && !accepted.has_systems_named(HAAS_SYSTEM) {
+            record.rename_haas_systems();
+        }
         if !accepted.is_legacy() {
             return record;
         }
@@ -87,6 +110,24 @@ impl Record {
         record
             .leave_out(|kind| matches!(kind, StepKind::Silent(what, _) if accepted.lacks_unsimulated(*what)));
         record
+    }
+
+    /// Returns true if an additional work coordinate system has a name with this beginning.
+    fn has_systems_named(&self, beginning: &str) -> bool {
+        let systems = self.conditions.iter().map(|condition| &condition.word(ModalAspect::System).text);
+        systems.chain(self.ending.residual.keys()).any(|name| name.starts_with(beginning))
+    }
+
+    /// Gives the additional work coordinate systems of a Haas their names in records of earlier versions.
+    fn rename_haas_systems(&mut self) {
+        for condition in &mut self.conditions {
+            let mut setting = condition.word(ModalAspect::System).clone();
+            setting.text = setting.text.replace(HAAS_SYSTEM, FORMER_SYSTEM);
+            condition.set(ModalAspect::System, setting);
+        }
+        let residual = std::mem::take(&mut self.ending.residual).into_iter();
+        self.ending.residual =
+            residual.map(|(name, entry)| (name.replace(HAAS_SYSTEM, FORMER_SYSTEM), entry)).collect();
     }
 
     fn lacks_condition(&self, what: ModalAspect) -> bool {
@@ -115,7 +156,8 @@ impl Record {
 
 #[cfg(test)]
 mod tests {
-    use super::present_words;
+    use super::{Record, present_words};
+    use crate::changes;
 
     #[test]
     fn an_alarm_with_a_former_message_has_its_present_one() {
@@ -151,5 +193,34 @@ mod tests {
         for same in ["the program ends by M02", "alarm MC3001 no axis 3", "alarm PS0112 division by zero"] {
             assert_eq!(present_words(same), same);
         }
+    }
+
+    /// A record without steps whose final state has some modes.
+    fn record_with(modes: &str) -> Record {
+        let text = format!(
+            r#"{{"version": 1, "axes": "XYZ", "totals": {{"holes": 0, "moves": 0, "blocks": 1, "seconds": 0.0}},
+            "ending": {{"outcome": "end", "words": "the program ends", "stopped": null, "output": [],
+            "left": {{{modes}}}}}, "places": [], "begun": [], "steps": [], "holes": []}}"#
+        );
+        Record::from_json(&text).unwrap()
+    }
+
+    #[test]
+    fn a_work_offset_of_a_haas_keeps_its_former_name_in_a_comparison() {
+        let offset =
+            |name: &str| record_with(&format!(r#""{name} X": {{"code": "work-offset", "value": 5.0}}"#));
+        let (accepted, current) = (offset("G54.1 P9"), offset("G154 P9"));
+        assert!(changes(&accepted, &current.reduced_to(&accepted), 1e-4).is_empty());
+        assert!(!changes(&current, &accepted.reduced_to(&current), 1e-4).is_empty());
+    }
+
+    #[test]
+    fn a_modal_group_that_a_record_lacks_is_named_and_not_compared() {
+        let motion = r#""the mode of group 01": {"code": "mode", "value": 1.0}"#;
+        let plane = r#""the mode of group 02": {"code": "mode", "value": 17.0}"#;
+        let (accepted, current) = (record_with(motion), record_with(&format!("{motion}, {plane}")));
+        assert_eq!(accepted.unrecorded_aspects(&current), ["the mode of group 02 at the end"]);
+        assert!(current.unrecorded_aspects(&accepted).is_empty());
+        assert!(changes(&accepted, &current, 1e-4).is_empty());
     }
 }

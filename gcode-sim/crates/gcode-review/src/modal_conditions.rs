@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::kinds;
-use gcode_control::{State, modal_code};
+use gcode_control::{State, additional_system_name, modal_code};
+use gcode_lang::control::Dialect;
 use gcode_lang::diag::FindingKind;
 use gcode_lang::program::modes::WorkSystem;
 
@@ -12,7 +13,7 @@ use gcode_lang::program::modes::WorkSystem;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum ModalAspect {
-    /// G54 to G59, G54.1 with its P.
+    /// G54 to G59, G54.1 with its P, G154 with its P on a Haas.
     System,
     /// G43 or G44 with H, G49.
     Length,
@@ -42,12 +43,14 @@ impl ModalAspect {
         }
     }
 
-    fn read(self, state: &State) -> String {
+    fn read(self, state: &State, dialect: Dialect) -> String {
         let modal = &state.modal;
         let code = modal.code(self.row().0).unwrap_or_default();
         let group = modal_code(code);
         match (self, modal.work, modal.cycle) {
-            (Self::System, WorkSystem::Additional(number), _) => format!("G54.1 P{number}"),
+            (Self::System, WorkSystem::Additional(number), _) => {
+                additional_system_name(dialect, usize::from(number))
+            }
             (Self::Length, ..) if code != 490 => format!("{group} H{}", state.codes.h),
             (Self::Cutter, ..) if code != 400 => format!("{group} D{}", state.codes.d),
             (Self::Level | Self::Cycle, _, None) => String::new(),
@@ -69,14 +72,19 @@ pub(super) struct ModalConditions(pub [ModalSetting; 6]);
 pub(super) struct ModalSetting {
     /// Empty for none.
     pub text: String,
-    pub place: Option<usize>,
+    pub block_number: Option<usize>,
 }
 
 impl ModalConditions {
     /// Returns the conditions before the first block; no block has set them.
     pub(super) fn at_power_on() -> Self {
         let state = State::default();
-        Self(ModalAspect::ALL.map(|aspect| ModalSetting { text: aspect.read(&state), place: None }))
+        Self(
+            ModalAspect::ALL.map(|aspect| ModalSetting {
+                text: aspect.read(&state, Dialect::default()),
+                block_number: None,
+            }),
+        )
     }
 
     pub(super) fn word(&self, aspect: ModalAspect) -> &ModalSetting {
@@ -88,14 +96,27 @@ impl ModalConditions {
     }
 
     /// Returns the conditions after a block; unchanged ones keep the block that set them.
-    pub(super) fn after_block(&self, state: &State, place: usize) -> Self {
+    pub(super) fn after_block(&self, state: &State, dialect: Dialect, block_number: usize) -> Self {
         let mut next = self.clone();
         for aspect in ModalAspect::ALL {
-            let text = aspect.read(state);
+            let text = aspect.read(state, dialect);
             if next.word(aspect).text != text {
-                next.set(aspect, ModalSetting { text, place: Some(place) });
+                next.set(aspect, ModalSetting { text, block_number: Some(block_number) });
             }
         }
         next
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_additional_work_coordinate_system_has_the_name_of_its_dialect() {
+        let mut state = State::default();
+        state.modal.work = WorkSystem::Additional(9);
+        assert_eq!(ModalAspect::System.read(&state, Dialect::Fanuc31i), "G54.1 P9");
+        assert_eq!(ModalAspect::System.read(&state, Dialect::HaasNgc), "G154 P9");
     }
 }

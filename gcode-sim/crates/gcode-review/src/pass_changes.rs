@@ -16,7 +16,7 @@ pub(super) struct PassChange {
     /// Displacement of its end point in machine coordinates; 0 for a pass that stays while the hole moves.
     shift: Position,
     /// Part of the displacement along the feed, mm.
-    deeper: f64,
+    depth_change: f64,
     /// The whole displacement is along the feed.
     is_along: bool,
     /// The tool tip ends at the same point because of another length offset.
@@ -76,7 +76,7 @@ pub(super) fn pass_changes(
         all.push(PassChange {
             steps: (was[*i], is[*j]),
             shift,
-            deeper: along,
+            depth_change: along,
             is_along: aside <= tolerance,
             is_compensated: tips.is_some_and(|(was, is)| (is - was).norm() <= tolerance),
             number: (*i + 1, was.len()),
@@ -133,8 +133,8 @@ fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
 /// Returns the end point of a pass on the part; `None` if it is unknown.
 fn tip(record: &Record, hole: usize, step: usize) -> Option<Point3<f64>> {
     let (others, feeds) = (&record.holes[hole].earlier_passes, &record.feeds[hole]);
-    let place = feeds.iter().position(|feed| *feed == step)?;
-    others.get(place).filter(|_| feeds.len() == others.len() + 1).map(|cut| cut.bottom)
+    let index = feeds.iter().position(|feed| *feed == step)?;
+    others.get(index).filter(|_| feeds.len() == others.len() + 1).map(|cut| cut.bottom)
 }
 
 /// Splits a displacement into its parts along and across a feed.
@@ -146,7 +146,7 @@ fn parts(displacement: &Position, feed: &Step) -> (f64, f64) {
 /// Formats a pass that changed in one or more holes, with the numbers of the first if all of them are equal, else
 /// with the largest.
 pub(super) fn describe_pass(all: &[&PassChange], is_alike: bool, axes: &Axes, tolerance: f64) -> String {
-    let PassChange { number: (number, passes), tool, shift, deeper: depth, .. } = all[0];
+    let PassChange { number: (number, passes), tool, shift, depth_change: depth, .. } = all[0];
     let by = tool.map(|tool| format!(", by T{tool}")).unwrap_or_default();
     let name = format!("pass {number} of {passes}{by},");
     let largest = |axis: usize| all.iter().map(|pass| pass.shift[axis].abs()).fold(0.0, f64::max);

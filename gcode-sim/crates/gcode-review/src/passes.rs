@@ -8,7 +8,7 @@ pub(super) struct Passes {
     /// The hole itself, or the one that it repeats.
     first: Vec<usize>,
     /// Holes that repeat each one, in their order.
-    pub again: Vec<Vec<usize>>,
+    pub repeats: Vec<Vec<usize>>,
     /// Steps that cut it, in their order.
     pub steps: Vec<Vec<usize>>,
     /// Tools of these steps; none if one of them is unknown.
@@ -19,11 +19,11 @@ impl Passes {
     pub(super) fn of(record: &Record) -> Self {
         let first: Vec<usize> = record.holes.iter().map(|hole| hole.first_on_line).collect();
         let mut steps = vec![Vec::new(); record.holes.len()];
-        let mut again = vec![Vec::new(); record.holes.len()];
+        let mut repeats = vec![Vec::new(); record.holes.len()];
         for (hole, feeds) in record.feeds.iter().enumerate() {
             steps[first[hole]].extend(feeds);
             if first[hole] != hole {
-                again[first[hole]].push(hole);
+                repeats[first[hole]].push(hole);
             }
         }
         steps.iter_mut().for_each(|steps| steps.sort_unstable());
@@ -36,7 +36,7 @@ impl Passes {
         let in_spindle: Vec<Option<u32>> = in_spindle.collect();
         let of = |steps: &Vec<usize>| steps.iter().map(|step| in_spindle[*step]).collect::<Option<_>>();
         let tools = steps.iter().map(|steps| of(steps).unwrap_or_default()).collect();
-        Self { first, again, steps, tools }
+        Self { first, repeats, steps, tools }
     }
 
     /// Returns the steps that cut some holes.

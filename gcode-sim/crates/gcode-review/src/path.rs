@@ -23,16 +23,16 @@ pub struct Leg {
     pub feed: Option<f64>,
     /// True for a move that cuts a hole, or leaves one along the path of its cut.
     pub is_of_hole: bool,
-    /// Index of its block in [`Record::places`].
-    pub place: usize,
+    /// Index of its block in [`Record::blocks`].
+    pub block_number: usize,
     /// Points from start to end, mm.
     pub points: Vec<Point3<f64>>,
 }
 
 impl Record {
     /// Returns the blocks by their index.
-    pub fn places(&self) -> &[BlockLocation] {
-        &self.places
+    pub fn blocks(&self) -> &[BlockLocation] {
+        &self.blocks
     }
 
     /// Counts the moves.
@@ -72,7 +72,7 @@ impl Record {
 
 fn leg(index: usize, step: &Step, is_of_hole: bool, points: Vec<Point3<f64>>) -> Leg {
     let (kind, feed) = (step.kind.name(), step.kind.rate());
-    Leg { step: index, kind, feed, is_of_hole, place: step.place, points }
+    Leg { step: index, kind, feed, is_of_hole, block_number: step.block_number, points }
 }
 
 /// Returns true if a path ends where the path before starts.

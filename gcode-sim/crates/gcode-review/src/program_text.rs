@@ -37,7 +37,7 @@ pub(super) fn words(block: &str) -> String {
 
 /// A block with words.
 pub(super) struct TextBlock {
-    pub place: BlockLocation,
+    pub location: BlockLocation,
     /// Without sequence number, comments and spaces.
     words: String,
     /// Number of steps before its first execution; `None` if it is not executed.
@@ -47,11 +47,11 @@ pub(super) struct TextBlock {
 }
 
 impl TextBlock {
-    pub(super) fn new(place: BlockLocation, reached: Option<usize>) -> Self {
+    pub(super) fn new(location: BlockLocation, reached: Option<usize>) -> Self {
         // The comment of an alarm or a message is its text.
-        let has_message = ["#3000", "#3006"].iter().any(|variable| place.block.contains(variable));
-        let words = if has_message { place.block.clone() } else { words(&place.block) };
-        Self { place, words, reached, key: None }
+        let has_message = ["#3000", "#3006"].iter().any(|variable| location.block.contains(variable));
+        let words = if has_message { location.block.clone() } else { words(&location.block) };
+        Self { location, words, reached, key: None }
     }
 }
 
@@ -66,7 +66,7 @@ pub(super) fn written(record: &Record) -> Option<Programs> {
         for program in parse(source, &text.bytes) {
             let name = program.name.label();
             let blocks = program.blocks.iter().map(|block| {
-                let place = BlockLocation {
+                let location = BlockLocation {
                     program: name.clone(),
                     line: sources.line_column(block.span).line,
                     block: sources.text(block.span).trim().to_owned(),
@@ -75,7 +75,7 @@ pub(super) fn written(record: &Record) -> Option<Programs> {
                 let key = (source, block.span.start);
                 TextBlock {
                     key: Some(key),
-                    ..TextBlock::new(place, record.executed.get(&key).map(|(reached, _)| *reached))
+                    ..TextBlock::new(location, record.executed.get(&key).map(|(reached, _)| *reached))
                 }
             });
             let blocks: Vec<TextBlock> = blocks.filter(|block| !block.words.is_empty()).collect();
@@ -88,23 +88,23 @@ pub(super) fn written(record: &Record) -> Option<Programs> {
 /// Returns the blocks that steps and their calls name.
 pub(super) fn executed(record: &Record) -> Programs {
     let mut found: BTreeMap<(&str, u32), (&BlockLocation, usize)> = BTreeMap::new();
-    let mut is_known = vec![false; record.places.len()];
+    let mut is_known = vec![false; record.blocks.len()];
     let mut main = record.program.as_deref();
     for (number, step) in record.steps.iter().enumerate() {
-        if std::mem::replace(&mut is_known[step.place], true) {
+        if std::mem::replace(&mut is_known[step.block_number], true) {
             continue;
         }
-        let place = &record.places[step.place];
-        for block in place.calls.iter().rev().chain([place]) {
+        let location = &record.blocks[step.block_number];
+        for block in location.calls.iter().rev().chain([location]) {
             main = main.or(Some(&block.program));
             found.entry((&block.program, block.line)).or_insert((block, number));
         }
     }
     let mut programs: BTreeMap<String, Vec<TextBlock>> = BTreeMap::new();
     for ((program, _), (block, reached)) in found {
-        let place = BlockLocation { calls: Vec::new(), ..block.clone() };
+        let location = BlockLocation { calls: Vec::new(), ..block.clone() };
         let name = if Some(program) == main { String::new() } else { program.to_owned() };
-        programs.entry(name).or_default().push(TextBlock::new(place, Some(reached)));
+        programs.entry(name).or_default().push(TextBlock::new(location, Some(reached)));
     }
     programs.into_iter().collect()
 }
@@ -118,7 +118,7 @@ fn between(pairs: Vec<(usize, usize)>, ends: (usize, usize)) -> impl Iterator<It
     })
 }
 
-/// Returns the places where two texts differ: block by block if both have the same number of blocks there. A
+/// Returns the passages in which two texts differ: block by block if both have the same number of blocks there. A
 /// deletion and an insertion of the same blocks are one gap.
 pub(super) fn gaps(before: &[TextBlock], now: &[TextBlock]) -> Vec<[Range<usize>; 2]> {
     let pairs = common(before.len(), now.len(), |i, j| before[i].words == now[j].words);
@@ -161,7 +161,7 @@ pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
     let [was, is] = [old, new].map(|revision| {
         let programs = written(&revision.record).unwrap_or_default().into_iter();
         let programs = programs.map(|(name, blocks)| {
-            let blocks = blocks.into_iter().map(|block| (words(&block.place.block), block));
+            let blocks = blocks.into_iter().map(|block| (words(&block.location.block), block));
             (name, blocks.filter(|(words, _)| !words.is_empty()).collect::<Vec<_>>())
         });
         programs.collect::<Vec<_>>()
@@ -174,7 +174,7 @@ pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
                 .is_some_and(|(_, is_whole)| *is_whole)
         };
         let blocks = blocks.iter().map(|(_, block)| block).filter(|block| !is_done(block));
-        blocks.map(|block| block.place.clone()).collect::<Vec<_>>().into_iter()
+        blocks.map(|block| block.location.clone()).collect::<Vec<_>>().into_iter()
     };
     let mut all = Vec::new();
     for (name, before) in &was {

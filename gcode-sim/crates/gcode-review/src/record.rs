@@ -32,8 +32,8 @@ pub struct Record {
     pub(super) feeds: Vec<Vec<usize>>,
     /// Holes that a stop leaves unfinished: their depth and their tools are unknown.
     pub(super) unfinished: BTreeSet<usize>,
-    /// Blocks by their numbers, such as [`Step::place`].
-    pub(super) places: Vec<BlockLocation>,
+    /// Blocks by their numbers, such as [`Step::block_number`].
+    pub(super) blocks: Vec<BlockLocation>,
     /// Modal conditions by their numbers, [`Step::condition`].
     pub(super) conditions: Vec<ModalConditions>,
     /// First commands of the program; `None` in accepted results that do not have them.
@@ -91,7 +91,8 @@ pub(super) struct EndState {
     /// The lines of DPRNT and BPRNT; bytes that are not text as `\xNN`.
     pub output: Vec<String>,
     /// The final state by name: every value that is neither vacant nor 0.
-    pub left: BTreeMap<String, ResidualEntry>,
+    #[serde(rename = "left")]
+    pub residual: BTreeMap<String, ResidualEntry>,
 }
 
 /// A value of the final state.
@@ -102,8 +103,8 @@ pub(super) struct ResidualEntry {
     pub code: String,
     pub value: f64,
     /// The block that set the mode, or wrote the value last.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<BlockLocation>,
+    #[serde(default, rename = "place", skip_serializing_if = "Option::is_none")]
+    pub location: Option<BlockLocation>,
 }
 
 /// A run with its record.
@@ -191,16 +192,17 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
     let ending = ending(run, &recorder);
-    let Recorder { mut steps, places, mut conditions, first_commands, executed, .. } = recorder;
+    let Recorder { mut steps, backtraces, mut conditions, first_commands, executed, .. } = recorder;
     let mut first_commands: Vec<FirstCommand> = first_commands.into_values().collect();
     if conditions.is_empty() {
         conditions.push(ModalConditions::default());
     }
     let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
-    let named = words.filter_map(|word| word.place.as_mut());
-    let named = named.chain(first_commands.iter_mut().map(|command| &mut command.place));
-    let of_steps = steps.iter_mut().flat_map(|step| std::iter::once(&mut step.place).chain(&mut step.set_by));
-    let places = resolve(run, &places, of_steps.chain(named));
+    let named = words.filter_map(|word| word.block_number.as_mut());
+    let named = named.chain(first_commands.iter_mut().map(|command| &mut command.block_number));
+    let of_steps =
+        steps.iter_mut().flat_map(|step| std::iter::once(&mut step.block_number).chain(&mut step.set_by));
+    let blocks = resolve(run, &backtraces, of_steps.chain(named));
     Record {
         axes: run.control.settings().axes.clone(),
         totals: Totals {
@@ -219,7 +221,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
         holes,
         feeds,
         unfinished: BTreeSet::new(),
-        places,
+        blocks,
     }
 }
 
@@ -228,7 +230,7 @@ fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
     let key = |block: Span, at: &Position| (block.source, block.start, at.0.map(f64::to_bits));
     let mut steps: BTreeMap<(_, u32, [u64; MAX_AXES]), Vec<usize>> = BTreeMap::new();
     for (index, step) in recorder.steps.iter().enumerate().rev().filter(|(_, step)| step.is_move()) {
-        steps.entry(key(recorder.places[step.place].block, &step.at)).or_default().push(index);
+        steps.entry(key(recorder.backtraces[step.block_number].block, &step.at)).or_default().push(index);
     }
     // Steps are in reverse, so that `pop` takes the earliest of equal ones.
     let of = |found: &DrilledHole| {
@@ -242,21 +244,21 @@ fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
 /// Returns the location of each block once, and renumbers `named`.
 fn resolve<'a>(
     run: &Run,
-    places: &[Backtrace],
+    backtraces: &[Backtrace],
     named: impl Iterator<Item = &'a mut usize>,
 ) -> Vec<BlockLocation> {
     let mut numbers: BTreeMap<BlockLocation, usize> = BTreeMap::new();
-    let resolved: Vec<usize> = places
+    let resolved: Vec<usize> = backtraces
         .iter()
-        .map(|place| {
+        .map(|backtrace| {
             let next = numbers.len();
-            *numbers.entry(BlockLocation::of(run, place)).or_insert(next)
+            *numbers.entry(BlockLocation::of(run, backtrace)).or_insert(next)
         })
         .collect();
-    named.for_each(|place| *place = resolved[*place]);
+    named.for_each(|number| *number = resolved[*number]);
     let mut all: Vec<(BlockLocation, usize)> = numbers.into_iter().collect();
     all.sort_by_key(|(_, number)| *number);
-    all.into_iter().map(|(place, _)| place).collect()
+    all.into_iter().map(|(location, _)| location).collect()
 }
 
 impl Record {
@@ -264,7 +266,7 @@ impl Record {
     pub fn stops(&self) -> impl Iterator<Item = (usize, &BlockLocation)> {
         let steps = self.steps.iter().enumerate();
         let stops = steps.filter(|(_, step)| matches!(step.kind, StepKind::Stop(..)));
-        stops.map(|(number, step)| (number, &self.places[step.place]))
+        stops.map(|(number, step)| (number, &self.blocks[step.block_number]))
     }
 
     /// Returns the record of the first steps, and of the holes that they begin.
@@ -285,7 +287,7 @@ impl Record {
 
     /// Returns the block of a step.
     pub(super) fn block(&self, step: usize) -> &BlockLocation {
-        &self.places[self.steps[step].place]
+        &self.blocks[self.steps[step].block_number]
     }
 
     /// Returns the modal conditions of a step.
@@ -316,15 +318,15 @@ pub fn alarm_code(words: &str) -> Option<&str> {
 
 impl BlockLocation {
     /// Locates a block of a run and the calls that led to it.
-    pub fn of(run: &Run, place: &Backtrace) -> Self {
+    pub fn of(run: &Run, backtrace: &Backtrace) -> Self {
         let sources = run.control.memory().sources();
         let at = |span| {
             let (program, line) = run.locate(span);
             Self { program, line, block: sources.text(span).trim().to_owned(), calls: Vec::new() }
         };
-        let chain = std::iter::successors(place.calls.as_deref(), |call| call.outer_calls.as_deref());
+        let chain = std::iter::successors(backtrace.calls.as_deref(), |call| call.outer_calls.as_deref());
         let calls = chain.map(|call| at(call.calling_block)).collect();
-        Self { calls, ..at(place.block) }
+        Self { calls, ..at(backtrace.block) }
     }
 }
 
@@ -342,8 +344,9 @@ fn ending(run: &Run, recorder: &Recorder) -> EndState {
             ("limit", words, Some(Backtrace { block, calls: CallChain::default() }))
         }
     };
-    let left = run.control.residual_values().into_iter().map(|value: ResidualValue| {
-        let place = recorder.written.get(&value.name).map(|place| BlockLocation::of(run, place));
+    let residual = run.control.residual_values().into_iter().map(|value: ResidualValue| {
+        let written = recorder.written.get(&value.name);
+        let location = written.map(|backtrace| BlockLocation::of(run, backtrace));
         let code = match value.kind {
             ResidualKind::Variable => &kinds::VARIABLE,
             ResidualKind::Mode => &kinds::MODE,
@@ -353,13 +356,13 @@ fn ending(run: &Run, recorder: &Recorder) -> EndState {
             ResidualKind::Output => &kinds::SIGNAL,
             ResidualKind::Counter => &kinds::COUNTER,
         };
-        (value.name, ResidualEntry { code: code.code.to_owned(), value: value.value, place })
+        (value.name, ResidualEntry { code: code.code.to_owned(), value: value.value, location })
     });
     EndState {
         outcome: outcome.to_owned(),
         words,
-        stopped: stopped.map(|place| BlockLocation::of(run, &place)),
+        stopped: stopped.map(|backtrace| BlockLocation::of(run, &backtrace)),
         output: run.control.output().iter().map(|line| gcode_control::printable(line)).collect(),
-        left: left.collect(),
+        residual: residual.collect(),
     }
 }

@@ -13,6 +13,7 @@ use gcode_control::{
     modal_code, mode_name,
 };
 use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, Position, SpindleDirection};
+use gcode_lang::program::modes::GROUPS;
 use gcode_lang::source::{SourceId, Span};
 
 /// Largest number of recorded steps: a loop that never ends must not fill the memory.
@@ -34,7 +35,7 @@ const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 #[derive(Debug, Default)]
 pub(super) struct Recorder {
     pub steps: Vec<Step>,
-    pub places: Vec<Backtrace>,
+    pub backtraces: Vec<Backtrace>,
     /// The run has more than [`MOST_STEPS`].
     pub is_truncated: bool,
     pub conditions: Vec<ModalConditions>,
@@ -69,7 +70,7 @@ pub(super) type ExecutedBlocks = BTreeMap<(SourceId, u32), (usize, bool)>;
 /// A block before its execution.
 #[derive(Debug)]
 struct PendingBlock {
-    place: Backtrace,
+    backtrace: Backtrace,
     /// Axis positions and tool length offset before it.
     before: (Position, Position),
     unsimulated: UnsimulatedCodes,
@@ -80,12 +81,12 @@ struct PendingBlock {
 }
 
 impl Recorder {
-    /// Returns the number of a place.
-    fn place(&mut self, place: Backtrace) -> usize {
-        if !self.places.last().is_some_and(|last| is_same_place(last, &place)) {
-            self.places.push(place);
+    /// Returns the number of a block and its calls.
+    fn number(&mut self, backtrace: Backtrace) -> usize {
+        if !self.backtraces.last().is_some_and(|last| is_same_block(last, &backtrace)) {
+            self.backtraces.push(backtrace);
         }
-        self.places.len() - 1
+        self.backtraces.len() - 1
     }
 
     /// Records the commands of the next block.
@@ -103,18 +104,18 @@ impl Recorder {
             let tables = if unsimulated.writes { control.residual_values() } else { Vec::new() };
             let mut assigned = control.next_assigned_variables();
             assigned.retain(|number| [COMMON, SWITCHES, OUTPUTS].iter().any(|some| some.contains(number)));
-            let place = Backtrace { block, ..control.backtrace() };
-            self.begin(control.next_commands(), &place);
-            PendingBlock { place, before: (self.at, self.length), unsimulated, assigned, tables }
+            let backtrace = Backtrace { block, ..control.backtrace() };
+            self.begin(control.next_commands(), &backtrace);
+            PendingBlock { backtrace, before: (self.at, self.length), unsimulated, assigned, tables }
         });
     }
 
     /// Records first commands, and the block of F, S and T.
-    fn begin(&mut self, commands: BlockCommands, place: &Backtrace) {
+    fn begin(&mut self, commands: BlockCommands, backtrace: &Backtrace) {
         let BlockCommands { modes, axes, offsets, valued_letters } = commands;
         for letter in valued_letters {
-            let number = self.place(place.clone());
-            self.set_by.insert(letter, (place.block, number));
+            let number = self.number(backtrace.clone());
+            self.set_by.insert(letter, (backtrace.block, number));
         }
         let modes = modes.into_iter();
         let modes = modes.map(|(group, code)| (CommandKind::Mode, format!("{group:02}"), modal_code(code)));
@@ -122,8 +123,8 @@ impl Recorder {
         let offsets = offsets.into_iter().map(|name| (CommandKind::Offset, name.clone(), name));
         for (what, name, text) in modes.chain(axes).chain(offsets) {
             if !self.first_commands.contains_key(&(what, name.clone())) {
-                let place = self.place(place.clone());
-                let first = FirstCommand { what, name: name.clone(), text, moves: self.moves, place };
+                let block_number = self.number(backtrace.clone());
+                let first = FirstCommand { what, name: name.clone(), text, moves: self.moves, block_number };
                 self.first_commands.insert((what, name), first);
             }
         }
@@ -132,9 +133,9 @@ impl Recorder {
     /// Records the unsimulated commands of an executed block, and the values that it wrote.
     fn note(&mut self, control: &Control) {
         let Some(block) = self.block.take() else { return };
-        let PendingBlock { place, before, unsimulated, assigned, tables } = block;
-        self.note_called(control, &place, before);
-        self.last = Some(place.clone());
+        let PendingBlock { backtrace, before, unsimulated, assigned, tables } = block;
+        self.note_called(control, &backtrace, before);
+        self.last = Some(backtrace.clone());
         self.end = match unsimulated.end_code {
             None => " by M99",
             Some(2) => " by M02",
@@ -147,17 +148,17 @@ impl Recorder {
             (UnsimulatedKind::MCode, unsimulated.m_codes),
         ] {
             for text in texts {
-                self.push(StepKind::Silent(what, text), self.at, place.clone());
+                self.push(StepKind::Silent(what, text), self.at, backtrace.clone());
             }
         }
         for number in assigned {
             if COMMON.contains(&number) {
-                self.written.insert(format!("#{number}"), place.clone());
+                self.written.insert(format!("#{number}"), backtrace.clone());
             } else {
                 let is_output = OUTPUTS.contains(&number);
                 let what = if is_output { UnsimulatedKind::Signal } else { UnsimulatedKind::Switch };
                 let value = control.variable(number).map_or(0.0, Value::number);
-                self.push(StepKind::Silent(what, format!("#{number}={value}")), self.at, place.clone());
+                self.push(StepKind::Silent(what, format!("#{number}={value}")), self.at, backtrace.clone());
             }
         }
         if !unsimulated.writes {
@@ -168,13 +169,13 @@ impl Recorder {
         let names = tables.iter().chain(&now).filter(|r| r.kind != ResidualKind::Variable);
         for name in names.map(|r| &r.name) {
             if value(&tables, name) != value(&now, name) {
-                self.written.insert(name.clone(), place.clone());
+                self.written.insert(name.clone(), backtrace.clone());
             }
         }
     }
 
     /// Inserts T and S words that no M06, M03 or M04 has used yet before the other steps of their block.
-    fn note_called(&mut self, control: &Control, place: &Backtrace, (at, length): (Position, Position)) {
+    fn note_called(&mut self, control: &Control, backtrace: &Backtrace, (at, length): (Position, Position)) {
         let state = control.state();
         let (tool, speed) = (state.codes.t, state.codes.s);
         let before = std::mem::replace(&mut self.called, (tool, speed));
@@ -184,8 +185,8 @@ impl Recorder {
         let set = is_speed.then(|| (UnsimulatedKind::Speed, format!("S{speed}")));
         let to = difference(&at, &length);
         for (what, text) in called.into_iter().chain(set) {
-            let (kind, place) = (StepKind::Silent(what, text), self.place(place.clone()));
-            let step = Step { kind, from: to, to, at, place, set_by: None, condition: 0 };
+            let (kind, block_number) = (StepKind::Silent(what, text), self.number(backtrace.clone()));
+            let step = Step { kind, from: to, to, at, block_number, set_by: None, condition: 0 };
             self.steps.insert(self.settled, step);
         }
     }
@@ -204,7 +205,17 @@ impl Recorder {
                 StepKind::Silent(UnsimulatedKind::Speed, text) => {
                     *stays = std::mem::take(&mut speed) != *text
                 }
-                _ => {}
+                StepKind::Rapid
+                | StepKind::Feed(_)
+                | StepKind::Arc(..)
+                | StepKind::Probe(_)
+                | StepKind::Dwell(_)
+                | StepKind::Length(_)
+                | StepKind::Spindle(..)
+                | StepKind::Coolant(..)
+                | StepKind::Auxiliary(_)
+                | StepKind::Stop(..)
+                | StepKind::Silent(..) => {}
             }
         }
         let mut left = vec![0];
@@ -222,13 +233,14 @@ impl Recorder {
         let state = control.state();
         let now = (state.modal, state.codes.h, state.codes.d, state.cycle.q);
         if self.seen != Some(now) {
-            let place = self.place(control.backtrace());
+            let block_number = self.number(control.backtrace());
             let before = self.seen.map_or_else(Modal::default, |(modal, ..)| modal);
-            for group in (1..=22).filter(|group| before.code(*group) != state.modal.code(*group)) {
-                self.written.insert(mode_name(group), self.places[place].clone());
+            let groups = GROUPS.iter().map(|group| group.number());
+            for group in groups.filter(|group| before.code(*group) != state.modal.code(*group)) {
+                self.written.insert(mode_name(group), self.backtraces[block_number].clone());
             }
             let before = self.conditions.last().cloned().unwrap_or_else(ModalConditions::at_power_on);
-            let next = before.after_block(state, place);
+            let next = before.after_block(state, control.settings().dialect, block_number);
             if self.conditions.last() != Some(&next) {
                 self.conditions.push(next);
             }
@@ -238,37 +250,44 @@ impl Recorder {
         if self.recent.len() == LOOKAHEAD {
             self.recent.pop_front();
         }
-        let this = self.last.as_ref().map(|place| place.block);
+        let this = self.last.as_ref().map(|backtrace| backtrace.block);
         self.recent.extend(this.map(|block| (block, under)));
         for step in &mut self.steps[self.settled..] {
-            let block = self.places[step.place].block;
+            let block = self.backtraces[step.block_number].block;
             let known = self.recent.iter().rev().find(|(known, _)| *known == block);
             step.condition = known.map_or(under, |(_, under)| *under);
         }
         self.settled = self.steps.len();
     }
 
-    fn push(&mut self, kind: StepKind, from: Position, place: Backtrace) {
+    fn push(&mut self, kind: StepKind, from: Position, backtrace: Backtrace) {
         self.is_truncated |= self.steps.len() >= MOST_STEPS;
         if !self.is_truncated {
-            let set_by = self.set_by(&kind, &place);
-            let place = self.place(place);
+            let set_by = self.set_by(&kind, &backtrace);
+            let block_number = self.number(backtrace);
             let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
-            self.steps.push(Step { kind, from, to, at: self.at, place, set_by, condition: 0 });
+            self.steps.push(Step { kind, from, to, at: self.at, block_number, set_by, condition: 0 });
         }
     }
 
     /// Returns the block of the word that a step uses, if that is another; `None` for a move that waited for later
     /// blocks.
-    fn set_by(&self, kind: &StepKind, place: &Backtrace) -> Option<usize> {
+    fn set_by(&self, kind: &StepKind, backtrace: &Backtrace) -> Option<usize> {
         let letter = match kind {
             StepKind::Tool(_) => 'T',
             StepKind::Spindle(direction, _) if *direction != SpindleDirection::Off => 'S',
             StepKind::Feed(_) | StepKind::Arc(..) | StepKind::Probe(_) => 'F',
-            _ => return None,
+            StepKind::Rapid
+            | StepKind::Dwell(_)
+            | StepKind::Length(_)
+            | StepKind::Spindle(..)
+            | StepKind::Coolant(..)
+            | StepKind::Auxiliary(_)
+            | StepKind::Stop(..)
+            | StepKind::Silent(..) => return None,
         };
-        let has_waited = self.block.as_ref().is_some_and(|block| block.place.block != place.block);
-        let set_by = self.set_by.get(&letter).filter(|(block, _)| *block != place.block && !has_waited);
+        let has_waited = self.block.as_ref().is_some_and(|block| block.backtrace.block != backtrace.block);
+        let set_by = self.set_by.get(&letter).filter(|(block, _)| *block != backtrace.block && !has_waited);
         set_by.map(|(_, number)| *number)
     }
 
@@ -309,7 +328,7 @@ impl Recorder {
     fn forget_standstill(&mut self, change: &Event<'_>) {
         let is_of_change = |step: &Step| {
             let is_off = step.kind == StepKind::Spindle(SpindleDirection::Off, 0.0);
-            is_off && is_same_place(&self.places[step.place], &change.backtrace())
+            is_off && is_same_block(&self.backtraces[step.block_number], &change.backtrace())
         };
         if self.steps.last().is_some_and(is_of_change) {
             self.steps.pop();
@@ -349,7 +368,7 @@ impl Recorder {
 }
 
 /// Returns true for one block of one call.
-pub(super) fn is_same_place(a: &Backtrace, b: &Backtrace) -> bool {
+pub(super) fn is_same_block(a: &Backtrace, b: &Backtrace) -> bool {
     a.block == b.block
         && match (&a.calls, &b.calls) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),

@@ -65,31 +65,31 @@ impl<'a> RevisionMoves<'a> {
         });
         let before = cuts.collect();
         let feeds: BTreeSet<usize> = record.feeds.iter().flatten().copied().collect();
-        let holes = (0..moves.len()).filter(|place| feeds.contains(&moves[*place])).collect();
+        let holes = (0..moves.len()).filter(|index| feeds.contains(&moves[*index])).collect();
         Self { steps: &record.steps, moves, is_free, before, holes }
     }
 
-    fn step(&self, place: usize) -> &'a Step {
-        &self.steps[self.moves[place]]
+    fn step(&self, index: usize) -> &'a Step {
+        &self.steps[self.moves[index]]
     }
 
     /// Returns true for a cut that is neither of a hole nor on the line of the nearest one, such as a peck.
-    fn is_cut(&self, place: usize) -> bool {
-        let next = self.holes.partition_point(|hole| *hole < place);
+    fn is_cut(&self, index: usize) -> bool {
+        let next = self.holes.partition_point(|hole| *hole < index);
         let near = [next.checked_sub(1), Some(next)].into_iter().flatten();
         let mut near = near.filter_map(|hole| self.holes.get(hole));
-        let step = self.step(place);
+        let step = self.step(index);
         step.kind.rate().is_some() && !near.any(|hole| step.is_on_line_of(self.step(*hole)))
     }
 
     fn free_cuts(&self) -> impl Iterator<Item = usize> {
-        (0..self.moves.len()).filter(|place| self.is_free[*place] && self.is_cut(*place))
+        (0..self.moves.len()).filter(|index| self.is_free[*index] && self.is_cut(*index))
     }
 }
 
 fn find(old: &RevisionMoves<'_>, new: &RevisionMoves<'_>, tolerance: f64) -> Vec<MoveRun> {
     let mut alike: BTreeMap<[i64; MAX_AXES], Vec<usize>> = BTreeMap::new();
-    new.free_cuts().for_each(|place| alike.entry(about(new.step(place))).or_default().push(place));
+    new.free_cuts().for_each(|index| alike.entry(about(new.step(index))).or_default().push(index));
     let (mut known, mut known_now) = (BTreeSet::new(), BTreeSet::new());
     let mut runs = Vec::new();
     for p in old.free_cuts() {
@@ -106,9 +106,9 @@ fn find(old: &RevisionMoves<'_>, new: &RevisionMoves<'_>, tolerance: f64) -> Vec
             let on = (0..rest).take_while(|n| is_pair(p + n, q + n)).count();
             (on > 0).then(|| (p - back, q - back, back + on))
         };
-        let places = alike.get(&about(old.step(p))).into_iter().flatten();
-        let places = places.filter(|q| old.before[p] != new.before[**q]);
-        let longest = places.take(MOST_ALIKE).filter_map(run).max_by_key(|(_, _, moves)| *moves);
+        let candidates = alike.get(&about(old.step(p))).into_iter().flatten();
+        let candidates = candidates.filter(|q| old.before[p] != new.before[**q]);
+        let longest = candidates.take(MOST_ALIKE).filter_map(run).max_by_key(|(_, _, moves)| *moves);
         let Some((from, from_now, moves)) = longest else { continue };
         known.extend(from..from + moves);
         known_now.extend(from_now..from_now + moves);
@@ -164,8 +164,8 @@ impl<'a> ReorderedCuts<'a> {
                 unpaired[1 - side].iter().position(|other: &usize| others[*other].is_same(step, tolerance));
             let number = sides[side].unwrap_or(0);
             match equal {
-                Some(place) => {
-                    self.steps[1 - side].insert(unpaired[1 - side].remove(place));
+                Some(index) => {
+                    self.steps[1 - side].insert(unpaired[1 - side].remove(index));
                     self.steps[side].insert(number);
                 }
                 None => unpaired[side].push(number),

@@ -7,7 +7,7 @@ use super::reordered_cuts::ReorderedCuts;
 /// The lost and the added step of a shifted command, and `earlier` or `later`.
 pub(super) type ShiftedEvent = (usize, usize, &'static str);
 
-/// Returns the commands that are lost in one place and added in another by the first of their two links; the second
+/// Returns the commands that are lost at one point and added at another by the first of their two links; the second
 /// has `None`. Of more than 1,000 commands none is paired.
 pub(super) fn shifted_events(alignment: &Alignment<'_>) -> BTreeMap<usize, Option<ShiftedEvent>> {
     let Alignment { records: [old, new], links, tolerance } = *alignment;
@@ -19,7 +19,7 @@ pub(super) fn shifted_events(alignment: &Alignment<'_>) -> BTreeMap<usize, Optio
     if alone.len() > 1000 {
         return known;
     }
-    for (place, (k, link)) in alone.iter().enumerate() {
+    for (index, (k, link)) in alone.iter().enumerate() {
         if known.contains_key(k) {
             continue;
         }
@@ -28,7 +28,7 @@ pub(super) fn shifted_events(alignment: &Alignment<'_>) -> BTreeMap<usize, Optio
             (StepPair::Added(j), StepPair::Lost(i)) => Some((*l, (i, j, "earlier"))),
             _ => None,
         };
-        let mut others = alone[place + 1..].iter().filter(|(l, _)| !known.contains_key(l)).filter_map(pair);
+        let mut others = alone[index + 1..].iter().filter(|(l, _)| !known.contains_key(l)).filter_map(pair);
         let is_same =
             |(_, (i, j, _)): &(usize, ShiftedEvent)| old.steps[*i].is_same(&new.steps[*j], tolerance);
         if let Some((l, found)) = others.find(is_same) {

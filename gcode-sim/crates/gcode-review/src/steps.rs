@@ -17,7 +17,7 @@ pub(super) struct Step {
     /// Axis positions after it, in machine coordinates.
     pub at: Position,
     /// Number of its block in the record.
-    pub place: usize,
+    pub block_number: usize,
     /// Block of the T, S or F word that the step uses, if that is another; `None` in a record from a file.
     pub set_by: Option<usize>,
     /// Number of its modal conditions in the record.
@@ -136,7 +136,7 @@ pub(super) fn with_article(name: &str) -> String {
 impl Step {
     /// Returns the block to edit for another tool, speed or feed.
     pub(super) fn editable_at(&self) -> usize {
-        self.set_by.unwrap_or(self.place)
+        self.set_by.unwrap_or(self.block_number)
     }
 
     pub(super) fn is_move(&self) -> bool {

@@ -29,7 +29,8 @@ pub struct AcceptedFile {
     program: Option<String>,
     totals: Totals,
     ending: EndState,
-    places: Vec<BlockLocation>,
+    #[serde(rename = "places")]
+    blocks: Vec<BlockLocation>,
     /// The first commands of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     begun: Option<Vec<FirstCommand>>,
@@ -43,12 +44,14 @@ pub struct AcceptedFile {
 enum StepLine {
     Rapid {
         to: BTreeMap<char, f64>,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Feed {
         to: BTreeMap<char, f64>,
         f: f64,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Arc {
         to: BTreeMap<char, f64>,
@@ -56,57 +59,68 @@ enum StepLine {
         centre: [f64; 2],
         sweep: f64,
         f: f64,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Probe {
         to: BTreeMap<char, f64>,
         f: f64,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Dwell {
         seconds: f64,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Tool {
         number: u32,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Length {
         offset: BTreeMap<char, f64>,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Spindle {
         turning: SpindleDirection,
         speed: f64,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Coolant {
         on: bool,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         m: Option<u32>,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Auxiliary {
         m: u32,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     Stop {
         kind: StopKind,
         text: String,
         named: Vec<(u32, f64)>,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     /// A command of a block without motion.
     Silent {
         what: UnsimulatedKind,
         code: String,
-        place: usize,
+        #[serde(rename = "place")]
+        block_number: usize,
     },
     /// Not a step: a modal condition from here on. Holes do not count it among their steps.
     Under {
         what: ModalAspect,
         code: String,
-        place: Option<usize>,
+        #[serde(rename = "place")]
+        block_number: Option<usize>,
     },
 }
 
@@ -142,8 +156,8 @@ impl Record {
         for (index, step) in self.steps.iter().enumerate() {
             let now = self.under(index);
             for what in ModalAspect::ALL.into_iter().filter(|what| now.word(*what) != under.word(*what)) {
-                let ModalSetting { text, place } = now.word(what).clone();
-                steps.push(StepLine::Under { what, code: text, place });
+                let ModalSetting { text, block_number } = now.word(what).clone();
+                steps.push(StepLine::Under { what, code: text, block_number });
             }
             under.clone_from(now);
             steps.push(self.line(step, &at));
@@ -165,7 +179,7 @@ impl Record {
             let _ = writeln!(text, "\"program\": {},", json(program)?);
         }
         let _ = writeln!(text, "\"totals\": {},\n\"ending\": {},", json(&self.totals)?, json(&self.ending)?);
-        let _ = writeln!(text, "\"places\": {},", lines(&self.places)?);
+        let _ = writeln!(text, "\"places\": {},", lines(&self.blocks)?);
         if let Some(begun) = &self.first_commands {
             let _ = writeln!(text, "\"begun\": {},", lines(begun)?);
         }
@@ -198,12 +212,15 @@ impl Record {
         let steps = file.steps.into_iter().filter_map(|line| reader.step(line).transpose());
         let steps = steps.collect::<Result<Vec<_>, _>>()?;
         let conditions = reader.conditions;
-        let named = conditions.iter().flat_map(|condition| &condition.0).filter_map(|word| word.place);
-        if let Some(place) = named.max().filter(|place| file.places.len() <= *place) {
-            return Err(StoreError(format!("a mode names block {place}, which does not exist")));
+        let named = conditions.iter().flat_map(|condition| &condition.0).filter_map(|word| word.block_number);
+        if let Some(block_number) = named.max().filter(|block_number| file.blocks.len() <= *block_number) {
+            return Err(StoreError(format!("a mode names block {block_number}, which does not exist")));
         }
-        if let Some(step) = steps.iter().find(|step| file.places.len() <= step.place) {
-            return Err(StoreError(format!("a step names block {}, which does not exist", step.place)));
+        if let Some(step) = steps.iter().find(|step| file.blocks.len() <= step.block_number) {
+            return Err(StoreError(format!(
+                "a step names block {}, which does not exist",
+                step.block_number
+            )));
         }
         let mut feeds = Vec::with_capacity(file.holes.len());
         let mut holes = Vec::with_capacity(file.holes.len());
@@ -220,12 +237,12 @@ impl Record {
             feeds.push(hole.steps);
         }
         let mut commands = file.begun.iter().flatten();
-        if let Some(FirstCommand { text, place, .. }) =
-            commands.find(|command| file.places.len() <= command.place)
+        if let Some(FirstCommand { text, block_number, .. }) =
+            commands.find(|command| file.blocks.len() <= command.block_number)
         {
-            return Err(StoreError(format!("{text} names block {place}, which does not exist")));
+            return Err(StoreError(format!("{text} names block {block_number}, which does not exist")));
         }
-        let (places, mut ending, totals) = (file.places, file.ending, file.totals);
+        let (blocks, mut ending, totals) = (file.blocks, file.ending, file.totals);
         ending.words = present_words(&ending.words);
         Ok(Self {
             axes,
@@ -233,7 +250,7 @@ impl Record {
             holes,
             feeds,
             unfinished: BTreeSet::new(),
-            places,
+            blocks,
             conditions,
             first_commands: file.begun,
             program: file.program,
@@ -245,34 +262,36 @@ impl Record {
     }
 
     fn line(&self, step: &Step, before: &Position) -> StepLine {
-        let place = step.place;
+        let block_number = step.block_number;
         let to = moved(&self.axes, before, &step.at);
         match &step.kind {
-            StepKind::Rapid => StepLine::Rapid { to, place },
-            StepKind::Feed(f) => StepLine::Feed { to, f: *f, place },
+            StepKind::Rapid => StepLine::Rapid { to, block_number },
+            StepKind::Feed(f) => StepLine::Feed { to, f: *f, block_number },
             StepKind::Arc(arc, f) => StepLine::Arc {
                 to,
                 plane: [self.axes.letter(arc.plane.0), self.axes.letter(arc.plane.1)],
                 centre: [arc.centre.0, arc.centre.1],
                 sweep: arc.sweep.0,
                 f: *f,
-                place,
+                block_number,
             },
-            StepKind::Probe(f) => StepLine::Probe { to, f: *f, place },
-            StepKind::Dwell(seconds) => StepLine::Dwell { seconds: *seconds, place },
-            StepKind::Tool(number) => StepLine::Tool { number: *number, place },
+            StepKind::Probe(f) => StepLine::Probe { to, f: *f, block_number },
+            StepKind::Dwell(seconds) => StepLine::Dwell { seconds: *seconds, block_number },
+            StepKind::Tool(number) => StepLine::Tool { number: *number, block_number },
             StepKind::Length(offset) => {
-                StepLine::Length { offset: moved(&self.axes, &Position::default(), offset), place }
+                StepLine::Length { offset: moved(&self.axes, &Position::default(), offset), block_number }
             }
             StepKind::Spindle(turning, speed) => {
-                StepLine::Spindle { turning: *turning, speed: *speed, place }
+                StepLine::Spindle { turning: *turning, speed: *speed, block_number }
             }
-            StepKind::Coolant(on, m) => StepLine::Coolant { on: *on, m: *m, place },
-            StepKind::Auxiliary(m) => StepLine::Auxiliary { m: *m, place },
+            StepKind::Coolant(on, m) => StepLine::Coolant { on: *on, m: *m, block_number },
+            StepKind::Auxiliary(m) => StepLine::Auxiliary { m: *m, block_number },
             StepKind::Stop(kind, text, named) => {
-                StepLine::Stop { kind: *kind, text: text.clone(), named: named.clone(), place }
+                StepLine::Stop { kind: *kind, text: text.clone(), named: named.clone(), block_number }
             }
-            StepKind::Silent(what, code) => StepLine::Silent { what: *what, code: code.clone(), place },
+            StepKind::Silent(what, code) => {
+                StepLine::Silent { what: *what, code: code.clone(), block_number }
+            }
         }
     }
 }
@@ -305,29 +324,33 @@ impl Steps<'_> {
     /// Reads a line; `None` if it is no step.
     fn step(&mut self, line: StepLine) -> Result<Option<Step>, StoreError> {
         let before = self.at;
-        let (kind, place) = match line {
-            StepLine::Rapid { to, place } => (self.go(&to, StepKind::Rapid)?, place),
-            StepLine::Feed { to, f, place } => (self.go(&to, StepKind::Feed(f))?, place),
-            StepLine::Probe { to, f, place } => (self.go(&to, StepKind::Probe(f))?, place),
-            StepLine::Arc { to, plane: [first, second], centre, sweep, f, place } => {
+        let (kind, block_number) = match line {
+            StepLine::Rapid { to, block_number } => (self.go(&to, StepKind::Rapid)?, block_number),
+            StepLine::Feed { to, f, block_number } => (self.go(&to, StepKind::Feed(f))?, block_number),
+            StepLine::Probe { to, f, block_number } => (self.go(&to, StepKind::Probe(f))?, block_number),
+            StepLine::Arc { to, plane: [first, second], centre, sweep, f, block_number } => {
                 let plane = (self.axis(first)?, self.axis(second)?);
                 let arc = PlanarArc { plane, centre: (centre[0], centre[1]), sweep: Deg(sweep) };
-                (self.go(&to, StepKind::Arc(arc, f))?, place)
+                (self.go(&to, StepKind::Arc(arc, f))?, block_number)
             }
-            StepLine::Dwell { seconds, place } => (StepKind::Dwell(seconds), place),
-            StepLine::Tool { number, place } => (StepKind::Tool(number), place),
-            StepLine::Length { offset, place } => {
+            StepLine::Dwell { seconds, block_number } => (StepKind::Dwell(seconds), block_number),
+            StepLine::Tool { number, block_number } => (StepKind::Tool(number), block_number),
+            StepLine::Length { offset, block_number } => {
                 self.length = self.put(&offset, Position::default())?;
-                (StepKind::Length(self.length), place)
+                (StepKind::Length(self.length), block_number)
             }
-            StepLine::Spindle { turning, speed, place } => (StepKind::Spindle(turning, speed), place),
-            StepLine::Coolant { on, m, place } => (StepKind::Coolant(on, m), place),
-            StepLine::Auxiliary { m, place } => (StepKind::Auxiliary(m), place),
-            StepLine::Stop { kind, text, named, place } => (StepKind::Stop(kind, text, named), place),
-            StepLine::Silent { what, code, place } => (StepKind::Silent(what, code), place),
-            StepLine::Under { what, code, place } => {
+            StepLine::Spindle { turning, speed, block_number } => {
+                (StepKind::Spindle(turning, speed), block_number)
+            }
+            StepLine::Coolant { on, m, block_number } => (StepKind::Coolant(on, m), block_number),
+            StepLine::Auxiliary { m, block_number } => (StepKind::Auxiliary(m), block_number),
+            StepLine::Stop { kind, text, named, block_number } => {
+                (StepKind::Stop(kind, text, named), block_number)
+            }
+            StepLine::Silent { what, code, block_number } => (StepKind::Silent(what, code), block_number),
+            StepLine::Under { what, code, block_number } => {
                 let mut next = self.conditions.last().cloned().unwrap_or_default();
-                next.set(what, ModalSetting { text: code, place });
+                next.set(what, ModalSetting { text: code, block_number });
                 self.conditions.push(next);
                 return Ok(None);
             }
@@ -338,7 +361,7 @@ impl Steps<'_> {
             from,
             to,
             at: self.at,
-            place,
+            block_number,
             set_by: None,
             condition: self.conditions.len() - 1,
         }))

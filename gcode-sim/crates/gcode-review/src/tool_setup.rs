@@ -58,11 +58,11 @@ pub(super) fn relied_on_changes(
 }
 
 /// Formats a block as `O0100:10 N210`.
-fn name(place: &BlockLocation) -> String {
-    let digits = place.block.strip_prefix('N').unwrap_or_default();
+fn name(location: &BlockLocation) -> String {
+    let digits = location.block.strip_prefix('N').unwrap_or_default();
     let digits: String = digits.chars().take_while(char::is_ascii_digit).collect();
     let number = if digits.is_empty() { digits } else { format!(" N{digits}") };
-    format!("{}:{}{number}", place.program, place.line)
+    format!("{}:{}{number}", location.program, location.line)
 }
 
 /// Links of the steps that set a value, old and new; `None` for a value at power-on.
@@ -142,7 +142,14 @@ impl CutState {
             StepKind::Coolant(false, _) => {
                 self.flows.values_mut().for_each(|flow| *flow = (false, link));
             }
-            _ => {}
+            StepKind::Rapid
+            | StepKind::Feed(_)
+            | StepKind::Arc(..)
+            | StepKind::Probe(_)
+            | StepKind::Dwell(_)
+            | StepKind::Auxiliary(_)
+            | StepKind::Stop(..)
+            | StepKind::Silent(..) => {}
         }
     }
 

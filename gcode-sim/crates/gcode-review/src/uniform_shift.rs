@@ -26,8 +26,9 @@ pub(super) fn pair_shifted_program(
     if !is_as_many || !both().all(is_kind) {
         return None;
     }
-    let is_block =
-        |(a, b): (&Step, &Step)| words(&old.places[a.place].block) == words(&new.places[b.place].block);
+    let is_block = |(a, b): (&Step, &Step)| {
+        words(&old.blocks[a.block_number].block) == words(&new.blocks[b.block_number].block)
+    };
     let is_at_once = || both().all(|(a, b)| near(&a.at, &b.at, tolerance));
     let is_by_the_same = || both().all(is_block) && is_uniform_shift(both(), tolerance);
     (is_at_once() || is_by_the_same()).then(|| linked(&pairs, old, new, tolerance))

@@ -1,7 +1,7 @@
 //! Likely causes of a verdict: unset work offsets, and numbers without a decimal point; and of an endless loop: a
 //! counter that its assignment does not change.
 use super::Run;
-use gcode_control::{Control, Value};
+use gcode_control::{Control, Value, additional_system_name};
 use gcode_inspect::findings::WORK_OFFSET;
 use gcode_inspect::machine::Machine;
 use gcode_lang::diag::Diagnostic;
@@ -43,13 +43,15 @@ pub(super) fn unset_work_offsets<'r>(
     made: &'r str,
 ) -> impl Iterator<Item = Diagnostic> + 'r {
     let unset = run.control.unset_work_systems().iter();
-    unset.map(move |(system, place)| offset_finding(*system, machine, made).with_backtrace(place.clone()))
+    unset.map(move |(system, backtrace)| {
+        offset_finding(*system, machine, made).with_backtrace(backtrace.clone())
+    })
 }
 
 fn offset_finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {
     let name = match system {
         WorkSystem::Standard(_) => format!("G{}", system.code() / 10),
-        WorkSystem::Additional(number) => format!("G54.1 P{number}"),
+        WorkSystem::Additional(number) => additional_system_name(machine.dialect, usize::from(number)),
     };
     let known: Vec<_> = machine.offsets.iter().map(|offset| format!("G{}", offset.code)).collect();
     let given = match known.as_slice() {

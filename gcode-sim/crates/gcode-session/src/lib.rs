@@ -62,7 +62,7 @@ pub struct Request {
     /// The surface of a part for probing.
     pub part: Option<Surface>,
     /// Limits of the process that the reference specifies.
-    pub conduct: ProcessLimits,
+    pub process_limits: ProcessLimits,
     /// Shared progress of the run, through which it can be cancelled.
     pub progress: Option<Arc<Progress>>,
 }
@@ -81,7 +81,7 @@ impl Request {
             limits: Limits::default(),
             variables: Vec::new(),
             part: None,
-            conduct: ProcessLimits::default(),
+            process_limits: ProcessLimits::default(),
             progress: None,
         }
     }
@@ -298,7 +298,7 @@ pub fn simulate_observed<S: EventSink>(
 ) -> Result<Simulation, SessionError> {
     let mut extractor = HoleExtractor::new(&request.machine)
         .with_surface(surface.or(request.part))
-        .with_process_limits(&request.conduct);
+        .with_process_limits(&request.process_limits);
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.findings());

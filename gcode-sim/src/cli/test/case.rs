@@ -92,7 +92,7 @@ impl Case {
         let nominal = reference.as_deref().map(options::read_nominal).transpose()?;
         let surface = match &nominal {
             Some(NominalPart::Holes(reference)) => {
-                request.conduct = reference.process_limits.clone();
+                request.process_limits = reference.process_limits.clone();
                 reference.surface
             }
             Some(NominalPart::Flutes(_)) | None => None,
@@ -122,12 +122,12 @@ impl Case {
                     let remedy = "delete it, run with --accept, and review what was accepted";
                     UsageError::new(format!("{}: {error}; {remedy}", path.display()))
                 })?;
-                not_compared = accepted.unrecorded_aspects().into_iter().map(str::to_owned).collect();
+                not_compared = accepted.unrecorded_aspects(&revision.record);
                 let found = changes(&accepted, &revision.record.reduced_to(&accepted), tolerance);
-                let answer = match (found.is_empty(), accepted.is_legacy()) {
+                let answer = match (found.is_empty(), not_compared.is_empty()) {
                     (false, _) => CaseAnswer::Changed,
-                    (true, true) => CaseAnswer::Older,
-                    (true, false) => CaseAnswer::Same,
+                    (true, false) => CaseAnswer::Older,
+                    (true, true) => CaseAnswer::Same,
                 };
                 (answer, found)
             }
@@ -149,12 +149,12 @@ impl Case {
 
 /// Returns the error of a run ended by a limit, with its last block.
 fn cut_off(revision: &Revision) -> UsageError {
-    let place = revision.stopped().find_map(|finding| finding.backtrace.as_ref());
-    let place = place.map(|place| BlockLocation::of(&revision.simulation.run, place));
-    let place =
-        place.map(|BlockLocation { program, line, block, .. }| format!(" at {program}:{line} {block}"));
-    let place = place.unwrap_or_default();
-    UsageError::new(format!("the run was cut off by a limit{place}: the rest cannot be compared"))
+    let backtrace = revision.stopped().find_map(|finding| finding.backtrace.as_ref());
+    let location = backtrace.map(|backtrace| BlockLocation::of(&revision.simulation.run, backtrace));
+    let text =
+        location.map(|BlockLocation { program, line, block, .. }| format!(" at {program}:{line} {block}"));
+    let text = text.unwrap_or_default();
+    UsageError::new(format!("the run was cut off by a limit{text}: the rest cannot be compared"))
 }
 
 /// Returns the first error of a failed verdict.
@@ -163,12 +163,12 @@ fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<F
         return None;
     }
     let first = findings.iter().find(|finding| Severity::Error <= finding.severity);
-    let place = first.and_then(|first| Some(BlockLocation::of(run, first.backtrace.as_ref()?)));
+    let location = first.and_then(|first| Some(BlockLocation::of(run, first.backtrace.as_ref()?)));
     let (code, message) = match first {
         Some(first) => (first.code(), first.message.clone()),
         None => ("verdict".into(), "verification failed".to_owned()),
     };
-    Some(FirstFailure { code: code.into_owned(), message, place })
+    Some(FirstFailure { code: code.into_owned(), message, location })
 }
 
 /// Returns the files of the programs that the changes and the failure name.
@@ -177,13 +177,13 @@ fn files(
     changes: &[Change],
     against: Option<&FirstFailure>,
 ) -> BTreeMap<String, String> {
-    let places = changes.iter().filter_map(|change| change.new.as_ref().or(change.anchor.as_ref()));
-    let places =
-        places.chain(changes.iter().flat_map(|change| &change.also).filter_map(|effect| effect.new.as_ref()));
-    let places = places.chain(against.and_then(|against| against.place.as_ref()));
-    let named: BTreeSet<&str> = places
-        .flat_map(|place| std::iter::once(place).chain(&place.calls))
-        .map(|place| place.program.as_str())
+    let locations = changes.iter().filter_map(|change| change.new.as_ref().or(change.anchor.as_ref()));
+    let locations = locations
+        .chain(changes.iter().flat_map(|change| &change.also).filter_map(|effect| effect.new.as_ref()));
+    let locations = locations.chain(against.and_then(|against| against.location.as_ref()));
+    let named: BTreeSet<&str> = locations
+        .flat_map(|location| std::iter::once(location).chain(&location.calls))
+        .map(|location| location.program.as_str())
         .collect();
     revision.files().into_iter().filter(|(program, _)| named.contains(program.as_str())).collect()
 }

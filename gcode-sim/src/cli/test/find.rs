@@ -17,8 +17,8 @@ pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, UsageError> {
     for (root, folder) in roots.iter().enumerate() {
         search.look(CaseFolder { root, folder: folder.clone(), name: String::new(), in_library: false })?;
     }
-    while let Some(place) = search.links.pop() {
-        search.look(place)?;
+    while let Some(link) = search.links.pop() {
+        search.look(link)?;
     }
     let mut found = search.found;
     found.sort_by(|(a, one), (b, other)| (a, &one.name).cmp(&(b, &other.name)));
@@ -50,8 +50,8 @@ struct Search {
 impl Search {
     /// Searches a folder and everything below it except links.
     fn look(&mut self, from: CaseFolder) -> Result<(), UsageError> {
-        let mut places = vec![from];
-        while let Some(CaseFolder { root, folder, name, in_library }) = places.pop() {
+        let mut folders = vec![from];
+        while let Some(CaseFolder { root, folder, name, in_library }) = folders.pop() {
             if !self.seen.insert(input::canonical(&folder)?) {
                 continue;
             }
@@ -65,7 +65,7 @@ impl Search {
                 let own = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let below = if name.is_empty() { own.clone() } else { format!("{name}/{own}") };
                 if path.is_dir() {
-                    let list = if path.is_symlink() { &mut self.links } else { &mut places };
+                    let list = if path.is_symlink() { &mut self.links } else { &mut folders };
                     let in_library = in_library || is_case && own == LIBRARY;
                     list.push(CaseFolder { root, folder: path, name: below, in_library });
                 } else if path.is_symlink() && !path.exists() && !own.starts_with('.') && !is_program(&path) {

@@ -57,29 +57,29 @@ fn also(effects: &[Effect], sides: &[ReviewSide<'_>]) -> Markup {
 fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[ReviewSide<'_>]) -> Markup {
     let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {
-        @for (word, place) in [("old", old), ("new", new)] {
-            @if let (Some(place), Some(lines)) = (place, of(word)) {
-                div.place { span.word { (word) } " " (chain(place, lines)) }
+        @for (word, location) in [("old", old), ("new", new)] {
+            @if let (Some(location), Some(lines)) = (location, of(word)) {
+                div.place { span.word { (word) } " " (chain(location, lines)) }
             }
         }
     }
 }
 
 /// Returns a block and the calls that led to it, each a link to its line.
-pub(super) fn chain(place: &BlockLocation, lines: &Lines) -> Markup {
+pub(super) fn chain(location: &BlockLocation, lines: &Lines) -> Markup {
     html! {
-        (block(place, lines))
-        @for call in &place.calls { div.call { "called from " (block(call, lines)) } }
+        (block(location, lines))
+        @for call in &location.calls { div.call { "called from " (block(call, lines)) } }
     }
 }
 
-fn block(place: &BlockLocation, lines: &Lines) -> Markup {
-    let name = format!("{}:{}", shown(&place.program), place.line);
+fn block(location: &BlockLocation, lines: &Lines) -> Markup {
+    let name = format!("{}:{}", shown(&location.program), location.line);
     html! {
-        @match lines.of_place(place) {
+        @match lines.of_location(location) {
             Some((source, line)) => a href={ "#" (lines.anchor(source, line)) } { (name) },
             None => (name),
         }
-        " " code { (shown(&place.block)) }
+        " " code { (shown(&location.block)) }
     }
 }

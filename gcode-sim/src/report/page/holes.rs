@@ -44,9 +44,9 @@ impl HoleTable {
     }
 
     /// Returns row, name and state of each hole of a side.
-    pub(super) fn of_side(&self, place: usize) -> BTreeMap<usize, (usize, &str, HoleRowState)> {
+    pub(super) fn of_side(&self, index: usize) -> BTreeMap<usize, (usize, &str, HoleRowState)> {
         let rows = self.rows.iter().enumerate();
-        rows.filter_map(|(number, row)| Some((row.holes[place]?, (number, row.id.as_str(), row.state))))
+        rows.filter_map(|(number, row)| Some((row.holes[index]?, (number, row.id.as_str(), row.state))))
             .collect()
     }
 
@@ -76,8 +76,8 @@ impl HoleTable {
                 div.scroll {
                     table.holes {
                         thead { tr {
-                            @for (place, name) in ["Hole", "State"].into_iter().chain(self.columns.iter().map(String::as_str)).enumerate() {
-                                th scope="col" aria-sort="none" data-column=(place) { button type="button" { (name) } }
+                            @for (index, name) in ["Hole", "State"].into_iter().chain(self.columns.iter().map(String::as_str)).enumerate() {
+                                th scope="col" aria-sort="none" data-column=(index) { button type="button" { (name) } }
                             }
                         } }
                         tbody {
@@ -110,8 +110,8 @@ impl HoleTableRow {
                 @for cell in &self.cells {
                     td.number[cell.value.is_some()].block[!cell.links.is_empty()] data-value=[cell.value] {
                         (cell.text)
-                        @for (place, (anchor, name)) in cell.links.iter().enumerate() {
-                            @if place > 0 { " ← " }
+                        @for (index, (anchor, name)) in cell.links.iter().enumerate() {
+                            @if index > 0 { " ← " }
                             a href={ "#" (anchor) } { (name) }
                         }
                     }

@@ -54,15 +54,15 @@ impl Lines {
         self.anchor(span.source, run.control.memory().sources().line_column(span).line)
     }
 
-    /// Returns the line of a place whose text contains the block: two files without an O number are both
+    /// Returns the line of a location whose text contains the block: two files without an O number are both
     /// `MAIN`.
-    pub(super) fn of_place(&self, place: &BlockLocation) -> Option<(SourceId, u32)> {
-        let block = shown(&place.block);
+    pub(super) fn of_location(&self, location: &BlockLocation) -> Option<(SourceId, u32)> {
+        let block = shown(&location.block);
         let holds = |source: &&SourceId| {
             let text = self.texts.iter().find(|text| text.source == **source);
-            let written = text.and_then(|text| text.lines.get(place.line.checked_sub(1)? as usize));
+            let written = text.and_then(|text| text.lines.get(location.line.checked_sub(1)? as usize));
             written.is_some_and(|written| written.contains(&block))
         };
-        self.by_program.get(&place.program)?.iter().find(holds).map(|source| (*source, place.line))
+        self.by_program.get(&location.program)?.iter().find(holds).map(|source| (*source, location.line))
     }
 }

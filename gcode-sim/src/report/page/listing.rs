@@ -57,15 +57,15 @@ fn executed<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> ExecutedLines<'a> {
     }
     let holes = side.observed.revision.simulation.extracted.holes.iter().map(|hole| &hole.backtrace);
     let findings = &side.observed.revision.simulation.extracted.findings;
-    let places = holes.chain(findings.iter().filter_map(|finding| finding.backtrace.as_ref()));
-    let spans = places.flat_map(|place| {
-        std::iter::once(place.block).chain(place.calls.as_ref().map(|call| call.calling_block))
+    let backtraces = holes.chain(findings.iter().filter_map(|finding| finding.backtrace.as_ref()));
+    let spans = backtraces.flat_map(|backtrace| {
+        std::iter::once(backtrace.block).chain(backtrace.calls.as_ref().map(|call| call.calling_block))
     });
     let mut linked_lines: BTreeSet<_> =
         spans.map(|span| (span.source, sources.line_column(span).line)).collect();
     let mut marked: BTreeMap<(SourceId, u32), (&str, u64)> = BTreeMap::new();
     for stop in stops(page, side) {
-        if let (Some(mark), Some(line)) = (stop.mark, side.lines.of_place(stop.place)) {
+        if let (Some(mark), Some(line)) = (stop.mark, side.lines.of_location(stop.location)) {
             marked.entry(line).or_insert((mark, 0)).1 += 1;
         }
     }
@@ -80,10 +80,10 @@ fn pairs<'a>(sides: &[ReviewSide<'a>]) -> Vec<TextPair<'a>> {
     };
     let mut free: Vec<&Text> = old.lines.texts.iter().collect();
     let mut pairs: Vec<TextPair<'a>> = Vec::new();
-    for (place, text) in new.lines.texts.iter().enumerate() {
+    for (index, text) in new.lines.texts.iter().enumerate() {
         let same = |other: &&Text| {
             let main = other.source == SourceId::default();
-            if place == 0 { main } else { !main && other.programs == text.programs }
+            if index == 0 { main } else { !main && other.programs == text.programs }
         };
         let partner = free.iter().position(same).map(|at| free.remove(at));
         pairs.push(vec![partner, Some(text)]);
@@ -253,9 +253,9 @@ fn row(line: &LinePair, pair: &TextPair<'_>, sides: &[ReviewSide<'_>], done: &[E
     let idle = halves.iter().flatten().all(|half| half.count == 0);
     html! {
         div.row.(class).idle[idle] {
-            @for (place, half) in halves.iter().enumerate() {
-                @match (half, line[place], pair[place]) {
-                    (Some(half), Some(at), Some(text)) => (cell_markup(half, at as u32 + 1, text, &sides[place])),
+            @for (index, half) in halves.iter().enumerate() {
+                @match (half, line[index], pair[index]) {
+                    (Some(half), Some(at), Some(text)) => (cell_markup(half, at as u32 + 1, text, &sides[index])),
                     _ => div.half.nothing {},
                 }
             }

@@ -46,8 +46,9 @@ fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let all = findings_of(side);
     let other = sides.iter().find(|other| other.word != side.word);
     let key = |side: &ReviewSide<'_>, finding: &Diagnostic| {
-        let place = finding.backtrace.as_ref();
-        let block = place.map(|place| BlockLocation::of(&side.observed.revision.simulation.run, place).block);
+        let backtrace = finding.backtrace.as_ref();
+        let block = backtrace
+            .map(|backtrace| BlockLocation::of(&side.observed.revision.simulation.run, backtrace).block);
         (finding.code(), finding.message.clone(), block)
     };
     let known: Option<BTreeSet<_>> =
@@ -61,8 +62,8 @@ fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let one = |finding: &Diagnostic| {
         html! {
             (shown(&finding.message)) (mark(finding))
-            @if let Some(place) = &finding.backtrace {
-                div.place { (chain(&BlockLocation::of(&side.observed.revision.simulation.run, place), side.lines)) }
+            @if let Some(backtrace) = &finding.backtrace {
+                div.place { (chain(&BlockLocation::of(&side.observed.revision.simulation.run, backtrace), side.lines)) }
             }
         }
     };
@@ -125,7 +126,7 @@ fn stop_list(side: &ReviewSide<'_>, known: &[Stop<'_>]) -> Markup {
                     @for (number, number_value) in &stop.variables { ", #" (number) " = " (value(*number_value)) }
                     @if let Some(stop) = known.get(number) {
                         @if let Some(mark) = stop.mark { " " strong.mark { (mark) } }
-                        div.place { (chain(stop.place, side.lines)) }
+                        div.place { (chain(stop.location, side.lines)) }
                     }
                 }
             }

@@ -39,14 +39,15 @@ struct SidePath {
     kinds: Vec<String>,
     /// Index of each move's kind.
     kind: Vec<usize>,
-    /// Index of each move's place in `places`.
+    /// Index of each move's block in `blocks`.
     at: Vec<usize>,
     /// Moves that the other side does not make.
     changed: Vec<usize>,
     /// Anchor, name and text of every line with a move or a call.
     lines: Vec<(Option<String>, String, String)>,
-    /// Block and calls of each place, innermost first, as indices into `lines`.
-    places: Vec<Vec<usize>>,
+    /// Block and calls of each location, innermost first, as indices into `lines`.
+    #[serde(rename = "places")]
+    blocks: Vec<Vec<usize>>,
     holes: Vec<HoleLinks>,
     /// Total number of moves, drawn or not.
     all_moves: usize,
@@ -67,7 +68,8 @@ pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable)
         HeadKind::Fixed(out) if out.z > 0.99 => 'z',
         _ => 'y',
     };
-    let drawn = sides.iter().enumerate().map(|(place, side)| drawn(page, place, side, table, sides.len()));
+    let drawn =
+        sides.iter().enumerate().map(|(side_index, side)| drawn(page, side_index, side, table, sides.len()));
     Data { up, sides: drawn.collect() }
 }
 
@@ -79,38 +81,47 @@ struct LineIndex {
 }
 
 impl LineIndex {
-    fn number(&mut self, place: &BlockLocation, lines: &Lines) -> usize {
-        let key = (place.program.clone(), place.line, place.block.clone());
+    fn number(&mut self, location: &BlockLocation, lines: &Lines) -> usize {
+        let key = (location.program.clone(), location.line, location.block.clone());
         *self.numbers.entry(key).or_insert_with(|| {
-            let anchor = lines.of_place(place).map(|(source, line)| lines.anchor(source, line));
-            let name = format!("{}:{}", shown(&place.program), place.line);
-            self.lines.push((anchor, name, shown(&place.block)));
+            let anchor = lines.of_location(location).map(|(source, line)| lines.anchor(source, line));
+            let name = format!("{}:{}", shown(&location.program), location.line);
+            self.lines.push((anchor, name, shown(&location.block)));
             self.lines.len() - 1
         })
     }
 
-    fn numbers(&mut self, place: &BlockLocation, lines: &Lines) -> Vec<usize> {
-        std::iter::once(place).chain(&place.calls).map(|place| self.number(place, lines)).collect()
+    fn numbers(&mut self, location: &BlockLocation, lines: &Lines) -> Vec<usize> {
+        std::iter::once(location)
+            .chain(&location.calls)
+            .map(|location| self.number(location, lines))
+            .collect()
     }
 }
 
-fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable, sides: usize) -> SidePath {
+fn drawn(
+    page: &Page<'_>,
+    side_index: usize,
+    side: &ReviewSide<'_>,
+    table: &HoleTable,
+    sides: usize,
+) -> SidePath {
     let record = &side.observed.revision.record;
     let legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
     let mut known = LineIndex::default();
-    let (marks, holes) = holes(page, place, side, table, &mut known).into_iter().unzip();
+    let (marks, holes) = holes(page, side_index, side, table, &mut known).into_iter().unzip();
     let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
-    let mut places = Vec::new();
+    let mut blocks = Vec::new();
     let mut at = Vec::with_capacity(legs.len());
     for leg in &legs {
-        at.push(*numbers.entry(leg.place).or_insert_with(|| {
-            places.push(known.numbers(&record.places()[leg.place], side.lines));
-            places.len() - 1
+        at.push(*numbers.entry(leg.block_number).or_insert_with(|| {
+            blocks.push(known.numbers(&record.blocks()[leg.block_number], side.lines));
+            blocks.len() - 1
         }));
     }
     let kinds: Vec<String> = legs.iter().map(kind).collect::<BTreeSet<_>>().into_iter().collect();
     let different = match (page.old, sides) {
-        (Some((_, difference)), 2) => difference.compared.steps[place].as_slice(),
+        (Some((_, difference)), 2) => difference.compared.steps[side_index].as_slice(),
         _ => &[],
     };
     let is_different = |step: &usize| different.binary_search(step).is_ok();
@@ -122,7 +133,7 @@ fn drawn(page: &Page<'_>, place: usize, side: &ReviewSide<'_>, table: &HoleTable
         at,
         changed: (0..legs.len()).filter(|leg| is_different(&legs[*leg].step)).collect(),
         lines: known.lines,
-        places,
+        blocks,
         holes,
         all_moves: record.moves(),
         all_holes: side.observed.revision.simulation.extracted.holes.len(),
@@ -147,13 +158,13 @@ fn kind(leg: &Leg) -> String {
 
 fn holes(
     page: &Page<'_>,
-    place: usize,
+    side_index: usize,
     side: &ReviewSide<'_>,
     table: &HoleTable,
     known: &mut LineIndex,
 ) -> Vec<(Mark<3>, HoleLinks)> {
     let simulation = &side.observed.revision.simulation;
-    let rows = table.of_side(place);
+    let rows = table.of_side(side_index);
     let mut all = Vec::new();
     for (number, found) in simulation.extracted.holes.iter().enumerate().take(MOST_HOLES) {
         let row = rows.get(&number);

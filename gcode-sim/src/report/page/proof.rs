@@ -14,8 +14,8 @@ pub(super) fn proof(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
             "gcode-sim " (env!("CARGO_PKG_VERSION")) ", control " (dialect)
             ", increment " (increment) ". "
             "Run with "
-            @for (place, flag) in page.conditions.iter().enumerate() {
-                @if place > 0 { ", " }
+            @for (index, flag) in page.conditions.iter().enumerate() {
+                @if index > 0 { ", " }
                 code { (shown(flag)) }
             }
             "; without " code { "--machine" } " the machine of the paper is used."
@@ -45,8 +45,8 @@ fn files<'a>(page: &'a Page<'_>, sides: &'a [ReviewSide<'_>]) -> Vec<(String, St
     for side in sides {
         let word = if sides.len() == 2 { format!("{} ", side.word) } else { String::new() };
         let memory = side.observed.revision.simulation.run.control.memory();
-        for (place, (_, source)) in memory.sources().iter().enumerate() {
-            let role = if place == 0 { "program" } else { "called program" };
+        for (index, (_, source)) in memory.sources().iter().enumerate() {
+            let role = if index == 0 { "program" } else { "called program" };
             files.push((shown(&source.name), format!("{word}{role}"), &*source.bytes));
         }
     }

@@ -224,8 +224,9 @@ pub(super) fn judged_rows(
     let different = |hole: &HoleVerdict| {
         let pair = changed.get(&hole.drilled_index)?;
         let [old, new] = sides else { return None };
-        let made =
-            |side, number: usize, place: usize| (drilled_hole(side, number), tools[place][number].as_slice());
+        let made = |side, number: usize, side_index: usize| {
+            (drilled_hole(side, number), tools[side_index][number].as_slice())
+        };
         let was = pair.old.map(|hole| made(old, hole, 0));
         Some(remarks(pair, was, pair.new.map(|hole| made(new, hole, 1)))).filter(|words| !words.is_empty())
     };
@@ -261,33 +262,35 @@ pub(super) fn judged_rows(
                 (HoleRowState::Altered, format!("in tolerance, but: {}", words.join("; ")))
             }
             (Some(hole), None) if hole.ok => (HoleRowState::Good, "in tolerance".to_owned()),
-            (Some(hole), _) => (HoleRowState::Bad, hole.objections.join(", ")),
+            (Some(hole), _) => (HoleRowState::Bad, hole.error_codes.join(", ")),
         };
         let holes = found_by.iter().map(|hole| hole.map(|hole| hole.drilled_index)).collect();
         HoleTableRow { id: shown(id), state, words, cells, holes }
     });
     let mut rows: Vec<HoleTableRow> = nominal.collect();
-    for (place, (side, verdict)) in judged.iter().enumerate() {
-        rows.extend(extra_rows(place, side, verdict, columns.len(), sides));
+    for (side_index, (side, verdict)) in judged.iter().enumerate() {
+        rows.extend(extra_rows(side_index, side, verdict, columns.len(), sides));
     }
     (columns, rows)
 }
 
 /// Returns the rows of extra holes.
 fn extra_rows(
-    place: usize,
+    side_index: usize,
     side: &ReviewSide<'_>,
     verdict: &Verdict,
     columns: usize,
     sides: &[ReviewSide<'_>],
 ) -> Vec<HoleTableRow> {
-    let of_old = sides.len() == 2 && place == 0;
+    let of_old = sides.len() == 2 && side_index == 0;
     let row = |(number, extra): (usize, &ExtraHole)| {
         let mut cells = vec![Cell::default(); columns - sides.len()];
         let block = block_cell(side, drilled_hole(side, extra.drilled_index));
-        cells.extend((0..sides.len()).map(|at| if at == place { block.clone() } else { Cell::default() }));
+        cells.extend(
+            (0..sides.len()).map(|at| if at == side_index { block.clone() } else { Cell::default() }),
+        );
         let mut holes = vec![None; sides.len()];
-        holes[place] = Some(extra.drilled_index);
+        holes[side_index] = Some(extra.drilled_index);
         let (of, words) = if of_old { ("old ", "extra in the old") } else { ("", "extra") };
         let id = format!("{of}extra {}", number + 1);
         HoleTableRow {

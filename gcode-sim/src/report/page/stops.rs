@@ -4,7 +4,7 @@ use gcode_review::BlockLocation;
 
 /// An operator stop.
 pub(super) struct Stop<'a> {
-    pub place: &'a BlockLocation,
+    pub location: &'a BlockLocation,
     /// Difference in the other program, if any.
     pub mark: Option<&'static str>,
 }
@@ -12,15 +12,15 @@ pub(super) struct Stop<'a> {
 /// Returns the stops in the order of execution.
 pub(super) fn stops<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> Vec<Stop<'a>> {
     let compared = page.old.map(|(_, difference)| difference.compared);
-    let (place, [alone, changed]) = match side.word {
+    let (index, [alone, changed]) = match side.word {
         "old" => (0, ["not executed here by the new program", "executed differently by the new program"]),
         _ => (1, ["not executed here by the old program", "executed differently by the old program"]),
     };
     let mark = |step: usize| {
         let compared = compared?;
-        let is_of = |steps: &[Vec<usize>; 2]| steps[place].binary_search(&step).is_ok();
+        let is_of = |steps: &[Vec<usize>; 2]| steps[index].binary_search(&step).is_ok();
         if is_of(&compared.unpaired_steps) { Some(alone) } else { is_of(&compared.steps).then_some(changed) }
     };
     let all = side.observed.revision.record.stops();
-    all.map(|(step, place)| Stop { place, mark: mark(step) }).collect()
+    all.map(|(step, location)| Stop { location, mark: mark(step) }).collect()
 }

@@ -47,9 +47,9 @@ struct UnrolledCylinder {
 impl UnrolledCylinder {
     /// Chooses the number of strips that draws the holes largest.
     fn of(cylinder: Cylinder, view: &TopView) -> Self {
-        let places = view.holes.iter().filter_map(DrawnHole::shown);
+        let shown = view.holes.iter().filter_map(DrawnHole::shown);
         let reach = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
-        let (low, high) = places.map(|hole| hole.entry[0]).fold((0.0, cylinder.length), reach);
+        let (low, high) = shown.map(|hole| hole.entry[0]).fold((0.0, cylinder.length), reach);
         let diameter = view.holes.iter().find_map(|hole| hole.nominal.as_ref()?.diameter);
         let (usual, few) = (diameter.unwrap_or(0.0) / 2.0, view.holes.len() <= MAX_NUMBERED);
         let cut = |strips: u32| Self { cylinder, strips, low, high, usual, few };

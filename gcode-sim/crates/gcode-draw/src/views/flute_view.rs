@@ -22,7 +22,7 @@ pub struct FluteView {
     pub helix: HelixCourses,
 }
 
-/// The place of a finding.
+/// The site of a finding.
 #[derive(Clone, Debug)]
 pub struct Fault {
     /// Position on the surface.

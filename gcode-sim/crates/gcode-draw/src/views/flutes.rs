@@ -48,7 +48,7 @@ fn flutes(view: &FluteView, side: Side) -> Vec<Stroke> {
             let pen = match (is_near, is_faulty) {
                 (true, false) => Pen::Feed,
                 (true, true) => Pen::Faulty,
-                (false, true) => Pen::Hidden,
+                (false, true) => Pen::FaultyFarSide,
                 (false, false) => continue,
             };
             let points = section.iter().map(|point| side.project(point.position)).collect();
@@ -90,7 +90,7 @@ fn picture(
     let lines = [
         (Pen::Feed, "Wheel contact path on the near side, with the number of its pass"),
         (Pen::Faulty, "Pass with a fault"),
-        (Pen::Hidden, "Pass with a fault, on the far side"),
+        (Pen::FaultyFarSide, "Pass with a fault, on the far side"),
         (Pen::Outline, "Tooth bottom"),
         (Pen::Construction, "Polar angle at which flutes end"),
     ];

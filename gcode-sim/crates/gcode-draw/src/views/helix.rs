@@ -46,7 +46,7 @@ impl HelixCourses {
     /// Returns the curves of all passes, the worst last, on top.
     fn curves(&self, value: impl Fn(&HelixPoint) -> f64) -> Vec<Curve> {
         let others = self.passes.iter().enumerate().filter(|(pass, _)| *pass != self.worst_pass);
-        let all = others.map(|(_, pass)| (pass, Pen::Others));
+        let all = others.map(|(_, pass)| (pass, Pen::MeasuredOther));
         let worst = self.passes.get(self.worst_pass).map(|pass| (pass, Pen::Measured));
         all.chain(worst).map(|(pass, pen)| curve(pass, pen, &value)).collect()
     }
@@ -62,9 +62,9 @@ impl HelixCourses {
 
     fn angles(&self) -> Graph {
         let shown = self.shown();
-        let mut curves = vec![Curve { is_clipped: true, ..curve(shown, Pen::Second, |at| at.other_law) }];
+        let mut curves = vec![Curve { is_clipped: true, ..curve(shown, Pen::Comparison, |at| at.other_law) }];
         curves.extend(self.curves(|at| at.actual));
-        curves.push(curve(shown, Pen::First, |at| at.nominal));
+        curves.push(curve(shown, Pen::Nominal, |at| at.nominal));
         let allowed =
             |at: &HelixPoint| [at.path_length, at.nominal - self.tolerance, at.nominal + self.tolerance];
         Graph {
@@ -114,10 +114,10 @@ impl HelixCourses {
         let items = [
             fault,
             pen(Pen::Measured, worst).filter(|_| is_ground),
-            pen(Pen::Others, "The other passes".to_owned()).filter(|_| 1 < self.passes.len()),
-            pen(Pen::First, format!("Specified: law {asked}")),
+            pen(Pen::MeasuredOther, "The other passes".to_owned()).filter(|_| 1 < self.passes.len()),
+            pen(Pen::Nominal, format!("Specified: law {asked}")),
             pen(Pen::Limit, format!("Tolerance: ±{}°", self.tolerance)),
-            pen(Pen::Second, format!("Law {other}, for comparison")),
+            pen(Pen::Comparison, format!("Law {other}, for comparison")),
         ];
         items.into_iter().flatten().collect()
     }

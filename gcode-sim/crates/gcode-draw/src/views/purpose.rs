@@ -46,8 +46,8 @@ impl PicturePurpose {
     }
 
     /// Returns true if a position is shown with this many decimals; a change is shown only if it is not 0.
-    pub(super) fn shows_deviation(self, phi: f64, places: i32) -> bool {
-        self == Self::Verdict || 0.5 <= phi * libm::pow(10.0, f64::from(places))
+    pub(super) fn shows_deviation(self, phi: f64, decimals: i32) -> bool {
+        self == Self::Verdict || 0.5 <= phi * libm::pow(10.0, f64::from(decimals))
     }
 
     /// Returns the legend text of the line to a hole's actual position.

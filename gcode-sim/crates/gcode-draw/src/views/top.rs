@@ -244,8 +244,8 @@ fn circles(holes: &[DrawnHole]) -> Vec<Stroke> {
 }
 
 /// Formats a number without trailing zeros and with a true minus sign.
-fn signed(number: f64, places: usize) -> String {
-    let text = format!("{number:.places$}");
+fn signed(number: f64, decimals: usize) -> String {
+    let text = format!("{number:.decimals$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
 }

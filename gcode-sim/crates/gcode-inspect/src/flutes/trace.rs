@@ -84,10 +84,16 @@ fn azimuth(p: &Point3<f64>) -> Deg {
 impl Trace {
     /// Appends `path`, which begins at the last sample and whose points have equal time steps. Along and around are
     /// measured on the surface below the path: its height does not change its direction.
-    pub(super) fn append(&mut self, flutes: &Flutes, path: &[Point3<f64>], seconds: f64, place: Backtrace) {
+    pub(super) fn append(
+        &mut self,
+        flutes: &Flutes,
+        path: &[Point3<f64>],
+        seconds: f64,
+        backtrace: Backtrace,
+    ) {
         let profile = &flutes.profile;
         let index = self.backtraces.len();
-        self.backtraces.push(place);
+        self.backtraces.push(backtrace);
         let begun = self.seconds;
         self.seconds += seconds;
         let steps = path.len().saturating_sub(1).max(1) as f64;
@@ -152,11 +158,11 @@ impl Trace {
     ) -> Vec<(&'t Backtrace, [f64; 2])> {
         let mut blocks: Vec<(&Backtrace, [f64; 2])> = Vec::new();
         for pair in pairs {
-            let place = self.backtrace(&pair[1]);
+            let backtrace = self.backtrace(&pair[1]);
             let [first, second] = values(&pair[0], &pair[1]);
-            match blocks.last_mut().filter(|(last, _)| std::ptr::eq(*last, place)) {
+            match blocks.last_mut().filter(|(last, _)| std::ptr::eq(*last, backtrace)) {
                 Some((_, [sum, other])) => (*sum, *other) = (*sum + first, *other + second),
-                None => blocks.push((place, [first, second])),
+                None => blocks.push((backtrace, [first, second])),
             }
         }
         blocks

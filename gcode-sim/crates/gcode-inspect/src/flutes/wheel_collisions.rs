@@ -147,7 +147,7 @@ impl CollisionTracker {
     }
 
     /// Adds a collision; one entry per block and kind has the deepest. Returns its index.
-    fn add(&mut self, place: Backtrace, kind: CollisionKind, deepest: DeepestPoint) -> usize {
+    fn add(&mut self, backtrace: Backtrace, kind: CollisionKind, deepest: DeepestPoint) -> usize {
         let which = match kind {
             CollisionKind::Rapid => 0,
             CollisionKind::BelowToothBottom => 1,
@@ -158,8 +158,8 @@ impl CollisionTracker {
         };
         let DeepestPoint { depth, point: at } = deepest;
         let first =
-            || WheelCollision { backtrace: place.clone(), kind, point: at, depth, count: 0, moves: 0 };
-        let (index, entry) = self.collisions.count(place.block, which, first);
+            || WheelCollision { backtrace: backtrace.clone(), kind, point: at, depth, count: 0, moves: 0 };
+        let (index, entry) = self.collisions.count(backtrace.block, which, first);
         let collision = &mut entry.value;
         collision.moves += 1;
         if collision.depth < depth && !matches!(kind, CollisionKind::RapidPass(_)) {
@@ -170,7 +170,7 @@ impl CollisionTracker {
     }
 
     /// Begins or continues a pass in rapid motion after `passes` passes in feed.
-    fn rapid_pass(&mut self, place: Backtrace, depth: DeepestPoint, passes: usize) {
+    fn rapid_pass(&mut self, backtrace: Backtrace, depth: DeepestPoint, passes: usize) {
         self.position = WheelPosition::InCut;
         if let Some(entry) = self.current_rapid_pass.and_then(|index| self.collisions.get_mut(index)) {
             entry.value.moves += 1;
@@ -179,14 +179,14 @@ impl CollisionTracker {
         }
         self.rapid_passes += 1;
         self.current_rapid_pass =
-            Some(self.add(place, CollisionKind::RapidPass(passes + self.rapid_passes), depth));
+            Some(self.add(backtrace, CollisionKind::RapidPass(passes + self.rapid_passes), depth));
     }
 
     /// Checks a motion that is no pass.
     pub(super) fn check_motion(
         &mut self,
         flutes: &Flutes,
-        place: Backtrace,
+        backtrace: Backtrace,
         mode: MotionMode,
         moved: MovedAxes,
         path: &[Point3<f64>],
@@ -204,7 +204,7 @@ impl CollisionTracker {
         if let (true, MotionMode::Rapid { passes_before: Some(passes) }, true) =
             (was_outside, mode, motion.is_slanted && motion.starts_in_cut && motion.ends_in_cut)
         {
-            return self.rapid_pass(place, depth, passes);
+            return self.rapid_pass(backtrace, depth, passes);
         }
         self.current_rapid_pass = None;
         let MotionMode::Feed { seconds } = mode else {
@@ -218,27 +218,31 @@ impl CollisionTracker {
                 self.unchecked_rapids += 1;
                 if let Some(at) = path.last().copied().filter(|_| motion.ends_in_cut) {
                     let depth = DeepestPoint { depth: flutes.tooth_depth - motion.end_distance, point: at };
-                    self.early_rapids.push(EarlyRapid { backtrace: place, depth, moved_axes: moved });
+                    self.early_rapids.push(EarlyRapid { backtrace, depth, moved_axes: moved });
                 }
             } else if !leaves && motion.min_distance < flutes.tooth_depth + ROUNDING_ERROR {
-                self.add(place, CollisionKind::Rapid, depth);
+                self.add(backtrace, CollisionKind::Rapid, depth);
             } else if let (Some(clearance), Some(at)) = (flutes.clearance, path.last().copied()) {
                 let above = motion.end_distance - flutes.tooth_depth;
                 if above < clearance - ROUNDING_ALLOWANCE {
-                    self.add(place, CollisionKind::LowClearance, DeepestPoint { depth: -above, point: at });
+                    self.add(
+                        backtrace,
+                        CollisionKind::LowClearance,
+                        DeepestPoint { depth: -above, point: at },
+                    );
                 }
             }
             return;
         };
         if motion.min_distance < -flutes.surface_tolerance - ROUNDING_ERROR {
             self.add(
-                place.clone(),
+                backtrace.clone(),
                 CollisionKind::BelowToothBottom,
                 DeepestPoint { depth: -motion.min_distance, point: motion.deepest_point },
             );
         }
         if !motion.is_straight {
-            self.add(place, CollisionKind::Sideways(motion.sideways_length), depth);
+            self.add(backtrace, CollisionKind::Sideways(motion.sideways_length), depth);
             self.position = if motion.ends_in_cut { WheelPosition::InCut } else { WheelPosition::OffBlank };
         } else if !motion.ends_in_cut {
             self.report_plunge_without_pass();
@@ -250,7 +254,7 @@ impl CollisionTracker {
         {
             let length: f64 = path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
             let at = path.last().copied().unwrap_or(motion.deepest_point);
-            let here = PlungeFeed { backtrace: place, speed: 60.0 * length / seconds, point: at };
+            let here = PlungeFeed { backtrace, speed: 60.0 * length / seconds, point: at };
             // Of several feeds the fastest counts.
             let plunge = match std::mem::take(&mut self.position) {
                 WheelPosition::Plunged(_, before) if here.speed <= before.speed => before,

@@ -38,7 +38,16 @@ impl WheelState {
                 self.builder_code = None;
             }
             EventKind::Auxiliary { code } => self.builder_code = Some(*code),
-            _ => {}
+            EventKind::Rapid { .. }
+            | EventKind::Feed { .. }
+            | EventKind::Arc { .. }
+            | EventKind::Skip { .. }
+            | EventKind::Dwell { .. }
+            | EventKind::ToolChange { .. }
+            | EventKind::ToolLength { .. }
+            | EventKind::WorkZeroUnknown { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Stop { .. } => {}
         }
     }
 

@@ -47,7 +47,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Reports a feed into the part that began in this state, unless the clamp held the table.
-    pub(super) fn check_clamped(&mut self, place: &Backtrace, state: ClampState) {
+    pub(super) fn check_clamped(&mut self, backtrace: &Backtrace, state: ClampState) {
         let Some(Clamp { on, .. }) = self.process_limits.clamp else { return };
         let Some(axis) = self.clamped_axis() else { return };
         let letter = self.machine.axes.letter(axis);
@@ -63,14 +63,14 @@ impl HoleExtractor<'_> {
             ),
         };
         let note = "the part gives way under the drill, which moves the hole";
-        self.report_clamp(&DRILLS_UNCLAMPED, place, state, message, note, help);
+        self.report_clamp(&DRILLS_UNCLAMPED, backtrace, state, message, note, help);
     }
 
     /// Adds an error with `note`, or a warning if the state is unknown.
     fn report_clamp(
         &mut self,
         kind: &'static FindingKind,
-        place: &Backtrace,
+        backtrace: &Backtrace,
         state: ClampState,
         message: String,
         note: &str,
@@ -82,7 +82,7 @@ impl HoleExtractor<'_> {
             }
             ClampState::Clamped | ClampState::Released => (0, Severity::Error, note),
         };
-        self.findings.add(kind, place, detail, |kind| {
+        self.findings.add(kind, backtrace, detail, |kind| {
             Diagnostic::new(kind, message).with_severity(severity).note(note).help(help)
         });
     }

@@ -50,7 +50,7 @@ pub(super) struct CutConditionsByBlock(PerBlock<[u64; 6], CutConditions>);
 impl CutConditionsByBlock {
     pub(super) fn add(
         &mut self,
-        place: &Backtrace,
+        backtrace: &Backtrace,
         state: &CuttingState,
         feed_range: [MmPerMin; 2],
         pecks: PeckExtent,
@@ -64,8 +64,8 @@ impl CutConditionsByBlock {
         let tool_key = tool.map_or(u64::MAX, u64::from);
         let [min_feed, max_feed] = feed_range.map(|feed| feed.0.to_bits());
         let key = [tool_key, length, spindle_direction as u64, speed.0.to_bits(), min_feed, max_feed];
-        let (_, entry) = self.0.count(place.block, key, || CutConditions {
-            backtrace: place.clone(),
+        let (_, entry) = self.0.count(backtrace.block, key, || CutConditions {
+            backtrace: backtrace.clone(),
             tool,
             compensation,
             spindle_direction,

@@ -87,13 +87,13 @@ impl CuttingLine {
     pub(super) fn begin(
         start: Point3<f64>,
         end: Point3<f64>,
-        place: Backtrace,
+        backtrace: Backtrace,
         at: Position,
         rounding: f64,
     ) -> Option<Self> {
         let out = Unit::try_new(start - end, 1e-9)?;
         let depth = (start - end).norm();
-        let end = StrokeEnd { depth, backtrace: place, axis_position: at };
+        let end = StrokeEnd { depth, backtrace, axis_position: at };
         Some(Self {
             start,
             out,
@@ -243,7 +243,12 @@ impl CuttingLine {
     }
 
     /// Applies a feed along the line; returns a repeated pass that ends with it.
-    pub(super) fn feed_to(&mut self, to: &Point3<f64>, place: Backtrace, at: &Position) -> Option<DrillPass> {
+    pub(super) fn feed_to(
+        &mut self,
+        to: &Point3<f64>,
+        backtrace: Backtrace,
+        at: &Position,
+    ) -> Option<DrillPass> {
         let depth = self.depth_of(to);
         if depth <= self.depth {
             return self.retract_to(depth);
@@ -253,7 +258,7 @@ impl CuttingLine {
             self.out = Unit::new_normalize(self.start - to);
         }
         let from_depth = self.stroke.as_ref().map_or(self.depth, |stroke| stroke.from_depth);
-        let end = StrokeEnd { depth, backtrace: place, axis_position: *at };
+        let end = StrokeEnd { depth, backtrace, axis_position: *at };
         self.stroke = Some(PeckStroke { from_depth, end });
         self.depth = depth;
         None

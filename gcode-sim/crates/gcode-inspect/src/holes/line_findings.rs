@@ -96,24 +96,24 @@ impl HoleExtractor<'_> {
 
     /// Reports the clamp, the spindle, the head and the direction of a feed.
     fn report_feed(&mut self, line: &CuttingLine, tilt: Option<Deg>) {
-        let place = line.backtrace();
-        self.check_clamped(place, line.clamp_state);
-        self.check_work_zero_known(place, line.unknown_work_zero_axes);
+        let backtrace = line.backtrace();
+        self.check_clamped(backtrace, line.clamp_state);
+        self.check_work_zero_known(backtrace, line.unknown_work_zero_axes);
         if let Some(feeds) = line.cutting_feeds() {
-            self.cut_conditions.add(place, &line.cutting_state, feeds, line.pecks());
+            self.cut_conditions.add(backtrace, &line.cutting_state, feeds, line.pecks());
         }
-        self.check_spindle(place, line);
+        self.check_spindle(backtrace, line);
         if line.cutting_state.spindle_direction == SpindleDirection::Off {
             let message = "the tool feeds into the part with the spindle stopped";
             let builder_code = self.builder_code;
-            self.findings.add(&SPINDLE_STOPPED, place, 0, |_| {
+            self.findings.add(&SPINDLE_STOPPED, backtrace, 0, |_| {
                 spindle::spindle_stopped_finding(message, builder_code)
                     .help("start the spindle with M03 S… before the feed")
             });
         }
         let Some(tilt) = tilt else {
             if matches!(self.machine.head.kind, HeadKind::Manual { .. }) {
-                self.findings.add(&HEAD_NOT_SET, place, 0, |kind| {
+                self.findings.add(&HEAD_NOT_SET, backtrace, 0, |kind| {
                     Diagnostic::new(kind, "the tool feeds before the head is set: its angle is unknown").help(
                         "stop with #3006=1(SET HEAD TO #140) before the feed, or give head.angle in the machine file",
                     )
@@ -124,7 +124,7 @@ impl HoleExtractor<'_> {
         let length = line.cut_depth();
         let rounding = Deg::atan2(2.0 * self.machine.increment.size(), length);
         if tilt.0 > (MAX_FEED_TILT + rounding).0 {
-            self.findings.add(&FEED_NOT_ALONG_TOOL, place, 0, |kind| {
+            self.findings.add(&FEED_NOT_ALONG_TOOL, backtrace, 0, |kind| {
                 let message = format!(
                     "the feed direction is {:.3}° off the tool axis, limit {:.2}°: {:.3} mm \
                      sideways over {length:.3} mm",

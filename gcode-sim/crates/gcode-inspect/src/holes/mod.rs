@@ -156,10 +156,10 @@ impl<'m> HoleExtractor<'m> {
     pub fn finish(mut self) -> HoleExtraction {
         self.end_line(false);
         let mut findings = self.findings.finish();
-        findings.extend(self.first_excess_pass.map(|place| {
+        findings.extend(self.first_excess_pass.map(|backtrace| {
             let message =
                 format!("more than {MAX_PASSES} feeds into the part: nothing after this is checked");
-            let finding = Diagnostic::new(&LIMIT, message).with_backtrace(place);
+            let finding = Diagnostic::new(&LIMIT, message).with_backtrace(backtrace);
             finding.help("check for a loop that never ends; otherwise split the program")
         }));
         HoleExtraction {

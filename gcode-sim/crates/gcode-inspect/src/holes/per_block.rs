@@ -61,11 +61,11 @@ impl Findings {
     pub(super) fn add(
         &mut self,
         kind: &'static FindingKind,
-        place: &Backtrace,
+        backtrace: &Backtrace,
         detail: u32,
         make: impl FnOnce(&'static FindingKind) -> Diagnostic,
     ) {
-        self.0.count(place.block, (kind.code, detail), || make(kind).with_backtrace(place.clone()));
+        self.0.count(backtrace.block, (kind.code, detail), || make(kind).with_backtrace(backtrace.clone()));
     }
 
     pub(super) fn finish(self) -> Vec<Diagnostic> {

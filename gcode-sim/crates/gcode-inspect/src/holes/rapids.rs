@@ -66,8 +66,8 @@ impl HoleExtractor<'_> {
             return;
         }
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
-            let place = format_point(&deepest);
-            let message = format!("rapid through the part, {depth:.3} mm below the surface at {place}");
+            let point = format_point(&deepest);
+            let message = format!("rapid through the part, {depth:.3} mm below the surface at {point}");
             Diagnostic::new(kind, message)
                 .help("move round the part at a safe height; only a feed may enter it")
         });

@@ -32,7 +32,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Reports a spindle that stops or reverses in the hole, for a tool with which the job drills.
-    pub(super) fn check_spindle(&mut self, place: &Backtrace, line: &CuttingLine) {
+    pub(super) fn check_spindle(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
         if self.process_limits.tool_process(line.cutting_state.tool).is_none() {
             return;
         }
@@ -51,7 +51,7 @@ impl HoleExtractor<'_> {
             ),
         };
         let tool = line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
-        self.findings.add(&SPINDLE_IN_HOLE, place, 0, |kind| {
+        self.findings.add(&SPINDLE_IN_HOLE, backtrace, 0, |kind| {
             Diagnostic::new(kind, format!("the spindle {verb} while {tool} is in the hole"))
                 .with_severity(severity)
                 .note(note)

@@ -122,12 +122,12 @@ impl HoleExtractor<'_> {
     }
 
     /// Reports a cut with axes of unknown position.
-    pub(super) fn check_work_zero_known(&mut self, place: &Backtrace, axes: u8) {
+    pub(super) fn check_work_zero_known(&mut self, backtrace: &Backtrace, axes: u8) {
         if axes == 0 {
             return;
         }
         let letters = axis_letters(self.machine, axes);
-        self.findings.add(&MACHINE_POSITION, place, u32::from(axes), |kind| {
+        self.findings.add(&MACHINE_POSITION, backtrace, u32::from(axes), |kind| {
             let message = format!(
                 "the tool feeds into the part with {letters} where G28, G30 or G53 sent it: this position \
                  on the part is unknown"

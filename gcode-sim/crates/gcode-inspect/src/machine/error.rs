@@ -75,11 +75,11 @@ impl PeriodicError {
     }
 
     /// Returns the error at a position of the axis.
-    pub(crate) fn value_at(&self, place: f64) -> f64 {
+    pub(crate) fn value_at(&self, position: f64) -> f64 {
         if self.amplitude == 0.0 {
             return self.level;
         }
-        self.level + self.amplitude * (Deg(360.0 * place / self.period) - self.phase).cos()
+        self.level + self.amplitude * (Deg(360.0 * position / self.period) - self.phase).cos()
     }
 }
 
@@ -91,18 +91,18 @@ mod tests {
     /// half the range.
     #[test]
     fn at_every_position_an_error_has_the_distribution_of_the_file() {
-        for place in [0.0, 123.456, -900.0] {
+        for position in [0.0, 123.456, -900.0] {
             for (spread, quartile) in
                 [(Distribution::Normal(0.01), 0.006_745), (Distribution::Uniform(0.01), 0.005)]
             {
                 let errors = (0..200_000)
-                    .map(|n| PeriodicError::sample(spread, 500.0, RandomStream::new(n)).value_at(place));
+                    .map(|n| PeriodicError::sample(spread, 500.0, RandomStream::new(n)).value_at(position));
                 let mut errors: Vec<f64> = errors.collect();
                 errors.sort_by(f64::total_cmp);
                 for (part, expected) in [(50_000, -quartile), (100_000, 0.0), (150_000, quartile)] {
                     assert!(
                         (errors[part] - expected).abs() < 2e-4,
-                        "{spread:?} at {place}: {}",
+                        "{spread:?} at {position}: {}",
                         errors[part]
                     );
                 }

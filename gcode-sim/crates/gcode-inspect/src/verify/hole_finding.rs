@@ -4,7 +4,7 @@ use gcode_lang::motion::{Backtrace, Call};
 
 /// Subject of a finding; holes are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum About {
+pub(super) enum Subject {
     /// Several holes, or the program as a whole.
     Whole,
     /// One nominal hole.
@@ -18,7 +18,7 @@ pub(super) enum About {
 /// A finding of a check on holes.
 #[derive(Clone, Debug)]
 pub(super) struct HoleFinding {
-    pub about: About,
+    pub subject: Subject,
     pub finding: Diagnostic,
     /// True if a finding about many holes replaces it in the printed list; JSON has both.
     pub is_folded: bool,
@@ -26,32 +26,60 @@ pub(super) struct HoleFinding {
 
 /// Findings of the checks so far, in printed order.
 #[derive(Debug, Default)]
-pub(super) struct HoleFindings(pub Vec<HoleFinding>);
+pub(super) struct HoleFindings {
+    list: Vec<HoleFinding>,
+}
 
 impl HoleFindings {
-    pub(super) fn add(&mut self, about: About, finding: Diagnostic) {
-        self.0.push(HoleFinding { about, finding, is_folded: false });
+    pub(super) fn add(&mut self, subject: Subject, finding: Diagnostic) {
+        self.list.push(HoleFinding { subject, finding, is_folded: false });
+    }
+
+    /// Adds a finding that a finding about many holes replaces in the printed list.
+    pub(super) fn add_folded(&mut self, subject: Subject, finding: Diagnostic) {
+        self.list.push(HoleFinding { subject, finding, is_folded: true });
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &HoleFinding> {
+        self.list.iter()
+    }
+
+    pub(super) fn into_list(self) -> Vec<HoleFinding> {
+        self.list
+    }
+
+    /// Replaces the help of the findings about a subject.
+    pub(super) fn set_help(&mut self, subject: Subject, help: &str) {
+        for one in self.list.iter_mut().filter(|one| one.subject == subject) {
+            one.finding.help = Some(help.to_owned());
+        }
     }
 
     /// Inserts findings about many holes before all others.
     pub(super) fn put_first(&mut self, findings: impl IntoIterator<Item = Diagnostic>) {
-        let whole = |finding| HoleFinding { about: About::Whole, finding, is_folded: false };
-        self.0.splice(0..0, findings.into_iter().map(whole));
+        let whole = |finding| HoleFinding { subject: Subject::Whole, finding, is_folded: false };
+        self.list.splice(0..0, findings.into_iter().map(whole));
     }
 
-    pub(super) fn position(&self, kinds: &[&FindingKind]) -> Option<usize> {
-        self.0.iter().position(|one| kinds.contains(&one.finding.kind))
+    /// Returns the index of the first finding of one of these kinds.
+    pub(super) fn first_of_kind(&self, kinds: &[&FindingKind]) -> Option<usize> {
+        self.list.iter().position(|one| kinds.contains(&one.finding.kind))
+    }
+
+    /// Adds notes to the finding with this index.
+    pub(super) fn add_notes(&mut self, index: usize, notes: impl IntoIterator<Item = String>) {
+        self.list[index].finding.notes.extend(notes);
     }
 
     pub(super) fn remove(&mut self, kinds: &[&FindingKind]) {
-        self.0.retain(|one| !kinds.contains(&one.finding.kind));
+        self.list.retain(|one| !kinds.contains(&one.finding.kind));
     }
 
     /// Folds the findings of these kinds whose subject `is_explained` accepts; returns their number.
-    pub(super) fn fold(&mut self, kinds: &[&FindingKind], is_explained: impl Fn(About) -> bool) -> usize {
+    pub(super) fn fold(&mut self, kinds: &[&FindingKind], is_explained: impl Fn(Subject) -> bool) -> usize {
         let mut folded = 0;
-        for one in self.0.iter_mut().filter(|one| !one.is_folded && kinds.contains(&one.finding.kind)) {
-            one.is_folded = is_explained(one.about);
+        for one in self.list.iter_mut().filter(|one| !one.is_folded && kinds.contains(&one.finding.kind)) {
+            one.is_folded = is_explained(one.subject);
             folded += usize::from(one.is_folded);
         }
         folded
@@ -67,13 +95,17 @@ pub(super) fn folded_note(folded: usize) -> Option<String> {
     }
 }
 
-/// Completes a finding about many holes: the note on the findings that it replaces, and its place.
-pub(super) fn summary(mut finding: Diagnostic, folded: usize, backtrace: &Backtrace) -> Diagnostic {
+/// Completes a finding about many holes: the note on the findings that it replaces, and its location.
+pub(super) fn finish_group_finding(
+    mut finding: Diagnostic,
+    folded: usize,
+    backtrace: &Backtrace,
+) -> Diagnostic {
     finding.notes.extend(folded_note(folded));
     locate_at_call(finding, backtrace)
 }
 
-/// Locates a finding at the outermost call, which has the arguments; the block of the hole is a secondary place.
+/// Locates a finding at the outermost call, which has the arguments; the block of the hole is a secondary location.
 pub(super) fn locate_at_call(finding: Diagnostic, backtrace: &Backtrace) -> Diagnostic {
     let calls = std::iter::successors(backtrace.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
     match calls.last() {

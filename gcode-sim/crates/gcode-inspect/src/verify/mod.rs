@@ -20,7 +20,7 @@ pub use position::Deviation;
 pub use verdict::{Answer, ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
 use self::checks::mirrored::MirrorImage;
-use self::hole_finding::{About, HoleFindings};
+use self::hole_finding::{HoleFindings, Subject};
 use self::rounding::RoundingDeviation;
 use self::rows::PatternRows;
 use crate::holes::HoleExtraction;
@@ -79,14 +79,14 @@ pub fn verify(
     let inspection = HoleInspection { comparison, rows, mirror_image, extraction, reference, machine };
     let mut findings = HoleFindings::default();
     for finding in &extraction.findings {
-        findings.add(About::Motion, finding.clone());
+        findings.add(Subject::Motion, finding.clone());
     }
     for check in checks::ALL {
         check(&inspection, &mut findings);
     }
     let comparison = &inspection.comparison;
     let rounding = RoundingDeviation::of(comparison, machine);
-    let mut verdict = verdict::verdict(comparison, &rounding, findings.0, locate);
+    let mut verdict = verdict::verdict(comparison, &rounding, findings.into_list(), locate);
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }

@@ -62,7 +62,7 @@ pub(super) fn neighbours(
 ) -> (Vec<Option<HoleNeighbours>>, Neighbours) {
     let drilled = comparison.actual.iter().map(|hole| (hole.bottom(), hole.axis.into_inner()));
     let lines: Vec<usize> = comparison.actual.iter().map(|hole| hole.first_on_line).collect();
-    let (around, places) = neighbours_of(drilled, &lines, pattern);
+    let (around, points) = neighbours_of(drilled, &lines, pattern);
     let nominal = comparison.nominal.iter().map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis)));
     let lines: Vec<usize> = (0..comparison.nominal.len()).collect();
     let (nominal_around, _) = neighbours_of(nominal, &lines, pattern);
@@ -70,7 +70,7 @@ pub(super) fn neighbours(
     for pair in &comparison.pairs {
         names[pair.actual] = Some(comparison.id(pair.nominal));
     }
-    let name = |index: usize| names[index].map_or_else(|| format_place(&places[index]), str::to_owned);
+    let name = |index: usize| names[index].map_or_else(|| format_point(&points[index]), str::to_owned);
     let known = || around.iter().enumerate().filter_map(|(index, around)| Some((index, (*around)?)));
     let distance = |index: usize, other: usize, distance: f64| Distance {
         distance,
@@ -101,23 +101,23 @@ fn neighbours_of(
     pattern: &Pattern,
 ) -> (Vec<Option<HoleNeighbours>>, Vec<Point3<f64>>) {
     let nowhere = Point3::from(Vector3::repeat(f64::INFINITY));
-    let places: Vec<_> = holes.map(|(on, out)| pattern.crossing(&on, &out).unwrap_or(nowhere)).collect();
-    let on_cylinder: Vec<usize> = (0..places.len()).filter(|index| places[*index] != nowhere).collect();
-    let mut near = vec![NearestSix::default(); places.len()];
-    let here = thin_crowded_spots(on_cylinder, lines, &places, &mut near);
-    let tree = PointTree::new(here.iter().map(|index| places[*index]));
+    let points: Vec<_> = holes.map(|(on, out)| pattern.crossing(&on, &out).unwrap_or(nowhere)).collect();
+    let on_cylinder: Vec<usize> = (0..points.len()).filter(|index| points[*index] != nowhere).collect();
+    let mut near = vec![NearestSix::default(); points.len()];
+    let here = thin_crowded_spots(on_cylinder, lines, &points, &mut near);
+    let tree = PointTree::new(here.iter().map(|index| points[*index]));
     // Halfway to the next holes after the neighbours.
     let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
     // A distance on the surface is not below the straight one: the tree finds all neighbours.
     tree.pairs(reach, &mut |one, other| {
         let (one, other) = (here[one], here[other]);
-        let distance = pattern.distance(&places[one], &places[other]);
+        let distance = pattern.distance(&points[one], &points[other]);
         if distance <= reach {
             near[one].add(distance, other);
             near[other].add(distance, one);
         }
     });
-    (near.iter().map(NearestSix::summary).collect(), places)
+    (near.iter().map(NearestSix::summary).collect(), points)
 }
 
 /// Returns the holes without the eighth and later ones at one point: these are no neighbours of others, and have the first
@@ -125,7 +125,7 @@ fn neighbours_of(
 fn thin_crowded_spots(
     mut holes: Vec<usize>,
     lines: &[usize],
-    places: &[Point3<f64>],
+    points: &[Point3<f64>],
     nearest_six: &mut [NearestSix],
 ) -> Vec<usize> {
     let mut kept = Vec::with_capacity(holes.len());
@@ -135,9 +135,9 @@ fn thin_crowded_spots(
             continue;
         }
         line.sort_unstable_by(|one, other| {
-            compare_points(&places[*one], &places[*other]).then(one.cmp(other))
+            compare_points(&points[*one], &points[*other]).then(one.cmp(other))
         });
-        for spot in line.chunk_by(|one, other| compare_points(&places[*one], &places[*other]).is_eq()) {
+        for spot in line.chunk_by(|one, other| compare_points(&points[*one], &points[*other]).is_eq()) {
             let (first, others) = spot.split_at(spot.len().min(MAX_NEIGHBOURS + 1));
             kept.extend_from_slice(first);
             for one in others {
@@ -163,12 +163,12 @@ impl NearestSix {
         } else if self.nearest[MAX_NEIGHBOURS - 1] < new {
             return;
         }
-        let mut place = self.count - 1;
-        while 0 < place && new < self.nearest[place - 1] {
-            self.nearest[place] = self.nearest[place - 1];
-            place -= 1;
+        let mut index = self.count - 1;
+        while 0 < index && new < self.nearest[index - 1] {
+            self.nearest[index] = self.nearest[index - 1];
+            index -= 1;
         }
-        self.nearest[place] = new;
+        self.nearest[index] = new;
     }
 
     fn summary(&self) -> Option<HoleNeighbours> {
@@ -184,7 +184,7 @@ fn compare_points(one: &Point3<f64>, other: &Point3<f64>) -> Ordering {
     along(0).then_with(|| along(1)).then_with(|| along(2))
 }
 
-fn format_place(p: &Point3<f64>) -> String {
+fn format_point(p: &Point3<f64>) -> String {
     format!("x {:.3} at {:.3}°", p.x, azimuth(p).0)
 }
 
@@ -214,19 +214,19 @@ mod tests {
     }
 
     /// Returns the neighbours by sorting all distances.
-    fn by_comparing_all(places: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<HoleNeighbours>> {
+    fn by_comparing_all(points: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<HoleNeighbours>> {
         let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
         let round = |index: usize| {
-            let others = (0..places.len()).filter(|other| *other != index);
+            let others = (0..points.len()).filter(|other| *other != index);
             let mut all: Vec<_> =
-                others.map(|other| (pattern.distance(&places[index], &places[other]), other)).collect();
+                others.map(|other| (pattern.distance(&points[index], &points[other]), other)).collect();
             all.retain(|(distance, _)| *distance <= reach);
             all.sort_by(|a, b| a.partial_cmp(b).unwrap());
             all.truncate(6);
             let ((min, nearest), (max, farthest)) = (*all.first()?, *all.last()?);
             Some(HoleNeighbours { count: all.len(), min, max, nearest, farthest })
         };
-        (0..places.len()).map(round).collect()
+        (0..points.len()).map(round).collect()
     }
 
     /// Each of ten holes at one point has six neighbours at 0; one 5 mm beside them has six of them at 5.
@@ -265,8 +265,8 @@ mod tests {
                 let ((x, row), _) = spots[*line];
                 hole(f64::from(x) * 4.0, f64::from(row) * 6.0)
             });
-            let (around, places) = neighbours_of(holes, &lines, &pattern);
-            prop_assert_eq!(around, by_comparing_all(&places, &pattern));
+            let (around, points) = neighbours_of(holes, &lines, &pattern);
+            prop_assert_eq!(around, by_comparing_all(&points, &pattern));
         }
     }
 }

@@ -40,17 +40,18 @@ impl<'a> PatternRows<'a> {
             return None;
         }
         // A hole that misses the cylinder is in no row.
-        let place = |index| {
+        let position = |index| {
             let at = comparison.crossing(index)?;
             Some((full_azimuth(&at), at.x, index))
         };
-        let mut places: Vec<(Deg, f64, usize)> = (0..comparison.actual.len()).filter_map(place).collect();
-        places.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        let mut positions: Vec<(Deg, f64, usize)> =
+            (0..comparison.actual.len()).filter_map(position).collect();
+        positions.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
         // Holes drilled at one angle have one azimuth; a row drilled twice may be near it.
         let same = pattern.row_angle().0 / 100.0;
         let mut rows: Vec<(PatternRow, Vec<f64>)> = Vec::new();
         let mut last = Deg(f64::NEG_INFINITY);
-        for (azimuth, start, first) in places {
+        for (azimuth, start, first) in positions {
             match rows.last_mut() {
                 Some((row, xs)) if (azimuth - last).0 <= same => {
                     xs.push(start);

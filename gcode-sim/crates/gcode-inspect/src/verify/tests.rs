@@ -28,14 +28,14 @@ struct NominalHole {
 }
 
 impl Section {
-    fn radius(self, place: NominalHole) -> f64 {
-        self.a * Deg(place.t).cos()
+    fn radius(self, nominal: NominalHole) -> f64 {
+        self.a * Deg(nominal.t).cos()
     }
 
     /// Returns a point `above` the surface along the hole's axis, and the angle of that axis from x.
-    fn above(self, place: NominalHole, above: f64) -> (f64, f64, Deg) {
-        let (c, s) = (Deg(place.t).cos(), Deg(place.t).sin());
-        let angle = if place.axial { Deg(90.0) } else { Deg::atan2(self.a * s, self.b * c) };
+    fn above(self, nominal: NominalHole, above: f64) -> (f64, f64, Deg) {
+        let (c, s) = (Deg(nominal.t).cos(), Deg(nominal.t).sin());
+        let angle = if nominal.axial { Deg(90.0) } else { Deg::atan2(self.a * s, self.b * c) };
         (self.a * c + above * angle.cos(), self.b * s + above * angle.sin(), angle)
     }
 
@@ -44,20 +44,20 @@ impl Section {
         format!("Y{:.3}", 4.0 * self.a.max(self.b) + 700.0)
     }
 
-    fn reference(self, places: &[NominalHole]) -> Reference {
+    fn reference(self, holes: &[NominalHole]) -> Reference {
         let mut text = format!(
             "family = \"pin-holes\"\n[control]\ndialect = \"fanuc-31i\"\nincrement = \"IS-B\"\n\
              [machine]\nrotary = {{ letter = \"B\", sign = 1 }}\n\
              [surface]\nkind = \"ellipsoid\"\na = {}\nb = {}\n[tolerance]\nposition = 0.1\n",
             self.a, self.b
         );
-        for (index, place) in places.iter().enumerate() {
-            let axis = if place.axial { "axial" } else { "normal" };
+        for (index, nominal) in holes.iter().enumerate() {
+            let axis = if nominal.axial { "axial" } else { "normal" };
             text += &format!(
                 "[[hole]]\nid = \"{}\"\nradius = {:?}\nazimuth = {:?}\naxis = \"{axis}\"\ndiameter = 6.0\ndepth = 15.0\n",
                 index + 1,
-                self.radius(*place),
-                place.azimuth
+                self.radius(*nominal),
+                nominal.azimuth
             );
         }
         NominalPart::from_job(&Job::parse(&text).unwrap()).unwrap().into_holes().unwrap()
@@ -81,8 +81,8 @@ struct Drilling {
 const RIGHT: Drilling =
     Drilling { sign: 1.0, shift: [0.0; 3], lean: 0.0, depth: 15.0, set_head: true, reach: 0.0 };
 
-fn drill(script: EventScript, section: Section, place: NominalHole, drilling: Drilling) -> EventScript {
-    let (x, y, angle) = section.above(place, 0.0);
+fn drill(script: EventScript, section: Section, nominal: NominalHole, drilling: Drilling) -> EventScript {
+    let (x, y, angle) = section.above(nominal, 0.0);
     let angle = angle + Deg(drilling.lean);
     let at = |height: f64| {
         let along = height + drilling.reach;
@@ -91,7 +91,7 @@ fn drill(script: EventScript, section: Section, place: NominalHole, drilling: Dr
         format!("X{x:.3} Y{y:.3}")
     };
     let high = section.high();
-    let turn = format!("B{:.3} Z{:.3}", drilling.sign * place.azimuth, drilling.shift[2]);
+    let turn = format!("B{:.3} Z{:.3}", drilling.sign * nominal.azimuth, drilling.shift[2]);
     let over = at(20.0).split_whitespace().next().unwrap().to_owned();
     let script = if drilling.set_head { script.head(angle.0) } else { script };
     script.rapid(&turn).rapid(&over).rapid(&at(20.0)).feed(&at(-drilling.depth)).rapid(&at(20.0)).rapid(&high)
@@ -116,20 +116,20 @@ const PAPER: Section = Section { a: 1158.8, b: 724.3 };
 
 /// Five holes: one axial, four normal, on three radii; azimuths beyond 180° and negative.
 fn five() -> Vec<NominalHole> {
-    let place = |t, azimuth, axial| NominalHole { t, azimuth, axial };
+    let nominal = |t, azimuth, axial| NominalHole { t, azimuth, axial };
     vec![
-        place(70.0, 0.0, true),
-        place(50.0, 30.0, false),
-        place(50.0, 210.0, false),
-        place(30.0, -75.0, false),
-        place(30.0, 330.0, false),
+        nominal(70.0, 0.0, true),
+        nominal(50.0, 30.0, false),
+        nominal(50.0, 210.0, false),
+        nominal(30.0, -75.0, false),
+        nominal(30.0, 330.0, false),
     ]
 }
 
 /// Drills the five holes; `change` returns the drilling of each, counted from 0.
 fn drill_all(change: impl Fn(usize) -> Drilling) -> EventScript {
-    let places = five().into_iter().enumerate();
-    places.fold(start(PAPER), |script, (index, place)| drill(script, PAPER, place, change(index)))
+    let holes = five().into_iter().enumerate();
+    holes.fold(start(PAPER), |script, (index, nominal)| drill(script, PAPER, nominal, change(index)))
 }
 
 fn verdict_on(script: &EventScript) -> Verdict {
@@ -157,11 +157,11 @@ fn five_right_holes_pass_within_the_effect_of_rounding() {
 fn a_head_set_by_hand_has_its_share_of_rounding() {
     let machine = Machine { head: Head::new(HeadKind::Manual { start: None }, 0.0), ..Machine::default() };
     let share = |axial, machine: &Machine, drilling| {
-        let place = NominalHole { t: 50.0, azimuth: 0.0, axial };
-        let script = drill(start(PAPER), PAPER, place, drilling);
-        let verdict = judge(machine, &PAPER.reference(&[place]), &script);
+        let nominal = NominalHole { t: 50.0, azimuth: 0.0, axial };
+        let script = drill(start(PAPER), PAPER, nominal, drilling);
+        let verdict = judge(machine, &PAPER.reference(&[nominal]), &script);
         assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
-        let (angle, rounding) = (PAPER.above(place, 0.0).2, verdict.rounding.unwrap());
+        let (angle, rounding) = (PAPER.above(nominal, 0.0).2, verdict.rounding.unwrap());
         // Half an increment of X and of Y, whichever of both signs is worse across the hole.
         let feed = 0.0005 * (angle.sin().abs() + angle.cos().abs());
         let x_alone = 0.0005 * angle.sin();
@@ -211,9 +211,9 @@ fn a_fault_of_one_hole_is_found_at_that_hole_alone() {
 #[test]
 fn a_wrong_head_angle_is_a_tilt_and_a_feed_off_the_tool() {
     let mut script = start(PAPER);
-    for (index, place) in five().into_iter().enumerate() {
-        let angle = PAPER.above(place, 0.0).2 + Deg(if index == 1 { 0.7 } else { 0.0 });
-        script = drill(script.head(angle.0), PAPER, place, Drilling { set_head: false, ..RIGHT });
+    for (index, nominal) in five().into_iter().enumerate() {
+        let angle = PAPER.above(nominal, 0.0).2 + Deg(if index == 1 { 0.7 } else { 0.0 });
+        script = drill(script.head(angle.0), PAPER, nominal, Drilling { set_head: false, ..RIGHT });
     }
     let verdict = verdict_on(&script);
     assert_eq!(
@@ -238,7 +238,8 @@ fn a_wrong_sign_of_b_is_named() {
 
 #[test]
 fn missing_repeated_and_extra_holes_are_named() {
-    let script = five()[..4].iter().fold(start(PAPER), |script, place| drill(script, PAPER, *place, RIGHT));
+    let script =
+        five()[..4].iter().fold(start(PAPER), |script, nominal| drill(script, PAPER, *nominal, RIGHT));
     let verdict = verdict_on(&script);
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-missing"]));
     assert_eq!(verdict.missing, ["5"]);
@@ -246,8 +247,8 @@ fn missing_repeated_and_extra_holes_are_named() {
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-twice"]));
     assert_eq!((verdict.holes.len(), verdict.extra.len()), (5, 1));
     assert_eq!(verdict.extra[0].why, "hole 3 is drilled a second time");
-    let place = NominalHole { t: 40.0, azimuth: 12.0, axial: false };
-    let verdict = verdict_on(&drill(drill_all(|_| RIGHT), PAPER, place, RIGHT));
+    let nominal = NominalHole { t: 40.0, azimuth: 12.0, axial: false };
+    let verdict = verdict_on(&drill(drill_all(|_| RIGHT), PAPER, nominal, RIGHT));
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-extra"]));
 }
 
@@ -255,10 +256,10 @@ fn missing_repeated_and_extra_holes_are_named() {
 fn a_hole_finished_by_the_drill_alone_has_the_wrong_diameter() {
     let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter) };
     let machine = Machine { tools: vec![tool(1, 5.9), tool(2, 6.0)], ..Machine::default() };
-    let by = |number: u32, places: &[NominalHole], script: EventScript| {
-        places
-            .iter()
-            .fold(script.then(&format!("tool {number}")), |script, place| drill(script, PAPER, *place, RIGHT))
+    let by = |number: u32, holes: &[NominalHole], script: EventScript| {
+        holes.iter().fold(script.then(&format!("tool {number}")), |script, nominal| {
+            drill(script, PAPER, *nominal, RIGHT)
+        })
     };
     let reference = PAPER.reference(&five());
     let both = by(2, &five(), by(1, &five(), start(PAPER)));
@@ -290,16 +291,16 @@ fn a_run_without_holes_has_no_worst_hole() {
     assert_eq!((verdict.verdict, verdict.worst, verdict.missing.len()), (Answer::Fail, None, 5));
 }
 
-fn places() -> impl Strategy<Value = Vec<NominalHole>> {
+fn holes() -> impl Strategy<Value = Vec<NominalHole>> {
     // 15° apart round the axis, so that no two are one hole; the first is near the pole.
     let hole = (14.1..86.0, 0.0..9.0, -2i32..=2, any::<bool>());
     prop::collection::vec(hole, 24).prop_map(|holes| {
-        let place = |(index, (t, jitter, turns, axial)): (usize, (f64, f64, i32, bool))| NominalHole {
+        let nominal = |(index, (t, jitter, turns, axial)): (usize, (f64, f64, i32, bool))| NominalHole {
             t: if index == 0 { 89.9999 } else { t },
             azimuth: 15.0 * index as f64 + jitter + 360.0 * f64::from(turns),
             axial,
         };
-        holes.into_iter().enumerate().map(place).collect()
+        holes.into_iter().enumerate().map(nominal).collect()
     })
 }
 
@@ -310,16 +311,16 @@ proptest! {
     #[test]
     fn right_runs_pass_within_the_effect_of_rounding(
         (a, ratio) in (150.0..2000.0, prop_oneof![Just(1.0), 0.4..2.5]),
-        places in places(),
+        holes in holes(),
         negative in any::<bool>(),
         (manual, pivot, length) in (any::<bool>(), 0.0..200.0, 0.0..150.0),
     ) {
         let section = Section { a, b: a * ratio };
-        let reference = section.reference(&places);
+        let reference = section.reference(&holes);
         let mut machine = Machine::default();
         let drilling = Drilling { sign: if negative { -1.0 } else { 1.0 }, set_head: manual, ..RIGHT };
         machine.table.0[0].sign = drilling.sign;
-        let script = places.iter().fold(start(section), |script, place| drill(script, section, *place, drilling));
+        let script = holes.iter().fold(start(section), |script, nominal| drill(script, section, *nominal, drilling));
         let verdict = judge(&machine, &reference, &script);
         prop_assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
         for hole in &verdict.holes {
@@ -331,7 +332,7 @@ proptest! {
         machine.tools = vec![Tool { number: 7, length: Some(length), diameter: None }];
         let drilling = Drilling { reach: pivot + length, set_head: true, ..drilling };
         let begin = start(section).then("tool 7");
-        let script = places.iter().fold(begin, |script, place| drill(script, section, *place, drilling));
+        let script = holes.iter().fold(begin, |script, nominal| drill(script, section, *nominal, drilling));
         let verdict = judge(&machine, &reference, &script);
         prop_assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
     }

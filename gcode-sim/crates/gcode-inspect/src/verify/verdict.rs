@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::hole_finding::{About, HoleFinding};
+use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
-use super::{Comparison, HoleNeighbours, Neighbours};
+use super::{Comparison, HoleNeighbours, HolePair, Neighbours};
+use crate::holes::DrilledHole;
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
 use gcode_lang::motion::CallChain;
 use gcode_lang::source::Span;
@@ -53,7 +54,7 @@ pub struct Verdict {
     pub neighbours: Option<Neighbours>,
     /// Sentences on what the verdict does not cover.
     pub not_checked: Vec<String>,
-    /// The findings with their places, for people.
+    /// The findings with their locations, for the printed report.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -88,8 +89,9 @@ pub struct HoleVerdict {
     pub from: Origin,
     /// The calls that led to that block, innermost first.
     pub calls: Vec<Origin>,
-    /// The codes of its findings.
-    pub objections: Vec<&'static str>,
+    /// The codes of its errors.
+    #[serde(rename = "objections")]
+    pub error_codes: Vec<&'static str>,
     /// Its neighbours, for a part where they matter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub neighbours: Option<HoleNeighbours>,
@@ -174,55 +176,17 @@ pub(super) fn verdict(
     mut findings: Vec<HoleFinding>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
-    findings.sort_by_key(|one| one.about == About::Motion);
-    let mut codes_by_hole: Vec<Vec<&'static str>> = vec![Vec::new(); comparison.nominal.len()];
-    let failures = || findings.iter().filter(|one| Severity::Error <= one.finding.severity);
-    for one in failures() {
-        if let About::Nominal(nominal) = one.about {
-            codes_by_hole[nominal].push(one.finding.kind.code);
-        }
-    }
-    let fails = failures().next().is_some();
-    let holes: Vec<HoleVerdict> = comparison
-        .matched()
-        .zip(&rounding.position_deviations)
-        .map(|((pair, nominal, drilled), rounding)| {
-            let (deviation, phi) = (&pair.deviation, pair.deviation.zone_diameter());
-            let objections = std::mem::take(&mut codes_by_hole[pair.nominal]);
-            HoleVerdict {
-                id: comparison.id(pair.nominal).to_owned(),
-                position_deviation: phi,
-                at_entry: deviation.at_entry,
-                at_bottom: deviation.at_bottom,
-                depth_error: deviation.depth_error,
-                ok: objections.is_empty(),
-                tilt: deviation.tilt.0,
-                out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
-                rounding: *rounding,
-                nominal: HoleGeometry {
-                    entry: nominal.entry,
-                    axis: nominal.axis,
-                    diameter: nominal.diameter,
-                    depth: nominal.depth,
-                },
-                actual: HoleGeometry {
-                    entry: deviation.entry.coords.into(),
-                    axis: drilled.axis.into_inner().into(),
-                    diameter: drilled.diameter,
-                    depth: nominal.depth + deviation.depth_error,
-                },
-                from: origin(drilled.backtrace.block, drilled.tool, locate),
-                calls: calls(&drilled.backtrace.calls, locate),
-                objections,
-                neighbours: None,
-                drilled_index: pair.actual,
-            }
-        })
-        .collect();
+    findings.sort_by_key(|one| one.subject == Subject::Motion);
+    let fails = findings.iter().any(is_error);
+    let holes = hole_verdicts(comparison, rounding, error_codes_by_hole(comparison, &findings), locate);
     let extra = |index: &usize| ExtraHole {
         hole: comparison.actual[*index].hole(locate),
         why: super::checks::extra::explain(comparison, *index),
         drilled_index: *index,
+    };
+    let as_data = |one: &HoleFinding| {
+        let hole = if let Subject::Nominal(index) = one.subject { Some(comparison.id(index)) } else { None };
+        finding_of(&one.finding, hole, one.subject == Subject::Motion, locate)
     };
     let worst = (0..holes.len())
         .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
@@ -236,19 +200,70 @@ pub(super) fn verdict(
         rounding: rounding.position_deviations.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
         extra: comparison.extra.iter().map(extra).collect(),
-        findings: findings
-            .iter()
-            .map(|one| {
-                let hole =
-                    if let About::Nominal(index) = one.about { Some(comparison.id(index)) } else { None };
-                finding_of(&one.finding, hole, one.about == About::Motion, locate)
-            })
-            .collect(),
+        findings: findings.iter().map(as_data).collect(),
         neighbours: None,
         not_checked: Vec::new(),
         holes,
         diagnostics: limit_per_kind(findings.into_iter().filter(|one| !one.is_folded).map(|one| one.finding)),
     }
+}
+
+fn is_error(one: &HoleFinding) -> bool {
+    Severity::Error <= one.finding.severity
+}
+
+/// Returns the codes of the errors of each nominal hole.
+fn error_codes_by_hole(comparison: &Comparison<'_>, findings: &[HoleFinding]) -> Vec<Vec<&'static str>> {
+    let mut codes_by_hole = vec![Vec::new(); comparison.nominal.len()];
+    for one in findings.iter().filter(|one| is_error(one)) {
+        if let Subject::Nominal(nominal) = one.subject {
+            codes_by_hole[nominal].push(one.finding.kind.code);
+        }
+    }
+    codes_by_hole
+}
+
+/// Returns the verdicts on the holes that were drilled, in the order of their pairs.
+fn hole_verdicts(
+    comparison: &Comparison<'_>,
+    rounding: &RoundingDeviation<'_>,
+    mut codes_by_hole: Vec<Vec<&'static str>>,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Vec<HoleVerdict> {
+    let pairs = comparison.matched().zip(&rounding.position_deviations);
+    let verdict = |((pair, nominal, drilled), rounding): ((&HolePair, &Hole, &DrilledHole), &f64)| {
+        let (deviation, phi) = (&pair.deviation, pair.deviation.zone_diameter());
+        let error_codes = std::mem::take(&mut codes_by_hole[pair.nominal]);
+        HoleVerdict {
+            id: comparison.id(pair.nominal).to_owned(),
+            position_deviation: phi,
+            at_entry: deviation.at_entry,
+            at_bottom: deviation.at_bottom,
+            depth_error: deviation.depth_error,
+            ok: error_codes.is_empty(),
+            tilt: deviation.tilt.0,
+            out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
+            rounding: *rounding,
+            nominal: HoleGeometry {
+                entry: nominal.entry,
+                axis: nominal.axis,
+                diameter: nominal.diameter,
+                depth: nominal.depth,
+            },
+            actual: HoleGeometry {
+                entry: deviation.entry.coords.into(),
+                axis: drilled.axis.into_inner().into(),
+                diameter: drilled.diameter,
+                depth: nominal.depth + deviation.depth_error,
+            },
+            from: origin(drilled.backtrace.block, drilled.tool, locate),
+            calls: calls(&drilled.backtrace.calls, locate),
+            error_codes,
+            neighbours: None,
+            drilled_index: pair.actual,
+        }
+    };
+    pairs.map(verdict).collect()
 }
 
 /// Returns a finding as data, about the nominal hole of this id.
@@ -267,7 +282,7 @@ pub(super) fn finding_of(
         notes: finding.notes.clone(),
         from_motion,
         hole: hole.map(str::to_owned),
-        from: finding.backtrace.as_ref().map(|place| origin(place.block, None, locate)),
+        from: finding.backtrace.as_ref().map(|backtrace| origin(backtrace.block, None, locate)),
         sites: finding.sites.iter().map(Into::into).collect(),
     }
 }

@@ -19,13 +19,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let above = (bottom - top).dot(&hole.axis);
         let aimed = tree.nearest(&top).filter(|(_, off)| *off <= comparison.tolerances.position);
         if let (Some((nearest, _)), true) = (aimed, 0.0 < above) {
-            explained.extend([About::Nominal(comparison.missing[nearest]), About::Extra(*extra)]);
+            explained.extend([Subject::Nominal(comparison.missing[nearest]), Subject::Extra(*extra)]);
             (low, high) = (low.min(above), high.max(above));
             feeds.push(hole);
         }
     }
     let Some(first) = feeds.first() else { return };
-    let folded = findings.fold(&[&HOLE_MISSING, &HOLE_EXTRA], |about| explained.contains(&about));
+    let folded = findings.fold(&[&HOLE_MISSING, &HOLE_EXTRA], |subject| explained.contains(&subject));
     let count = if feeds.len() == 1 { "1 feed" } else { &format!("{} feeds", feeds.len()) };
     let message = format!(
         "{count} along the tool axis ended {} mm above the surface, over missing holes",
@@ -34,5 +34,5 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let finding = Diagnostic::new(&HOLE_IN_AIR, message).help(
         "check the zero along the tool axis (the work offset), the tool length and its offset, and the depth",
     );
-    findings.put_first([summary(finding, folded, &first.backtrace)]);
+    findings.put_first([finish_group_finding(finding, folded, &first.backtrace)]);
 }

@@ -9,7 +9,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     for motion in &inspection.extraction.close_motions {
         let finding = finding(motion, &inspection.reference.process_limits);
         let finding = with_repeat_note(finding, motion.count).with_backtrace(motion.backtrace.clone());
-        findings.add(About::Motion, finding);
+        findings.add(Subject::Motion, finding);
     }
 }
 

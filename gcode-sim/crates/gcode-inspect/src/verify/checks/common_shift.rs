@@ -28,10 +28,10 @@ const PATTERN_KINDS: [&FindingKind; 6] =
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
     // The checks on rows explain a fault of the whole pattern; its rows may meet, which is no repetition.
-    let (mut reported, repeated) = match findings.position(&PATTERN_KINDS) {
+    let (mut reported, repeated) = match findings.first_of_kind(&PATTERN_KINDS) {
         Some(explanation) => {
             let folded = fold_explained(inspection, findings) + fold_tilted(comparison, findings);
-            findings.0[explanation].finding.notes.extend(folded_note(folded));
+            findings.add_notes(explanation, folded_note(folded));
             (Vec::new(), None)
         }
         None => {
@@ -44,13 +44,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     };
     reported.extend(report_common_depths(comparison, findings));
     findings.put_first(reported);
-    repeated.into_iter().for_each(|finding| findings.add(About::Whole, finding));
+    repeated.into_iter().for_each(|finding| findings.add(Subject::Whole, finding));
 }
 
 /// Folds the findings about positions that follow from the fault of the pattern; returns their number.
 fn fold_explained(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) -> usize {
     if let Some(image) = &inspection.mirror_image {
-        return findings.fold(&POSITION_KINDS, |about| image.in_place.contains(&about));
+        return findings.fold(&POSITION_KINDS, |subject| image.in_place.contains(&subject));
     }
     match explained_by_rows::explains(inspection) {
         Some(explains) => findings.fold(&POSITION_KINDS, explains),
@@ -68,14 +68,14 @@ fn fold_tilted(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> usiz
         let sinks = libm::hypot(bottom.y, bottom.z) * (1.0 - pair.deviation.tilt.cos());
         (pair.deviation.depth_error - sinks).abs() <= comparison.tolerances.depth
     });
-    let tilted: BTreeSet<About> = tilted.map(|(pair, ..)| About::Nominal(pair.nominal)).collect();
-    findings.fold(&[&HOLE_DEPTH], |about| tilted.contains(&about))
+    let tilted: BTreeSet<Subject> = tilted.map(|(pair, ..)| Subject::Nominal(pair.nominal)).collect();
+    findings.fold(&[&HOLE_DEPTH], |subject| tilted.contains(&subject))
 }
 
 fn report_common_depths(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Vec<Diagnostic> {
-    let shown = findings.0.iter().filter(|one| !one.is_folded && one.finding.kind == &HOLE_DEPTH);
-    let shown: BTreeSet<About> = shown.map(|one| one.about).collect();
-    let wrong = comparison.pairs.iter().filter(|pair| shown.contains(&About::Nominal(pair.nominal)));
+    let shown = findings.iter().filter(|one| !one.is_folded && one.finding.kind == &HOLE_DEPTH);
+    let shown: BTreeSet<Subject> = shown.map(|one| one.subject).collect();
+    let wrong = comparison.pairs.iter().filter(|pair| shown.contains(&Subject::Nominal(pair.nominal)));
     let error = |pair: &HolePair| pair.deviation.depth_error;
     let report = |group: Vec<&HolePair>| {
         let (nominal, actual) = group.iter().map(|pair| (pair.nominal, pair.actual)).unzip();
@@ -92,7 +92,7 @@ fn report_common_depths(comparison: &Comparison<'_>, findings: &mut HoleFindings
             .help("check the programmed depth, the zero along the tool axis, the tool length and its offset");
         let nominal = comparison.nominal[group[0].nominal].depth;
         finding.notes.extend(depth::mistaken_factor(nominal, nominal + first).map(str::to_owned));
-        summary(finding, folded, &comparison.actual[group[0].actual].backtrace)
+        finish_group_finding(finding, folded, &comparison.actual[group[0].actual].backtrace)
     };
     groups(wrong, |a, b| (error(a) - error(b)).abs() < SAME_DEPTH).into_iter().map(report).collect()
 }
@@ -124,7 +124,7 @@ fn report_common_shifts(
             }
             None => shift_finding(&holes, &group[0].offset, comparison.pattern),
         };
-        summary(finding, folded, &comparison.actual[group[0].actual].backtrace)
+        finish_group_finding(finding, folded, &comparison.actual[group[0].actual].backtrace)
     };
     groups(&wrong, HoleDisplacement::is_same_error).into_iter().map(report).collect()
 }
@@ -143,7 +143,7 @@ fn report_repeated_set(comparison: &Comparison<'_>, findings: &mut HoleFindings)
     let finding = Diagnostic::new(&HOLE_TWICE, format!("{holes}: drilled a second time")).help(
         "remove the second call, or the second iteration of the loop: the same tool drills these holes twice",
     );
-    Some(summary(finding, folded, &first.backtrace))
+    Some(finish_group_finding(finding, folded, &first.backtrace))
 }
 
 fn shift_finding(holes: &str, offset: &Vector3<f64>, pattern: Option<&Pattern>) -> Diagnostic {
@@ -168,9 +168,9 @@ fn fold_group(
     nominal: Vec<usize>,
     actual: Vec<usize>,
 ) -> (String, usize) {
-    let subjects = nominal.iter().map(|hole| About::Nominal(*hole));
-    let subjects: BTreeSet<About> = subjects.chain(actual.into_iter().map(About::Extra)).collect();
-    let folded = findings.fold(kinds, |about| subjects.contains(&about));
+    let subjects = nominal.iter().map(|hole| Subject::Nominal(*hole));
+    let subjects: BTreeSet<Subject> = subjects.chain(actual.into_iter().map(Subject::Extra)).collect();
+    let folded = findings.fold(kinds, |subject| subjects.contains(&subject));
     (describe_set(comparison, &nominal), folded)
 }
 

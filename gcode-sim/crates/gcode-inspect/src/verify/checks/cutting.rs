@@ -26,7 +26,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     }
     for (finding, count) in reported {
         let note = (count != 1).then(|| format!("in {count} cuts; this is the first"));
-        findings.add(About::Motion, note.into_iter().fold(finding, Diagnostic::note));
+        findings.add(Subject::Motion, note.into_iter().fold(finding, Diagnostic::note));
     }
 }
 

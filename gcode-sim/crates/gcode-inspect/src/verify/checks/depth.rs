@@ -22,7 +22,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             .help("check the programmed depth, the tool length and its offset")
             .with_backtrace(drilled.backtrace.clone());
         let note = mistaken_factor(nominal.depth, depth);
-        findings.add(About::Nominal(pair.nominal), note.into_iter().fold(finding, Diagnostic::note));
+        findings.add(Subject::Nominal(pair.nominal), note.into_iter().fold(finding, Diagnostic::note));
     }
 }
 

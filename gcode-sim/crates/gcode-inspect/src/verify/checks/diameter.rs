@@ -15,6 +15,6 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let finding = Diagnostic::new(&HOLE_DIAMETER, message)
             .help("finish the hole with the right tool, or correct the tool table")
             .with_backtrace(drilled.backtrace.clone());
-        findings.add(About::Nominal(pair.nominal), finding);
+        findings.add(Subject::Nominal(pair.nominal), finding);
     }
 }

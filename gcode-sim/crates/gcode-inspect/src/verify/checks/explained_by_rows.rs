@@ -7,13 +7,13 @@ use crate::verify::rows::{PatternRow, full_azimuth};
 const ROUNDING_ALLOWANCE: f64 = 0.03;
 
 /// Returns a predicate that is true for subjects whose position follows from the rows; `None` without rows.
-pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn(About) -> bool + 'c> {
+pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn(Subject) -> bool + 'c> {
     let comparison = &inspection.comparison;
     let rows = inspection.rows.as_ref()?;
     let pattern = rows.pattern;
     let scale = rows.typical_gap.0 / rows.nominal_gap().0;
     let spacing = rows.spacing.map_or(pattern.pitch, |(spacing, _)| spacing);
-    let places: Vec<Option<(Deg, f64)>> = (0..comparison.actual.len())
+    let positions: Vec<Option<(Deg, f64)>> = (0..comparison.actual.len())
         .map(|index| comparison.crossing(index).map(|at| (full_azimuth(&at), at.x)))
         .collect();
     let within = comparison.tolerances.position.max(ROUNDING_ALLOWANCE);
@@ -28,11 +28,11 @@ pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn
             (steps - steps.round()).abs() * spacing <= within
         })
     };
-    Some(move |about: About| match about {
-        About::Extra(actual) => places[actual].is_some_and(is_on_grid),
-        About::Nominal(nominal) => {
+    Some(move |subject: Subject| match subject {
+        Subject::Extra(actual) => positions[actual].is_some_and(is_on_grid),
+        Subject::Nominal(nominal) => {
             if let Some(actual) = actual_of.get(&nominal) {
-                return places[*actual].is_some_and(is_on_grid);
+                return positions[*actual].is_some_and(is_on_grid);
             }
             // The row in place of this one has its hole there, or ends before it.
             let entry = Point3::from(comparison.nominal[nominal].entry);
@@ -43,9 +43,9 @@ pub(super) fn explains<'c>(inspection: &'c HoleInspection<'c>) -> Option<impl Fn
             };
             let x = row.start + ((entry.x - entry.x % pattern.pitch) / pattern.pitch).round() * spacing;
             let is_there =
-                |(at, place): &(Deg, f64)| is_near(row, *at, tolerance) && (place - x).abs() <= within;
-            places.iter().flatten().any(is_there) || pattern.length < x + within
+                |(angle, along): &(Deg, f64)| is_near(row, *angle, tolerance) && (along - x).abs() <= within;
+            positions.iter().flatten().any(is_there) || pattern.length < x + within
         }
-        About::Whole | About::Motion => true,
+        Subject::Whole | Subject::Motion => true,
     })
 }

@@ -12,7 +12,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let finding = Diagnostic::new(kind, explain(comparison, *index))
             .help(help)
             .with_backtrace(comparison.actual[*index].backtrace.clone());
-        findings.add(About::Extra(*index), finding);
+        findings.add(Subject::Extra(*index), finding);
     }
 }
 

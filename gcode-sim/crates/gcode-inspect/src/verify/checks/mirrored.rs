@@ -12,7 +12,7 @@ pub(in crate::verify) struct MirrorImage {
     /// Number of holes in position after mirroring.
     agreeing: usize,
     /// The nominal and the drilled holes among these.
-    pub(super) in_place: BTreeSet<About>,
+    pub(super) in_place: BTreeSet<Subject>,
 }
 
 impl MirrorImage {
@@ -33,7 +33,8 @@ impl MirrorImage {
                 return None;
             }
             let pairs = compared.pairs.iter().filter(|pair| compared.is_in_place(pair));
-            let in_place = pairs.flat_map(|pair| [About::Nominal(pair.nominal), About::Extra(pair.actual)]);
+            let in_place =
+                pairs.flat_map(|pair| [Subject::Nominal(pair.nominal), Subject::Extra(pair.actual)]);
             Some(Self { axis, agreeing, in_place: in_place.collect() })
         })
     }
@@ -56,8 +57,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         false => Diagnostic::new(&MIRROR_IMAGE, format!("{fault}; no rotation of the table has this effect"))
             .help("check for a mirror image (G51.1) left in force, or a wrong sign of a coordinate"),
     };
-    let place = comparison.actual[comparison.extra[0]].backtrace.clone();
-    findings.add(About::Whole, finding.with_backtrace(place));
+    let backtrace = comparison.actual[comparison.extra[0]].backtrace.clone();
+    findings.add(Subject::Whole, finding.with_backtrace(backtrace));
 }
 
 /// Returns true if the opposite direction of the table mirrors the part so: the table rotates between the holes, about

@@ -26,6 +26,6 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             }
             None => finding.help("add the hole to the program"),
         };
-        findings.add(About::Nominal(*nominal), finding);
+        findings.add(Subject::Nominal(*nominal), finding);
     }
 }

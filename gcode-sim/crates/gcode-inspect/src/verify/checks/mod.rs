@@ -29,7 +29,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::hole_finding::{About, HoleFindings, folded_note, locate_at_call, summary};
+use super::hole_finding::{HoleFindings, Subject, finish_group_finding, folded_note, locate_at_call};
 use super::rows::PatternRows;
 use super::{Comparison, Deviation, HoleInspection, HolePair, format_range};
 use crate::holes::DrilledHole;
@@ -41,30 +41,30 @@ use gcode_part::{Hole, Pattern, PointTree, ProcessLimits, Surface};
 /// A check adds findings; it may fold earlier ones.
 type Check = fn(&HoleInspection<'_>, &mut HoleFindings);
 
-/// The checks in order: each sees the findings of those above it.
+/// The checks in order, each with the codes of its findings; each sees the findings of those above it.
 pub(super) const ALL: &[Check] = &[
-    mirrored::check,
-    row_group::check,
-    row_angle::check,
-    row_seam::check,
-    row_pitch::check,
-    missing::check,
-    extra::check,
-    position::check,
-    cut_outside::check,
-    depth::check,
-    diameter::check,
-    tools::check,
-    overlap::check,
-    row_short::check,
-    row_missing::check,
-    air::check,
-    through::check,
-    tool_short::check,
-    stopped::check,
-    common_shift::check,
-    reach::check,
-    signs::check,
-    clearance::check,
-    cutting::check,
+    mirrored::check,     // rotary-sign, mirror-image
+    row_group::check,    // row-group
+    row_angle::check,    // row-angle
+    row_seam::check,     // row-seam
+    row_pitch::check,    // row-pitch
+    missing::check,      // hole-missing
+    extra::check,        // hole-extra, hole-twice
+    position::check,     // hole-position, hole-tilted
+    cut_outside::check,  // hole-cut-aside
+    depth::check,        // hole-depth
+    diameter::check,     // hole-diameter
+    tools::check,        // hole-tools
+    overlap::check,      // hole-overlap
+    row_short::check,    // row-short
+    row_missing::check,  // row-missing
+    air::check,          // hole-in-air
+    through::check,      // hole-through
+    tool_short::check,   // tool-short
+    stopped::check,      // hole-missing
+    common_shift::check, // holes-alike, hole-twice
+    reach::check,        // length-offset
+    signs::check,        // axis-signs
+    clearance::check,    // turns-near-part, rapid-near-part
+    cutting::check,      // drill-speed, drill-feed, drill-peck, spindle-reversed, job-tool, length-offset
 ];

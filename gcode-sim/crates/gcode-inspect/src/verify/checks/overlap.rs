@@ -8,6 +8,6 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     for overlap in overlaps(nominal) {
         let finding = Diagnostic::new(&HOLE_OVERLAP, overlap.sentence(nominal))
             .help("check radius, azimuth and depth of both holes, unless the drawing specifies this");
-        findings.add(About::Nominal(overlap.holes[0]), finding);
+        findings.add(Subject::Nominal(overlap.holes[0]), finding);
     }
 }

@@ -6,7 +6,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let comparison = &inspection.comparison;
     for (pair, nominal, drilled) in comparison.matched().filter(|(pair, ..)| !comparison.is_in_place(pair)) {
         let finding = finding(comparison, pair, nominal).with_backtrace(drilled.backtrace.clone());
-        findings.add(About::Nominal(pair.nominal), finding);
+        findings.add(Subject::Nominal(pair.nominal), finding);
     }
 }
 
@@ -20,8 +20,10 @@ fn finding(comparison: &Comparison<'_>, pair: &HolePair, nominal: &Hole) -> Diag
         deviation.at_bottom
     );
     // Over the hole's depth the tilt alone exceeds what the rest of the zone allows.
-    let lean = deviation.tilt.tan() * nominal.depth;
-    if lean > deviation.at_entry.min(deviation.at_bottom) && lean > comparison.tolerances.position / 4.0 {
+    let tilt_offset = deviation.tilt.tan() * nominal.depth;
+    if tilt_offset > deviation.at_entry.min(deviation.at_bottom)
+        && tilt_offset > comparison.tolerances.position / 4.0
+    {
         let message = format!("hole {id} is tilted by {:.3}°: {limits}", deviation.tilt.0);
         return Diagnostic::new(&HOLE_TILTED, message)
             .help("check the head angle, and that the feed runs along the hole");

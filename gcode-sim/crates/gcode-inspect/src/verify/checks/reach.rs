@@ -21,16 +21,16 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     };
     // A tool with the right offset may have missed a hole, or belong to a finding about many holes.
     let are_all_wrong = comparison.pairs.iter().all(|pair| is_wrong(pair.actual));
-    findings.fold(&DEPTH_KINDS, |about| match about {
-        About::Extra(extra) => is_wrong(extra),
-        About::Nominal(nominal) => {
+    findings.fold(&DEPTH_KINDS, |subject| match subject {
+        Subject::Extra(extra) => is_wrong(extra),
+        Subject::Nominal(nominal) => {
             let pair = comparison.pairs.iter().find(|pair| pair.nominal == nominal);
             pair.map_or(are_all_wrong, |pair| is_wrong(pair.actual))
         }
-        About::Whole | About::Motion => are_all_wrong,
+        Subject::Whole | Subject::Motion => are_all_wrong,
     });
     // The findings folded by a finding that is folded here are included.
-    let folded = findings.0.iter().filter(|one| one.is_folded).count();
+    let folded = findings.iter().filter(|one| one.is_folded).count();
     let report = |mismatch| finding(mismatch, &reference.process_limits, machine);
     let mut reported: Vec<Diagnostic> = wrong.iter().map(|mismatch| report(mismatch)).collect();
     reported[0].notes.extend(folded_note(folded));

@@ -47,7 +47,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let causes = describe_causes(pattern, diameter / pattern.diameter, true);
         std::iter::once(fits).chain(causes).collect()
     };
-    findings.add(About::Whole, finding);
+    findings.add(Subject::Whole, finding);
 }
 
 /// Returns a note on the pattern that closes with the actual number of rows, if these are evenly spaced all round.

@@ -9,7 +9,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let comparison = &inspection.comparison;
     let Some(rows) = inspection.rows.as_ref().filter(|_| !comparison.missing.is_empty()) else { return };
     if let Some((finding, hole)) = shifted_group(rows).or_else(|| missing_group(rows, comparison)) {
-        findings.add(About::Whole, locate_at_call(finding, &comparison.actual[hole].backtrace));
+        findings.add(Subject::Whole, locate_at_call(finding, &comparison.actual[hole].backtrace));
     }
 }
 

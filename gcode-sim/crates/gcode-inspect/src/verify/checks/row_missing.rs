@@ -7,7 +7,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let Some(pattern) = comparison.pattern else { return };
     let Some(last) = comparison.pairs.last() else { return };
     // These findings explain the missing rows.
-    if findings.position(&[&ROW_GROUP, &ROW_ANGLE, &ROW_SHORT]).is_some() {
+    if findings.first_of_kind(&[&ROW_GROUP, &ROW_ANGLE, &ROW_SHORT]).is_some() {
         return;
     }
     let row_of = |nominal: usize| pattern.row_of(&Point3::from(comparison.nominal[nominal].entry));
@@ -15,8 +15,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let (Some(&first), Some(&to)) = (rows.first(), rows.last()) else { return };
     let is_gone = |nominal: usize| rows.contains(&row_of(nominal));
     let count = comparison.missing.iter().filter(|nominal| is_gone(**nominal)).count();
-    let folded =
-        findings.fold(&[&HOLE_MISSING], |about| matches!(about, About::Nominal(nominal) if is_gone(nominal)));
+    let folded = findings
+        .fold(&[&HOLE_MISSING], |subject| matches!(subject, Subject::Nominal(nominal) if is_gone(nominal)));
     let at = |row: usize| 360.0 * row as f64 / f64::from(pattern.rows);
     let message = match rows.as_slice() {
         [one] => format!("row {one} is missing: {count} holes at {:.3}°", at(*one)),
@@ -40,7 +40,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         false => "check for a row that is skipped or drilled at another angle".to_owned(),
     };
     let finding = Diagnostic::new(&ROW_MISSING, message).help(help);
-    findings.put_first([summary(finding, folded, &comparison.actual[last.actual].backtrace)]);
+    findings.put_first([finish_group_finding(finding, folded, &comparison.actual[last.actual].backtrace)]);
 }
 
 /// Returns the rows of which no hole is drilled, and near which no extra hole is.

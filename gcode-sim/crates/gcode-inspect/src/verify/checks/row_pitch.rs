@@ -13,7 +13,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let pattern = rows.pattern;
     // The finding on the angle names the pitch of another number of rows.
     let follows = (spacing - pattern.closing_pitch(rows.rows.len() as u32)).abs() < PITCH_TOLERANCE;
-    if follows && findings.position(&[&ROW_ANGLE]).is_some() {
+    if follows && findings.first_of_kind(&[&ROW_ANGLE]).is_some() {
         return;
     }
     let pitches = (pattern.length / pattern.pitch).floor();
@@ -37,5 +37,5 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         )
     }));
     finding.notes.extend(describe_causes(pattern, spacing / pattern.pitch, false));
-    findings.add(About::Whole, finding);
+    findings.add(Subject::Whole, finding);
 }

@@ -33,6 +33,6 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         "make the angle from row to row divide 360: choose a whole number of rows, then compute the angle, \
          then the pitch",
     );
-    let place = &inspection.comparison.actual[before.first].backtrace;
-    findings.add(About::Whole, locate_at_call(finding, place));
+    let backtrace = &inspection.comparison.actual[before.first].backtrace;
+    findings.add(Subject::Whole, locate_at_call(finding, backtrace));
 }

@@ -30,5 +30,5 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         Diagnostic::new(&ROW_SHORT, message).help("check the length in the call, and its decimal point");
     // A short pattern looks like a missing group.
     findings.remove(&[&ROW_GROUP]);
-    findings.put_first([summary(finding, folded, &comparison.actual[last.actual].backtrace)]);
+    findings.put_first([finish_group_finding(finding, folded, &comparison.actual[last.actual].backtrace)]);
 }

@@ -8,7 +8,7 @@ const MIN_ALIGNMENT: f64 = 0.5;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     if let Some(finding) = finding(inspection.reference, inspection.machine) {
-        findings.add(About::Motion, finding);
+        findings.add(Subject::Motion, finding);
     }
 }
 

@@ -15,9 +15,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     // Rows that were not reached look like a seam or a missing group.
     findings.remove(&ROW_KINDS);
     if let [one] = comparison.missing[..] {
-        for one in findings.0.iter_mut().filter(|finding| finding.about == About::Nominal(one)) {
-            one.finding.help = Some("find out first why the run stopped before its end".to_owned());
-        }
+        findings.set_help(Subject::Nominal(one), "find out first why the run stopped before its end");
         return;
     }
     findings.fold(&[&HOLE_MISSING], |_| true);

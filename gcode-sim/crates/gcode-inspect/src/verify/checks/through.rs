@@ -31,13 +31,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let mut summary =
             finding(&format!("{count} of {all} holes go through; the first, {id}, goes"), *first);
         summary.notes.extend(folded_note(count));
-        findings.add(About::Whole, summary);
+        findings.add(Subject::Whole, summary);
     }
-    let before = findings.0.len();
     for one in through {
-        findings.add(About::Nominal(one.0), finding(&format!("hole {} goes", comparison.id(one.0)), one));
+        let finding = finding(&format!("hole {} goes", comparison.id(one.0)), one);
+        let subject = Subject::Nominal(one.0);
+        if is_summary { findings.add_folded(subject, finding) } else { findings.add(subject, finding) }
     }
-    findings.0[before..].iter_mut().for_each(|one| one.is_folded = is_summary);
 }
 
 /// Returns the distance from the entry along the axis to the far side; 0 if the axis only touches the part.

@@ -43,6 +43,6 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                  otherwise use a longer tool",
             )
             .with_backtrace(deepest.backtrace.clone());
-        findings.add(About::Nominal(deepest.nominal), finding);
+        findings.add(Subject::Nominal(deepest.nominal), finding);
     }
 }

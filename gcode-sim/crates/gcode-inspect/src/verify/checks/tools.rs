@@ -36,7 +36,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             let finding = Diagnostic::new(&HOLE_TOOLS, message)
                 .help("check for a missing call")
                 .with_backtrace(drilled.backtrace.clone());
-            findings.add(About::Nominal(nominal), finding);
+            findings.add(Subject::Nominal(nominal), finding);
         }
     }
 }

@@ -108,7 +108,7 @@ impl WorstStretch {
         let pairs = trace.samples.windows(2).filter(is_near);
         let blocks = trace.sum_by_block(pairs, |from, to| [off(to) - off(from), 0.0]);
         let most = blocks.iter().map(|(_, [off, _])| off.abs()).fold(0.0, f64::max);
-        blocks.iter().find(|(_, [off, _])| 0.9 * most <= off.abs()).map(|(place, _)| *place)
+        blocks.iter().find(|(_, [off, _])| 0.9 * most <= off.abs()).map(|(backtrace, _)| *backtrace)
     }
 
     /// Returns the block of the stretch that alone is most too fast or too slow.

@@ -196,11 +196,11 @@ impl FluteSpacing {
         let next = self.flutes.iter().skip(1).map(|(_, angle)| angle.0);
         let ends = next.chain(self.flutes.first().map(|(_, angle)| angle.0 + 360.0));
         let gaps = self.flutes.iter().map(|(_, angle)| angle.0).zip(ends);
-        let places = gaps.flat_map(|(from, to)| {
+        let angles = gaps.flat_map(|(from, to)| {
             let pieces = ((to - from) / pitch).round().max(1.0);
             (1..pieces as u32).map(move |n| Deg(from + (to - from) * f64::from(n) / pieces))
         });
-        places.map(|angle| Point3::new(x, radius * angle.cos(), -radius * angle.sin())).collect()
+        angles.map(|angle| Point3::new(x, radius * angle.cos(), -radius * angle.sin())).collect()
     }
 
     fn find_nearest(&self, passes: &[GrindingPass]) -> Option<NearestApproach> {

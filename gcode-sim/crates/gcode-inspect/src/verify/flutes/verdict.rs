@@ -81,7 +81,7 @@ pub struct FluteVerdict {
     /// Least permitted distance of neighbours: twice the chord error.
     #[serde(skip)]
     pub min_nearest: f64,
-    /// The findings with their places, for printing.
+    /// The findings with their locations, for printing.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
 }

@@ -31,11 +31,11 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         }
     };
     let pass = &inspection.actual.passes[worst.pass];
-    let place = worst.helix_backtrace(&pass.trace, inspection.nominal.gauge).unwrap_or(&pass.backtrace);
+    let backtrace = worst.helix_backtrace(&pass.trace, inspection.nominal.gauge).unwrap_or(&pass.backtrace);
     wrong.sort_by(|one, other| other.error.total_cmp(&one.error));
     let sites = wrong.into_iter().map(|worst| Site::new(Some(worst.pass), worst.point));
     let finding = note.into_iter().fold(finding, Diagnostic::note);
-    findings.push(finding.with_backtrace(place.clone()).with_sites(sites));
+    findings.push(finding.with_backtrace(backtrace.clone()).with_sites(sites));
 }
 
 /// Returns the deviation that all flutes share, and the help.

@@ -25,8 +25,9 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     );
     let help = "check F in this block, and that the code it is written for is in force: G93 (F moves a \
                 minute) or G94";
-    let place = worst.speed_backtrace(&pass.trace).unwrap_or(&pass.backtrace);
-    let finding = Diagnostic::new(&FLUTE_SPEED, message).note(note).help(help).with_backtrace(place.clone());
+    let backtrace = worst.speed_backtrace(&pass.trace).unwrap_or(&pass.backtrace);
+    let finding =
+        Diagnostic::new(&FLUTE_SPEED, message).note(note).help(help).with_backtrace(backtrace.clone());
     findings.push(finding.with_sites(wrong.iter().map(|worst| Site::new(Some(worst.pass), worst.point))));
 }
 

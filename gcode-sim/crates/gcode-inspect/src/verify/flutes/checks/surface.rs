@@ -16,8 +16,8 @@ pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnost
     wrong.sort_by(|a, b| b.1.deviation.abs().total_cmp(&a.1.deviation.abs()));
     let Some((pass, worst)) = wrong.first().copied() else { return };
     let sites = wrong.iter().map(|(pass, sample)| Site::new(Some(*pass), sample.point));
-    let place = passes[pass].trace.backtrace(worst).clone();
-    findings.push(surface_finding(inspection, pass, worst).with_backtrace(place).with_sites(sites));
+    let backtrace = passes[pass].trace.backtrace(worst).clone();
+    findings.push(surface_finding(inspection, pass, worst).with_backtrace(backtrace).with_sites(sites));
 }
 
 fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic {

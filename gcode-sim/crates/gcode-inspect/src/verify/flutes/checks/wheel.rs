@@ -41,10 +41,10 @@ fn report_worst<'g>(
     let wrong: Vec<_> = values.filter(|(actual, ..)| severity(*actual, nominal).is_some()).collect();
     // The first of those that differ by rounding only.
     let most = wrong.iter().map(|(actual, ..)| factor(*actual)).fold(0.0, f64::max);
-    let (actual, place, _) = *wrong.iter().find(|(actual, ..)| most <= factor(*actual) * (1.0 + 1e-9))?;
+    let (actual, backtrace, _) = *wrong.iter().find(|(actual, ..)| most <= factor(*actual) * (1.0 + 1e-9))?;
     let finding = Diagnostic::new(kind, message(round_thousandth(actual)))
         .with_severity(severity(actual, nominal)?)
-        .with_backtrace(place.clone())
+        .with_backtrace(backtrace.clone())
         .with_sites(wrong.iter().map(|(.., site)| *site));
     let more = wrong.len() - 1;
     let note = (0 < more).then(|| format!("the same or a smaller difference occurs {more} more times"));
