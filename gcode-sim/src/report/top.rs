@@ -212,7 +212,7 @@ mod tests {
             axis: *axis,
             depth: 10.0,
             diameter: None,
-            from: None,
+            ..Hole::default()
         };
         axes.iter().map(hole).collect()
     }

@@ -3,6 +3,7 @@ use std::fmt::Write;
 
 use super::figures::{count, rounded, signed, signed_to};
 use gcode_inspect::verify::{Answer, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict};
+use gcode_part::exceeds;
 
 /// Extent and order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -174,7 +175,7 @@ fn summary(text: &mut String, verdict: &Verdict) {
             "rounding to the control's least increment alone can cause Φ{rounding:.4}: {share:.1} % of the \
              tolerance zone"
         );
-        if tolerance < rounding {
+        if exceeds(rounding, tolerance) {
             let _ = writeln!(
                 text,
                 "WARNING  this control's least increment is too coarse for Φ{tolerance}: use a finer \

@@ -35,12 +35,14 @@
 
 mod clusters;
 mod distance;
+mod feature;
 mod flutes;
 pub mod gauge;
 mod hole;
 mod honeycomb;
 mod indicator;
 pub mod job;
+mod limits;
 mod nominal;
 mod overlap;
 mod pattern;
@@ -50,14 +52,17 @@ mod profile;
 mod read;
 pub mod reader;
 mod reference;
+mod spacing;
 mod surface;
 mod touch_uncertainty;
 
 pub use clusters::Clusters;
 pub use distance::NearestPoint;
+pub use feature::{DepthTo, Feature, FeatureKind};
 pub use flutes::Flutes;
 pub use hole::{Hole, HoleList, Origin, Unit};
 pub use indicator::tilted_ellipsoid;
+pub use limits::{NOISE, exceeds};
 pub use nominal::{NominalPart, ProbedPart};
 pub use overlap::overlaps;
 pub use pattern::{Pattern, azimuth};

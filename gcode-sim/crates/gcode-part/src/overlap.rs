@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     fn hole(entry: [f64; 3], axis: [f64; 3], depth: f64, diameter: f64) -> Hole {
-        Hole { id: None, entry, axis, depth, diameter: Some(diameter), from: None }
+        Hole { id: None, entry, axis, depth, diameter: Some(diameter), ..Hole::default() }
     }
 
     #[test]

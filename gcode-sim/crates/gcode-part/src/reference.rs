@@ -2,6 +2,7 @@
 use super::hole::{Hole, HoleList, Unit};
 use super::pattern::Pattern;
 use super::read;
+use super::spacing::hole_spacing;
 use super::surface::Surface;
 use crate::job::{Clamp, Rotary};
 use crate::reader::FileError;
@@ -29,14 +30,9 @@ impl Reference {
     /// # Errors
     /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
-        Ok(Self {
-            holes: read::check_all(list.holes)?,
-            position: None,
-            depth: None,
-            surface: None,
-            process_limits: ProcessLimits::default(),
-            pattern: None,
-        })
+        let holes = read::check_all(list.holes)?;
+        let process_limits = ProcessLimits { hole_spacing: hole_spacing(&holes), ..ProcessLimits::default() };
+        Ok(Self { holes, position: None, depth: None, surface: None, process_limits, pattern: None })
     }
 
     /// Returns the hole list that `reference` writes.
@@ -60,6 +56,8 @@ pub struct ProcessLimits {
     pub clamp: Option<Clamp>,
     /// Limits of each tool.
     pub tools: Vec<ToolProcess>,
+    /// Least distance of two nominal axes, mm; `None` above 1 mm.
+    pub hole_spacing: Option<f64>,
 }
 
 /// Limits of one tool.
