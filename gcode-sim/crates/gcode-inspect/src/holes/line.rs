@@ -1,9 +1,9 @@
 //! Line of a cutting feed on the part while the tool stays on it: strokes, pecks and the retract.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::DrillPass;
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
+use super::{DrillPass, PassCut};
 use gcode_lang::motion::{Backtrace, Position};
 use gcode_lang::units::MmPerMin;
 
@@ -40,6 +40,8 @@ pub(super) struct CuttingLine {
     pub length_excess: Option<f64>,
     /// Slowest and fastest feed that cuts.
     feed_range: Option<[MmPerMin; 2]>,
+    /// Last feed that cuts.
+    last_feed: Option<MmPerMin>,
     /// Depth at which the part begins; `None` if its surface is unknown.
     pub surface_depth: Option<f64>,
     /// Finished strokes.
@@ -103,6 +105,7 @@ impl CuttingLine {
             unknown_work_zero_axes: 0,
             length_excess: None,
             feed_range: None,
+            last_feed: None,
             surface_depth: None,
             pecks: PeckExtent::default(),
             spindle: SpindleInHole::default(),
@@ -117,6 +120,7 @@ impl CuttingLine {
     /// Records the rate of a feed inwards that cuts.
     pub(super) fn record_feed(&mut self, feed: MmPerMin) {
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
+        self.last_feed = Some(feed);
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
     }
 
@@ -303,8 +307,13 @@ impl CuttingLine {
 
     fn drill_pass(&self, end: &StrokeEnd) -> DrillPass {
         DrillPass {
-            start: self.start,
-            bottom: self.start - self.out.into_inner() * end.depth,
+            cut: PassCut {
+                start: self.start,
+                bottom: self.start - self.out.into_inner() * end.depth,
+                feed: self.last_feed,
+                speed: self.cutting_state.speed,
+                is_tapping: self.spindle == SpindleInHole::Reversed,
+            },
             axis: self.tool_axis.unwrap_or(self.out),
             feed_direction: self.out,
             tool: self.cutting_state.tool,

@@ -20,7 +20,7 @@ use nalgebra::Point3;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
-pub use group::{DrilledHole, EarlierPass};
+pub use group::{DrilledHole, EarlierPass, PassCut, ToolPass};
 pub(crate) use group::{MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
@@ -163,7 +163,7 @@ impl<'m> HoleExtractor<'m> {
             finding.help("check for a loop that never ends; otherwise split the program")
         }));
         HoleExtraction {
-            holes: group::group_holes(&self.passes, self.machine),
+            holes: group::group_holes(&self.passes, self.machine, self.process_limits.hole_spacing),
             findings,
             close_motions: self.close_motions.finish(),
             cut_conditions: self.cut_conditions.finish(),

@@ -242,7 +242,11 @@ fn hole_verdicts(
             depth_error: deviation.depth_error,
             ok: error_codes.is_empty(),
             tilt: deviation.tilt.0,
-            out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
+            out_of_tolerance: if comparison.is_in_place(pair) {
+                0.0
+            } else {
+                phi - comparison.tolerances.position
+            },
             rounding: *rounding,
             nominal: HoleGeometry {
                 entry: nominal.entry,

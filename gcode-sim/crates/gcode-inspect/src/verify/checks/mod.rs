@@ -8,6 +8,7 @@ mod depth;
 mod diameter;
 mod explained_by_rows;
 pub(super) mod extra;
+pub(super) mod features;
 pub(super) mod mirrored;
 mod missing;
 mod overlap;
@@ -21,6 +22,7 @@ mod row_seam;
 mod row_short;
 mod signs;
 mod stopped;
+mod threads;
 mod through;
 mod tool_short;
 mod tools;
@@ -36,24 +38,26 @@ use crate::holes::DrilledHole;
 use crate::machine::{LinkMotion, Machine};
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::units::Deg;
-use gcode_part::{Hole, Pattern, PointTree, ProcessLimits, Surface};
+use gcode_part::{Hole, Pattern, PointTree, ProcessLimits, Surface, exceeds};
 
 /// A check adds findings; it may fold earlier ones.
 type Check = fn(&HoleInspection<'_>, &mut HoleFindings);
 
 /// The checks in order, each with the codes of its findings; each sees the findings of those above it.
 pub(super) const ALL: &[Check] = &[
-    mirrored::check,     // rotary-sign, mirror-image
-    row_group::check,    // row-group
-    row_angle::check,    // row-angle
-    row_seam::check,     // row-seam
-    row_pitch::check,    // row-pitch
-    missing::check,      // hole-missing
-    extra::check,        // hole-extra, hole-twice
-    position::check,     // hole-position, hole-tilted
-    cut_outside::check,  // hole-cut-aside
-    depth::check,        // hole-depth
-    diameter::check,     // hole-diameter
+    mirrored::check,    // rotary-sign, mirror-image
+    row_group::check,   // row-group
+    row_angle::check,   // row-angle
+    row_seam::check,    // row-seam
+    row_pitch::check,   // row-pitch
+    missing::check,     // hole-missing
+    extra::check,       // hole-extra, hole-twice
+    position::check,    // hole-position, hole-tilted
+    cut_outside::check, // hole-cut-aside
+    depth::check,       // hole-depth
+    diameter::check,    // hole-diameter
+    // feature-missing, feature-depth, feature-extra, hole-depth, hole-not-through, tap-drill, tap-pitch
+    features::check,
     tools::check,        // hole-tools
     overlap::check,      // hole-overlap
     row_short::check,    // row-short
