@@ -10,7 +10,12 @@ impl Machine {
     /// burr, which needs the machine file next to its programs.
     pub fn from_job(job: &Job) -> Option<Self> {
         let nominal =
-            Self { dialect: job.control().dialect, increment: job.control().increment, ..Self::default() };
+            Self {
+                dialect: job.control().dialect,
+                increment: job.control().increment,
+                has_default_table: false,
+                ..Self::default()
+            };
         match job {
             Job::PinHoles(job) => {
                 let axes = &nominal.axes;
