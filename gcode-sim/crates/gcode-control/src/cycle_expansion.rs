@@ -33,6 +33,7 @@ impl CyclePlan {
             transform: &state.transform,
             unknown: state.unknown,
             stated_unknown: state.stated_unknown,
+            waits_for_move: false,
             rate: self.rate,
             emit,
         };
@@ -173,6 +174,8 @@ struct CycleMotion<'c, T> {
     /// Axes of unknown position, in programmed coordinates, and those that the last event has stated.
     unknown: UnknownAxes,
     stated_unknown: UnknownAxes,
+    /// No move has followed that event.
+    waits_for_move: bool,
     rate: MmPerMin,
     emit: &'c mut T,
 }
@@ -189,6 +192,7 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
         let axes = self.transform.spread(self.unknown);
         if axes != self.stated_unknown {
             self.stated_unknown = axes;
+            self.waits_for_move = true;
             (self.emit)(EventKind::PositionUnknown { axes }, 0.0);
         }
     }
@@ -197,6 +201,15 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
         if to != self.at {
             (self.emit)(EventKind::Rapid { to }, self.data.rapid_seconds(&self.at, &to));
             self.at = to;
+            self.waits_for_move = false;
+        }
+        self.repeat_unknown();
+    }
+
+    /// Repeats the event of the unknown axes if its move has no travel.
+    fn repeat_unknown(&mut self) {
+        if std::mem::take(&mut self.waits_for_move) {
+            (self.emit)(EventKind::PositionUnknown { axes: self.stated_unknown }, 0.0);
         }
     }
 
@@ -212,7 +225,9 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
             let travel = self.data.squared_travel(0..self.data.settings.axes.len(), &self.at, &to);
             (self.emit)(EventKind::Feed { to, rate: self.rate }, travel.seconds_at(self.rate));
             self.at = to;
+            self.waits_for_move = false;
         }
+        self.repeat_unknown();
     }
 
     fn dwell(&mut self, seconds: f64) {

@@ -180,6 +180,8 @@ impl Planner<'_> {
         let from = &plan.state.machine;
         if to != from {
             plan.push_move(EventKind::Rapid { to: *to }, self.data.rapid_seconds(from, to));
+        } else {
+            plan.repeat_unknown_axes();
         }
     }
 
@@ -189,6 +191,8 @@ impl Planner<'_> {
         let (rate, seconds) = self.data.feed_seconds(&plan.state, from, to, self.words.has(b'F'))?;
         if to != from {
             plan.push_move(EventKind::Feed { to: *to, rate }, seconds);
+        } else {
+            plan.repeat_unknown_axes();
         }
         Ok(())
     }

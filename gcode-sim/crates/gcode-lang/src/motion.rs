@@ -234,7 +234,7 @@ pub enum EventKind {
     /// Axes whose position on the part is unknown after the next move; causes no motion.
     ///
     /// The first of a run precedes every other event and states the axes at the start. Later ones come where
-    /// the axes change.
+    /// the axes change; an event is repeated in place of a move without travel.
     PositionUnknown {
         /// Axes by cause.
         axes: UnknownAxes,

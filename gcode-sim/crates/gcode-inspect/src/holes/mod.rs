@@ -354,7 +354,10 @@ impl EventSink for HoleExtractor<'_> {
                 self.update_setup(|setup| setup.offset = *offset);
                 self.cutting_state.compensation = *compensation;
             }
-            EventKind::PositionUnknown { axes } => self.positions.apply_event(self.machine, *axes),
+            EventKind::PositionUnknown { axes } => {
+                self.positions.apply_event(self.machine, *axes);
+                self.update_outside();
+            }
             EventKind::Spindle { direction, speed } => {
                 // S0 stops the spindle.
                 let before = self.cutting_state.spindle_direction;
