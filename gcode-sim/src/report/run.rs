@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use gcode_inspect::machine::Machine;
 use gcode_control::{Outcome, Value, printable};
+use gcode_inspect::machine::Machine;
 use gcode_lang::alarm::remedy;
 use gcode_lang::motion::{Axes, Event, EventKind, EventSink, Position};
 use gcode_lang::source::Span;

@@ -207,7 +207,8 @@ impl Planner<'_> {
             plan.state.intermediate[axis] = intermediate[axis] - self.data.zero(&plan.state, axis);
             plan.state.has_intermediate |= 1 << axis;
             let unknown = plan.state.unknown;
-            plan.state.unknown_intermediate = plan.state.unknown_intermediate.with_axes_of(1 << axis, unknown);
+            plan.state.unknown_intermediate =
+                plan.state.unknown_intermediate.with_axes_of(1 << axis, unknown);
             home[axis] = self.data.rollover_target(axis, home[axis], reference[axis]);
         }
         self.place_at_machine_coordinates(plan, named);

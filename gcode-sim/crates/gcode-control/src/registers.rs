@@ -33,10 +33,8 @@ impl Registers {
     pub(super) fn new(settings: Settings) -> Self {
         let variables = Vars::new(settings.extra_commons, settings.aliases_commons);
         let uncommanded = (0..settings.axes.len()).fold(0, |axes, axis| axes | 1 << axis);
-        let state = State {
-            unknown: UnknownAxes { uncommanded, ..UnknownAxes::default() },
-            ..State::default()
-        };
+        let state =
+            State { unknown: UnknownAxes { uncommanded, ..UnknownAxes::default() }, ..State::default() };
         Self {
             data: ControlData::new(settings),
             variables,

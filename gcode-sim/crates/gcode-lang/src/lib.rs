@@ -29,5 +29,5 @@ pub mod motion;
 pub mod program;
 pub mod source;
 pub mod syntax;
-mod unknown_axes;
 pub mod units;
+mod unknown_axes;

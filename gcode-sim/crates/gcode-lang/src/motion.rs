@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::source::Span;
-pub use crate::unknown_axes::UnknownAxes;
 use crate::units::{Deg, MmPerMin, Rpm, Seconds};
+pub use crate::unknown_axes::UnknownAxes;
 
 /// Largest number of axes of a control.
 pub const MAX_AXES: usize = 8;

@@ -211,7 +211,8 @@ impl<'m> FluteTracker<'m> {
         // The rotation of the burr about itself changes no depth. Axes that nothing has commanded yet are those that have not
         // moved.
         let (was, is) = self.positions.advance(self.machine);
-        let [was, is] = [was, is].map(|axes| UnknownAxes { uncommanded: 0, ..axes.without(1 << self.burr_axis) });
+        let [was, is] =
+            [was, is].map(|axes| UnknownAxes { uncommanded: 0, ..axes.without(1 << self.burr_axis) });
         let before = self.moved_axes;
         self.record_moved_axes(&from, to);
         self.moves += 1;
@@ -272,7 +273,12 @@ impl<'m> FluteTracker<'m> {
     }
 
     /// Checks the end of a rapid from or to an unknown position, if that end is known.
-    fn check_unknown_rapid(&mut self, event: &Event<'_>, (was, is): (UnknownAxes, UnknownAxes), to: &Position) {
+    fn check_unknown_rapid(
+        &mut self,
+        event: &Event<'_>,
+        (was, is): (UnknownAxes, UnknownAxes),
+        to: &Position,
+    ) {
         self.end_pass();
         self.positions.note_rapid(event, was.union(is));
         if is.is_none() {

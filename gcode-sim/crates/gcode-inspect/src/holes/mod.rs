@@ -209,11 +209,11 @@ impl<'m> HoleExtractor<'m> {
         self.axis_position = *to;
         self.pose = self.machine.tool_pose(to, &self.setup).relative_to(&self.frame);
         let (was, is) = self.positions.advance(self.machine);
+        let travel = AxisMotion { from: &from, to, arc };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
-            self.report_unknown_rapid(event, &before.tip, (was, is));
+            self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             return;
         }
-        let travel = AxisMotion { from: &from, to, arc };
         if !self.machine.is_straight(&travel) {
             self.end_line(kind == MotionKind::Feed);
             self.check_curved(event, &travel, kind);

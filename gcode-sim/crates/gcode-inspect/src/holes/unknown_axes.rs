@@ -2,11 +2,11 @@
 //! work offset, or counted from a G92 at an unknown position.
 use nalgebra::Point3;
 
-use super::HoleExtractor;
 use super::group::DrilledHole;
 use super::line::{CuttingLine, ToolExit};
+use super::{HoleExtractor, MotionKind};
 use crate::findings::START_UNKNOWN;
-use crate::machine::Machine;
+use crate::machine::{AxisMotion, Machine};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Axes, AxisIndex, Backtrace, Event, UnknownAxes};
 
@@ -111,15 +111,22 @@ impl UnknownRapids {
 }
 
 impl HoleExtractor<'_> {
-    /// Ends the current line at a rapid from or to an unknown position, and checks its end if that is known. `from` is
-    /// the computed start; `was` and `is` are the unknown axes before and after.
+    /// Follows a rapid from or to an unknown position, and checks its end if that is known. `from` is the computed start;
+    /// `was` and `is` are the unknown axes before and after.
     pub(super) fn report_unknown_rapid(
         &mut self,
         event: &Event<'_>,
+        kind: MotionKind,
+        travel: &AxisMotion<'_>,
         from: &Point3<f64>,
         (was, is): (UnknownAxes, UnknownAxes),
     ) {
-        if let Some(line) = self.current_line.take() {
+        // With the same axes unknown the motion itself is known.
+        if was == is && self.machine.is_straight(travel) {
+            if (self.pose.tip - from).norm() >= 1e-9 {
+                self.update_line(event, kind, *from);
+            }
+        } else if let Some(line) = self.current_line.take() {
             let is_out = self.is_out_along(&line, is.all() & !was.all());
             let exit = if is_out { ToolExit::AlongLine } else { line.curved_exit() };
             self.report_line(line, exit, false);
@@ -155,7 +162,8 @@ pub(super) fn keep_effective(holes: &mut [DrilledHole], machine: &Machine, assum
     for hole in holes.iter_mut().filter(|hole| !hole.unknown_axes.is_none()) {
         let axes = hole.unknown_axes.all();
         let effective = machine.axes.iter().filter(|(axis, _)| axes >> axis & 1 == 1);
-        let effective = effective.filter(|(axis, _)| assumed >> axis & 1 == 0 && has_effect(machine, hole, *axis));
+        let effective =
+            effective.filter(|(axis, _)| assumed >> axis & 1 == 0 && has_effect(machine, hole, *axis));
         hole.unknown_axes = hole.unknown_axes.only(effective.fold(0, |mask, (axis, _)| mask | 1 << axis));
     }
 }
@@ -194,8 +202,9 @@ pub(crate) fn unknown_position_finding(names: &Axes, axes: UnknownAxes, cut: &st
             .filter(|(axis, _)| uncommanded >> axis & 1 == 1)
             .map(|(_, letter)| format!("--start {letter}=…"))
             .collect();
-        let message =
-            format!("{cut} with {letters} at an unknown position: no earlier block commands {letters} in G90");
+        let message = format!(
+            "{cut} with {letters} at an unknown position: no earlier block commands {letters} in G90"
+        );
         return Diagnostic::new(&START_UNKNOWN, message).help(format!(
             "command {letters} in G90 in this block or before it, or state where the run starts: {}, or [start] \
              in the machine file",
@@ -214,7 +223,8 @@ pub(crate) fn unknown_position_finding(names: &Axes, axes: UnknownAxes, cut: &st
             ));
     }
     let letters = letters(shifted);
-    let message = format!("{cut} with {letters} counted from a zero that was set at an unknown position of {letters}");
+    let message =
+        format!("{cut} with {letters} counted from a zero that was set at an unknown position of {letters}");
     Diagnostic::new(&START_UNKNOWN, message)
         .note("G92 gives the current position new coordinates; G68 and G51 without a centre take it as their centre")
         .help("command the axis in G90 before that block, or state where the run starts: --start, or [start] in the \

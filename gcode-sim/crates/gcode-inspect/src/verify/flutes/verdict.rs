@@ -6,7 +6,8 @@ use super::Inspection;
 use super::measured_range::SPEED_TOLERANCE;
 use crate::findings::{
     BURR_OFFSET, FLUTE_END, FLUTE_EXTRA, FLUTE_HEAD, FLUTE_HELIX, FLUTE_INDEX, FLUTE_MISSING, FLUTE_SPEED,
-    FLUTE_SURFACE, FLUTE_TWICE, FLUTES_MEET, SPINDLE_STOPPED, START_UNKNOWN, WHEEL_FEED, WHEEL_INTO_BURR, WHEEL_SPEED,
+    FLUTE_SURFACE, FLUTE_TWICE, FLUTES_MEET, SPINDLE_STOPPED, START_UNKNOWN, WHEEL_FEED, WHEEL_INTO_BURR,
+    WHEEL_SPEED,
 };
 use crate::flutes::{GrindingResult, Window};
 use crate::verify::verdict::{Answer, Finding, finding_of, limit_per_kind};
