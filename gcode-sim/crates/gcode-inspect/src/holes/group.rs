@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Unit, Vector3};
 
 use crate::machine::Machine;
-use gcode_lang::motion::{Backtrace, Position};
+use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::{Deg, MmPerMin, Rpm};
 use gcode_part::{Clusters, Hole, Origin, PointTree};
@@ -63,6 +63,8 @@ pub(super) struct DrillPass {
     pub tool: Option<u32>,
     pub backtrace: Backtrace,
     pub axis_position: Position,
+    /// Axes of unknown position on the part.
+    pub unknown_axes: UnknownAxes,
 }
 
 /// A hole that the program drills, in the part's frame; lengths in mm.
@@ -90,6 +92,8 @@ pub struct DrilledHole {
     pub earlier_passes: Vec<EarlierPass>,
     /// Number of these passes that the program makes before the finishing one.
     pub finishing_index: usize,
+    /// Axes of unknown position on the part in any pass.
+    pub unknown_axes: UnknownAxes,
     /// Index in the list of the first hole on this line. A later one with the same index is this hole drilled again by a
     /// tool that has cut it before.
     pub first_on_line: usize,
@@ -269,13 +273,17 @@ fn push_holes<'p>(
             tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.feed_direction).clamp(-1.0, 1.0)),
             finishing_cut: pass.cut,
             finishing_index,
+            unknown_axes: pass.unknown_axes,
             earlier_passes,
             first_on_line,
         }
     };
     let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
     let start = finishing.map(|pass| height(&pass.cut.start)).fold(f64::NEG_INFINITY, f64::max);
-    holes.push(hole(finish, start, lowest, earlier.collect()));
+    let mut finished = hole(finish, start, lowest, earlier.collect());
+    finished.unknown_axes =
+        cutting.iter().fold(UnknownAxes::default(), |axes, pass| axes.union(pass.unknown_axes));
+    holes.push(finished);
     let again = |pass: &&DrillPass| hole(pass, height(&pass.cut.start), height(&pass.cut.bottom), Vec::new());
     holes.extend(repeated.iter().map(again));
 }
