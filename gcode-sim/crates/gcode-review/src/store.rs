@@ -397,6 +397,7 @@ impl Hole {
             axis: Unit::new_unchecked(axis),
             depth: self.depth,
             diameter: self.diameter,
+            roundness: None,
             tool: self.tool,
             backtrace: Backtrace::default(),
             axis_position: Position::default(),

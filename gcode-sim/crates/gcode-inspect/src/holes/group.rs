@@ -30,6 +30,31 @@ pub(super) struct DrillPass {
     pub tool: Option<u32>,
     pub backtrace: Backtrace,
     pub axis_position: Position,
+    /// Circle of a mill; `None` for a stroke.
+    pub circle: Option<MilledCircle>,
+}
+
+/// Path of a mill round a hole, lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MilledCircle {
+    /// Radius of the path.
+    pub radius: f64,
+    /// Largest minus least distance of the path from the axis.
+    pub roundness: f64,
+}
+
+impl DrillPass {
+    /// Returns the diameter that the pass cuts; `None` if the tool table lacks the tool.
+    fn diameter(&self, machine: &Machine) -> Option<f64> {
+        let cutter = machine.diameter_of(self.tool)?;
+        Some(cutter + 2.0 * self.circle.map_or(0.0, |circle| circle.radius))
+    }
+
+    /// Returns the least diameter that the pass may cut.
+    fn least_diameter(&self, machine: &Machine) -> f64 {
+        let path = 2.0 * self.circle.map_or(0.0, |circle| circle.radius);
+        self.diameter(machine).unwrap_or(path)
+    }
 }
 
 /// A hole that the program drills, in the part's frame; lengths in mm.
@@ -43,6 +68,8 @@ pub struct DrilledHole {
     pub depth: f64,
     /// Diameter of the finishing tool; `None` if the tool table lacks it.
     pub diameter: Option<f64>,
+    /// Largest minus least distance of a mill's path from the axis; `None` for a drilled hole.
+    pub roundness: Option<f64>,
     /// Finishing tool; `None` before the first tool change.
     pub tool: Option<u32>,
     /// Block of the finishing pass.
@@ -135,9 +162,11 @@ fn push_holes<'p>(
 ) {
     let first_on_line = holes.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
-    let mut lowest_by_tool: BTreeMap<Option<u32>, f64> = BTreeMap::new();
+    // A mill cuts the same depth with each radius.
+    let radius = |pass: &DrillPass| pass.circle.map(|circle| (circle.radius * 1000.0).round() as u64);
+    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
     let (cutting, repeated): (Vec<&DrillPass>, Vec<&DrillPass>) = passes.partition(|pass| {
-        let lowest = lowest_by_tool.entry(pass.tool).or_insert(f64::INFINITY);
+        let lowest = lowest_by_tool.entry((pass.tool, radius(pass))).or_insert(f64::INFINITY);
         let cuts = height(&pass.bottom) < *lowest - MIN_DEPTH_GAIN;
         if cuts {
             *lowest = height(&pass.bottom);
@@ -150,7 +179,7 @@ fn push_holes<'p>(
         bottom: pass.bottom,
         axis: pass.axis,
         tool: pass.tool,
-        diameter: machine.diameter_of(pass.tool),
+        diameter: pass.diameter(machine),
         backtrace: pass.backtrace.clone(),
         axis_position: pass.axis_position,
     });
@@ -162,7 +191,8 @@ fn push_holes<'p>(
             entry: along(start),
             axis: pass.axis,
             depth: (along(start) - along(bottom)).norm(),
-            diameter: machine.diameter_of(pass.tool),
+            diameter: pass.diameter(machine),
+            roundness: pass.circle.map(|circle| circle.roundness),
             tool: pass.tool,
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
@@ -175,7 +205,8 @@ fn push_holes<'p>(
     let start = finishing.map(|pass| height(&pass.start)).fold(f64::NEG_INFINITY, f64::max);
     holes.push(hole(finish, start, lowest, earlier.collect()));
     let again = |pass: &&DrillPass| hole(pass, height(&pass.start), height(&pass.bottom), Vec::new());
-    holes.extend(repeated.iter().map(again));
+    // A mill goes round more than once to finish.
+    holes.extend(repeated.iter().filter(|pass| pass.circle.is_none()).map(again));
 }
 
 /// Returns the finishing pass: the last pass of the largest tool that reaches half the depth of the hole, without
@@ -187,7 +218,7 @@ fn finishing_pass<'p>(
     machine: &Machine,
 ) -> &'p DrillPass {
     let longest = cutting.iter().map(|pass| height(&pass.start) - lowest).fold(0.0, f64::max);
-    let diameter = |pass: &DrillPass| machine.diameter_of(pass.tool).unwrap_or(0.0);
+    let diameter = |pass: &DrillPass| pass.least_diameter(machine);
     let deep = |p: &DrillPass| height(&p.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {
