@@ -35,6 +35,7 @@ gcode_lang::finding_kinds! {
     HOLE_MISSING = "hole-missing", Error, "a hole is missing";
     HOLE_OVERLAP = "hole-overlap", Note, "two nominal holes cut into each other";
     HOLE_POSITION = "hole-position", Error, "a hole is out of position";
+    HOLE_ROUNDNESS = "hole-roundness", Error, "a milled hole is not round";
     HOLE_THROUGH = "hole-through", Warning, "a nominal hole goes through the part";
     HOLE_TILTED = "hole-tilted", Error, "a hole is tilted";
     HOLE_TOOLS = "hole-tools", Warning, "a hole lacks a tool that the others have";

@@ -144,9 +144,9 @@ impl ArcRun {
             (from + (to - from) * t.min(1.0)).max(to)
         });
         let level = heights.fold(f64::NEG_INFINITY, f64::max);
-        let lowest = self.arcs.iter().map(|(_, arc)| arc.to.coords.dot(&arc.out)).fold(end, f64::min);
-        // A turn that rises follows a thread. A single turn that falls does so too, or begins a helix.
         let start = self.height_at(begin);
+        let lowest = self.arcs.iter().map(|(_, arc)| arc.to.coords.dot(&arc.out)).fold(start, f64::min);
+        // A turn that rises follows a thread. A single turn that falls does so too, or begins a helix.
         let is_level = level - lowest <= MAX_LEVEL_CHANGE;
         let is_helix = end < start && self.swept >= FULL_TURN + 360.0;
         if (is_level || is_helix) && self.turn.as_ref().is_none_or(|turn| level < turn.level - 1e-9) {

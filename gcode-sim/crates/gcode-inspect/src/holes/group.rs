@@ -47,7 +47,9 @@ impl DrillPass {
     /// Returns the diameter that the pass cuts; `None` if the tool table lacks the tool.
     fn diameter(&self, machine: &Machine) -> Option<f64> {
         let cutter = machine.diameter_of(self.tool)?;
-        Some(cutter + 2.0 * self.circle.map_or(0.0, |circle| circle.radius))
+        let Some(circle) = self.circle else { return Some(cutter) };
+        // Without the noise of the arithmetic, which would be printed.
+        Some(((cutter + 2.0 * circle.radius) * 1e9).round() / 1e9)
     }
 
     /// Returns the least diameter that the pass may cut.

@@ -1,11 +1,10 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
+use super::HoleExtractor;
 use super::line::{CuttingLine, ToolExit};
 use super::rapids::TOUCH_DEPTH;
 use super::strokes::CutKind;
-use super::{HoleExtractor, spindle};
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
-    SPINDLE_STOPPED,
 };
 use crate::machine::HeadKind;
 use gcode_lang::diag::Diagnostic;
@@ -102,12 +101,7 @@ impl HoleExtractor<'_> {
         }
         self.check_spindle(backtrace, line);
         if line.cutting_state.spindle_direction == SpindleDirection::Off {
-            let message = "the tool feeds into the part with the spindle stopped";
-            let builder_code = self.builder_code;
-            self.findings.add(&SPINDLE_STOPPED, backtrace, 0, |_| {
-                spindle::spindle_stopped_finding(message, builder_code)
-                    .help("start the spindle with M03 S… before the feed")
-            });
+            self.report_spindle_stopped(line.backtrace());
         }
         let Some(tilt) = tilt else {
             if matches!(self.machine.head.kind, HeadKind::Manual { .. }) {

@@ -1,13 +1,12 @@
 //! Milled holes: full circles that the tool mills from the inside between two retracts.
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
 use super::group::{DrillPass, MilledCircle};
 use super::per_block::Findings;
-use super::strokes::{CutKind, LEVEL_TOLERANCE};
-use super::{HoleExtractor, spindle};
-use crate::findings::SPINDLE_STOPPED;
-use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
+use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
+use gcode_lang::motion::{Event, SpindleDirection};
 
 /// Largest number of points of an engagement; with more the tool mills something larger than a hole.
 const MAX_POINTS: usize = 50_000;
@@ -36,31 +35,12 @@ pub(super) struct Engagement {
     pub errors: Findings,
 }
 
-/// Feeds that make no hole.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Uncounted {
-    /// Feeds without retract: their number, the first and its length.
-    pub unretracted: Option<(u64, Backtrace, f64)>,
-    /// Curved feeds: their number and the first.
-    pub curved: Option<(u64, Backtrace)>,
-}
-
 /// Path of a feed.
 #[derive(Clone, Debug)]
 pub(super) enum Path {
     Straight,
     /// An arc; `None` if the table or the head rotates.
     Curved(Option<PartArc>),
-}
-
-impl Uncounted {
-    pub(super) fn add_unretracted(&mut self, place: &Backtrace, length: f64) {
-        self.unretracted.get_or_insert_with(|| (0, place.clone(), length)).0 += 1;
-    }
-
-    pub(super) fn add_curved(&mut self, place: Backtrace) {
-        self.curved.get_or_insert((0, place)).0 += 1;
-    }
 }
 
 impl Engagement {
@@ -161,13 +141,15 @@ impl HoleExtractor<'_> {
         let top = level(&start);
         let aside = (to - from - out.into_inner() * (end - begin)).norm();
         let is_across = arc.is_some() || aside > LEVEL_TOLERANCE;
-        if is_across {
-            let lowest = begin.min(end);
-            // A feed that goes down and across by more than 30° to the tool is no drilling.
-            let is_sloped = (end - begin).abs() > LEVEL_TOLERANCE && aside > 0.577 * (end - begin).abs();
-            if arc.is_some() || is_sloped || lowest < top - LEVEL_TOLERANCE {
-                self.strokes.note_milling(lowest);
-            }
+        let rise = (end - begin).abs();
+        // A feed that goes down and across by more than 30° to the tool is no drilling.
+        let is_sloped = rise > LEVEL_TOLERANCE && aside > 0.577 * rise;
+        let lowest = begin.min(end);
+        if arc.is_some() || is_sloped {
+            // A stroke from its lowest point is milling too.
+            self.strokes.note_milling(lowest - 2.0 * LEVEL_TOLERANCE);
+        } else if is_across && rise <= LEVEL_TOLERANCE && lowest < top - LEVEL_TOLERANCE {
+            self.strokes.note_milling(lowest);
         }
         let engagement = &mut self.engagement;
         if is_across {
@@ -230,50 +212,50 @@ impl HoleExtractor<'_> {
             true => None,
             false => self.engagement.circles(self.pose.axis.as_ref(), cutter),
         };
-        match circles {
-            Some(circles) => self.push_circles(circles),
-            None => {
-                let uncounted = std::mem::take(&mut self.engagement.uncounted);
-                let errors = std::mem::take(&mut self.engagement.errors);
-                self.report_uncounted(uncounted);
-                self.findings.append(errors);
-            }
+        let is_hole = circles.is_some_and(|circles| self.push_circles(circles));
+        let uncounted = std::mem::take(&mut self.engagement.uncounted);
+        let errors = std::mem::take(&mut self.engagement.errors);
+        if !is_hole {
+            self.report_uncounted(uncounted);
+            self.findings.append(errors);
         }
         self.engagement.clear();
     }
 
-    fn push_circles(&mut self, circles: Circles) {
+    /// Adds the passes of a hole. Returns false for circles that may be a groove, unless a nominal hole is there.
+    fn push_circles(&mut self, circles: Circles) -> bool {
         let start = self.engagement.start.unwrap_or(self.pose.tip);
-        for ring in circles.rings {
+        let approach_level = self.engagement.approach_level;
+        let tool = self.setup.tool;
+        let pass = |ring: Ring| {
             let out = ring.out;
             let begin = start.coords.dot(&out);
             // A tool that comes down in rapid begins its feed at the depth of the circle.
-            let begin =
-                if begin > ring.level() + LEVEL_TOLERANCE { begin } else { self.engagement.approach_level };
+            let begin = if begin > ring.level() + LEVEL_TOLERANCE { begin } else { approach_level };
             let length = (begin - ring.level()).max(LEVEL_TOLERANCE);
-            let place = ring.backtrace.clone();
-            self.check_clamped(&place, self.clamp_state);
-            if self.cutting_state.spindle_direction == SpindleDirection::Off {
-                let builder_code = self.builder_code;
-                self.findings.add(&SPINDLE_STOPPED, &place, 0, |_| {
-                    spindle::spindle_stopped_finding(
-                        "the tool feeds into the part with the spindle stopped",
-                        builder_code,
-                    )
-                    .help("start the spindle with M03 S… before the feed")
-                });
-            }
-            let pass = DrillPass {
+            DrillPass {
                 start: ring.centre + out.into_inner() * length,
                 bottom: ring.centre,
                 axis: out,
                 feed_direction: out,
-                tool: self.setup.tool,
-                backtrace: place,
-                axis_position: ring.axis_position,
+                tool,
                 circle: Some(MilledCircle { radius: ring.radius, roundness: ring.roundness }),
-            };
-            self.strokes.push(pass, CutKind::Circle { is_certain: circles.is_certain });
+                backtrace: ring.backtrace,
+                axis_position: ring.axis_position,
+            }
+        };
+        let passes: Vec<DrillPass> = circles.rings.into_iter().map(pass).collect();
+        if !circles.is_certain && !passes.iter().any(|pass| self.strokes.is_nominal(pass)) {
+            return false;
         }
+        for pass in passes {
+            self.check_clamped(&pass.backtrace, self.clamp_state);
+            self.check_work_zero_known(&pass.backtrace, self.work_zero.unknown_axes());
+            if self.cutting_state.spindle_direction == SpindleDirection::Off {
+                self.report_spindle_stopped(&pass.backtrace);
+            }
+            self.strokes.push(pass, CutKind::Drilled);
+        }
+        true
     }
 }

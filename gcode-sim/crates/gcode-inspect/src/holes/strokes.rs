@@ -7,7 +7,6 @@ use nalgebra::{Point3, Vector3};
 use super::HoleExtractor;
 use super::group::DrillPass;
 use super::line::CuttingLine;
-use super::milled::Uncounted;
 use super::per_block::with_count_note;
 use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -35,7 +34,7 @@ const MIN_AXIS_COSINE: f64 = 0.996_194_698_091_745_5;
 /// Origin of a pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CutKind {
-    /// A stroke of a cycle, or one in a known surface: it is a hole's.
+    /// A stroke of a cycle, one in a known surface, or a milled circle: it is a hole's.
     Drilled,
     /// A stroke along the tool.
     AlongTool {
@@ -49,11 +48,6 @@ pub(super) enum CutKind {
     },
     /// A stroke oblique to the tool.
     Oblique,
-    /// A full circle.
-    Circle {
-        /// True if the cut is no groove.
-        is_certain: bool,
-    },
 }
 
 /// Passes, and strokes for which later motion decides.
@@ -79,6 +73,25 @@ pub(super) struct Strokes {
     nominal: NominalAxes,
     /// Strokes that are milling.
     milled: Option<MilledStrokes>,
+}
+
+/// Feeds that make no hole.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Uncounted {
+    /// Feeds without retract: their number, the first and its length.
+    pub unretracted: Option<(u64, Backtrace, f64)>,
+    /// Curved feeds: their number and the first.
+    pub curved: Option<(u64, Backtrace)>,
+}
+
+impl Uncounted {
+    pub(super) fn add_unretracted(&mut self, place: &Backtrace, length: f64) {
+        self.unretracted.get_or_insert_with(|| (0, place.clone(), length)).0 += 1;
+    }
+
+    pub(super) fn add_curved(&mut self, place: Backtrace) {
+        self.curved.get_or_insert((0, place)).0 += 1;
+    }
 }
 
 /// Strokes that make no hole because they are milling.
@@ -147,13 +160,18 @@ impl Strokes {
         }
     }
 
+    /// Returns true if a pass lies on a nominal axis.
+    pub(super) fn is_nominal(&mut self, pass: &DrillPass) -> bool {
+        self.nominal.has(pass)
+    }
+
     /// Adds a pass.
     pub(super) fn push(&mut self, pass: DrillPass, kind: CutKind) {
         let order = self.next;
         self.next += 1;
         match kind {
-            CutKind::Drilled | CutKind::Circle { is_certain: true } => self.push_pass(order, pass),
-            CutKind::Oblique | CutKind::Circle { is_certain: false } => self.push_milled(order, pass),
+            CutKind::Drilled => self.push_pass(order, pass),
+            CutKind::Oblique => self.push_milled(order, pass),
             CutKind::AlongTool { is_between_rapids } => {
                 self.has_upright_stroke = true;
                 if !self.is_drilled(&pass, is_between_rapids) {

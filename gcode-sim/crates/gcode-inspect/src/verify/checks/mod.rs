@@ -13,6 +13,7 @@ mod missing;
 mod overlap;
 mod position;
 mod reach;
+mod roundness;
 mod row_angle;
 mod row_group;
 mod row_missing;
@@ -54,6 +55,7 @@ pub(super) const ALL: &[Check] = &[
     cut_outside::check,  // hole-cut-aside
     depth::check,        // hole-depth
     diameter::check,     // hole-diameter
+    roundness::check,    // hole-roundness
     tools::check,        // hole-tools
     overlap::check,      // hole-overlap
     row_short::check,    // row-short
