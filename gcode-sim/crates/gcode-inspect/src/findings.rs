@@ -27,6 +27,7 @@ gcode_lang::finding_kinds! {
     HEAD_MESSAGE_UNCLEAR = "head-message-unclear", Warning, "a message about the head without an angle";
     HEAD_NOT_MANUAL = "head-not-manual", Warning, "a message about a head that is not manual";
     HEAD_NOT_SET = "head-not-set", Error, "a feed before the head is set";
+    HOLE_CORE = "hole-core", Error, "a milled hole keeps its core";
     HOLE_CUT_ASIDE = "hole-cut-aside", Error, "a pass cuts outside the finished hole";
     HOLE_DEPTH = "hole-depth", Error, "too deep or too shallow";
     HOLE_DIAMETER = "hole-diameter", Error, "finished with another diameter";

@@ -398,6 +398,7 @@ impl Hole {
             depth: self.depth,
             diameter: self.diameter,
             roundness: None,
+            core: None,
             tool: self.tool,
             backtrace: Backtrace::default(),
             axis_position: Position::default(),

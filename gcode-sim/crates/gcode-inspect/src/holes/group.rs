@@ -18,6 +18,9 @@ pub(crate) const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
 /// Least additional depth at which a pass of the same tool cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
 
+/// Largest height of a core on the bottom of a hole that counts as removed, mm.
+const MAX_CORE_HEIGHT: f64 = 0.1;
+
 /// A feed into the part along one line, in the part's frame.
 #[derive(Clone, Debug)]
 pub(super) struct DrillPass {
@@ -41,6 +44,8 @@ pub(super) struct MilledCircle {
     pub radius: f64,
     /// Largest minus least distance of the path from the axis.
     pub roundness: f64,
+    /// Diameter of the core that the circles of the tool leave; `None` if they leave none, or if it is unknown.
+    pub core: Option<f64>,
 }
 
 impl DrillPass {
@@ -52,10 +57,13 @@ impl DrillPass {
         Some(((cutter + 2.0 * circle.radius) * 1e9).round() / 1e9)
     }
 
-    /// Returns the least diameter that the pass may cut.
-    fn least_diameter(&self, machine: &Machine) -> f64 {
-        let path = 2.0 * self.circle.map_or(0.0, |circle| circle.radius);
-        self.diameter(machine).unwrap_or(path)
+    /// Returns true if the pass cuts at least as wide as another one. Of a tool of unknown diameter only the path counts; of
+    /// two such tools the later one does.
+    fn is_as_wide(&self, other: &Self, machine: &Machine) -> bool {
+        let path = |pass: &Self| 2.0 * pass.circle.map_or(0.0, |circle| circle.radius);
+        let diameter = |pass: &Self| pass.diameter(machine);
+        let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();
+        !is_comparable || diameter(other).unwrap_or(path(other)) <= diameter(self).unwrap_or(path(self))
     }
 }
 
@@ -72,6 +80,8 @@ pub struct DrilledHole {
     pub diameter: Option<f64>,
     /// Largest minus least distance of a mill's path from the axis; `None` for a drilled hole.
     pub roundness: Option<f64>,
+    /// Diameter of the metal that a mill leaves on the axis, mm; `None` without any.
+    pub core: Option<f64>,
     /// Finishing tool; `None` before the first tool change.
     pub tool: Option<u32>,
     /// Block of the finishing pass.
@@ -185,6 +195,14 @@ fn push_holes<'p>(
         backtrace: pass.backtrace.clone(),
         axis_position: pass.axis_position,
     });
+    // A core that another tool removes, or may remove, is none.
+    let core = finish.circle.and_then(|circle| circle.core).filter(|core| {
+        !cutting.iter().any(|pass| {
+            let is_core_tool = pass.circle.is_some_and(|circle| circle.core.is_some());
+            let is_as_deep = height(&pass.bottom) <= height(&finish.bottom) + MAX_CORE_HEIGHT;
+            !is_core_tool && is_as_deep && pass.diameter(machine).is_none_or(|diameter| *core <= diameter)
+        })
+    });
     let hole = |pass: &DrillPass, start: f64, bottom: f64, earlier_passes: Vec<EarlierPass>| {
         let slope = pass.axis.dot(&out);
         let along =
@@ -195,6 +213,7 @@ fn push_holes<'p>(
             depth: (along(start) - along(bottom)).norm(),
             diameter: pass.diameter(machine),
             roundness: pass.circle.map(|circle| circle.roundness),
+            core: None,
             tool: pass.tool,
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
@@ -205,7 +224,7 @@ fn push_holes<'p>(
     };
     let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
     let start = finishing.map(|pass| height(&pass.start)).fold(f64::NEG_INFINITY, f64::max);
-    holes.push(hole(finish, start, lowest, earlier.collect()));
+    holes.push(DrilledHole { core, ..hole(finish, start, lowest, earlier.collect()) });
     let again = |pass: &&DrillPass| hole(pass, height(&pass.start), height(&pass.bottom), Vec::new());
     // A mill goes round more than once to finish.
     holes.extend(repeated.iter().filter(|pass| pass.circle.is_none()).map(again));
@@ -220,12 +239,13 @@ fn finishing_pass<'p>(
     machine: &Machine,
 ) -> &'p DrillPass {
     let longest = cutting.iter().map(|pass| height(&pass.start) - lowest).fold(0.0, f64::max);
-    let diameter = |pass: &DrillPass| pass.least_diameter(machine);
     let deep = |p: &DrillPass| height(&p.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {
         let goes_on = deep(pass) && height(&pass.bottom) < height(&best.bottom) - MIN_DEPTH_GAIN;
-        if goes_on || (deep(pass), diameter(pass)) >= (deep(best), diameter(best)) {
+        let is_wider =
+            deep(pass) && !deep(best) || deep(pass) == deep(best) && pass.is_as_wide(best, machine);
+        if goes_on || is_wider {
             best = pass;
         }
     }

@@ -58,7 +58,10 @@ impl HoleExtractor<'_> {
         if !matches!(kind, CutKind::Oblique) {
             self.report_feed(&line, tilt);
         }
+        // A stroke in a hole that was cut before, as of a mill that goes on sideways, has no retract either.
+        let has_retract = !matches!(exit, ToolExit::Sideways { .. });
         let (pass, repeated) = line.finish();
+        let repeated = repeated.filter(|_| has_retract);
         for pass in std::iter::once(pass).chain(repeated) {
             self.strokes.push(pass, kind);
         }

@@ -103,6 +103,9 @@ impl Engagement {
         // A helix on the circle leaves a core unless the cutter reaches the axis.
         let reaches_axis = cutter.is_some_and(|cutter| radius <= cutter / 2.0 + slack);
         let is_helix = cutter.is_none() && self.rings.iter().any(Ring::is_helix);
+        let is_certain = is_inside || reaches_axis || is_helix;
+        let least = self.rings.iter().map(|ring| ring.radius).fold(radius, f64::min);
+        let core = cutter.filter(|_| !is_certain).map(|cutter| 2.0 * least - cutter);
         let mut kept: Vec<Ring> = Vec::new();
         let mut order: Vec<&Ring> = self.rings.iter().collect();
         order.sort_by(|a, b| a.level().total_cmp(&b.level()).then(b.radius.total_cmp(&a.radius)));
@@ -111,7 +114,7 @@ impl Engagement {
                 kept.push(ring.clone());
             }
         }
-        Some(Circles { rings: kept, is_certain: is_inside || reaches_axis || is_helix })
+        Some(Circles { rings: kept, is_certain, core: core.filter(|core| 0.0 < *core) })
     }
 }
 
@@ -120,6 +123,8 @@ struct Circles {
     rings: Vec<Ring>,
     /// False for a circle that may as well be a groove in a face.
     is_certain: bool,
+    /// Diameter of the core that they leave, mm; `None` without one, or of a mill of unknown diameter.
+    core: Option<f64>,
 }
 
 impl HoleExtractor<'_> {
@@ -181,7 +186,10 @@ impl HoleExtractor<'_> {
             engagement.push_point(to);
         }
         engagement.has_descended |= end < top - LEVEL_TOLERANCE;
-        if end > top + LEVEL_TOLERANCE || engagement.has_descended && end >= top - LEVEL_TOLERANCE {
+        let is_out = end > top + LEVEL_TOLERANCE || engagement.has_descended && end >= top - LEVEL_TOLERANCE;
+        // A feed out of a circle ends it as a rapid does.
+        let is_retract = !is_across && begin < end && !engagement.rings.is_empty();
+        if is_out || is_retract && !engagement.is_below(&to, &out) {
             self.end_engagement();
         }
     }
@@ -226,7 +234,7 @@ impl HoleExtractor<'_> {
     fn push_circles(&mut self, circles: Circles) -> bool {
         let start = self.engagement.start.unwrap_or(self.pose.tip);
         let approach_level = self.engagement.approach_level;
-        let tool = self.setup.tool;
+        let (tool, core) = (self.setup.tool, circles.core);
         let pass = |ring: Ring| {
             let out = ring.out;
             let begin = start.coords.dot(&out);
@@ -239,7 +247,7 @@ impl HoleExtractor<'_> {
                 axis: out,
                 feed_direction: out,
                 tool,
-                circle: Some(MilledCircle { radius: ring.radius, roundness: ring.roundness }),
+                circle: Some(MilledCircle { radius: ring.radius, roundness: ring.roundness, core }),
                 backtrace: ring.backtrace,
                 axis_position: ring.axis_position,
             }

@@ -8,6 +8,7 @@ mod depth;
 mod diameter;
 mod explained_by_rows;
 pub(super) mod extra;
+mod milled_core;
 pub(super) mod mirrored;
 mod missing;
 mod overlap;
@@ -56,6 +57,7 @@ pub(super) const ALL: &[Check] = &[
     depth::check,        // hole-depth
     diameter::check,     // hole-diameter
     roundness::check,    // hole-roundness
+    milled_core::check,  // hole-core
     tools::check,        // hole-tools
     overlap::check,      // hole-overlap
     row_short::check,    // row-short
