@@ -6,7 +6,7 @@ use super::arc_run::{ArcRun, PartArc, Ring};
 use super::group::{DrillPass, MilledCircle};
 use super::per_block::Findings;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
-use gcode_lang::motion::{Event, SpindleDirection};
+use gcode_lang::motion::{Event, SpindleDirection, UnknownAxes};
 
 /// Largest number of points of an engagement; with more the tool mills something larger than a hole.
 const MAX_POINTS: usize = 50_000;
@@ -29,6 +29,8 @@ pub(super) struct Engagement {
     points: Vec<Point3<f64>>,
     run: Option<ArcRun>,
     rings: Vec<Ring>,
+    /// Axes of unknown position on the part during an arc.
+    unknown_axes: UnknownAxes,
     /// Feeds that make no hole, unless the engagement does.
     pub uncounted: Uncounted,
     /// Errors about them, where the surface is known.
@@ -48,6 +50,11 @@ impl Engagement {
         let mut points = std::mem::take(&mut self.points);
         points.clear();
         *self = Self { points, approach_level: self.approach_level, ..Self::default() };
+    }
+
+    /// Adds axes of unknown position during an arc.
+    pub(super) fn add_unknown_axes(&mut self, axes: UnknownAxes) {
+        self.unknown_axes = self.unknown_axes.union(axes);
     }
 
     fn push_point(&mut self, p: Point3<f64>) {
@@ -233,7 +240,7 @@ impl HoleExtractor<'_> {
     /// Adds the passes of a hole. Returns false for circles that may be a groove, unless a nominal hole is there.
     fn push_circles(&mut self, circles: Circles) -> bool {
         let start = self.engagement.start.unwrap_or(self.pose.tip);
-        let approach_level = self.engagement.approach_level;
+        let Engagement { approach_level, unknown_axes, .. } = self.engagement;
         let (tool, core) = (self.setup.tool, circles.core);
         let pass = |ring: Ring| {
             let out = ring.out;
@@ -250,6 +257,7 @@ impl HoleExtractor<'_> {
                 circle: Some(MilledCircle { radius: ring.radius, roundness: ring.roundness, core }),
                 backtrace: ring.backtrace,
                 axis_position: ring.axis_position,
+                unknown_axes,
             }
         };
         let passes: Vec<DrillPass> = circles.rings.into_iter().map(pass).collect();
@@ -258,7 +266,6 @@ impl HoleExtractor<'_> {
         }
         for pass in passes {
             self.check_clamped(&pass.backtrace, self.clamp_state);
-            self.check_work_zero_known(&pass.backtrace, self.work_zero.unknown_axes());
             if self.cutting_state.spindle_direction == SpindleDirection::Off {
                 self.report_spindle_stopped(&pass.backtrace);
             }
