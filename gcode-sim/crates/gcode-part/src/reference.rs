@@ -1,4 +1,6 @@
 //! Nominal holes with their tolerances, and the limits of the process.
+use std::sync::Arc;
+
 use super::hole::{Hole, HoleList, Unit};
 use super::pattern::Pattern;
 use super::read;
@@ -31,8 +33,16 @@ impl Reference {
     /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
         let holes = read::check_all(list.holes)?;
-        let process_limits = ProcessLimits { hole_spacing: hole_spacing(&holes), ..ProcessLimits::default() };
-        Ok(Self { holes, position: None, depth: None, surface: None, process_limits, pattern: None })
+        let hole_axes = holes.iter().map(|hole| NominalAxis { entry: hole.entry, axis: hole.axis }).collect();
+        let hole_spacing = hole_spacing(&holes);
+        Ok(Self {
+            holes,
+            position: None,
+            depth: None,
+            surface: None,
+            process_limits: ProcessLimits { hole_axes, hole_spacing, ..ProcessLimits::default() },
+            pattern: None,
+        })
     }
 
     /// Returns the hole list that `reference` writes.
@@ -58,6 +68,17 @@ pub struct ProcessLimits {
     pub tools: Vec<ToolProcess>,
     /// Least distance of two nominal axes, mm; `None` above 1 mm.
     pub hole_spacing: Option<f64>,
+    /// Axes of the holes of a list: a mill that plunges there drills.
+    pub hole_axes: Arc<[NominalAxis]>,
+}
+
+/// Axis of a nominal hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NominalAxis {
+    /// Where the axis meets the surface.
+    pub entry: [f64; 3],
+    /// Unit vector out of the part.
+    pub axis: [f64; 3],
 }
 
 /// Limits of one tool.

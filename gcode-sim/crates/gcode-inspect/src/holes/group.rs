@@ -22,6 +22,9 @@ pub(crate) const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
 /// Least additional depth at which a pass of the same tool cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
 
+/// Largest height of a core on the bottom of a hole that counts as removed, mm.
+const MAX_CORE_HEIGHT: f64 = 0.1;
+
 /// Extent of a pass in the part's frame, with its feed and its spindle.
 #[derive(Clone, Copy, Debug)]
 pub struct PassCut {
@@ -35,6 +38,17 @@ pub struct PassCut {
     pub speed: Rpm,
     /// True if the spindle reverses in the hole, as it does for a tap.
     pub is_tapping: bool,
+    /// Figures of a mill's circle; `None` for a stroke.
+    pub milled: Option<MilledCut>,
+}
+
+/// Figures of a circle that a mill cuts, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MilledCut {
+    /// Largest minus least distance of the path from the axis.
+    pub roundness: f64,
+    /// Diameter of the metal that the mill leaves on the axis; `None` without any.
+    pub core: Option<f64>,
 }
 
 /// A pass of a drilled hole.
@@ -65,6 +79,38 @@ pub(super) struct DrillPass {
     pub axis_position: Position,
     /// Axes of unknown position on the part.
     pub unknown_axes: UnknownAxes,
+    /// Circle of a mill; `None` for a stroke.
+    pub circle: Option<MilledCircle>,
+}
+
+/// Path of a mill round a hole, lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MilledCircle {
+    /// Radius of the path.
+    pub radius: f64,
+    /// Largest minus least distance of the path from the axis.
+    pub roundness: f64,
+    /// Diameter of the core that the circles of the tool leave; `None` if they leave none, or if it is unknown.
+    pub core: Option<f64>,
+}
+
+impl DrillPass {
+    /// Returns the diameter that the pass cuts; `None` if the tool table lacks the tool.
+    fn diameter(&self, machine: &Machine) -> Option<f64> {
+        let cutter = machine.diameter_of(self.tool)?;
+        let Some(circle) = self.circle else { return Some(cutter) };
+        // Without the noise of the arithmetic, which would be printed.
+        Some(((cutter + 2.0 * circle.radius) * 1e9).round() / 1e9)
+    }
+
+    /// Returns true if the pass cuts at least as wide as another one. Of a tool of unknown diameter only the path counts; of
+    /// two such tools the later one does.
+    fn is_as_wide(&self, other: &Self, machine: &Machine) -> bool {
+        let path = |pass: &Self| 2.0 * pass.circle.map_or(0.0, |circle| circle.radius);
+        let diameter = |pass: &Self| pass.diameter(machine);
+        let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();
+        !is_comparable || diameter(other).unwrap_or(path(other)) <= diameter(self).unwrap_or(path(self))
+    }
 }
 
 /// A hole that the program drills, in the part's frame; lengths in mm.
@@ -119,7 +165,7 @@ pub struct EarlierPass {
 impl PassCut {
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
-        Self { start, bottom, feed: None, speed: Rpm(0.0), is_tapping: false }
+        Self { start, bottom, feed: None, speed: Rpm(0.0), is_tapping: false, milled: None }
     }
 }
 
@@ -205,7 +251,7 @@ fn first_on_same_line(passes: &[DrillPass], machine: &Machine, spacing: Option<f
 /// another one, and so does a tool that drills beside the hole of the larger of two tools.
 fn max_offset(one: &DrillPass, other: &DrillPass, machine: &Machine) -> f64 {
     let by_tool = if one.tool == other.tool { MAX_REPEAT_OFFSET } else { MAX_LINE_OFFSET };
-    match (machine.diameter_of(one.tool), machine.diameter_of(other.tool)) {
+    match (one.diameter(machine), other.diameter(machine)) {
         (Some(one), Some(other)) => by_tool.min(one.max(other) / 2.0),
         _ => by_tool,
     }
@@ -238,9 +284,11 @@ fn push_holes<'p>(
 ) {
     let first_on_line = holes.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
-    let mut lowest_by_tool: BTreeMap<Option<u32>, f64> = BTreeMap::new();
+    // A mill cuts the same depth with each radius.
+    let radius = |pass: &DrillPass| pass.circle.map(|circle| (circle.radius * 1000.0).round() as u64);
+    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
     let (cutting, repeated): (Vec<&DrillPass>, Vec<&DrillPass>) = passes.partition(|pass| {
-        let lowest = lowest_by_tool.entry(pass.tool).or_insert(f64::INFINITY);
+        let lowest = lowest_by_tool.entry((pass.tool, radius(pass))).or_insert(f64::INFINITY);
         let cuts = height(&pass.cut.bottom) < *lowest - MIN_DEPTH_GAIN;
         if cuts {
             *lowest = height(&pass.cut.bottom);
@@ -250,11 +298,25 @@ fn push_holes<'p>(
     let lowest = cutting.iter().map(|pass| height(&pass.cut.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing_pass(&cutting, lowest, height, machine);
     let finishing_index = cutting.iter().take_while(|pass| !std::ptr::eq(**pass, finish)).count();
+    // A core that another tool removes, or may remove, is none.
+    let core = |milled: &DrillPass| {
+        milled.circle.and_then(|circle| circle.core).filter(|core| {
+            !cutting.iter().any(|pass| {
+                let is_core_tool = pass.circle.is_some_and(|circle| circle.core.is_some());
+                let is_as_deep = height(&pass.cut.bottom) <= height(&milled.cut.bottom) + MAX_CORE_HEIGHT;
+                !is_core_tool && is_as_deep && pass.diameter(machine).is_none_or(|diameter| *core <= diameter)
+            })
+        })
+    };
+    let cut = |pass: &DrillPass| {
+        let milled = pass.circle.map(|circle| MilledCut { roundness: circle.roundness, core: core(pass) });
+        PassCut { milled, ..pass.cut }
+    };
     let earlier = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(|pass| EarlierPass {
-        cut: pass.cut,
+        cut: cut(pass),
         axis: pass.axis,
         tool: pass.tool,
-        diameter: machine.diameter_of(pass.tool),
+        diameter: pass.diameter(machine),
         backtrace: pass.backtrace.clone(),
         axis_position: pass.axis_position,
     });
@@ -266,12 +328,12 @@ fn push_holes<'p>(
             entry: along(start),
             axis: pass.axis,
             depth: (along(start) - along(bottom)).norm(),
-            diameter: machine.diameter_of(pass.tool),
+            diameter: pass.diameter(machine),
             tool: pass.tool,
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
             tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.feed_direction).clamp(-1.0, 1.0)),
-            finishing_cut: pass.cut,
+            finishing_cut: cut(pass),
             finishing_index,
             unknown_axes: pass.unknown_axes,
             earlier_passes,
@@ -285,7 +347,8 @@ fn push_holes<'p>(
         cutting.iter().fold(UnknownAxes::default(), |axes, pass| axes.union(pass.unknown_axes));
     holes.push(finished);
     let again = |pass: &&DrillPass| hole(pass, height(&pass.cut.start), height(&pass.cut.bottom), Vec::new());
-    holes.extend(repeated.iter().map(again));
+    // A mill goes round more than once to finish.
+    holes.extend(repeated.iter().filter(|pass| pass.circle.is_none()).map(again));
 }
 
 /// Returns the finishing pass: the last pass of the largest tool that reaches half the depth of the hole, without
@@ -297,12 +360,13 @@ fn finishing_pass<'p>(
     machine: &Machine,
 ) -> &'p DrillPass {
     let longest = cutting.iter().map(|pass| height(&pass.cut.start) - lowest).fold(0.0, f64::max);
-    let diameter = |pass: &DrillPass| machine.diameter_of(pass.tool).unwrap_or(0.0);
     let deep = |p: &DrillPass| height(&p.cut.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {
         let goes_on = deep(pass) && height(&pass.cut.bottom) < height(&best.cut.bottom) - MIN_DEPTH_GAIN;
-        if goes_on || (deep(pass), diameter(pass)) >= (deep(best), diameter(best)) {
+        let is_wider =
+            deep(pass) && !deep(best) || deep(pass) == deep(best) && pass.is_as_wide(best, machine);
+        if goes_on || is_wider {
             best = pass;
         }
     }

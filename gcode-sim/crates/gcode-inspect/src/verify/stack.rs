@@ -36,12 +36,17 @@ impl<'a> Cut<'a> {
         let depth = |point: &Point3<f64>| (entry - point).dot(&out);
         let cut = |pass: ToolPass<'a>| {
             let tool = pass.tool.and_then(|number| machine.find_tool(number));
+            let is_milled = pass.cut.milled.is_some();
             Self {
                 pass,
                 start: depth(&pass.cut.start),
                 tip: depth(&pass.cut.bottom),
-                kind: tool.and_then(|tool| tool.kind),
-                point: tool.map_or(PointShape::Unknown, Tool::point),
+                kind: tool.and_then(|tool| tool.kind).or(is_milled.then_some(ToolKind::EndMill)),
+                point: if is_milled {
+                    PointShape::Flat
+                } else {
+                    tool.map_or(PointShape::Unknown, Tool::point)
+                },
             }
         };
         drilled.passes().map(cut).collect()

@@ -107,7 +107,10 @@ impl Judgement<'_> {
                 self.judge_through(Some(feature), surface);
             } else {
                 match cut.map(|cut| self.near[cut]) {
-                    Some(cut) => self.judge_depth(feature, &cut),
+                    Some(cut) => {
+                        self.judge_depth(feature, &cut);
+                        self.judge_milling(feature, &cut);
+                    }
                     None => self.report_missing(feature),
                 }
             }
@@ -181,6 +184,19 @@ impl Judgement<'_> {
         if exceeds((actual - nominal).abs(), limit) {
             self.report_depth(feature, cut, actual);
         }
+    }
+
+    /// Judges the circle of a mill that makes a feature.
+    fn judge_milling(&mut self, feature: &Feature, cut: &Cut<'_>) {
+        let Some(milled) = cut.pass.cut.milled else { return };
+        let what = format!("hole {}: the {}", self.id, feature.describe());
+        let findings = [
+            roundness::finding(&what, &milled, self.comparison.tolerances.diameter),
+            milled_core::finding(&what, &milled),
+        ];
+        let place = cut.pass.backtrace;
+        self.findings
+            .extend(findings.into_iter().flatten().map(|finding| finding.with_backtrace(place.clone())));
     }
 
     fn report_depth(&mut self, feature: &Feature, cut: &Cut<'_>, actual: f64) {

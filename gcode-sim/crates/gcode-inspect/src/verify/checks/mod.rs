@@ -9,11 +9,13 @@ mod diameter;
 mod explained_by_rows;
 pub(super) mod extra;
 pub(super) mod features;
+mod milled_core;
 pub(super) mod mirrored;
 mod missing;
 mod overlap;
 mod position;
 mod reach;
+mod roundness;
 mod row_angle;
 mod row_group;
 mod row_missing;
@@ -58,6 +60,8 @@ pub(super) const ALL: &[Check] = &[
     cut_outside::check,   // hole-cut-aside
     depth::check,         // hole-depth
     diameter::check,      // hole-diameter
+    roundness::check,     // hole-roundness
+    milled_core::check,   // hole-core
     features::check,      // feature-*, hole-not-through, tap-*
     tools::check,         // hole-tools
     overlap::check,       // hole-overlap
