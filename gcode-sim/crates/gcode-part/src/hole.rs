@@ -51,6 +51,13 @@ pub struct Hole {
     pub through: bool,
 }
 
+impl Hole {
+    /// Returns the diameter, or that of the widest feature; `None` if unknown.
+    pub fn widest_diameter(&self) -> Option<f64> {
+        self.diameter.into_iter().chain(self.features.iter().map(|feature| feature.diameter)).reduce(f64::max)
+    }
+}
+
 fn is_false(value: &bool) -> bool {
     !value
 }

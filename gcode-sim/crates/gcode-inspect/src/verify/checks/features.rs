@@ -13,6 +13,9 @@ const POINT_LENGTH: f64 = 0.300_430;
 const DRILL_POINT: PointShape = PointShape::Pointed(Deg(118.0));
 const SPOT_DRILL_POINT: PointShape = PointShape::Pointed(Deg(90.0));
 
+/// Largest width by which a spot drill may break the edge of a hole, mm in diameter.
+const MAX_EDGE_BREAK: f64 = 1.0;
+
 /// What the end of a tool leaves open, by the tool's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::verify) enum ShapeGap {
@@ -259,12 +262,15 @@ impl Judgement<'_> {
             cut.tip
         );
         let finding = Diagnostic::new(&FEATURE_EXTRA, message).with_backtrace(cut.pass.backtrace.clone());
+        let is_edge_break = cut.kind == Some(ToolKind::SpotDrill) && !exceeds(excess, MAX_EDGE_BREAK);
+        let severity = if is_edge_break { Severity::Warning } else { Severity::Error };
         let finding = match cut.point {
             PointShape::Unknown => {
                 finding.note("the machine file gives neither its kind nor its point_angle: it counts as flat")
             }
             PointShape::Flat | PointShape::Pointed(_) => finding,
         };
+        let finding = finding.with_severity(severity);
         self.findings.push(finding.help("remove the pass, or add its feature to the hole in the reference"));
     }
 
