@@ -34,6 +34,7 @@ mod module_circles;
 mod mutations;
 #[cfg(feature = "browser")]
 mod page;
+mod one_verdict;
 mod pin_holes;
 mod real_files;
 mod results;

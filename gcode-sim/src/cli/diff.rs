@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     match arguments.format {
         FindingFormat::Json => output::json(&report)?,
         FindingFormat::Text => output::print(&report.text())?,
-        FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name))?,
+        FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name), None)?,
     }
     if let Some(path) = &arguments.picture {
         let names = [&new_request, &old_request].map(render::name);

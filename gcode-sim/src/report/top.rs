@@ -7,7 +7,7 @@ use super::figures::with_sign;
 use gcode_draw::{Cylinder, DrawnHole, HoleStatus, Side, TopView};
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::machine::{AxisLink, HeadKind, LinkMotion, Machine};
-use gcode_inspect::verify::{Neighbours, Verdict};
+use gcode_inspect::verify::{Answer, Conclusion, Neighbours, Verdict};
 use gcode_lang::motion::AxisIndex;
 use gcode_part::Hole;
 use gcode_part::Pattern;
@@ -88,12 +88,22 @@ pub fn of_verdict(
             .map(closing_sentence)
             .chain(verdict.neighbours.iter().flat_map(neighbour_range))
             .collect(),
+        verdict: Some(drawn_conclusion(&verdict.conclusion())),
         tolerance: Some(verdict.tolerance),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
         ..TopView::default()
     }
+}
+
+/// Returns a conclusion as the line of a picture, with the status that gives its colour.
+pub(super) fn drawn_conclusion(conclusion: &Conclusion<'_>) -> (HoleStatus, String) {
+    let status = match conclusion.answer {
+        Answer::Pass => HoleStatus::Good,
+        Answer::Fail => HoleStatus::Bad,
+    };
+    (status, conclusion.line())
 }
 
 /// Returns a hole without nominal, actual and remarks.

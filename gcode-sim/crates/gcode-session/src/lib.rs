@@ -34,7 +34,7 @@ use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
-use gcode_inspect::verify::{Tolerances, Verdict, verify};
+use gcode_inspect::verify::{Answer, Tolerances, Verdict, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::{Alarm, remedy};
 use gcode_lang::control::Settings;
@@ -229,7 +229,12 @@ pub fn grind(
 impl GrindingRun {
     /// Verifies the ground flutes against the nominal ones.
     pub fn verify(&self) -> FluteVerdict {
-        verify_flutes(&self.nominal, &self.result, &|span| self.run.locate(span))
+        let locate = |span| self.run.locate(span);
+        let mut verdict = verify_flutes(&self.nominal, &self.result, &locate);
+        if verdict.verdict == Answer::Fail {
+            verdict.add_likely_causes(causes::text_findings(&self.run, true), &locate);
+        }
+        verdict
     }
 }
 
@@ -310,7 +315,11 @@ impl Simulation {
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
         let locate = |span| self.run.locate(span);
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
-        let causes = causes::likely_causes(&self.run, machine, verdict.has_findings());
+        let mut causes: Vec<Diagnostic> =
+            causes::unset_work_offsets(&self.run, machine, "holes").collect();
+        if verdict.has_findings() {
+            causes.extend(causes::text_findings(&self.run, verdict.verdict == Answer::Fail));
+        }
         verdict.add_likely_causes(causes, &locate);
         verdict
     }

@@ -23,22 +23,18 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
             }
         }
         @for side in sides {
-            @let stopped = side.observed.revision.record.outcome() != "end";
+            @let record = &side.observed.revision.record;
             @if let Some(verdict) = side.observed.verdict {
-                @let good = verdict.holes.iter().filter(|hole| hole.ok).count();
-                @let nominal = verdict.holes.len() + verdict.missing.len();
-                p.answer.yes[verdict.verdict == Answer::Pass].no[verdict.verdict == Answer::Fail] {
+                @let conclusion = verdict.conclusion();
+                p.answer.yes[conclusion.answer == Answer::Pass].no[conclusion.answer == Answer::Fail] {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
-                    @match verdict.verdict { Answer::Pass => "PASS", Answer::Fail => "FAIL" }
-                    ", " (good) " of " (figures::count(nominal, "hole")) " in tolerance"
-                    @if !verdict.missing.is_empty() { ", " (verdict.missing.len()) " missing" }
-                    @if !verdict.extra.is_empty() { ", " (verdict.extra.len()) " extra" }
+                    (conclusion.answer.word()) ", " (shown(conclusion.summary))
                 }
-            }
-            @if stopped {
+                @for cause in &verdict.likely_causes { p.note { "Likely cause: " (shown(cause)) } }
+            } @else if record.outcome() != "end" {
                 p.answer.no {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
-                    "stopped, " (shown(side.observed.revision.record.words()))
+                    "stopped, " (shown(record.words()))
                 }
             }
         }

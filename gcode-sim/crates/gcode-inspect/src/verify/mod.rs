@@ -1,6 +1,7 @@
 //! Comparison of the drilled holes with the nominal ones: matching, deviations, findings and the verdict.
 mod causes;
 mod checks;
+mod conclusion;
 mod displacement;
 pub mod flutes;
 mod hole_finding;
@@ -14,10 +15,11 @@ mod rows;
 mod tests;
 mod verdict;
 
+pub use conclusion::{Answer, Conclusion, Ending};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
-pub use verdict::{Answer, ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
+pub use verdict::{ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
 use self::checks::mirrored::MirrorImage;
 use self::hole_finding::{HoleFindings, Subject};
