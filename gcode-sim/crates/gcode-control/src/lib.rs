@@ -93,6 +93,8 @@ mod call_execution;
 mod next_block;
 mod residual_state;
 
+pub mod slice;
+
 pub use self::control::{Control, Observer};
 pub use self::next_block::{BlockCommands, UnsimulatedCodes, modal_code};
 pub use self::notes::Note;

@@ -33,6 +33,7 @@
 //! ```
 #![warn(missing_docs)]
 
+mod assumption;
 mod clusters;
 mod distance;
 mod flutes;
@@ -53,6 +54,7 @@ mod reference;
 mod surface;
 mod touch_uncertainty;
 
+pub use assumption::{Assumption, AssumptionPlace};
 pub use clusters::Clusters;
 pub use distance::NearestPoint;
 pub use flutes::Flutes;

@@ -37,7 +37,7 @@ pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
 }
 
 /// Loads the programs of the run in the same order, so that spans remain valid.
-fn reload(run: &Run) -> Memory {
+pub(super) fn reload(run: &Run) -> Memory {
     let mut memory = Memory::default();
     for (_, source) in run.control.memory().sources().iter() {
         memory.load(source.name.clone(), source.bytes.clone());

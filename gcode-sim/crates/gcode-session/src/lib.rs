@@ -21,11 +21,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![warn(missing_docs)]
+mod assumptions;
 mod causes;
 mod trace;
 
 use std::sync::Arc;
 
+pub use assumptions::Dependences;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Note, Observer, Outcome, Progress};
@@ -159,16 +161,22 @@ pub fn run_observed<S: EventSink>(
         let (line, program) = (memory.sources().line_column(second.span).line, second.label());
         return Err(SessionError::DuplicateProgram { name: request.name.clone(), line, program });
     }
-    let mut control = Control::new(memory, request.settings.clone());
-    let presets = presets(&request.machine, &request.settings);
-    for (number, value) in presets.chain(request.variables.iter().copied()) {
-        control.set_variable(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
-    }
+    let mut control = set_up_control(request, memory)?;
     if let Some(progress) = &request.progress {
         control.set_progress(Arc::clone(progress));
     }
     let outcome = control.run_observed(request.limits, library, sink, observer);
     Ok(Run { control, outcome })
+}
+
+/// Returns a control with these programs, set up as the request states.
+fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionError> {
+    let mut control = Control::new(memory, request.settings.clone());
+    let presets = presets(&request.machine, &request.settings);
+    for (number, value) in presets.chain(request.variables.iter().copied()) {
+        control.set_variable(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
+    }
+    Ok(control)
 }
 
 /// Returns the variables of a machine that is set up: work offsets (#5221…), and the tool lengths as geometry
@@ -322,6 +330,12 @@ impl Simulation {
         }
         verdict.add_likely_causes(causes, &locate);
         verdict
+    }
+
+    /// Follows the values that the run read and nothing in its program set to the holes, in a second run. `surface` is that of
+    /// the first run.
+    pub fn dependences(&self, request: &Request, surface: Option<Surface>) -> Dependences {
+        assumptions::dependences(request, &self.run, surface)
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.
