@@ -94,7 +94,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             match &reference {
                 Some(reference) => {
                     let tolerances = Tolerances::of(reference, tolerance);
-                    let verdict = simulation.verify(reference, tolerances, &request.machine);
+                    let mut verdict = simulation.verify(reference, tolerances, &request.machine);
+                    simulation.add_assumptions(&mut verdict, &request, surface, false);
                     let drawn =
                         top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
                     Drawn {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::conditions::ProgramArguments;
+use super::conditions::{Denials, ProgramArguments};
 use super::format::FindingFormat;
 use super::library::Folders;
 use super::{ExitStatus, UsageError, options, output, page, progress, render};
@@ -36,6 +36,9 @@ pub(super) struct Arguments {
     /// Tolerance of a hole's depth either way, mm [default: the job's, or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     depth_tolerance: Option<f64>,
+
+    #[command(flatten)]
+    denials: Denials,
 
     /// List the worst hole first
     #[arg(long)]
@@ -74,6 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
                 ("--depth-tolerance", depth.is_some()),
+                ("--deny", arguments.denials.denies_assumptions()),
                 ("--worst-first", arguments.worst_first),
                 ("--full", arguments.full),
                 ("--page", arguments.page.is_some()),
@@ -143,9 +147,14 @@ fn holes(
         let picture = || gcode_draw::main_view(&view());
         print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
+    let add_assumptions = |simulation: &Simulation, verdict: &mut Verdict, request: &Request| {
+        let is_denied = arguments.denials.denies_assumptions();
+        simulation.add_assumptions(verdict, request, reference.surface, is_denied);
+    };
     if let Some(path) = &arguments.page {
         let traced = page::simulate_traced(request, &mut folders, reference.surface)?;
-        let verdict = traced.0.simulation.verify(reference, tolerances, &machine);
+        let mut verdict = traced.0.simulation.verify(reference, tolerances, &machine);
+        add_assumptions(&traced.0.simulation, &mut verdict, request);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
         page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;
         let status = print(&traced.0.simulation, &verdict)?;
@@ -154,5 +163,7 @@ fn holes(
     }
     let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, reference.surface);
     let simulation = progress::of_run(request, simulate)?;
-    print(&simulation, &simulation.verify(reference, tolerances, &machine))
+    let mut verdict = simulation.verify(reference, tolerances, &machine);
+    add_assumptions(&simulation, &mut verdict, request);
+    print(&simulation, &verdict)
 }

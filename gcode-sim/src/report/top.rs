@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::figures::with_sign;
+use super::figures::{count, with_sign};
 use gcode_draw::{Cylinder, DrawnHole, HoleStatus, Side, TopView};
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::machine::{AxisLink, HeadKind, LinkMotion, Machine};
@@ -87,6 +87,7 @@ pub fn of_verdict(
             .iter()
             .map(closing_sentence)
             .chain(verdict.neighbours.iter().flat_map(neighbour_range))
+            .chain(assumption_lines(verdict))
             .collect(),
         verdict: Some(drawn_conclusion(&verdict.conclusion())),
         tolerance: Some(verdict.tolerance),
@@ -176,6 +177,18 @@ fn closing_sentence(pattern: &Pattern) -> String {
 fn neighbour_range(neighbours: &Neighbours) -> Option<String> {
     let (min, max) = (neighbours.min.as_ref()?, neighbours.max.as_ref()?);
     Some(format!("neighbours {:.4} to {:.4} mm apart", min.distance, max.distance))
+}
+
+/// Number of assumptions that a picture lists.
+const MAX_ASSUMPTIONS: usize = 3;
+
+/// Returns a line for each of the first assumptions, and the number of the others.
+fn assumption_lines(verdict: &Verdict) -> impl Iterator<Item = String> + '_ {
+    let holes = verdict.holes.len() + verdict.extra.len();
+    let first = verdict.assumptions.iter().take(MAX_ASSUMPTIONS);
+    let more = verdict.assumptions.len().saturating_sub(MAX_ASSUMPTIONS);
+    let first = first.map(move |assumption| format!("assumes {}", assumption.sentence(holes)));
+    first.chain((0 < more).then(|| format!("and {}", count(more, "more assumption"))))
 }
 
 /// Locates no block: a picture shows none.

@@ -3,6 +3,7 @@ use std::fmt::Write;
 
 use super::figures::{count, rounded, signed, signed_to};
 use gcode_inspect::verify::{Conclusion, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict};
+use gcode_part::Assumption;
 
 /// Extent and order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -175,6 +176,7 @@ fn summary(text: &mut String, verdict: &Verdict) {
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }
+    append_assumptions(text, &verdict.assumptions, verdict.holes.len() + verdict.extra.len());
     if !verdict.missing.is_empty() {
         let _ = writeln!(text, "missing  {}", list_first(&verdict.missing, |id| id.clone(), ", "));
     }
@@ -214,6 +216,13 @@ fn made_by(hole: &HoleVerdict) -> String {
     let calls: Vec<_> =
         hole.calls.iter().map(|c| format!(", called from {} line {}", c.program, c.line)).collect();
     format!("{} line {}{tool}{}", hole.from.program, hole.from.line, calls.concat())
+}
+
+/// Writes a line for each assumption; `holes` is the number of all holes of the result.
+pub(super) fn append_assumptions(text: &mut String, assumptions: &[Assumption], holes: usize) {
+    for assumption in assumptions {
+        let _ = writeln!(text, "assumes  {}", assumption.sentence(holes));
+    }
 }
 
 /// Writes the line that stands for the verdict, and below it what probably explains it.
@@ -275,6 +284,7 @@ mod tests {
             findings: Vec::new(),
             neighbours: None,
             not_checked: Vec::new(),
+            assumptions: Vec::new(),
             diagnostics: Vec::new(),
         }
     }

@@ -41,15 +41,20 @@ pub(super) fn dependences(request: &Request, run: &Run, surface: Option<Surface>
 }
 
 impl Dependences {
-    /// Returns the assumptions that can touch a hole; `names` returns the name of a hole by its index in the extraction.
-    pub fn assumptions(&self, run: &Run, names: impl Fn(usize) -> Option<String>) -> Vec<Assumption> {
+    /// Returns the assumptions that can touch a hole, each with its block; `names` returns the name of a hole by its index in
+    /// the extraction.
+    pub fn assumptions(
+        &self,
+        run: &Run,
+        names: impl Fn(usize) -> Option<String>,
+    ) -> Vec<(Assumption, Backtrace)> {
         let assumption = |(index, read): (usize, &OutsideRead)| {
             let touched = self.holes.iter().enumerate().filter(|(_, marks)| marks.contains(index));
             let decides: Vec<String> = touched.filter_map(|(hole, _)| names(hole)).collect();
             let (program, line) = run.locate(read.place.block);
-            let place = AssumptionPlace { program, line };
-            let what = read.source.name();
-            (!decides.is_empty()).then_some(Assumption { what, value: read.value, place, decides })
+            let (what, place) = (read.source.name(), AssumptionPlace { program, line });
+            let assumption = Assumption { what, value: read.value, place, decides };
+            (!assumption.decides.is_empty()).then(|| (assumption, read.place.clone()))
         };
         self.reads.iter().enumerate().filter_map(assumption).collect()
     }
@@ -145,4 +150,99 @@ fn marks_of(hole: &DrilledHole, strokes: &[Marks]) -> Marks {
     };
     let passes = hole.earlier_passes.iter().map(|pass| &pass.backtrace);
     passes.chain([&hole.backtrace]).filter_map(stroke).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate;
+    use gcode_inspect::machine::Machine;
+
+    /// Returns the assumptions of a program as `#510=2.5@3: 1 2`, and its number of holes.
+    fn assumptions_with(blocks: &str, variables: &[(u32, f64)]) -> (Vec<String>, usize) {
+        let text = format!("O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z50.\n{blocks}\nG80 Z50.\nM30\n");
+        let mut request = Request::new("O1.nc", text.into_bytes(), Machine::default());
+        request.variables = variables.to_vec();
+        let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
+        assert!(simulation.run.stop_finding().is_none(), "{blocks}");
+        let holes = simulation.extracted.holes.len();
+        let found = simulation.dependences(&request, None);
+        let all = found.assumptions(&simulation.run, |hole| Some((hole + 1).to_string()));
+        let shown = all.into_iter().map(|(Assumption { what, value, place, decides }, _)| {
+            let value = value.map_or_else(|| "vacant".to_owned(), |value| value.to_string());
+            format!("{what}={value}@{}: {}", place.line, decides.join(" "))
+        });
+        (shown.collect(), holes)
+    }
+
+    /// Asserts the assumptions of a program with this number of holes.
+    fn assert_assumptions(blocks: &str, holes: usize, expected: &[&str]) {
+        assert_eq!(assumptions_with(blocks, &[]), (expected.iter().map(|one| (*one).to_owned()).collect(), holes), "{blocks}");
+    }
+
+    #[test]
+    fn a_common_decides_the_holes_whose_words_it_reaches() {
+        // Line 4 is the first of these blocks.
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nX20. Y#510\nX30. Y10.", 3, &["#510=vacant@5: 2"]);
+        assert_assumptions("#100=#510+1.\nG81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.", 3, &["#510=vacant@4: 2"]);
+        // Y stays where the hole before has left it.
+        assert_assumptions("G81 X10. Y#510 Z-5. R2. F100.\nX20.\nX30. Y10.", 3, &["#510=vacant@4: 1 2"]);
+        // The depth of a cycle stays until it is cancelled.
+        let cancelled = "G81 X10. Y10. Z-[5.+#510] R2. F100.\nX20.\nG80 Z50.\nG81 X30. Z-5. R2.";
+        assert_assumptions(cancelled, 3, &["#510=vacant@4: 1 2"]);
+    }
+
+    #[test]
+    fn a_value_that_the_program_sets_is_no_assumption() {
+        assert_assumptions("#510=5.\nG81 X10. Y#510 Z-5. R2. F100.", 1, &[]);
+        assert_assumptions("#510=#0\nG81 X10. Y#510 Z-5. R2. F100.", 1, &[]);
+        assert_assumptions("#510=#510+1.\nG81 X10. Y#510 Z-5. R2. F100.", 1, &["#510=vacant@4: 1"]);
+        assert_assumptions("#511=#510\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
+    }
+
+    #[test]
+    fn a_condition_decides_what_is_executed_until_both_ways_meet() {
+        let program = |condition: &str| {
+            format!("#100=10.\nIF[{condition}]GOTO 5\n#100=20.\nN5 G81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.")
+        };
+        assert_assumptions(&program("#510EQ1"), 3, &["#510=vacant@5: 2"]);
+        assert_assumptions(&program("#510NE1"), 3, &["#510=vacant@5: 2"]);
+        assert_assumptions(&program("#100EQ1"), 3, &[]);
+        let then = "#100=10.\nIF[#510EQ1]THEN #100=20.\nG81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.";
+        assert_assumptions(then, 3, &["#510=vacant@5: 2"]);
+        // One way leads to an alarm: the value decides all holes behind it.
+        let guard = "IF[#510EQ1]THEN #3000=1(NO)\nG81 X10. Y10. Z-5. R2. F100.";
+        assert_assumptions(guard, 1, &["#510=vacant@4: 1"]);
+    }
+
+    #[test]
+    fn a_loop_count_decides_the_holes_of_the_loop() {
+        let text = "G81 X5. Y5. Z-5. R2. F100.\n#1=0\nWHILE[#1LT#510]DO1\n#1=#1+1\nX[10.*#1] Y10.\nEND1\nG80\nG0 X0. Y50. Z50.\nG81 X50. Y50. Z-5. R2. F100.";
+        let (found, holes) = assumptions_with(text, &[(510, 2.0)]);
+        assert_eq!((found, holes), (vec!["#510=2@6: 2 3".to_owned()], 4));
+    }
+
+    #[test]
+    fn arguments_of_a_call_carry_their_values() {
+        let text = "G65 P2 X10. Y#510\nG65 P2 X20. Y10.\nG80\nM30\nO2\nG0 X#24 Y#25\nG81 Z-5. R2. F100.\nG80\nM99\nO3\nM30";
+        assert_assumptions(text, 2, &["#510=vacant@4: 1"]);
+    }
+
+    #[test]
+    fn switches_signals_lengths_and_codes_of_the_builder_are_assumptions() {
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\n/X20.\nX30.", 3, &["/=0@5: 2"]);
+        assert_assumptions("#100=#1005*10.\nG81 X10. Y#100 Z-5. R2. F100.\nX20. Y10.", 2, &["#1005=0@4: 1"]);
+        assert_assumptions("G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &["H1=0@4: 1"]);
+        assert_assumptions("G10 L10 P1 R0\nG43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM21\nX20.", 2, &["M21=vacant@5: 2"]);
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.", 2, &["G55=vacant@7: 2"]);
+    }
+
+    #[test]
+    fn a_computed_number_of_a_variable_is_followed() {
+        assert_assumptions("#1=510\nG81 X10. Y#[#1] Z-5. R2. F100.\nX20. Y10.", 2, &["#510=vacant@5: 1"]);
+        // Another #510 would have set another variable.
+        let text = "#101=10.\n#102=20.\n#[101+#510]=30.\nG81 X10. Y#102 Z-5. R2. F100.\nX20. Y10.";
+        assert_assumptions(text, 2, &["#510=vacant@6: 1"]);
+    }
 }

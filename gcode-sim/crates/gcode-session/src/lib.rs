@@ -332,6 +332,19 @@ impl Simulation {
         verdict
     }
 
+    /// Adds the assumptions to a verdict on these holes; each is an error if `is_denied`. `surface` is that of the run.
+    pub fn add_assumptions(
+        &self,
+        verdict: &mut Verdict,
+        request: &Request,
+        surface: Option<Surface>,
+        is_denied: bool,
+    ) {
+        let names = verdict.hole_names();
+        let found = self.dependences(request, surface).assumptions(&self.run, |hole| names.get(&hole).cloned());
+        verdict.add_assumptions(found, is_denied, &|span| self.run.locate(span));
+    }
+
     /// Follows the values that the run read and nothing in its program set to the holes, in a second run. `surface` is that of
     /// the first run.
     pub fn dependences(&self, request: &Request, surface: Option<Surface>) -> Dependences {

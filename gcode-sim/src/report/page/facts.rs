@@ -30,6 +30,8 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
                     (conclusion.answer.word()) ", " (shown(conclusion.summary))
                 }
+                @let holes = verdict.holes.len() + verdict.extra.len();
+                @for assumption in &verdict.assumptions { p.note { "Assumes " (shown(&assumption.sentence(holes))) } }
                 @for cause in &verdict.likely_causes { p.note { "Likely cause: " (shown(cause)) } }
             } @else if record.outcome() != "end" {
                 p.answer.no {

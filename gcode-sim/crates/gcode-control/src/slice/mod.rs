@@ -97,6 +97,8 @@ pub struct Slice {
     /// Marks of the arguments of modal calls, and of the words of the current block.
     modal_arguments: Marks,
     block_marks: Marks,
+    /// The current block drills by a canned cycle.
+    is_in_cycle: bool,
     /// Tool length offsets that the program has set, by their H.
     set_lengths: BTreeSet<u32>,
     motion: Rc<Cell<Marks>>,
@@ -283,6 +285,7 @@ impl Observer for Slice {
         }
         self.branches.enter(&control.executor.flow);
         self.block_marks = Marks::NONE;
+        self.is_in_cycle = false;
         let before = self.machine.motion();
         {
             let Control { memory, executor, .. } = &*control;
@@ -293,6 +296,8 @@ impl Observer for Slice {
             self.follow(&Block { registers, flow, program, op });
         }
         self.open_branch(control);
+        // A cycle drills where its block leads, wherever it comes from.
+        let before = if self.is_in_cycle { Marks::NONE } else { before };
         let marks = before | self.machine.motion() | self.block_marks | self.branches.marks();
         self.waiting = if control.executor.registers.lookahead.is_idle() { marks } else { marks | self.waiting };
         self.motion.set(self.waiting);

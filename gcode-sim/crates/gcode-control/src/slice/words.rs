@@ -52,6 +52,7 @@ impl Slice {
             list.push(marked);
         }
         let modes = self.follow_g_codes(block, words, &list);
+        self.is_in_cycle = modes.is_in_cycle;
         self.follow_codes(&list, guard);
         self.follow_m_codes(block, words, &list);
         self.follow_offsets(block, &list, &modes);
@@ -249,7 +250,13 @@ impl Slice {
                 self.machine.axes.iter_mut().for_each(|axis| *axis |= all | others | control);
             }
         }
-        self.follow_move(block, named(), modes, others);
+        let drilling = axes.find(b'Z');
+        let of_cycle =
+            |word: &&MarkedWord| b"RPQIJKL".contains(&word.letter) || axes.find(word.letter).is_some_and(|axis| Some(axis) == drilling);
+        let mut levels = list.iter().filter(of_cycle).map(|word| word.marks).peekable();
+        let has_levels = modes.begins_cycle || levels.peek().is_some();
+        let levels = has_levels.then(|| levels.collect());
+        self.follow_move(block, named(), modes, levels);
     }
 
     fn follow_move(
@@ -257,7 +264,7 @@ impl Slice {
         block: &Block<'_>,
         named: impl Iterator<Item = (AxisIndex, MarkedWord)>,
         modes: &BlockModes,
-        others: Marks,
+        levels: Option<Marks>,
     ) {
         let registers = block.registers;
         let data = &registers.data;
@@ -276,7 +283,7 @@ impl Slice {
                 marks |= self.machine.length;
             }
             let keeps = modes.distance == Distance::Incremental || !word.is_fixed();
-            if keeps || modes.is_in_cycle {
+            if keeps || modes.is_in_cycle && Some(axis) == drilling {
                 marks |= self.machine.axes[axis];
             }
             self.machine.axes[axis] = marks;
@@ -288,9 +295,12 @@ impl Slice {
             self.machine.axes.iter_mut().for_each(|axis| *axis |= signal);
         }
         if modes.is_in_cycle {
-            let initial = drilling.map_or(Marks::NONE, |axis| self.machine.axes[axis]);
-            let before = if modes.begins_cycle && !registers.state.modal.cycle.is_some() { Marks::NONE } else { self.machine.cycle };
-            self.machine.cycle = before | others | initial | control;
+            if let Some(levels) = levels {
+                let initial = drilling.map_or(Marks::NONE, |axis| self.machine.axes[axis]);
+                let is_first = modes.begins_cycle && registers.state.modal.cycle.is_none();
+                let before = if is_first { Marks::NONE } else { self.machine.cycle };
+                self.machine.cycle = before | levels | initial | control;
+            }
             if let Some(axis) = drilling {
                 self.machine.axes[axis] |= self.machine.cycle;
             }
@@ -360,7 +370,9 @@ impl Slice {
         for word in &words.list {
             if let Some(axis) = registers.data.settings.axes.find(word.letter) {
                 self.machine.axes[axis] |= marks;
-                self.machine.cycle |= marks;
+                if word.letter == b'Z' {
+                    self.machine.cycle |= marks;
+                }
                 continue;
             }
             match (word.letter, &word.value) {

@@ -1,4 +1,5 @@
 //! Comparison of the drilled holes with the nominal ones: matching, deviations, findings and the verdict.
+mod assumption;
 mod causes;
 mod checks;
 mod conclusion;
@@ -15,6 +16,7 @@ mod rows;
 mod tests;
 mod verdict;
 
+pub use assumption::denied_assumptions;
 pub use conclusion::{Answer, Conclusion, Ending};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};

@@ -8,12 +8,13 @@ use serde::Serialize;
 use super::conclusion::{Answer, Conclusion, Ending, hole_counts, stop_sentence, uncounted_errors};
 use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
+use super::assumption::{denied_assumptions, denied_words};
 use super::{Comparison, HoleNeighbours, HolePair, Neighbours};
 use crate::holes::DrilledHole;
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
-use gcode_lang::motion::CallChain;
+use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::source::Span;
-use gcode_part::{Hole, Origin};
+use gcode_part::{Assumption, Hole, Origin};
 
 /// The result of `verify --format json`. Nothing is rounded.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -51,6 +52,8 @@ pub struct Verdict {
     pub neighbours: Option<Neighbours>,
     /// Sentences on what the verdict does not cover.
     pub not_checked: Vec<String>,
+    /// Values that the run read and nothing in the program set, and the holes that each can touch.
+    pub assumptions: Vec<Assumption>,
     /// The findings with their locations, for the printed report.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
@@ -210,6 +213,7 @@ pub(super) fn verdict(
         findings: findings.iter().map(as_data).collect(),
         neighbours: None,
         not_checked: Vec::new(),
+        assumptions: Vec::new(),
         holes,
         diagnostics: limit_per_kind(findings.into_iter().filter(|one| !one.is_folded).map(|one| one.finding)),
     }
@@ -311,6 +315,32 @@ impl Verdict {
             self.likely_causes = cause_sentences(&causes, locate);
         }
         insert_causes(&mut self.findings, &mut self.diagnostics, causes, locate);
+    }
+
+    /// Returns the names of the drilled holes by their index: ids, and `extra 1` for those without a nominal hole.
+    pub fn hole_names(&self) -> BTreeMap<usize, String> {
+        let matched = self.holes.iter().map(|hole| (hole.drilled_index, hole.id.clone()));
+        let extra = self.extra.iter().enumerate();
+        let extra = extra.map(|(place, hole)| (hole.drilled_index, format!("extra {}", place + 1)));
+        matched.chain(extra).collect()
+    }
+
+    /// Adds the assumptions; each is an error if they are denied.
+    pub fn add_assumptions(
+        &mut self,
+        assumptions: Vec<(Assumption, Backtrace)>,
+        is_denied: bool,
+        locate: &dyn Fn(Span) -> (String, u32),
+    ) {
+        let drilled = self.holes.len() + self.extra.len();
+        if is_denied && !assumptions.is_empty() {
+            let denied = denied_assumptions(&assumptions, drilled);
+            self.findings.extend(denied.iter().map(|finding| finding_of(finding, None, true, locate)));
+            self.diagnostics.extend(limit_per_kind(denied.into_iter()));
+            self.verdict = Answer::Fail;
+            self.summary = format!("{}; {}", denied_words(assumptions.len()), self.summary);
+        }
+        self.assumptions.extend(assumptions.into_iter().map(|(assumption, _)| assumption));
     }
 
     /// Adds the neighbours of each hole, by drilled hole, and their summary.
