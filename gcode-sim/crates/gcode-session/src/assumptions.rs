@@ -1,13 +1,12 @@
 //! Assumptions of a result: values that the run read and nothing in its program set, with the holes that each can touch.
 use std::cell::Cell;
-use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::sync::Arc;
 
 use super::{Request, Run, causes, set_up_control};
 use gcode_control::slice::{Marks, OutsideRead, Slice, StatedValues};
 use gcode_inspect::holes::{DrilledHole, HoleExtractor};
-use gcode_lang::motion::{Backtrace, Call, Event, EventSink, MAX_AXES, Position, SkipMove, SkipSignal};
+use gcode_lang::motion::{Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal};
 use gcode_lang::program::NoLibrary;
 use gcode_lang::source::{SourceId, Span};
 use gcode_part::{Assumption, AssumptionPlace, Surface};
@@ -20,19 +19,24 @@ pub struct Dependences {
     holes: Vec<Marks>,
 }
 
-/// Follows the outside values through a second run, if the first one can have read any.
-pub(super) fn dependences(request: &Request, run: &Run, surface: Option<Surface>) -> Dependences {
-    if !may_read_outside(request, run) {
+/// Follows the outside values through a second run, if the first one can have read any. `surface` is that of the first run.
+pub(super) fn dependences(
+    request: &Request,
+    run: &Run,
+    surface: Option<Surface>,
+    has_holes: bool,
+) -> Dependences {
+    if run.control.is_cancelled() || !may_read_outside(request, run, has_holes) {
         return Dependences::default();
     }
     let Ok(mut control) = set_up_control(request, causes::reload(run)) else { return Dependences::default() };
     let mut slice = Slice::new(stated_values(request));
     let mut sink = MarkedEvents {
-        extractor: HoleExtractor::new(&request.machine).with_surface(surface.or(request.part)),
+        extractor: super::extractor(request, surface),
         motion: slice.motion(),
         strokes: Vec::new(),
         position: Position::default(),
-        axis: None,
+        last: None,
     };
     control.run_observed(request.limits, &mut NoLibrary, &mut sink, &mut slice);
     let MarkedEvents { extractor, strokes, .. } = sink;
@@ -53,41 +57,68 @@ impl Dependences {
             let decides: Vec<String> = touched.filter_map(|(hole, _)| names(hole)).collect();
             let (program, line) = run.locate(read.place.block);
             let (what, place) = (read.source.name(), AssumptionPlace { program, line });
+            let is_assumed = read.decides_further_cuts || !decides.is_empty();
             let assumption = Assumption { what, value: read.value, place, decides };
-            (!assumption.decides.is_empty()).then(|| (assumption, read.place.clone()))
+            is_assumed.then(|| (assumption, read.place.clone()))
         };
         self.reads.iter().enumerate().filter_map(assumption).collect()
+    }
+
+    /// Returns the assumptions, with the holes named by their numbers from 1.
+    pub fn numbered(&self, run: &Run) -> Vec<(Assumption, Backtrace)> {
+        self.assumptions(run, |hole| Some((hole + 1).to_string()))
+    }
+
+    /// Returns the number of holes.
+    pub fn hole_count(&self) -> usize {
+        self.holes.len()
     }
 }
 
 /// Returns true if the run can have read a value that its program does not set. A text that names a variable beyond the
-/// locals counts as reading it.
-fn may_read_outside(request: &Request, run: &Run) -> bool {
+/// locals counts as reading it. Without holes only those values matter that can decide whether a block is executed, or how.
+fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let control = &run.control;
     let stated = stated_values(request);
+    let is_code_unknown = || control.auxiliary_codes().keys().any(|code| !stated.codes.contains(code));
     !request.variables.is_empty()
-        || !control.unset_work_systems().is_empty()
-        || control.auxiliary_codes().keys().any(|code| !stated.codes.contains(code))
-        || control.memory().sources().iter().any(|(_, source)| names_outside(&source.bytes, &stated))
+        || has_holes && (!control.unset_work_systems().is_empty() || is_code_unknown())
+        || control.memory().sources().iter().any(|(_, source)| names_outside(&source.bytes, &stated, has_holes))
 }
+
+/// Letters that [`names_outside`] reads.
+const LETTERS: [bool; 256] = {
+    let mut letters = [false; 256];
+    let all = b"(#/HDPGhdpg";
+    let mut index = 0;
+    while index < all.len() {
+        letters[all[index] as usize] = true;
+        index += 1;
+    }
+    letters
+};
 
 /// Returns true if a text has a block skip, `#` before anything but a local or a harmless system variable, PRM, G31, or a
 /// tool offset whose value the machine file does not state.
-fn names_outside(text: &[u8], stated: &StatedValues) -> bool {
+fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
     let mut rest = text;
-    while let Some(at) = rest.iter().position(|byte| b"#/HDPGhdpg".contains(byte)) {
+    while let Some(at) = rest.iter().position(|byte| LETTERS[usize::from(*byte)]) {
         let (letter, behind) = (rest[at].to_ascii_uppercase(), &rest[at + 1..]);
+        if letter == b'(' {
+            let end = behind.iter().position(|byte| matches!(byte, b')' | b'\n'));
+            rest = &behind[end.unwrap_or(behind.len())..];
+            continue;
+        }
         let behind = behind.trim_ascii_start();
         let digits = behind.iter().take_while(|byte| byte.is_ascii_digit()).count();
         let number = std::str::from_utf8(&behind[..digits]).ok().and_then(|digits| digits.parse::<u32>().ok());
         let is_outside = match (letter, number) {
             (b'#', Some(number)) => !matches!(number, 0..=33 | 3000 | 3006 | 3100..=3102 | 4001..=4330 | 5001..=5060),
             (b'#', None) | (b'/', _) => true,
-            (b'H', Some(number)) => number != 0 && !stated.lengths.contains(&number),
-            (b'D', Some(number)) => number != 0,
-            (b'H' | b'D', None) => behind.starts_with(b"#"),
+            (b'H', Some(number)) => has_holes && number != 0 && !stated.lengths.contains(&number),
+            (b'D', Some(number)) => has_holes && number != 0,
             (b'P', None) => behind.starts_with(b"RM"),
-            (b'G', Some(31)) => true,
+            (b'G', Some(31)) => has_holes && !stated.has_part,
             _ => false,
         };
         if is_outside {
@@ -102,23 +133,26 @@ fn names_outside(text: &[u8], stated: &StatedValues) -> bool {
 fn stated_values(request: &Request) -> StatedValues {
     let lengths = request.machine.tools.iter().filter(|tool| tool.length.is_some()).map(|tool| tool.number);
     let clamp = request.process_limits.clamp.iter().flat_map(|clamp| [clamp.on, clamp.off]);
-    StatedValues { lengths: lengths.collect(), codes: clamp.collect::<BTreeSet<u32>>() }
+    StatedValues { lengths: lengths.collect(), codes: clamp.collect(), has_part: request.part.is_some() }
 }
 
 /// Source of the calls that mark the backtraces of events: no text has it.
 const MARKER: SourceId = SourceId(u32::MAX);
 
+/// Cosine of the largest angle between two moves along one line.
+const MIN_COSINE: f64 = 1.0 - 1e-9;
+
 /// Sink that marks each event with the stroke it belongs to, and records the outside values on which a stroke depends.
 ///
-/// A stroke is a series of moves of one and the same axis; every other move is a stroke of its own. The mark is an innermost
-/// call that no program has, so that the passes of the extraction carry it.
+/// A stroke is a series of feeds, with the rapids along the line of the move before. The mark is an innermost call that no
+/// program has, so that the passes of the extraction carry it.
 struct MarkedEvents<'m> {
     extractor: HoleExtractor<'m>,
     motion: Rc<Cell<Marks>>,
     strokes: Vec<Marks>,
     position: Position,
-    /// Axis of the current stroke.
-    axis: Option<usize>,
+    /// Direction of the last move, and whether it was a rapid.
+    last: Option<(Position, bool)>,
 }
 
 impl EventSink for MarkedEvents<'_> {
@@ -128,12 +162,24 @@ impl EventSink for MarkedEvents<'_> {
 
     fn event(&mut self, event: &Event<'_>) {
         let Some(to) = event.kind.end() else { return self.extractor.event(event) };
-        let mut moved = (0..MAX_AXES).filter(|axis| to[*axis] != self.position[*axis]);
-        let axis = moved.next().filter(|_| moved.next().is_none());
-        if self.strokes.is_empty() || axis.is_none() || axis != self.axis {
+        let is_rapid = matches!(event.kind, EventKind::Rapid { .. });
+        let from = std::mem::replace(&mut self.position, *to);
+        let length = (0..MAX_AXES).map(|axis| (to[axis] - from[axis]).powi(2)).sum::<f64>().sqrt();
+        if length > 0.0 {
+            let mut direction = Position::default();
+            (0..MAX_AXES).for_each(|axis| direction[axis] = (to[axis] - from[axis]) / length);
+            let is_along = |last: &Position| {
+                let cosine: f64 = (0..MAX_AXES).map(|axis| last[axis] * direction[axis]).sum();
+                cosine.abs() >= MIN_COSINE
+            };
+            let continues = self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
+            if !continues {
+                self.strokes.push(Marks::NONE);
+            }
+            self.last = Some((direction, is_rapid));
+        } else if self.strokes.is_empty() {
             self.strokes.push(Marks::NONE);
         }
-        (self.axis, self.position) = (axis, *to);
         let stroke = self.strokes.len() - 1;
         self.strokes[stroke] |= self.motion.get();
         let place = Span { source: MARKER, start: stroke as u32, end: stroke as u32 };

@@ -309,13 +309,18 @@ pub fn simulate_observed<S: EventSink>(
     sink: &mut S,
     observer: &mut impl Observer,
 ) -> Result<Simulation, SessionError> {
-    let mut extractor = HoleExtractor::new(&request.machine)
-        .with_surface(surface.or(request.part))
-        .with_process_limits(&request.process_limits);
+    let mut extractor = extractor(request, surface);
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.findings());
     Ok(Simulation { run, extracted })
+}
+
+/// Returns the extractor of a run's holes.
+fn extractor(request: &Request, surface: Option<Surface>) -> HoleExtractor<'_> {
+    HoleExtractor::new(&request.machine)
+        .with_surface(surface.or(request.part))
+        .with_process_limits(&request.process_limits)
 }
 
 impl Simulation {
@@ -348,7 +353,7 @@ impl Simulation {
     /// Follows the values that the run read and nothing in its program set to the holes, in a second run. `surface` is that of
     /// the first run.
     pub fn dependences(&self, request: &Request, surface: Option<Surface>) -> Dependences {
-        assumptions::dependences(request, &self.run, surface)
+        assumptions::dependences(request, &self.run, surface, !self.extracted.holes.is_empty())
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.
@@ -358,6 +363,11 @@ impl Simulation {
 }
 
 impl Run {
+    /// Follows the values that the run read and nothing in its program set to the holes that it makes, in a second run.
+    pub fn dependences(&self, request: &Request) -> Dependences {
+        assumptions::dependences(request, self, None, true)
+    }
+
     /// Returns program and line of a block: `O8101`, 31.
     pub fn locate(&self, span: Span) -> (String, u32) {
         let memory = self.control.memory();

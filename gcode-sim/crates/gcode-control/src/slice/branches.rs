@@ -57,12 +57,14 @@ impl Branches {
 
     /// Requests a branch from the current block to the target of its jump; `None` for an unknown target.
     pub(super) fn request_jump(&mut self, marks: Marks, target: Option<OpIndex>) {
-        self.request = Some((marks, target));
+        // The block of a condition inside another belongs to both.
+        let outer = self.request.take().map_or(Marks::NONE, |(outer, _)| outer);
+        self.request = Some((outer | marks, target));
     }
 
     /// Requests a branch for a loop; `end` is the operation of its END.
     pub(super) fn request_loop(&mut self, marks: Marks, end: OpIndex) {
-        self.request = Some((marks, Some(end + 1)));
+        self.request_jump(marks, Some(end + 1));
     }
 
     /// Closes the branches that end before the next block.
@@ -112,10 +114,10 @@ impl Slice {
         let here = control.executor.flow.frame.next;
         let program = control.executor.flow.frame.program;
         let depth = control.executor.flow.callers.len();
-        let Some(target) = target else { return self.branches.stay(marks) };
+        let Some(target) = target else { return self.leave(marks) };
         let (first, end) = if here < target { (here, target) } else { (target, here + 1) };
         if MAX_STRETCH < end - first || !is_closed(control, program, first, end) {
-            return self.branches.stay(marks);
+            return self.leave(marks);
         }
         let registers = &control.executor.registers;
         let memory = &mut control.memory;
@@ -173,7 +175,7 @@ fn statement_stays(
     jump_stays: &impl Fn(&Operand) -> bool,
 ) -> bool {
     match statement {
-        Statement::Assign { target, .. } => !raises_alarm(target),
+        Statement::Assign { target, .. } => !may_raise_alarm(target),
         Statement::Assignments(all) => all.iter().all(|one| statement_stays(one, stays, jump_stays)),
         Statement::Goto(to) | Statement::IfGoto { to, .. } => jump_stays(&to.node),
         Statement::IfThen { then, .. } => statement_stays(then, stays, jump_stays),
@@ -189,10 +191,19 @@ fn statement_stays(
 }
 
 /// Returns true for #3000 and for a computed number.
-fn raises_alarm(target: &AssignmentTarget) -> bool {
+fn may_raise_alarm(target: &AssignmentTarget) -> bool {
     match target {
         AssignmentTarget::Slot(slot) => *slot == Slot::Other(3000),
         AssignmentTarget::Computed(_) => true,
+    }
+}
+
+/// Returns true if a statement raises an alarm: nothing is cut behind it.
+pub(super) fn raises_alarm(statement: &Statement) -> bool {
+    match statement {
+        Statement::Assign { target: AssignmentTarget::Slot(slot), .. } => *slot == Slot::Other(3000),
+        Statement::Alarm(_) => true,
+        _ => false,
     }
 }
 

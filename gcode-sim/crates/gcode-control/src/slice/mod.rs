@@ -5,6 +5,8 @@
 //! (`branches`). Where an exact set would need more than one run, the set is larger, never smaller.
 mod branches;
 mod marks;
+mod moves;
+mod possible;
 mod reads;
 mod words;
 
@@ -21,7 +23,7 @@ use super::flow::ProgramFlow;
 use super::registers::Registers;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::modes::WorkSystem;
-use gcode_lang::program::{Assign, AssignmentTarget, Op, OpKind, Slot, Statement};
+use gcode_lang::program::{Assign, AssignmentTarget, Op, OpKind, Statement};
 
 /// Value that comes from outside the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -72,6 +74,8 @@ pub struct OutsideRead {
     pub value: Option<f64>,
     /// Block of the first read.
     pub place: Backtrace,
+    /// Another value may make the run cut where it has not cut.
+    pub decides_further_cuts: bool,
 }
 
 /// Values that the machine file states: they are given, not assumed.
@@ -81,6 +85,8 @@ pub struct StatedValues {
     pub lengths: BTreeSet<u32>,
     /// M codes with a known effect, such as those of the clamp.
     pub codes: BTreeSet<u32>,
+    /// A part decides where G31 stops.
+    pub has_part: bool,
 }
 
 /// Observer that follows outside values through a run.
@@ -101,6 +107,10 @@ pub struct Slice {
     is_in_cycle: bool,
     /// Tool length offsets that the program has set, by their H.
     set_lengths: BTreeSet<u32>,
+    /// Cutter radii that the program has set, by their D.
+    set_radii: BTreeSet<u32>,
+    /// Values that decide whether the run cuts elsewhere.
+    further: Marks,
     motion: Rc<Cell<Marks>>,
     /// Marks of moves that wait for the next one.
     waiting: Marks,
@@ -119,7 +129,15 @@ impl Slice {
 
     /// Returns the values read, in the order of their indices in [`Marks`].
     pub fn into_reads(self) -> Vec<OutsideRead> {
-        self.reads
+        let further = self.further;
+        let read = |(index, read)| OutsideRead { decides_further_cuts: further.contains(index), ..read };
+        self.reads.into_iter().enumerate().map(read).collect()
+    }
+
+    /// Marks everything from now on, and cuts that the run does not reach.
+    fn leave(&mut self, marks: Marks) {
+        self.branches.stay(marks);
+        self.further |= marks;
     }
 
     /// Returns the marks of an outside value, recorded at its first read.
@@ -128,7 +146,7 @@ impl Slice {
         let index = *self.index.entry(source).or_insert(next);
         if index == next {
             let place = Backtrace { block: op.span, calls: flow.frame.calls.clone() };
-            self.reads.push(OutsideRead { source, value, place });
+            self.reads.push(OutsideRead { source, value, place, decides_further_cuts: false });
         }
         Marks::of(index)
     }
@@ -160,7 +178,7 @@ impl Slice {
     /// Follows an operation that is executed only if something outside, marked `marks`, allows it.
     fn follow_guarded(&mut self, block: &Block<'_>, kind: &OpKind, marks: Marks, is_executed: bool) {
         if branches::leaves_block(kind) {
-            self.branches.stay(marks);
+            self.leave(marks);
         } else if !marks.is_none() {
             // A called program belongs to the block.
             self.branches.request_jump(marks, Some(block.flow.frame.next + 1));
@@ -182,12 +200,12 @@ impl Slice {
             Statement::Assignments(all) => all.iter().for_each(|one| self.follow_statement(block, one)),
             Statement::Goto(to) => {
                 let marks = self.operand_marks(block, &to.node);
-                self.branches.stay(marks);
+                self.leave(marks);
             }
             Statement::IfGoto { condition, to } => {
                 let marks = self.code_marks(block, condition);
                 let target = self.operand_marks(block, &to.node);
-                self.branches.stay(target);
+                self.leave(target);
                 if !marks.is_none() {
                     self.branches.request_jump(marks, block.jump_target(&to.node));
                 }
@@ -195,8 +213,10 @@ impl Slice {
             Statement::IfThen { condition, then } => {
                 let marks = self.code_marks(block, condition);
                 if !marks.is_none() {
-                    if branches::jumps(then) {
+                    if branches::raises_alarm(then) {
                         self.branches.stay(marks);
+                    } else if branches::jumps(then) {
+                        self.leave(marks);
                     }
                     self.add_possible_assignment(block.registers, then, marks);
                 }
@@ -234,39 +254,6 @@ impl Slice {
         }
         let Ok(slot) = block.registers.resolve_target(target) else { return };
         self.write(block.registers, slot.number(), marks);
-    }
-
-    /// Adds the marks of a condition to everything that an assignment under it can write.
-    fn add_possible_assignment(&mut self, registers: &Registers, statement: &Statement, marks: Marks) {
-        match statement {
-            Statement::AssignFree(assign) => self.variables.add(usize::from(assign.variable), marks),
-            Statement::Assign { target: AssignmentTarget::Slot(Slot::Free(place)), .. } => {
-                self.variables.add(usize::from(*place), marks);
-            }
-            Statement::Assign { target: AssignmentTarget::Slot(slot), .. } => {
-                self.add_to_variable(registers, slot.number(), marks);
-            }
-            Statement::Assign { .. } => {
-                self.variables.add_to_any(marks);
-                self.machine.add_to_all(marks);
-            }
-            Statement::Assignments(all) => {
-                all.iter().for_each(|one| self.add_possible_assignment(registers, one, marks));
-            }
-            Statement::IfThen { then, .. } => self.add_possible_assignment(registers, then, marks),
-            _ => {}
-        }
-    }
-
-    /// Adds the marks of a condition to everything that an operation under it can change.
-    fn add_possible_effects(&mut self, registers: &Registers, kind: &OpKind, marks: Marks) {
-        match kind {
-            OpKind::Empty | OpKind::Alarm(_) => {}
-            OpKind::AssignFree(assign) => self.variables.add(usize::from(assign.variable), marks),
-            OpKind::Statement(statement) => self.add_possible_assignment(registers, statement, marks),
-            OpKind::Words(words) => self.add_possible_words(registers, words, marks),
-            OpKind::If { then, .. } => self.add_possible_effects(registers, then, marks),
-        }
     }
 }
 

@@ -1,14 +1,44 @@
 //! Marks of the values that a block reads: variables, system variables, parameters.
+use super::super::data::ControlData;
 use super::super::evaluation::RoundingTarget;
 use super::super::functions::variable_number;
 use super::super::variables::VariableClass;
 use super::{Block, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
+use gcode_lang::control::OffsetVariables;
 use gcode_lang::motion::MAX_AXES;
 use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
 
 /// Number of axes in each range of positions, #5001 to #5020 and so on.
 const POSITIONS: u32 = 20;
+
+/// Place of the first additional work coordinate system behind EXT and G54 to G59.
+const FIRST_ADDITIONAL: usize = 7;
+
+/// Entry of an offset table.
+enum OffsetEntry {
+    Length(u32),
+    Radius(u32),
+    Work(usize),
+}
+
+/// Returns the entry that a system variable addresses.
+fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
+    let is_haas = offsets == OffsetVariables::Haas;
+    let work = |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
+    Some(match number {
+        2001..=2400 => OffsetEntry::Length((number - 2001) % 200 + 1),
+        2401..=2800 if is_haas => OffsetEntry::Radius((number - 2401) % 200 + 1),
+        2500..=2806 => OffsetEntry::Work((number % 100) as usize),
+        5201..=5220 if is_haas => return None,
+        5201..=5340 => work(5201, 0),
+        7001..=7960 => work(7001, FIRST_ADDITIONAL),
+        10_001..=11_999 => OffsetEntry::Length(number % 1000),
+        12_001..=13_999 => OffsetEntry::Radius(number % 1000),
+        14_001..=20_000 => work(14_001, FIRST_ADDITIONAL),
+        _ => return None,
+    })
+}
 
 impl Block<'_> {
     /// Returns true if a condition is true.
@@ -126,8 +156,24 @@ impl Slice {
             3001 | 3002 | 3011 | 3012 => self.outside_variable(block, number),
             _ => match self.variables.system(number) {
                 Some(marks) => marks,
+                None if self.is_offset_set(&block.registers.data, number) => self.table_marks(number),
                 None => self.outside_variable(block, number) | self.table_marks(number),
             },
+        }
+    }
+
+    /// Returns true if the machine file states the tool length H or a block has set it.
+    pub(super) fn is_length_set(&self, number: u32) -> bool {
+        self.stated.lengths.contains(&number) || self.set_lengths.contains(&number)
+    }
+
+    /// Returns true if the machine file states an offset or a block has set it, by its variable.
+    fn is_offset_set(&self, data: &ControlData, number: u32) -> bool {
+        match offset_of(number, data.settings.offset_variables) {
+            Some(OffsetEntry::Length(tool)) => self.is_length_set(tool),
+            Some(OffsetEntry::Radius(tool)) => self.set_radii.contains(&tool),
+            Some(OffsetEntry::Work(system)) => data.set_systems.contains(&system),
+            None => false,
         }
     }
 
@@ -169,6 +215,11 @@ impl Slice {
             VariableClass::System => {
                 self.variables.set_system(number, marks);
                 self.add_to_tables(number, marks);
+                match offset_of(number, registers.data.settings.offset_variables) {
+                    Some(OffsetEntry::Length(tool)) => _ = self.set_lengths.insert(tool),
+                    Some(OffsetEntry::Radius(tool)) => _ = self.set_radii.insert(tool),
+                    Some(OffsetEntry::Work(_)) | None => {}
+                }
             }
         }
     }

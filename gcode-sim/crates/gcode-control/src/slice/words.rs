@@ -2,37 +2,38 @@
 use super::super::words::{computed_row, count};
 use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
-use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::modes::{CutterSide, Distance, Length, Polar, WorkSystem};
+use gcode_lang::program::modes::{CutterSide, Distance, Length, Motion, Plane, WorkSystem};
 use gcode_lang::program::{ArgumentLocals, CallCode, CallOp, CallTarget, LoweredWord, WordOperand, Words};
 
 /// One word with the marks of its value.
 #[derive(Clone, Copy)]
-struct MarkedWord {
-    letter: u8,
-    marks: Marks,
+pub(super) struct MarkedWord {
+    pub(super) letter: u8,
+    pub(super) marks: Marks,
     /// Value; `None` for vacant, with which the word counts as absent.
-    value: Option<f64>,
+    pub(super) value: Option<f64>,
 }
 
 impl MarkedWord {
     /// Returns true if another outside value neither changes the word nor removes it.
-    fn is_fixed(&self) -> bool {
+    pub(super) fn is_fixed(&self) -> bool {
         self.marks.is_none() && self.value.is_some()
     }
 }
 
 /// Modes that a block has in force.
-struct BlockModes {
-    distance: Distance,
+pub(super) struct BlockModes {
+    pub(super) motion: Motion,
+    pub(super) plane: Plane,
+    pub(super) distance: Distance,
     length: Length,
     cutter: CutterSide,
-    work: WorkSystem,
-    is_in_cycle: bool,
-    begins_cycle: bool,
-    one_shot: Option<OneShot>,
+    pub(super) work: WorkSystem,
+    pub(super) is_in_cycle: bool,
+    pub(super) begins_cycle: bool,
+    pub(super) one_shot: Option<OneShot>,
 }
 
 impl Slice {
@@ -43,6 +44,10 @@ impl Slice {
             let switch = (*switch).max(1);
             let value = Some(f64::from(u8::from(data.is_skip_on(switch))));
             guard = self.outside(OutsideValue::BlockSkip(switch), value, block.flow, block.op);
+            self.add_possible_words(block.registers, words, guard);
+        }
+        if block.registers.state.transform.is_none() {
+            self.machine.transform = Marks::NONE;
         }
         let words = data.unskipped(words).0;
         let mut list: Vec<MarkedWord> = Vec::with_capacity(words.list.len());
@@ -87,6 +92,8 @@ impl Slice {
         let (state, codes) = (&block.registers.state, block.registers.data.settings.codes);
         let control = self.branches.marks();
         let mut modes = BlockModes {
+            motion: state.modal.motion,
+            plane: state.modal.plane,
             distance: state.modal.distance,
             length: state.modal.length,
             cutter: state.modal.cutter,
@@ -101,16 +108,22 @@ impl Slice {
                 // Another value is another code.
                 self.machine.add_to_all(marked.marks);
                 self.machine.rest |= marked.marks;
+                self.further |= marked.marks;
             }
             if let Some(group) = row.group() {
                 self.machine.set_group(group, control | marked.marks);
             }
             match row.effect {
-                Effect::Motion(_) | Effect::Cycle(None) => {
+                Effect::Motion(motion) => {
+                    (modes.is_in_cycle, modes.motion) = (false, motion);
+                    self.machine.cycle = control | marked.marks;
+                }
+                Effect::Cycle(None) => {
                     modes.is_in_cycle = false;
                     self.machine.cycle = control | marked.marks;
                 }
                 Effect::Cycle(Some(_)) => (modes.is_in_cycle, modes.begins_cycle) = (true, true),
+                Effect::Plane(plane) => modes.plane = plane,
                 Effect::Distance(distance) => modes.distance = distance,
                 Effect::Length(length) => modes.length = length,
                 Effect::Cutter(side) => modes.cutter = side,
@@ -152,6 +165,7 @@ impl Slice {
             if !marked.marks.is_none() {
                 self.machine.add_to_all(marked.marks);
                 self.machine.rest |= marked.marks;
+                self.further |= marked.marks;
             }
             let raw = block.registers.without_side_effects(|registers| registers.evaluate_word(words, word));
             let Some(code) = raw.ok().flatten().and_then(|raw| count(raw, b'M').ok()) else { continue };
@@ -184,7 +198,7 @@ impl Slice {
             Length::Off => self.machine.length = control | self.machine.group(8),
             _ if registers.state.modal.length != modes.length || list.iter().any(|word| word.letter == b'H') => {
                 let mut marks = self.machine.code(b'H') | self.machine.tool_table | control;
-                if h != 0 && !self.stated.lengths.contains(&h) && !self.set_lengths.contains(&h) {
+                if h != 0 && !self.is_length_set(h) {
                     let value = registers.data.offsets.length(h).ok();
                     marks |= self.outside(OutsideValue::ToolLength(h), value, block.flow, block.op);
                 }
@@ -198,132 +212,13 @@ impl Slice {
             CutterSide::Off => self.machine.radius = control,
             _ if begins => {
                 let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
-                if d != 0 {
+                if d != 0 && !self.set_radii.contains(&d) {
                     let value = registers.data.offset_radius(d);
                     marks |= self.outside(OutsideValue::CutterRadius(d), value, block.flow, block.op);
                 }
                 self.machine.radius = marks;
             }
             _ => {}
-        }
-    }
-
-    fn follow_axes(&mut self, block: &Block<'_>, list: &[MarkedWord], modes: &BlockModes) {
-        let axes = &block.registers.data.settings.axes;
-        let control = self.branches.marks();
-        let others: Marks = list.iter().map(|word| word.marks).collect();
-        let named = || list.iter().filter_map(|word| Some((axes.find(word.letter)?, *word)));
-        match modes.one_shot {
-            None | Some(OneShot::SingleDirection | OneShot::Skip) => {}
-            Some(OneShot::Reference | OneShot::SecondReference) => {
-                for (axis, word) in named() {
-                    let before = if word.is_fixed() { Marks::NONE } else { self.machine.axes[axis] };
-                    self.machine.axes[axis] = before | word.marks | control;
-                }
-                return;
-            }
-            Some(OneShot::MachineCoordinateSystem) => {
-                for (axis, word) in named() {
-                    let before = if word.is_fixed() { Marks::NONE } else { self.machine.axes[axis] };
-                    self.machine.axes[axis] = before | word.marks | control | self.machine.group(3);
-                }
-                return;
-            }
-            Some(OneShot::SetLocalCoordinateSystem) => {
-                for (axis, word) in named() {
-                    let before = if word.is_fixed() { Marks::NONE } else { self.machine.shifts[axis] };
-                    self.machine.shifts[axis] = before | word.marks | control;
-                }
-                return;
-            }
-            Some(OneShot::SetWorkCoordinateSystem | OneShot::PresetWorkCoordinateSystem) => {
-                for (axis, _) in axes.iter() {
-                    let position = self.machine.axes[axis] | self.machine.length;
-                    self.machine.shifts[axis] |= position | others | control;
-                }
-                return;
-            }
-            Some(OneShot::DataInput) => return self.follow_data_input(list, others | control),
-            Some(OneShot::Dwell | OneShot::DataInputEnd | OneShot::CheckReference) => return,
-            Some(OneShot::FromReference | OneShot::CornerArc | OneShot::CirclePocket(_) | OneShot::BoltHoles(_)) => {
-                let all: Marks = self.machine.axes.iter().copied().collect();
-                self.machine.axes.iter_mut().for_each(|axis| *axis |= all | others | control);
-            }
-        }
-        let drilling = axes.find(b'Z');
-        let of_cycle =
-            |word: &&MarkedWord| b"RPQIJKL".contains(&word.letter) || axes.find(word.letter).is_some_and(|axis| Some(axis) == drilling);
-        let mut levels = list.iter().filter(of_cycle).map(|word| word.marks).peekable();
-        let has_levels = modes.begins_cycle || levels.peek().is_some();
-        let levels = has_levels.then(|| levels.collect());
-        self.follow_move(block, named(), modes, levels);
-    }
-
-    fn follow_move(
-        &mut self,
-        block: &Block<'_>,
-        named: impl Iterator<Item = (AxisIndex, MarkedWord)>,
-        modes: &BlockModes,
-        levels: Option<Marks>,
-    ) {
-        let registers = block.registers;
-        let data = &registers.data;
-        let control = self.branches.marks();
-        let drilling = data.settings.axes.find(b'Z');
-        let is_unset = modes.work != WorkSystem::default()
-            && !data.set_systems.contains(&crate::data::system_index(modes.work));
-        let mut work = Marks::NONE;
-        let mut moved = Marks::NONE;
-        for (axis, word) in named {
-            if is_unset && work.is_none() {
-                work = self.outside(OutsideValue::WorkOffset(modes.work), None, block.flow, block.op);
-            }
-            let mut marks = word.marks | control | work | self.machine.coordinates(axis);
-            if Some(axis) == drilling {
-                marks |= self.machine.length;
-            }
-            let keeps = modes.distance == Distance::Incremental || !word.is_fixed();
-            if keeps || modes.is_in_cycle && Some(axis) == drilling {
-                marks |= self.machine.axes[axis];
-            }
-            self.machine.axes[axis] = marks;
-            moved |= marks;
-        }
-        if modes.one_shot == Some(OneShot::Skip) {
-            let signal = self.outside(OutsideValue::SkipSignal, None, block.flow, block.op);
-            self.machine.skip_position = moved | signal;
-            self.machine.axes.iter_mut().for_each(|axis| *axis |= signal);
-        }
-        if modes.is_in_cycle {
-            if let Some(levels) = levels {
-                let initial = drilling.map_or(Marks::NONE, |axis| self.machine.axes[axis]);
-                let is_first = modes.begins_cycle && registers.state.modal.cycle.is_none();
-                let before = if is_first { Marks::NONE } else { self.machine.cycle };
-                self.machine.cycle = before | levels | initial | control;
-            }
-            if let Some(axis) = drilling {
-                self.machine.axes[axis] |= self.machine.cycle;
-            }
-        }
-        let mixes = !registers.state.transform.is_none()
-            || registers.state.modal.polar == Polar::On
-            || !self.machine.transform.is_none();
-        if mixes {
-            let all: Marks = self.machine.axes.iter().copied().collect();
-            self.machine.axes.iter_mut().for_each(|axis| *axis = all);
-        }
-    }
-
-    /// Follows G10.
-    fn follow_data_input(&mut self, list: &[MarkedWord], marks: Marks) {
-        let value = |letter: u8| list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
-        match value(b'L').map(|l| l as u32) {
-            Some(2 | 20) => self.machine.work_table |= marks,
-            Some(1 | 10..=13) => {
-                self.machine.tool_table |= marks;
-                self.set_lengths.extend(value(b'P').map(|number| number as u32));
-            }
-            _ => self.machine.rest |= marks,
         }
     }
 
@@ -339,7 +234,7 @@ impl Slice {
         }
         let arguments: Vec<(u8, Marks)> =
             call.arguments.iter().map(|word| (word.letter, marks_of(word))).collect();
-        self.branches.stay(decides);
+        self.leave(decides);
         match call.kind {
             CallCode::Macro => {
                 let mut locals = [control; LOCALS];
@@ -356,50 +251,6 @@ impl Slice {
                 self.modal_arguments |= arguments.into_iter().map(|(_, marks)| marks).collect::<Marks>() | control;
             }
             CallCode::Cancel | CallCode::Subprogram | CallCode::File | CallCode::Local | CallCode::Return => {}
-        }
-    }
-
-    /// Adds the marks of a condition to everything that a block of words under it can change.
-    pub(super) fn add_possible_words(&mut self, registers: &Registers, words: &Words, marks: Marks) {
-        if words.call().is_some() || !registers.data.settings.code_calls.is_empty() {
-            self.variables.add_to_any(marks);
-            self.machine.add_to_all(marks);
-            self.machine.rest |= marks;
-            return;
-        }
-        for word in &words.list {
-            if let Some(axis) = registers.data.settings.axes.find(word.letter) {
-                self.machine.axes[axis] |= marks;
-                if word.letter == b'Z' {
-                    self.machine.cycle |= marks;
-                }
-                continue;
-            }
-            match (word.letter, &word.value) {
-                (b'G', WordOperand::G(_, found)) => {
-                    match found.row_for(registers.data.settings.codes).and_then(GCodeRow::group) {
-                        Some(group) => {
-                            let before = self.machine.group(group);
-                            self.machine.set_group(group, before | marks);
-                            self.machine.cycle |= marks;
-                            if let 8 = group {
-                                self.machine.length |= marks;
-                            }
-                        }
-                        None => self.machine.add_to_all(marks),
-                    }
-                }
-                (b'G' | b'M', _) => {
-                    self.machine.add_to_all(marks);
-                }
-                (letter @ (b'F' | b'S' | b'T' | b'H' | b'D'), _) => {
-                    let before = self.machine.code(letter);
-                    self.machine.set_code(letter, before | marks);
-                    self.machine.length |= marks;
-                    self.machine.radius |= marks;
-                }
-                _ => self.machine.cycle |= marks,
-            }
         }
     }
 }
