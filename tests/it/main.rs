@@ -5,6 +5,7 @@ mod accepted;
 mod alignment;
 mod alignment_state;
 mod arithmetic;
+mod assumptions;
 mod blocks;
 mod budget;
 mod burr;

@@ -3,6 +3,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use gcode_inspect::verify::denied_assumptions;
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::Backtrace;
+use gcode_part::Assumption;
+
 /// What a result must not rest on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Denial {
@@ -23,6 +28,11 @@ impl Denials {
     /// Returns true if assumptions are denied.
     pub(super) fn denies_assumptions(self) -> bool {
         self.deny == Some(Denial::Assumptions)
+    }
+
+    /// Returns the errors of assumptions that are denied; `holes` is the number of all holes.
+    pub(super) fn errors(self, assumptions: &[(Assumption, Backtrace)], holes: usize) -> Vec<Diagnostic> {
+        if self.denies_assumptions() { denied_assumptions(assumptions, holes) } else { Vec::new() }
     }
 }
 

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::conditions::ProgramArguments;
+use super::conditions::{Denials, ProgramArguments};
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::pictures::RenderReport;
@@ -30,6 +30,9 @@ pub(super) struct Arguments {
     /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
+
+    #[command(flatten)]
+    denials: Denials,
 
     /// The view [default: top, or side for a burr]
     #[arg(long, value_enum)]
@@ -68,6 +71,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let drawn = match nominal {
+        Some(NominalPart::Flutes(_)) if arguments.denials.denies_assumptions() => {
+            return Err(UsageError::new("--deny is for holes, and the reference is a burr"));
+        }
         Some(NominalPart::Flutes(mut flutes)) => {
             flutes.surface_tolerance = tolerance.unwrap_or(flutes.surface_tolerance);
             let grind = |request: &Request| gcode_session::grind(request, &mut folders, &flutes);
@@ -95,7 +101,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                 Some(reference) => {
                     let tolerances = Tolerances::of(reference, tolerance);
                     let mut verdict = simulation.verify(reference, tolerances, &request.machine);
-                    simulation.add_assumptions(&mut verdict, &request, surface, false);
+                    let is_denied = arguments.denials.denies_assumptions();
+                    simulation.add_assumptions(&mut verdict, &request, surface, is_denied);
                     let drawn =
                         top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
                     Drawn {

@@ -10,6 +10,7 @@ use gcode_control::{Outcome, Value, printable};
 use gcode_lang::alarm::remedy;
 use gcode_lang::motion::{Axes, Event, EventKind, EventSink, Position};
 use gcode_lang::source::Span;
+use gcode_part::Assumption;
 use gcode_review::BlockLocation;
 use gcode_session::Run;
 
@@ -39,11 +40,16 @@ pub(crate) struct RunReport {
     pub(crate) blocks: u64,
     pub(crate) moves: u64,
     pub(crate) seconds: f64,
+    /// Values that the run read and nothing in the program set; `decides` holds numbers of holes as in `holes`.
+    pub(crate) assumptions: Vec<Assumption>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) path: Option<Vec<MoveReport>>,
     /// Unit of the linear axes in the active work coordinate system.
     #[serde(skip)]
     work_unit: &'static str,
+    /// Number of holes that the run makes.
+    #[serde(skip)]
+    hole_count: usize,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -172,8 +178,14 @@ impl EventSink for MoveRecorder {
 }
 
 impl RunReport {
-    /// Builds the report of a run; `moves` and the values of `system` variables are optional.
-    pub(crate) fn new(run: &Run, moves: Option<&MoveRecorder>, system: Vec<(u32, Value)>) -> Self {
+    /// Builds the report of a run; `moves` and the values of `system` variables are optional. `assumptions` come with the
+    /// number of holes.
+    pub(crate) fn new(
+        run: &Run,
+        moves: Option<&MoveRecorder>,
+        system: Vec<(u32, Value)>,
+        (assumptions, hole_count): (Vec<Assumption>, usize),
+    ) -> Self {
         let control = &run.control;
         let axes = &control.settings().axes;
         let machine = control.machine_position();
@@ -222,6 +234,8 @@ impl RunReport {
             blocks: control.blocks(),
             moves: control.moves(),
             seconds: control.seconds().0,
+            assumptions,
+            hole_count,
             path,
             work_unit: if control.is_inch() { "inches" } else { "mm" },
         }
@@ -251,6 +265,9 @@ impl RunReport {
                 text,
                 "passed on  {code}, first in {program} line {line}: left to the machine builder, not simulated"
             );
+        }
+        for assumption in &self.assumptions {
+            let _ = writeln!(text, "assumes    {}", assumption.sentence(self.hole_count));
         }
         for (number, value) in &self.variables {
             let _ = writeln!(text, "{:<11}{}", format!("#{number}"), plain(*value));

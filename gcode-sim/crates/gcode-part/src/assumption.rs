@@ -12,7 +12,8 @@ pub struct Assumption {
     pub value: Option<f64>,
     /// The block of the first read.
     pub place: AssumptionPlace,
-    /// Ids of the holes that it can touch; those without a nominal one are `extra 1`, `extra 2`, ….
+    /// Ids of the holes that it can touch, or their numbers without a reference; those without a nominal one are `extra 1`,
+    /// `extra 2`, …. Empty if it touches none of them, and another value may make further ones.
     pub decides: Vec<String>,
 }
 
@@ -40,6 +41,7 @@ impl Assumption {
         };
         let shown = decides.iter().take(MAX_LISTED).cloned().collect::<Vec<_>>().join(", ");
         let decided = match decides.len() {
+            0 => "whether more holes are cut".to_owned(),
             1 => format!("hole {shown}"),
             all if all == holes => format!("all {all} holes"),
             all if MAX_LISTED < all => format!("holes {shown}, … and {} more", all - MAX_LISTED),
@@ -65,6 +67,7 @@ mod tests {
         for (one, holes, expected) in [
             (assumption("#510", None, 2), 3, "#510 = vacant (O0100 line 12) decides holes 1, 2"),
             (assumption("#510", Some(2.5), 1), 3, "#510 = 2.5 (O0100 line 12) decides hole 1"),
+            (assumption("#510", Some(0.0), 0), 0, "#510 = 0 (O0100 line 12) decides whether more holes are cut"),
             (assumption("M21", None, 3), 3, "M21 (O0100 line 12) decides all 3 holes"),
             (
                 assumption("/", Some(0.0), 10),

@@ -346,7 +346,8 @@ impl Simulation {
         is_denied: bool,
     ) {
         let names = verdict.hole_names();
-        let found = self.dependences(request, surface).assumptions(&self.run, |hole| names.get(&hole).cloned());
+        let found = self.dependences(request, surface);
+        let found = found.assumptions(&self.run, |hole| names.get(&hole).cloned());
         verdict.add_assumptions(found, is_denied, &|span| self.run.locate(span));
     }
 

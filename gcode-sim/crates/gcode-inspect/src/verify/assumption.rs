@@ -4,13 +4,13 @@ use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_part::Assumption;
 
-/// Returns an error for each assumption; `holes` is the number of all holes of the result.
+/// Returns an error for each assumption with its block; `holes` is the number of all holes of the result.
 pub fn denied_assumptions(assumptions: &[(Assumption, Backtrace)], holes: usize) -> Vec<Diagnostic> {
     let error = |(assumption, backtrace): &(Assumption, Backtrace)| {
-        let message = format!("nothing in the program sets {}", assumption.sentence(holes));
+        let message = format!("{}: an assumption, and --deny forbids it", assumption.sentence(holes));
         Diagnostic::new(&ASSUMPTION, message)
             .with_backtrace(backtrace.clone())
-            .help("set it in the program before it is read; tool lengths and work offsets: state them in the machine file")
+            .help("set it in the program before it is read, or state it in the machine file: tool lengths, work offsets")
     };
     assumptions.iter().map(error).collect()
 }
