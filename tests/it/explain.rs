@@ -15,7 +15,7 @@ use gcode_sim::report::explain::{self, Page};
 use gcode_tests::{expect, files_below, workspace};
 
 fn is_finding(page: &Page) -> bool {
-    page.code == "limit" || page.code.contains('-')
+    matches!(page.code, "assumption" | "limit") || page.code.contains('-')
 }
 
 #[test]

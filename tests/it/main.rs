@@ -33,9 +33,9 @@ mod limits;
 mod misplaced;
 mod module_circles;
 mod mutations;
+mod one_verdict;
 #[cfg(feature = "browser")]
 mod page;
-mod one_verdict;
 mod pin_holes;
 mod real_files;
 mod results;

@@ -67,7 +67,8 @@ fn compare(place: &Path, arguments: &str, expected: &Expected) {
     assert_eq!(invocation["executionSuccessful"], true);
     assert_eq!(code, *exit);
 
-    let (drawn, code) = run(&format!("gcode-sim render {arguments} -o O1.png --size 480x360 --format json"), place);
+    let (drawn, code) =
+        run(&format!("gcode-sim render {arguments} -o O1.png --size 480x360 --format json"), place);
     let drawn: Value = serde_json::from_str(&drawn).unwrap();
     assert_eq!([&drawn["verdict"], &drawn["summary"]], [&json["verdict"], &json["summary"]]);
     assert_eq!(code, *exit, "render ends as verify does");
@@ -106,16 +107,14 @@ fn compare_holes(program: &str, max_blocks: u64, expected: &Expected) {
 
 #[test]
 fn a_pass_is_a_pass_everywhere() {
-    let expected =
-        Expected { answer: "PASS", outcome: "end", summary: "2 of 2 holes in tolerance", exit: 0 };
+    let expected = Expected { answer: "PASS", outcome: "end", summary: "2 of 2 holes in tolerance", exit: 0 };
     compare_holes(&program("S1000 M03", "X10.", ""), MANY, &expected);
 }
 
 /// The first hole is off by 0.2 mm: Φ0.4 of Φ0.1.
 #[test]
 fn a_hole_out_of_position_fails_everywhere() {
-    let expected =
-        Expected { answer: "FAIL", outcome: "end", summary: "1 of 2 holes in tolerance", exit: 1 };
+    let expected = Expected { answer: "FAIL", outcome: "end", summary: "1 of 2 holes in tolerance", exit: 1 };
     compare_holes(&program("S1000 M03", "X10.2", ""), MANY, &expected);
 }
 
@@ -161,10 +160,7 @@ fn a_verdict_on_flutes_is_the_same_everywhere() {
             "four_flutes_of_a_burr_pass",
             Expected { answer: "PASS", outcome: "end", summary: "4 of 4 flutes ground", exit: 0 },
         ),
-        (
-            "a_missing_flute_is_counted",
-            Expected { answer: "FAIL", outcome: "end", summary: "", exit: 1 },
-        ),
+        ("a_missing_flute_is_counted", Expected { answer: "FAIL", outcome: "end", summary: "", exit: 1 }),
     ] {
         let place = tempfile::tempdir().unwrap();
         let file = |name: &str| folder.join(name).display().to_string();

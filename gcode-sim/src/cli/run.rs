@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (assumed, holes) = (found.numbered(&run), found.hole_count());
     let denied = arguments.denials.errors(&assumed, holes);
     let assumptions = (assumed.into_iter().map(|(assumption, _)| assumption).collect(), holes);
-    let report = RunReport::new(&run, moves.as_ref(), system, assumptions);
+    let report = RunReport::new(&run, &request.machine, moves.as_ref(), system, assumptions);
     output::report(&report, RunReport::text, arguments.format)?;
     let in_part = super::findings(&rapids, &run);
     let of_run = super::findings(&run.findings().collect::<Vec<_>>(), &run);

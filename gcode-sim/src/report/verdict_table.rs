@@ -2,7 +2,9 @@
 use std::fmt::Write;
 
 use super::figures::{count, rounded, signed, signed_to};
-use gcode_inspect::verify::{Conclusion, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict};
+use gcode_inspect::verify::{
+    Conclusion, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict,
+};
 use gcode_part::Assumption;
 
 /// Extent and order of the table.

@@ -180,7 +180,8 @@ impl Registers {
             }
             resolved_move.travel.add(*to - state.machine[axis], self.data.settings.axes.is_rotary(axis));
         }
-        (resolved_move.named.axes != 0).then_some(())
+        // A word that makes an axis known has an event.
+        (resolved_move.named.axes != 0 && resolved_move.named.axes & basis.learnable_axes == 0).then_some(())
     }
 
     /// Returns the value of an axis word that is neither a literal nor a free variable; `None` for an alarm.
@@ -208,7 +209,6 @@ impl Registers {
         let modal = &self.state.modal;
         modal.cycle.is_none()
             && !self.state.is_in_parameter_input
-            && self.state.work_zero_unknown == 0
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
             && self.state.last_end_point.is_none()
@@ -291,6 +291,16 @@ mod tests {
             let text = format!("O1\nG21 G90 G94 F100.\n{}\nM30\n", blocks.join("\n"));
             prop_assert_eq!(run(&text, settings()).0, run(&text, never_plain()).0, "{}", text);
         }
+    }
+
+    /// Without a centre for B, G51 leaves it unknown; after G50 the next absolute word makes it known.
+    #[test]
+    fn a_plain_move_makes_an_axis_known_that_counted_from_an_unknown_centre() {
+        let text = "O1\nG51 X0 Y0 P2000\nB0\nG50\nA0\nB0\nM30\n";
+        let (plain, stepped) = (run(text, settings()).0, run(text, never_plain()).0);
+        assert_eq!(plain, stepped);
+        let last = plain.iter().rfind(|event| event.contains("PositionUnknown"));
+        assert!(last.is_some_and(|event| event.contains("shifted: 0")), "{last:?}");
     }
 
     #[test]

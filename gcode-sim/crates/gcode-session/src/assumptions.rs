@@ -6,7 +6,9 @@ use std::sync::Arc;
 use super::{Request, Run, causes, set_up_control};
 use gcode_control::slice::{Marks, OutsideRead, Slice, StatedValues};
 use gcode_inspect::holes::{DrilledHole, HoleExtractor};
-use gcode_lang::motion::{Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal};
+use gcode_lang::motion::{
+    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
+};
 use gcode_lang::program::NoLibrary;
 use gcode_lang::source::{SourceId, Span};
 use gcode_part::{Assumption, AssumptionPlace, Surface};
@@ -83,7 +85,11 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let is_code_unknown = || control.auxiliary_codes().keys().any(|code| !stated.codes.contains(code));
     !request.variables.is_empty()
         || has_holes && (!control.unset_work_systems().is_empty() || is_code_unknown())
-        || control.memory().sources().iter().any(|(_, source)| names_outside(&source.bytes, &stated, has_holes))
+        || control
+            .memory()
+            .sources()
+            .iter()
+            .any(|(_, source)| names_outside(&source.bytes, &stated, has_holes))
 }
 
 /// Letters that [`names_outside`] reads.
@@ -111,9 +117,12 @@ fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
         }
         let behind = behind.trim_ascii_start();
         let digits = behind.iter().take_while(|byte| byte.is_ascii_digit()).count();
-        let number = std::str::from_utf8(&behind[..digits]).ok().and_then(|digits| digits.parse::<u32>().ok());
+        let number =
+            std::str::from_utf8(&behind[..digits]).ok().and_then(|digits| digits.parse::<u32>().ok());
         let is_outside = match (letter, number) {
-            (b'#', Some(number)) => !matches!(number, 0..=33 | 3000 | 3006 | 3100..=3102 | 4001..=4330 | 5001..=5060),
+            (b'#', Some(number)) => {
+                !matches!(number, 0..=33 | 3000 | 3006 | 3100..=3102 | 4001..=4330 | 5001..=5060)
+            }
             (b'#', None) | (b'/', _) => true,
             (b'H', Some(number)) => has_holes && number != 0 && !stated.lengths.contains(&number),
             (b'D', Some(number)) => has_holes && number != 0,
@@ -172,7 +181,8 @@ impl EventSink for MarkedEvents<'_> {
                 let cosine: f64 = (0..MAX_AXES).map(|axis| last[axis] * direction[axis]).sum();
                 cosine.abs() >= MIN_COSINE
             };
-            let continues = self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
+            let continues =
+                self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
             if !continues {
                 self.strokes.push(Marks::NONE);
             }
@@ -223,14 +233,22 @@ mod tests {
 
     /// Asserts the assumptions of a program with this number of holes.
     fn assert_assumptions(blocks: &str, holes: usize, expected: &[&str]) {
-        assert_eq!(assumptions_with(blocks, &[]), (expected.iter().map(|one| (*one).to_owned()).collect(), holes), "{blocks}");
+        assert_eq!(
+            assumptions_with(blocks, &[]),
+            (expected.iter().map(|one| (*one).to_owned()).collect(), holes),
+            "{blocks}"
+        );
     }
 
     #[test]
     fn a_common_decides_the_holes_whose_words_it_reaches() {
         // Line 4 is the first of these blocks.
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nX20. Y#510\nX30. Y10.", 3, &["#510=vacant@5: 2"]);
-        assert_assumptions("#100=#510+1.\nG81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.", 3, &["#510=vacant@4: 2"]);
+        assert_assumptions(
+            "#100=#510+1.\nG81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.",
+            3,
+            &["#510=vacant@4: 2"],
+        );
         // Y stays where the hole before has left it.
         assert_assumptions("G81 X10. Y#510 Z-5. R2. F100.\nX20.\nX30. Y10.", 3, &["#510=vacant@4: 1 2"]);
         // The depth of a cycle stays until it is cancelled.
@@ -249,7 +267,9 @@ mod tests {
     #[test]
     fn a_condition_decides_what_is_executed_until_both_ways_meet() {
         let program = |condition: &str| {
-            format!("#100=10.\nIF[{condition}]GOTO 5\n#100=20.\nN5 G81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.")
+            format!(
+                "#100=10.\nIF[{condition}]GOTO 5\n#100=20.\nN5 G81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10."
+            )
         };
         assert_assumptions(&program("#510EQ1"), 3, &["#510=vacant@5: 2"]);
         assert_assumptions(&program("#510NE1"), 3, &["#510=vacant@5: 2"]);
@@ -281,7 +301,11 @@ mod tests {
         assert_assumptions("G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &["H1=0@4: 1"]);
         assert_assumptions("G10 L10 P1 R0\nG43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM21\nX20.", 2, &["M21=vacant@5: 2"]);
-        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.", 2, &["G55=vacant@7: 2"]);
+        assert_assumptions(
+            "G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.",
+            2,
+            &["G55=vacant@7: 2"],
+        );
     }
 
     #[test]

@@ -176,6 +176,9 @@ fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionE
     for (number, value) in presets.chain(request.variables.iter().copied()) {
         control.set_variable(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
     }
+    for (axis, position) in &request.machine.start {
+        control.set_start(*axis, *position);
+    }
     Ok(control)
 }
 
@@ -328,8 +331,7 @@ impl Simulation {
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
         let locate = |span| self.run.locate(span);
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
-        let mut causes: Vec<Diagnostic> =
-            causes::unset_work_offsets(&self.run, machine, "holes").collect();
+        let mut causes: Vec<Diagnostic> = causes::unset_work_offsets(&self.run, machine, "holes").collect();
         if verdict.has_findings() {
             causes.extend(causes::text_findings(&self.run, verdict.verdict == Answer::Fail));
         }

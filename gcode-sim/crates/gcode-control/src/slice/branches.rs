@@ -6,7 +6,8 @@ use crate::functions::integer;
 use crate::registers::Registers;
 use gcode_lang::program::m_codes::ends_or_stops;
 use gcode_lang::program::{
-    AssignmentTarget, CallCode, OpIndex, OpKind, Operand, Program, ProgramId, Slot, Statement, WordOperand, Words,
+    AssignmentTarget, CallCode, OpIndex, OpKind, Operand, Program, ProgramId, Slot, Statement, WordOperand,
+    Words,
 };
 
 /// Blocks between a jump and the place where both ways meet: longer stretches count as open to the end of the run.
@@ -82,7 +83,8 @@ impl Branches {
             if is_inside {
                 return;
             }
-            let has_met = last.depth == depth && last.program == flow.frame.program && flow.frame.next == last.end;
+            let has_met =
+                last.depth == depth && last.program == flow.frame.program && flow.frame.next == last.end;
             if !has_met {
                 // The run has left the stretch another way.
                 self.lasting |= last.marks;
@@ -126,9 +128,10 @@ impl Slice {
                 self.add_possible_effects(registers, op.kind(), marks);
             }
         }
-        let same = self.branches.open.iter_mut().find(|open| {
-            (open.program, open.depth, open.first, open.end) == (program, depth, first, end)
-        });
+        let same =
+            self.branches.open.iter_mut().find(|open| {
+                (open.program, open.depth, open.first, open.end) == (program, depth, first, end)
+            });
         match same {
             Some(open) => open.marks |= marks,
             None => self.branches.open.push(Branch { program, depth, first, end, marks }),
@@ -141,7 +144,8 @@ fn is_closed(control: &mut Control, program: ProgramId, first: OpIndex, end: OpI
     let Control { memory, executor, .. } = control;
     let registers = &executor.registers;
     (first..end).all(|index| {
-        let Some((program, op)) = memory.get_mut(program).and_then(|program| program.lower_block(index)) else {
+        let Some((program, op)) = memory.get_mut(program).and_then(|program| program.lower_block(index))
+        else {
             return false;
         };
         let stays = |to: OpIndex| (first..=end).contains(&to);

@@ -202,7 +202,15 @@ impl MachineMarks {
     pub(super) fn motion(&self) -> Marks {
         let modes: Marks = self.axes.iter().chain(&self.groups).copied().collect();
         let codes: Marks = b"FST".iter().map(|letter| self.code(*letter)).collect();
-        modes | codes | self.cycle | self.transform | self.tool | self.length | self.radius | self.spindle | self.rest
+        modes
+            | codes
+            | self.cycle
+            | self.transform
+            | self.tool
+            | self.length
+            | self.radius
+            | self.spindle
+            | self.rest
     }
 
     /// Adds marks to everything.

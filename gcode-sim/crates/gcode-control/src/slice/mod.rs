@@ -286,7 +286,8 @@ impl Observer for Slice {
         // A cycle drills where its block leads, wherever it comes from.
         let before = if self.is_in_cycle { Marks::NONE } else { before };
         let marks = before | self.machine.motion() | self.block_marks | self.branches.marks();
-        self.waiting = if control.executor.registers.lookahead.is_idle() { marks } else { marks | self.waiting };
+        self.waiting =
+            if control.executor.registers.lookahead.is_idle() { marks } else { marks | self.waiting };
         self.motion.set(self.waiting);
     }
 

@@ -83,7 +83,9 @@ impl Slice {
                         None => self.machine.add_to_all(marks),
                     }
                 }
-                (b'M', WordOperand::Literal(number)) => self.add_possible_code(registers, number.value(), marks),
+                (b'M', WordOperand::Literal(number)) => {
+                    self.add_possible_code(registers, number.value(), marks)
+                }
                 (b'M', WordOperand::Number(number)) => self.add_possible_code(registers, *number, marks),
                 (b'G' | b'M', _) => {
                     self.machine.add_to_all(marks);

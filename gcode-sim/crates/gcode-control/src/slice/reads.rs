@@ -25,7 +25,8 @@ enum OffsetEntry {
 /// Returns the entry that a system variable addresses.
 fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
     let is_haas = offsets == OffsetVariables::Haas;
-    let work = |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
+    let work =
+        |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
     Some(match number {
         2001..=2400 => OffsetEntry::Length((number - 2001) % 200 + 1),
         2401..=2800 if is_haas => OffsetEntry::Radius((number - 2401) % 200 + 1),
@@ -43,7 +44,8 @@ fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
 impl Block<'_> {
     /// Returns true if a condition is true.
     pub(super) fn is_true(&self, condition: &[Instruction]) -> bool {
-        self.registers.without_side_effects(|registers| registers.evaluate_condition(condition).unwrap_or(false))
+        self.registers
+            .without_side_effects(|registers| registers.evaluate_condition(condition).unwrap_or(false))
     }
 
     /// Returns the number that the code before an instruction computes.
@@ -151,7 +153,9 @@ impl Slice {
             3000 | 3006 | 3100..=3102 => Marks::NONE,
             4001..=4130 | 4201..=4330 => self.modal_marks(number % 200),
             5001..=5060 | 5081..=5100 => self.position_marks(((number - 1) % POSITIONS) as usize),
-            5061..=5080 => self.machine.skip_position | self.position_marks(((number - 1) % POSITIONS) as usize),
+            5061..=5080 => {
+                self.machine.skip_position | self.position_marks(((number - 1) % POSITIONS) as usize)
+            }
             // A clock goes on whatever the program sets.
             3001 | 3002 | 3011 | 3012 => self.outside_variable(block, number),
             _ => match self.variables.system(number) {

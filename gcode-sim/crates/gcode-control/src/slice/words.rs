@@ -170,7 +170,9 @@ impl Slice {
             let raw = block.registers.without_side_effects(|registers| registers.evaluate_word(words, word));
             let Some(code) = raw.ok().flatten().and_then(|raw| count(raw, b'M').ok()) else { continue };
             match m_codes::find(code, settings.codes) {
-                Some(MCodeEffect::SpindleForward | MCodeEffect::SpindleReverse | MCodeEffect::SpindleStop) => {
+                Some(
+                    MCodeEffect::SpindleForward | MCodeEffect::SpindleReverse | MCodeEffect::SpindleStop,
+                ) => {
                     self.machine.spindle = control | marked.marks;
                 }
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
@@ -196,7 +198,9 @@ impl Slice {
         let h = number_of(b'H', registers.state.codes.h);
         match modes.length {
             Length::Off => self.machine.length = control | self.machine.group(8),
-            _ if registers.state.modal.length != modes.length || list.iter().any(|word| word.letter == b'H') => {
+            _ if registers.state.modal.length != modes.length
+                || list.iter().any(|word| word.letter == b'H') =>
+            {
                 let mut marks = self.machine.code(b'H') | self.machine.tool_table | control;
                 if h != 0 && !self.is_length_set(h) {
                     let value = registers.data.offsets.length(h).ok();
@@ -207,7 +211,8 @@ impl Slice {
             _ => {}
         }
         let d = number_of(b'D', registers.state.codes.d);
-        let begins = registers.state.modal.cutter != modes.cutter || list.iter().any(|word| word.letter == b'D');
+        let begins =
+            registers.state.modal.cutter != modes.cutter || list.iter().any(|word| word.letter == b'D');
         match modes.cutter {
             CutterSide::Off => self.machine.radius = control,
             _ if begins => {
@@ -238,8 +243,7 @@ impl Slice {
         match call.kind {
             CallCode::Macro => {
                 let mut locals = [control; LOCALS];
-                let mut letters =
-                    ArgumentLocals::new(block.registers.data.settings.reads_ijk_plainly, false);
+                let mut letters = ArgumentLocals::new(block.registers.data.settings.reads_ijk_plainly, false);
                 for (letter, marks) in arguments {
                     if let Ok(Some(local)) = letters.next(letter) {
                         locals[local] |= marks;
@@ -248,9 +252,11 @@ impl Slice {
                 self.arguments = Some(locals);
             }
             CallCode::AfterMoves | CallCode::EveryBlock => {
-                self.modal_arguments |= arguments.into_iter().map(|(_, marks)| marks).collect::<Marks>() | control;
+                self.modal_arguments |=
+                    arguments.into_iter().map(|(_, marks)| marks).collect::<Marks>() | control;
             }
-            CallCode::Cancel | CallCode::Subprogram | CallCode::File | CallCode::Local | CallCode::Return => {}
+            CallCode::Cancel | CallCode::Subprogram | CallCode::File | CallCode::Local | CallCode::Return => {
+            }
         }
     }
 }

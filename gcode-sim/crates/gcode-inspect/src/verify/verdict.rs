@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::assumption::{denied_assumptions, denied_words};
 use super::conclusion::{Answer, Conclusion, Ending, hole_counts, stop_sentence, uncounted_errors};
 use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
-use super::assumption::{denied_assumptions, denied_words};
 use super::{Comparison, HoleNeighbours, HolePair, Neighbours};
 use crate::holes::DrilledHole;
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
@@ -353,10 +353,7 @@ impl Verdict {
 }
 
 /// Returns the messages of likely causes with their places: `X25 … is 0.025 mm (O0001 line 5)`.
-pub(super) fn cause_sentences(
-    causes: &[Diagnostic],
-    locate: &dyn Fn(Span) -> (String, u32),
-) -> Vec<String> {
+pub(super) fn cause_sentences(causes: &[Diagnostic], locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
     let sentence = |cause: &Diagnostic| match &cause.backtrace {
         Some(place) => {
             let (program, line) = locate(place.block);
