@@ -11,7 +11,7 @@ use crate::report::{flute_view, top};
 use gcode_draw::{FluteView, Picture, Size, TopView};
 use gcode_inspect::verify::{Answer, Tolerances};
 use gcode_lang::diag::Diagnostic;
-use gcode_part::NominalPart;
+use gcode_part::{Assumption, NominalPart};
 use gcode_session::{Request, Run};
 
 #[derive(Debug, Args)]
@@ -115,8 +115,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                     }
                 }
                 None => {
-                    let drawn = top::of_holes(&name(&request), &simulation, &request.machine);
-                    let findings: Vec<Diagnostic> = simulation.run.findings().collect();
+                    let found = simulation.dependences(&request, None);
+                    let assumed = found.numbered(&simulation.run);
+                    let denied = arguments.denials.errors(&assumed, found.hole_count());
+                    let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();
+                    let drawn = top::of_holes(&name(&request), &simulation, &request.machine, &assumed);
+                    let findings: Vec<Diagnostic> = simulation.run.findings().chain(denied).collect();
                     Drawn {
                         picture: hole_picture(view, &drawn)?,
                         view,

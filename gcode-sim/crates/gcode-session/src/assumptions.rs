@@ -276,9 +276,12 @@ mod tests {
         assert_assumptions(&program("#100EQ1"), 3, &[]);
         let then = "#100=10.\nIF[#510EQ1]THEN #100=20.\nG81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.";
         assert_assumptions(then, 3, &["#510=vacant@5: 2"]);
-        // One way leads to an alarm: the value decides all holes behind it.
-        let guard = "IF[#510EQ1]THEN #3000=1(NO)\nG81 X10. Y10. Z-5. R2. F100.";
-        assert_assumptions(guard, 1, &["#510=vacant@4: 1"]);
+        // One way leads to an alarm: no hole is cut elsewhere.
+        let hole = "G81 X10. Y10. Z-5. R2. F100.";
+        assert_assumptions(&format!("IF[#510EQ1]THEN #3000=1(NO)\n{hole}"), 1, &[]);
+        assert_assumptions(&format!("IF[#510NE1]GOTO5\n#3000=1(NO)\nN5 {hole}"), 1, &[]);
+        // The end of the program is no alarm.
+        assert_assumptions(&format!("IF[#510NE1]GOTO5\nM30\nN5 {hole}"), 1, &["#510=vacant@4: 1"]);
     }
 
     #[test]

@@ -33,14 +33,28 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                 @let holes = verdict.holes.len() + verdict.extra.len();
                 @for assumption in &verdict.assumptions { p.note { "Assumes " (shown(&assumption.sentence(holes))) } }
                 @for cause in &verdict.likely_causes { p.note { "Likely cause: " (shown(cause)) } }
-            } @else if record.outcome() != "end" {
-                p.answer.no {
-                    @if sides.len() == 2 { (heading(side, sides)) ": " }
-                    "stopped, " (shown(record.words()))
+            } @else {
+                @if record.outcome() != "end" {
+                    p.answer.no {
+                        @if sides.len() == 2 { (heading(side, sides)) ": " }
+                        "stopped, " (shown(record.words()))
+                    }
                 }
+                @for assumption in assumptions_alone(page, side) { p.note { "Assumes " (shown(&assumption)) } }
             }
         }
     }
+}
+
+/// Returns the assumptions of a program without a reference; a comparison of two has none.
+fn assumptions_alone(page: &Page<'_>, side: &ReviewSide<'_>) -> Vec<String> {
+    if page.old.is_some() {
+        return Vec::new();
+    }
+    let simulation = &side.observed.revision.simulation;
+    let found = simulation.dependences(side.observed.request, None);
+    let numbered = found.numbered(&simulation.run);
+    numbered.iter().map(|(assumption, _)| assumption.sentence(found.hole_count())).collect()
 }
 
 /// Returns the table of both runs in numbers.

@@ -1,4 +1,6 @@
 //! Conditions and jumps that outside values decide, and how long they do: to the block where both ways meet again.
+//!
+//! A way that ends in an alarm decides nothing: the control stops, and no hole is cut behind it.
 use super::{Block, Marks, Slice};
 use crate::control::Control;
 use crate::flow::ProgramFlow;
@@ -139,7 +141,7 @@ impl Slice {
     }
 }
 
-/// Returns true if every way through these operations leads to `end`.
+/// Returns true if every way through these operations leads to `end`, or to an alarm.
 fn is_closed(control: &mut Control, program: ProgramId, first: OpIndex, end: OpIndex) -> bool {
     let Control { memory, executor, .. } = control;
     let registers = &executor.registers;
@@ -165,8 +167,7 @@ fn stays_inside(
     jump_stays: &impl Fn(&Operand) -> bool,
 ) -> bool {
     match kind {
-        OpKind::Empty | OpKind::AssignFree(_) => true,
-        OpKind::Alarm(_) => false,
+        OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => true,
         OpKind::Words(_) => !leaves_block(kind),
         OpKind::If { then, .. } => stays_inside(then, stays, jump_stays),
         OpKind::Statement(statement) => statement_stays(statement, stays, jump_stays),
@@ -179,35 +180,18 @@ fn statement_stays(
     jump_stays: &impl Fn(&Operand) -> bool,
 ) -> bool {
     match statement {
-        Statement::Assign { target, .. } => !may_raise_alarm(target),
         Statement::Assignments(all) => all.iter().all(|one| statement_stays(one, stays, jump_stays)),
         Statement::Goto(to) | Statement::IfGoto { to, .. } => jump_stays(&to.node),
         Statement::IfThen { then, .. } => statement_stays(then, stays, jump_stays),
         Statement::While { end, .. } | Statement::Do { end, .. } => stays(*end),
         Statement::End { start, .. } => stays(*start),
-        Statement::Alarm(_) => false,
-        Statement::AssignFree(_)
+        Statement::Assign { .. }
+        | Statement::AssignFree(_)
+        | Statement::Alarm(_)
         | Statement::SetNames { .. }
         | Statement::Print { .. }
         | Statement::OpenOutput
         | Statement::CloseOutput => true,
-    }
-}
-
-/// Returns true for #3000 and for a computed number.
-fn may_raise_alarm(target: &AssignmentTarget) -> bool {
-    match target {
-        AssignmentTarget::Slot(slot) => *slot == Slot::Other(3000),
-        AssignmentTarget::Computed(_) => true,
-    }
-}
-
-/// Returns true if a statement raises an alarm: nothing is cut behind it.
-pub(super) fn raises_alarm(statement: &Statement) -> bool {
-    match statement {
-        Statement::Assign { target: AssignmentTarget::Slot(slot), .. } => *slot == Slot::Other(3000),
-        Statement::Alarm(_) => true,
-        _ => false,
     }
 }
 
@@ -219,8 +203,7 @@ pub(super) fn jumps(statement: &Statement) -> bool {
 /// Returns true if an operation can continue elsewhere than behind its block, or end the run; a called program returns.
 pub(super) fn leaves_block(kind: &OpKind) -> bool {
     match kind {
-        OpKind::Empty | OpKind::AssignFree(_) => false,
-        OpKind::Alarm(_) => true,
+        OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => false,
         OpKind::Statement(statement) => jumps(statement),
         OpKind::If { then, .. } => leaves_block(then),
         OpKind::Words(words) => leaves_words(words),

@@ -213,9 +213,7 @@ impl Slice {
             Statement::IfThen { condition, then } => {
                 let marks = self.code_marks(block, condition);
                 if !marks.is_none() {
-                    if branches::raises_alarm(then) {
-                        self.branches.stay(marks);
-                    } else if branches::jumps(then) {
+                    if branches::jumps(then) {
                         self.leave(marks);
                     }
                     self.add_possible_assignment(block.registers, then, marks);

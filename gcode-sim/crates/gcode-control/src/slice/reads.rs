@@ -233,6 +233,8 @@ impl Slice {
         match registers.variables.classify(number) {
             VariableClass::Vacant => {}
             VariableClass::Local(place) | VariableClass::Common(place) => self.variables.add(place, marks),
+            // An alarm or a stop changes nothing.
+            VariableClass::System if matches!(number, 3000 | 3006) => {}
             VariableClass::System => {
                 match self.variables.system(number) {
                     Some(before) => self.variables.set_system(number, before | marks),
