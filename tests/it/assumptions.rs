@@ -199,13 +199,14 @@ fn number(choice: u8) -> String {
 /// Returns a program that drills, and reads #510 and a block skip.
 fn program(choices: &[Choice]) -> String {
     let mut text = String::from(
-        "O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z20. B0\n#100=0\n#101=10.\n#102=40.\n#103=0\nG81 X60. Y60. Z-5. R2. F100.\n",
+        "O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z20. B0\n#100=0\n#101=10.\n#102=40.\n#103=18.\nG81 X60. Y60. Z-5. R2. F100.\n",
     );
     let mut labels: Vec<(usize, usize)> = Vec::new();
     for (index, (kind, a, b, c)) in choices.iter().enumerate() {
         let (first, second, small) = (number(*a), number(*b), c % 4);
         // No two blocks lead to the same place, where their holes would be one.
-        let (x, y) = (format!("[{first}+{index}*0.37]"), format!("[{second}+{index}*0.37]"));
+        let place = |number: &str| format!("[{number}*100.+{index}*1.37]");
+        let (x, y) = (place(&first), place(&second));
         let lines = match kind % 24 {
             0 => format!("#100={first}"),
             1 => format!("#101={first}"),
@@ -214,24 +215,26 @@ fn program(choices: &[Choice]) -> String {
             4 => format!("Y{y}"),
             5 => "G80".to_owned(),
             6 => format!("G0 X{x} Y{y} Z20."),
-            7 => "G91 X3.\nG90".to_owned(),
+            7 => "G91 X50.\nG90".to_owned(),
             8 | 9 => {
                 labels.push((index + 1 + usize::from(small), 100 + index));
                 format!("IF[{first}GT{small}.]GOTO{}", 100 + index)
             }
-            10 => format!("#1=0\nWHILE[#1LT{first}]DO1\n#1=#1+1\n#102=#102+3.03\nX#102\nEND1"),
+            10 => {
+                format!("#1=0\nWHILE[#1LT{first}]DO1\n#1=#1+1\n#102=#102+1\nX[#102*100.+{index}*1.37]\nEND1")
+            }
             11 => format!("G65 P2 A{x} B{y}"),
             12 => "M98 P3".to_owned(),
             13 => format!("/X{x}"),
             14 => format!("IF[{first}EQ{small}.]THEN #100={second}"),
-            15 => format!("G52 X{first}"),
+            15 => format!("G52 X[{first}*100.]"),
             16 => "G1 Z-4. F100.\nG0 Z20.".to_owned(),
             17 => format!("G81 X{x} Y5. Z-[3.+{second}] R2. F100."),
             18 => format!("#[100+#510]={second}"),
             19 => format!("#[100+{}]={second}", small % 2),
             20 => format!("G68 X0. Y0. R{first}"),
             21 => "G69".to_owned(),
-            22 => format!("G91 X3. K{first}\nG90"),
+            22 => format!("G91 X50. K{first}\nG90"),
             _ => format!("G99 G82 X{x} R[{second}+1.] Z-6. P100 F100.\n/2 Y9.\nG98"),
         };
         _ = writeln!(text, "{lines}");
@@ -243,7 +246,7 @@ fn program(choices: &[Choice]) -> String {
         _ = writeln!(text, "N{label}");
     }
     text.push_str(
-        "G80\nM30\nO2\nG0 X#1 Y#2 Z20.\nG81 X#1 Z-6. R2. F100.\nG80\nM99\nO3\n#101=#101+5.\n#103=#103+0.41\nX[#101+#103] Y5.\nM99\n",
+        "G80\nM30\nO2\nG0 X#1 Y#2 Z20.\nG81 X#1 Z-6. R2. F100.\nG80\nM99\nO3\n#101=#101+5.\n#103=#103+0.6\nX[#101*100.+#103] Y5.\nM99\n",
     );
     text
 }

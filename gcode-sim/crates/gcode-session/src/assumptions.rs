@@ -84,6 +84,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let stated = stated_values(request);
     let is_code_unknown = || control.auxiliary_codes().keys().any(|code| !stated.codes.contains(code));
     !request.variables.is_empty()
+        || request.settings.skip_signal.is_some()
         || has_holes && (!control.unset_work_systems().is_empty() || is_code_unknown())
         || control
             .memory()
@@ -92,50 +93,41 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
             .any(|(_, source)| names_outside(&source.bytes, &stated, has_holes))
 }
 
-/// Letters that [`names_outside`] reads.
-const LETTERS: [bool; 256] = {
-    let mut letters = [false; 256];
-    let all = b"(#/HDPGhdpg";
-    let mut index = 0;
-    while index < all.len() {
-        letters[all[index] as usize] = true;
-        index += 1;
-    }
-    letters
-};
-
-/// Returns true if a text has a block skip, `#` before anything but a local or a harmless system variable, PRM, G31, or a
-/// tool offset whose value the machine file does not state.
+/// Returns true if a text has a block skip, `#` before anything but a local or a harmless system variable, PRM, or a tool
+/// offset whose value the machine file does not state.
 fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
-    let mut rest = text;
-    while let Some(at) = rest.iter().position(|byte| LETTERS[usize::from(*byte)]) {
-        let (letter, behind) = (rest[at].to_ascii_uppercase(), &rest[at + 1..]);
-        if letter == b'(' {
-            let end = behind.iter().position(|byte| matches!(byte, b')' | b'\n'));
-            rest = &behind[end.unwrap_or(behind.len())..];
-            continue;
-        }
-        let behind = behind.trim_ascii_start();
-        let digits = behind.iter().take_while(|byte| byte.is_ascii_digit()).count();
-        let number =
-            std::str::from_utf8(&behind[..digits]).ok().and_then(|digits| digits.parse::<u32>().ok());
-        let is_outside = match (letter, number) {
-            (b'#', Some(number)) => {
-                !matches!(number, 0..=33 | 3000 | 3006 | 3100..=3102 | 4001..=4330 | 5001..=5060)
-            }
-            (b'#', None) | (b'/', _) => true,
-            (b'H', Some(number)) => has_holes && number != 0 && !stated.lengths.contains(&number),
-            (b'D', Some(number)) => has_holes && number != 0,
-            (b'P', None) => behind.starts_with(b"RM"),
-            (b'G', Some(31)) => has_holes && !stated.has_part,
-            _ => false,
+    let is_outside = |at: usize| {
+        let is_named = match text[at].to_ascii_uppercase() {
+            b'#' => !matches!(
+                number_behind(text, at),
+                Some(0..=33 | 3000 | 3006 | 3100..=3102 | 4001..=4330 | 5001..=5060)
+            ),
+            // No other function of one argument ends with M.
+            b'[' => text[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M')),
+            letter @ (b'H' | b'D') => match number_behind(text, at) {
+                Some(number) => number != 0 && (letter == b'D' || !stated.lengths.contains(&number)),
+                None => matches!(text[at + 1..].trim_ascii_start().first(), Some(b'#' | b'[')),
+            },
+            _ => true,
         };
-        if is_outside {
-            return true;
-        }
-        rest = behind;
-    }
-    false
+        is_named && !is_in_comment(text, at)
+    };
+    memchr::memchr3_iter(b'#', b'/', b'[', text).any(is_outside)
+        || has_holes && memchr::memchr2_iter(b'H', b'D', text).any(is_outside)
+        || has_holes && memchr::memchr2_iter(b'h', b'd', text).any(is_outside)
+}
+
+/// Returns the number behind a byte of a text.
+fn number_behind(text: &[u8], at: usize) -> Option<u32> {
+    let behind = text[at + 1..].trim_ascii_start();
+    let digits = behind.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    std::str::from_utf8(&behind[..digits]).ok()?.parse().ok()
+}
+
+/// Returns true if a byte of a text is in a comment of its line.
+fn is_in_comment(text: &[u8], at: usize) -> bool {
+    let before = &text[memchr::memrchr(b'\n', &text[..at]).map_or(0, |end| end + 1)..at];
+    before.iter().rposition(|byte| *byte == b'(') > before.iter().rposition(|byte| *byte == b')')
 }
 
 /// Returns what the machine file and the reference state.
@@ -309,6 +301,26 @@ mod tests {
             2,
             &["G55=vacant@7: 2"],
         );
+    }
+
+    #[test]
+    fn a_second_run_is_needed_only_for_texts_that_can_read_outside_values() {
+        let stated = StatedValues { lengths: [1].into(), ..StatedValues::default() };
+        for (text, with_holes, without) in [
+            ("G0 X1. Y2.\nM30\n", false, false),
+            ("#1=2\nX#[1+1] Y[COS[#2]] (#510 / H2)\n", true, true),
+            ("#1=2\nX#2 Y[COS[#2]] (#510 / H2)\n#5041\n", false, false),
+            ("G43 H1\nDO1\nWHILE[#1LT2]DO1\n", false, false),
+            ("G43 H2\n", true, false),
+            ("G41d3\n", true, false),
+            ("G43 H#1\n", true, false),
+            ("X#510\n", true, true),
+            ("(A) /X1.\n", true, true),
+            ("#1=PRM[20]\n", true, true),
+        ] {
+            let found = [true, false].map(|has_holes| names_outside(text.as_bytes(), &stated, has_holes));
+            assert_eq!(found, [with_holes, without], "{text}");
+        }
     }
 
     #[test]

@@ -8,8 +8,7 @@ use crate::functions::integer;
 use crate::registers::Registers;
 use gcode_lang::program::m_codes::ends_or_stops;
 use gcode_lang::program::{
-    AssignmentTarget, CallCode, OpIndex, OpKind, Operand, Program, ProgramId, Slot, Statement, WordOperand,
-    Words,
+    CallCode, OpIndex, OpKind, Operand, Program, ProgramId, Statement, WordOperand, Words,
 };
 
 /// Blocks between a jump and the place where both ways meet: longer stretches count as open to the end of the run.

@@ -194,8 +194,13 @@ impl MachineMarks {
 
     /// Returns the marks of the coordinate system of an axis.
     pub(super) fn coordinates(&self, axis: usize) -> Marks {
+        self.coordinate_system() | self.shifts[axis]
+    }
+
+    /// Returns the marks of what the coordinate systems of all axes have in common.
+    pub(super) fn coordinate_system(&self) -> Marks {
         let groups: Marks = COORDINATE_GROUPS.into_iter().map(|group| self.group(group)).collect();
-        groups | self.transform | self.work_table | self.shifts[axis]
+        groups | self.transform | self.work_table
     }
 
     /// Returns the marks of a motion from or to the current position.

@@ -112,6 +112,8 @@ pub struct Slice {
     /// Values that decide whether the run cuts elsewhere.
     further: Marks,
     motion: Rc<Cell<Marks>>,
+    /// Marks of a motion from or to the position behind the last block.
+    machine_motion: Marks,
     /// Marks of moves that wait for the next one.
     waiting: Marks,
 }
@@ -271,7 +273,7 @@ impl Observer for Slice {
         self.branches.enter(&control.executor.flow);
         self.block_marks = Marks::NONE;
         self.is_in_cycle = false;
-        let before = self.machine.motion();
+        let before = self.machine_motion;
         {
             let Control { memory, executor, .. } = &*control;
             let frame = &executor.flow.frame;
@@ -283,7 +285,8 @@ impl Observer for Slice {
         self.open_branch(control);
         // A cycle drills where its block leads, wherever it comes from.
         let before = if self.is_in_cycle { Marks::NONE } else { before };
-        let marks = before | self.machine.motion() | self.block_marks | self.branches.marks();
+        self.machine_motion = self.machine.motion();
+        let marks = before | self.machine_motion | self.block_marks | self.branches.marks();
         self.waiting =
             if control.executor.registers.lookahead.is_idle() { marks } else { marks | self.waiting };
         self.motion.set(self.waiting);

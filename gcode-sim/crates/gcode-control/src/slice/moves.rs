@@ -1,11 +1,13 @@
 //! Effect of axis words on the marks: moves, canned cycles, zero shifts, G10.
 use super::super::data::system_index;
+use super::super::registers::Registers;
 use super::words::{BlockModes, MarkedWord};
 use super::{Block, Marks, OutsideValue, Slice};
 use gcode_lang::control::Settings;
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes::OneShot;
 use gcode_lang::program::modes::{Distance, Motion, Plane, Polar, WorkSystem};
+use gcode_lang::program::{LoweredWord, WordOperand, Words};
 
 /// Returns true if a canned cycle can drill along the axis of this letter.
 pub(super) fn is_drilling(settings: &Settings, plane: Plane, letter: u8) -> bool {
@@ -96,6 +98,41 @@ impl Slice {
             repeats: marks_of(&|word| b"KL".contains(&word.letter)),
         };
         self.follow_move(block, named(), modes, words);
+    }
+
+    /// Follows a block of nothing but numbers for axes in a plain mode; returns false for any other.
+    pub(super) fn follow_plain_move(&mut self, block: &Block<'_>, words: &Words) -> bool {
+        let Registers { data, state, .. } = block.registers;
+        let modal = &state.modal;
+        let is_plain = |word: &LoweredWord| {
+            matches!(word.value, WordOperand::Number(_) | WordOperand::Literal(_))
+                && word.axis.is_none()
+                && data.settings.axes.find(word.letter).is_some()
+        };
+        let is_plain_mode = modal.cycle.is_none()
+            && modal.plane == Plane::Xy
+            && modal.distance == Distance::Absolute
+            && modal.polar == Polar::Off
+            && modal.work == WorkSystem::default()
+            && state.transform.is_none()
+            && !state.is_in_parameter_input
+            && data.settings.code_calls.is_empty();
+        if !is_plain_mode
+            || words.call().is_some()
+            || words.skipped_form().is_some()
+            || !words.list.iter().all(is_plain)
+        {
+            return false;
+        }
+        self.machine.transform = Marks::NONE;
+        let marks = self.branches.marks() | self.machine.coordinate_system();
+        for word in &words.list {
+            if let Some(axis) = data.settings.axes.find(word.letter) {
+                let length = if word.letter == b'Z' { self.machine.length } else { Marks::NONE };
+                self.machine.axes[axis] = marks | self.machine.shifts[axis] | length;
+            }
+        }
+        true
     }
 
     fn follow_move(

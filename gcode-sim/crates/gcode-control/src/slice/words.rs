@@ -38,6 +38,9 @@ pub(super) struct BlockModes {
 
 impl Slice {
     pub(super) fn follow_words(&mut self, block: &Block<'_>, words: &Words) {
+        if self.follow_plain_move(block, words) {
+            return;
+        }
         let data = &block.registers.data;
         let mut guard = Marks::NONE;
         if let Some((switch, _)) = words.skipped_form() {
