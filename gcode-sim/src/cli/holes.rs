@@ -6,7 +6,7 @@ use clap::Args;
 use super::conditions::{Denials, ProgramArguments};
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, options, output, page, progress};
-use crate::report::holes as report;
+use crate::report::holes::{self as report, Origin};
 use gcode_part::HoleList;
 use gcode_session::{Request, Simulation};
 
@@ -49,18 +49,25 @@ fn print_result(
     simulation: &Simulation,
 ) -> Result<ExitStatus, UsageError> {
     let mut list = simulation.hole_list();
+    let origin = match &request.part {
+        Some(surface) => {
+            list.enter_at(surface);
+            Origin::Surface
+        }
+        None => Origin::FeedStart,
+    };
     let assumed = simulation.dependences(request, None).numbered(&simulation.run);
     let denied = arguments.denials.errors(&assumed, list.holes.len());
     list.assumptions = Some(assumed.into_iter().map(|(assumption, _)| assumption).collect());
-    print(&list, arguments.format)?;
+    print(&list, origin, arguments.format)?;
     let of_run = super::findings(&simulation.extracted.findings, &simulation.run);
     Ok(of_run.max(super::findings(&denied, &simulation.run)))
 }
 
 /// Prints a list of holes in the given format.
-pub(super) fn print(list: &HoleList, format: ListFormat) -> Result<(), UsageError> {
+pub(super) fn print(list: &HoleList, origin: Origin, format: ListFormat) -> Result<(), UsageError> {
     match format {
-        ListFormat::Text => output::print(&report::text(list)),
+        ListFormat::Text => output::print(&report::text(list, origin)),
         ListFormat::Json => output::json(list),
         ListFormat::Csv => output::print(&report::csv(list)),
     }

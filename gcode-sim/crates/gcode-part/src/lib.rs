@@ -65,6 +65,6 @@ pub use overlap::overlaps;
 pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
-pub use reference::{ProcessLimits, Reference, ToolProcess};
+pub use reference::{NominalAxis, ProcessLimits, Reference, ToolProcess};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};

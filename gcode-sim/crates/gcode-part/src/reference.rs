@@ -1,4 +1,6 @@
 //! Nominal holes with their tolerances, and the limits of the process.
+use std::sync::Arc;
+
 use super::hole::{Hole, HoleList, Unit};
 use super::pattern::Pattern;
 use super::read;
@@ -29,12 +31,14 @@ impl Reference {
     /// # Errors
     /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
+        let holes = read::check_all(list.holes)?;
+        let hole_axes = holes.iter().map(|hole| NominalAxis { entry: hole.entry, axis: hole.axis }).collect();
         Ok(Self {
-            holes: read::check_all(list.holes)?,
+            holes,
             position: None,
             depth: None,
             surface: None,
-            process_limits: ProcessLimits::default(),
+            process_limits: ProcessLimits { hole_axes, ..ProcessLimits::default() },
             pattern: None,
         })
     }
@@ -60,6 +64,17 @@ pub struct ProcessLimits {
     pub clamp: Option<Clamp>,
     /// Limits of each tool.
     pub tools: Vec<ToolProcess>,
+    /// Axes of the holes of a list: a mill that plunges there drills.
+    pub hole_axes: Arc<[NominalAxis]>,
+}
+
+/// Axis of a nominal hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NominalAxis {
+    /// Where the axis meets the surface.
+    pub entry: [f64; 3],
+    /// Unit vector out of the part.
+    pub axis: [f64; 3],
 }
 
 /// Limits of one tool.

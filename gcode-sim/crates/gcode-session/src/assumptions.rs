@@ -165,10 +165,11 @@ impl EventSink for MarkedEvents<'_> {
         let Some(to) = event.kind.end() else { return self.extractor.event(event) };
         let is_rapid = matches!(event.kind, EventKind::Rapid { .. });
         let from = std::mem::replace(&mut self.position, *to);
-        let length = (0..MAX_AXES).map(|axis| (to[axis] - from[axis]).powi(2)).sum::<f64>().sqrt();
+        let mut direction = Position::default();
+        (0..MAX_AXES).for_each(|axis| direction[axis] = to[axis] - from[axis]);
+        let length = (0..MAX_AXES).map(|axis| direction[axis] * direction[axis]).sum::<f64>().sqrt();
         if length > 0.0 {
-            let mut direction = Position::default();
-            (0..MAX_AXES).for_each(|axis| direction[axis] = (to[axis] - from[axis]) / length);
+            (0..MAX_AXES).for_each(|axis| direction[axis] /= length);
             let is_along = |last: &Position| {
                 let cosine: f64 = (0..MAX_AXES).map(|axis| last[axis] * direction[axis]).sum();
                 cosine.abs() >= MIN_COSINE
@@ -321,6 +322,13 @@ mod tests {
             let found = [true, false].map(|has_holes| names_outside(text.as_bytes(), &stated, has_holes));
             assert_eq!(found, [with_holes, without], "{text}");
         }
+    }
+
+    #[test]
+    fn a_value_decides_a_milled_hole_by_any_of_its_feeds() {
+        let text =
+            "G0 X10. Y10. Z2.\nG1 Z-3. F100.\nX[12.+#510]\nG3 I-2.\nG1 X10.\nG0 Z50.\nX40.\nG81 Z-5. R2.";
+        assert_assumptions(text, 2, &["#510=vacant@6: 1"]);
     }
 
     #[test]

@@ -1,4 +1,5 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
+mod arc_run;
 mod clamping;
 mod clearance;
 mod cutting;
@@ -9,9 +10,11 @@ mod length_mismatch;
 mod line;
 mod line_findings;
 mod machine_requests;
+mod milled;
 pub(crate) mod per_block;
 mod rapids;
 pub(crate) mod spindle;
+mod strokes;
 #[cfg(test)]
 mod tests;
 pub(crate) mod unknown_axes;
@@ -29,17 +32,17 @@ pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
-use self::group::DrillPass;
 use self::line::{CuttingLine, ToolExit};
+use self::milled::{Engagement, Path};
 use self::per_block::Findings;
 use self::rapids::TOUCH_DEPTH;
+use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, Setup};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
-    Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
-    StopKind,
+    Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection, StopKind,
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
@@ -88,10 +91,10 @@ pub struct HoleExtractor<'m> {
     /// True once the tool has been outside the part: its position before that is unknown.
     has_been_outside: bool,
     current_line: Option<Box<CuttingLine>>,
-    passes: Vec<DrillPass>,
-    max_passes: usize,
-    /// First pass beyond `max_passes`.
-    first_excess_pass: Option<Backtrace>,
+    /// Kind of the last motion, and its block.
+    last_motion: Option<(MotionKind, Span)>,
+    strokes: Strokes,
+    engagement: Engagement,
     positions: PositionTracker,
     findings: Findings,
     close_motions: CloseMotions,
@@ -102,7 +105,7 @@ pub struct HoleExtractor<'m> {
 }
 
 /// Kind of a motion.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum MotionKind {
     Rapid,
     Feed,
@@ -128,9 +131,9 @@ impl<'m> HoleExtractor<'m> {
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
             has_been_outside: false,
             current_line: None,
-            passes: Vec::new(),
-            max_passes: MAX_PASSES,
-            first_excess_pass: None,
+            last_motion: None,
+            strokes: Strokes::new(MAX_PASSES),
+            engagement: Engagement::default(),
             positions: PositionTracker::default(),
             findings: Findings::default(),
             close_motions: CloseMotions::default(),
@@ -151,18 +154,22 @@ impl<'m> HoleExtractor<'m> {
     #[must_use]
     pub fn with_process_limits(mut self, limits: &ProcessLimits) -> Self {
         self.process_limits = limits.clone();
+        self.strokes.set_nominal_axes(&limits.hole_axes);
         self
     }
 
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
         self.end_line(false);
-        let mut holes = group::group_holes(&self.passes, self.machine);
+        self.end_engagement();
+        let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
+        let mut holes = group::group_holes(&passes, self.machine);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);
         let mut findings = self.findings.finish();
-        findings.extend(self.first_excess_pass.map(|backtrace| {
+        findings.extend(milled.map(MilledStrokes::finding));
+        findings.extend(first_excess.map(|backtrace| {
             let message =
                 format!("more than {MAX_PASSES} feeds into the part: nothing after this is checked");
             let finding = Diagnostic::new(&LIMIT, message).with_backtrace(backtrace);
@@ -188,35 +195,40 @@ impl<'m> HoleExtractor<'m> {
         }
     }
 
-    fn push_passes(&mut self, passes: impl IntoIterator<Item = DrillPass>) {
-        for pass in passes {
-            if self.passes.len() < self.max_passes {
-                self.passes.push(pass);
-            } else {
-                self.first_excess_pass.get_or_insert(pass.backtrace);
-            }
-        }
-    }
-
     fn motion(&mut self, event: &Event<'_>, kind: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.axis_position;
         self.check_idle_axes(event, &from, to);
         self.check_clamp_released(event, &from, to);
+        let last_motion = self.last_motion.replace((kind, event.block));
         let before = self.pose;
+        let travel = AxisMotion { from: &from, to, arc };
+        let is_rotating = !self.machine.is_straight(&AxisMotion { arc: None, ..travel });
+        if is_rotating {
+            self.end_engagement();
+        }
         if self.machine.table.is_moved(&from, to) {
             self.frame = self.machine.part_frame(to);
         }
         self.axis_position = *to;
         self.pose = self.machine.tool_pose(to, &self.setup).relative_to(&self.frame);
         let (was, is) = self.positions.advance(self.machine);
-        let travel = AxisMotion { from: &from, to, arc };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
+            // With the same axes unknown the motion itself is known.
+            match was == is && !is_rotating {
+                true => self.disengage(&before.tip),
+                false => self.end_engagement(),
+            }
             return;
         }
-        if !self.machine.is_straight(&travel) {
+        if is_rotating || arc.is_some() {
             self.end_line(kind == MotionKind::Feed);
             self.check_curved(event, &travel, kind);
+            if kind == MotionKind::Feed {
+                let arc = self.part_arc(&travel, &before.tip);
+                self.engagement.add_unknown_axes(was.union(is));
+                self.engage(event, &before.tip, Path::Curved(arc));
+            }
             self.update_outside();
             return;
         }
@@ -226,8 +238,15 @@ impl<'m> HoleExtractor<'m> {
         let free_from = self.update_line(event, kind, before.tip);
         match (kind, free_from) {
             (MotionKind::Rapid, Some(start)) => self.check_rapid(event, &start, &self.pose.tip.clone()),
-            (MotionKind::Feed, Some(start)) => self.start_line(event, start),
+            (MotionKind::Feed, Some(start)) => self.start_line(event, start, last_motion),
             _ => {}
+        }
+        match kind {
+            MotionKind::Feed => self.engage(event, &before.tip, Path::Straight),
+            MotionKind::Rapid | MotionKind::Probe => self.disengage(&before.tip),
+        }
+        if self.strokes.has_across() {
+            self.check_upright(&from);
         }
         self.update_outside();
     }
@@ -261,6 +280,7 @@ impl<'m> HoleExtractor<'m> {
                         line.feed_to(&tip, event.backtrace(), &self.axis_position)
                     }
                     MotionKind::Rapid | MotionKind::Probe => {
+                        line.is_cycle |= event.block == line.first_block;
                         let (again, uncut) = line.rapid_to(&tip);
                         if uncut {
                             self.report_rapid_beyond_cut(event, &line);
@@ -268,7 +288,9 @@ impl<'m> HoleExtractor<'m> {
                         again
                     }
                 };
-                self.push_passes(again);
+                if let Some(pass) = again {
+                    self.strokes.push(pass, self.cut_kind(&line, false));
+                }
                 self.current_line = Some(line);
                 None
             }
@@ -284,12 +306,16 @@ impl<'m> HoleExtractor<'m> {
         }
     }
 
-    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>) {
+    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>, last_motion: Option<(MotionKind, Span)>) {
         let rounding = self.machine.increment.size() / 2.0;
         let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
         self.current_line = line.map(|line| {
             let mut line = Box::new(line);
             line.tool_axis = self.pose.axis;
+            line.upright = self.tool_direction();
+            // A block of a cycle positions, feeds and retracts.
+            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
+            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
             line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
             line.clamp_state = self.clamp_state;
             line.unknown_axes = self.positions.unknown_axes();
@@ -326,7 +352,11 @@ impl<'m> HoleExtractor<'m> {
         if self.setup == before {
             return;
         }
+        let after = std::mem::replace(&mut self.setup, before);
         self.end_line(false);
+        self.end_engagement();
+        self.strokes.end_tool();
+        self.setup = after;
         self.pose = self.machine.tool_pose(&self.axis_position, &self.setup).relative_to(&self.frame);
     }
 }
