@@ -120,6 +120,17 @@ fn a_denied_assumption_fails_everywhere() {
 }
 
 #[test]
+fn an_alarm_stands_before_denied_assumptions() {
+    let place = folder(&PROGRAM.replace("M30", "#1=1/0\nM30"));
+    let line = "gcode-sim verify O1.nc --reference r.csv --deny assumptions --format json";
+    let (verdict, code) = run_json(line, place.path());
+    let summary = verdict["summary"].as_str().unwrap();
+    assert!(summary.starts_with("alarm PS0112 in O0001 line 11: division by zero; "), "{summary}");
+    assert!(summary.ends_with("; 1 assumption is denied"), "{summary}");
+    assert_eq!(code, 3);
+}
+
+#[test]
 fn a_program_without_assumptions_passes_where_they_are_denied() {
     let place = folder(&PROGRAM.replace("Y#510", "Y[10.*2.]"));
     for command in [

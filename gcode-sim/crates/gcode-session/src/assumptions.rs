@@ -108,9 +108,9 @@ fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
                 Some(number) => number != 0 && (letter == b'D' || !stated.lengths.contains(&number)),
                 None => matches!(text[at + 1..].trim_ascii_start().first(), Some(b'#' | b'[')),
             },
-            _ => true,
+            _ => !is_division(line_before(text, at)),
         };
-        is_named && !is_in_comment(text, at)
+        is_named && !is_in_comment(line_before(text, at))
     };
     memchr::memchr3_iter(b'#', b'/', b'[', text).any(is_outside)
         || has_holes && memchr::memchr2_iter(b'H', b'D', text).any(is_outside)
@@ -124,10 +124,20 @@ fn number_behind(text: &[u8], at: usize) -> Option<u32> {
     std::str::from_utf8(&behind[..digits]).ok()?.parse().ok()
 }
 
-/// Returns true if a byte of a text is in a comment of its line.
-fn is_in_comment(text: &[u8], at: usize) -> bool {
-    let before = &text[memchr::memrchr(b'\n', &text[..at]).map_or(0, |end| end + 1)..at];
+/// Returns the line of a byte up to it.
+fn line_before(text: &[u8], at: usize) -> &[u8] {
+    &text[memchr::memrchr(b'\n', &text[..at]).map_or(0, |end| end + 1)..at]
+}
+
+/// Returns true if a byte behind this part of its line is in a comment.
+fn is_in_comment(before: &[u8]) -> bool {
     before.iter().rposition(|byte| *byte == b'(') > before.iter().rposition(|byte| *byte == b')')
+}
+
+/// Returns true if a slash behind this part of its line divides: behind `=` or inside brackets.
+fn is_division(before: &[u8]) -> bool {
+    let count = |bracket: u8| before.iter().filter(|byte| **byte == bracket).count();
+    before.contains(&b'=') || count(b']') < count(b'[')
 }
 
 /// Returns what the machine file and the reference state.
@@ -316,7 +326,9 @@ mod tests {
             ("G41d3\n", true, false),
             ("G43 H#1\n", true, false),
             ("X#510\n", true, true),
+            ("#4=ATAN[#2]/[#3]\nX[#4/2]\n", false, false),
             ("(A) /X1.\n", true, true),
+            ("X[#4/2] /2 Y1.\n", true, true),
             ("#1=PRM[20]\n", true, true),
         ] {
             let found = [true, false].map(|has_holes| names_outside(text.as_bytes(), &stated, has_holes));

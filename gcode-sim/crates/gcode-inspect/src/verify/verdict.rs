@@ -338,7 +338,12 @@ impl Verdict {
             self.findings.extend(denied.iter().map(|finding| finding_of(finding, None, true, locate)));
             self.diagnostics.extend(limit_per_kind(denied.into_iter()));
             self.verdict = Answer::Fail;
-            self.summary = format!("{}; {}", denied_words(assumptions.len()), self.summary);
+            let denied = denied_words(assumptions.len());
+            // The end of the run comes first.
+            self.summary = match self.outcome {
+                Ending::End => format!("{denied}; {}", self.summary),
+                Ending::Alarm | Ending::Limit => format!("{}; {denied}", self.summary),
+            };
         }
         self.assumptions.extend(assumptions.into_iter().map(|(assumption, _)| assumption));
     }
