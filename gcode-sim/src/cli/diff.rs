@@ -14,7 +14,7 @@ use gcode_inspect::verify::Tolerances;
 use gcode_part::NominalPart;
 use gcode_part::Reference;
 use gcode_review::{Revision, RevisionDiff, unexecuted};
-use gcode_session::Trace;
+use gcode_session::{Request, Trace};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     match arguments.format {
         FindingFormat::Json => output::json(&report)?,
         FindingFormat::Text => output::print(&report.text())?,
-        FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name))?,
+        FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name), None)?,
     }
     if let Some(path) = &arguments.picture {
         let names = [&new_request, &old_request].map(render::name);
@@ -108,14 +108,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
     if let (Some(path), Some(old_trace), Some(new_trace)) = (&arguments.page, &old_trace, &new_trace) {
-        let judged = |revision: &Revision| {
-            let verify = |reference| {
+        let judged = |revision: &Revision, request: &Request| {
+            let verify = |reference: &Reference| {
                 let tolerances = Tolerances::of(reference, None);
-                revision.simulation.verify(reference, tolerances, &new_request.machine)
+                let mut verdict = revision.simulation.verify(reference, tolerances, &new_request.machine);
+                revision.simulation.add_assumptions(&mut verdict, request, reference.surface, false);
+                verdict
             };
             reference.as_ref().map(verify)
         };
-        let (old_verdict, new_verdict) = (judged(&old), judged(&new));
+        let (old_verdict, new_verdict) = (judged(&old, &old_request), judged(&new, &new_request));
         let seen = |request, revision, trace, verdict| ObservedProgram { request, revision, trace, verdict };
         let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
         let of_old = arguments.old_libraries.iter().map(|folder| format!("--old-lib {}", folder.display()));

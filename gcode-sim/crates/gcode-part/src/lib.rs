@@ -33,6 +33,7 @@
 //! ```
 #![warn(missing_docs)]
 
+mod assumption;
 mod clusters;
 mod distance;
 mod feature;
@@ -56,6 +57,7 @@ mod spacing;
 mod surface;
 mod touch_uncertainty;
 
+pub use assumption::{Assumption, AssumptionPlace};
 pub use clusters::Clusters;
 pub use distance::NearestPoint;
 pub use feature::{DepthTo, Feature, FeatureKind};

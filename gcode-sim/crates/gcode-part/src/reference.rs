@@ -47,7 +47,7 @@ impl Reference {
 
     /// Returns the hole list that `reference` writes.
     pub fn list(&self) -> HoleList {
-        HoleList { unit: Unit::Mm, holes: self.holes.clone() }
+        HoleList { unit: Unit::Mm, holes: self.holes.clone(), assumptions: None }
     }
 }
 

@@ -1,6 +1,8 @@
 //! Comparison of the drilled holes with the nominal ones: matching, deviations, findings and the verdict.
+mod assumption;
 mod causes;
 mod checks;
+mod conclusion;
 mod displacement;
 pub mod flutes;
 mod hole_finding;
@@ -16,10 +18,12 @@ mod stack;
 mod tests;
 mod verdict;
 
+pub use assumption::denied_assumptions;
+pub use conclusion::{Answer, Conclusion, Ending};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
-pub use verdict::{Answer, ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
+pub use verdict::{ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
 use self::checks::features::{FeatureFindings, judge_all};
 use self::checks::mirrored::MirrorImage;
