@@ -255,6 +255,7 @@ mod tests {
             at_bottom: phi / 2.0,
             depth_error: -0.00002,
             drilled_index: 0,
+            far_side_index: None,
             ok: error_codes.is_empty(),
             tilt: 0.0,
             out_of_tolerance: (phi - 0.1).max(0.0),
