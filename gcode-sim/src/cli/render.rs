@@ -77,9 +77,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         }
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
-            let surface = reference.as_ref().and_then(|r| r.surface);
+            let stock = request.machine.stock;
+            let metal = reference.as_ref().map(|r| r.metal(stock)).unwrap_or_default();
             request.process_limits = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
-            let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, surface);
+            let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, metal.clone());
             let simulation = progress::of_run(&mut request, simulate)?;
             let drawn = match &reference {
                 Some(reference) => {

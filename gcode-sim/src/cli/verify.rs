@@ -143,7 +143,7 @@ fn holes(
         print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
     if let Some(path) = &arguments.page {
-        let traced = page::simulate_traced(request, &mut folders, reference.surface)?;
+        let traced = page::simulate_traced(request, &mut folders, reference.metal(request.machine.stock))?;
         let verdict = traced.0.simulation.verify(reference, tolerances, &machine);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
         page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;
@@ -151,7 +151,7 @@ fn holes(
         output::written("page", path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, reference.surface);
+    let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, reference.metal(request.machine.stock));
     let simulation = progress::of_run(request, simulate)?;
     print(&simulation, &simulation.verify(reference, tolerances, &machine))
 }

@@ -148,7 +148,9 @@ fn summary(text: &mut String, verdict: &Verdict) {
     ];
     let mut parts = vec![format!("{good} of {} in tolerance", count(nominal, "hole"))];
     parts.extend(others.into_iter().filter(|(number, _)| *number != 0).map(|(_, part)| part));
-    let _ = writeln!(text, "{}     {}", answer_word(verdict.verdict), parts.join(", "));
+    let unchecked = verdict.unchecked_motion.map(|motion| format!("; not checked: {motion}"));
+    let answer = answer_word(verdict.verdict);
+    let _ = writeln!(text, "{answer}     {}{}", parts.join(", "), unchecked.unwrap_or_default());
     if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
         let _ = writeln!(
             text,
@@ -281,6 +283,7 @@ mod tests {
             findings: Vec::new(),
             neighbours: None,
             not_checked: Vec::new(),
+            unchecked_motion: None,
             diagnostics: Vec::new(),
         }
     }

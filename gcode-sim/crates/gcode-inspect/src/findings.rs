@@ -11,6 +11,7 @@ gcode_lang::finding_kinds! {
     DRILL_PECK = "drill-peck", Error, "a hole is drilled with other pecks than specified";
     DRILL_SPEED = "drill-speed", Error, "a tool cuts at another speed than specified";
     DRILLS_UNCLAMPED = "drills-unclamped", Error, "a feed into the part with an unclamped rotary";
+    FEED_BESIDE_HOLE = "feed-beside-hole", Error, "a feed cuts beside a hole";
     FEED_NO_HOLE = "feed-no-hole", Error, "a feed that makes no hole";
     FEED_NOT_ALONG_TOOL = "feed-not-along-tool", Error, "the feed doesn't run along the tool";
     FEED_WITHOUT_RETRACT = "feed-without-retract", Error, "a feed without retract";
@@ -59,6 +60,7 @@ gcode_lang::finding_kinds! {
     SPINDLE_IN_HOLE = "spindle-in-hole", Error, "the spindle stops or reverses while a drill is in the hole";
     SPINDLE_REVERSED = "spindle-reversed", Warning, "a hole is drilled with M04";
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
+    TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends with the tool in the metal";
     TOOL_SHORT = "tool-short", Warning, "a tool goes deeper than it is long";
     TOOL_UNKNOWN = "tool-unknown", Warning, "a tool that is missing in the tool table";
     TURNS_CLAMPED = "turns-clamped", Error, "the rotary rotates while clamped";

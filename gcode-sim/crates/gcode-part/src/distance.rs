@@ -1,6 +1,7 @@
 //! Exact distance of a point from the part's surface, and the direction of the nearest point.
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::solid::block_nearest;
 use super::surface::{Surface, bisect};
 
 /// Distance from a surface, and the normal at the nearest point of the surface.
@@ -22,6 +23,8 @@ impl Surface {
                 let normal = Unit::try_new(out, f64::MIN_POSITIVE).unwrap_or(Vector3::y_axis());
                 NearestPoint { distance: out.norm() - radius, normal }
             }
+            Self::Block { min, max } => block_nearest(&min, &max, p),
+            Self::Rod(rod) => rod.nearest(p),
         }
     }
 

@@ -2,6 +2,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::stock::Stock;
+
 /// Block of a program that made a hole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -54,4 +56,7 @@ pub struct HoleList {
     pub unit: Unit,
     /// The holes, in the order of the drawing or of the program.
     pub holes: Vec<Hole>,
+    /// Solid material of the part, for a reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stock: Option<Stock>,
 }

@@ -35,6 +35,7 @@
 
 mod clusters;
 mod distance;
+mod entry_planes;
 mod flutes;
 pub mod gauge;
 mod hole;
@@ -50,11 +51,14 @@ mod profile;
 mod read;
 pub mod reader;
 mod reference;
+mod solid;
+mod stock;
 mod surface;
 mod touch_uncertainty;
 
 pub use clusters::Clusters;
 pub use distance::NearestPoint;
+pub use entry_planes::{Collar, EntryPlanes, Metal};
 pub use flutes::Flutes;
 pub use hole::{Hole, HoleList, Origin, Unit};
 pub use indicator::tilted_ellipsoid;
@@ -64,5 +68,7 @@ pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
+pub use solid::Rod;
+pub use stock::{Stock, StockAxis};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};

@@ -22,6 +22,7 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
         position: Some(job.tolerance.position),
         depth: Some(job.tolerance.depth),
         surface: Some(surface),
+        stock: None,
         process_limits: process_limits(job),
         pattern: None,
     })

@@ -1,7 +1,11 @@
 //! Nominal holes with their tolerances, and the limits of the process.
+use std::sync::Arc;
+
+use super::entry_planes::{EntryPlanes, Metal};
 use super::hole::{Hole, HoleList, Unit};
 use super::pattern::Pattern;
 use super::read;
+use super::stock::Stock;
 use super::surface::Surface;
 use crate::job::{Clamp, Rotary};
 use crate::reader::FileError;
@@ -17,6 +21,8 @@ pub struct Reference {
     pub depth: Option<f64>,
     /// Surface of the part; `None` for a hole list.
     pub surface: Option<Surface>,
+    /// Solid material of the part, if it is not that inside the surface.
+    pub stock: Option<Stock>,
     /// Limits of the process that the reference specifies.
     pub process_limits: ProcessLimits,
     /// Nominal relation of neighbouring holes; `None` for parts without a pattern.
@@ -29,19 +35,32 @@ impl Reference {
     /// # Errors
     /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
+        if let Some(fault) = list.stock.and_then(|stock| stock.fault()) {
+            return Err(FileError { line: None, message: format!("stock: {fault}") });
+        }
         Ok(Self {
             holes: read::check_all(list.holes)?,
             position: None,
             depth: None,
             surface: None,
+            stock: list.stock,
             process_limits: ProcessLimits::default(),
             pattern: None,
         })
     }
 
+    /// Returns what is known to be metal; `of_machine` is the stock of the machine file, which that of the reference
+    /// overrides. Without either it is the part inside its surface, and for a hole list the metal round its holes.
+    pub fn metal(&self, of_machine: Option<Stock>) -> Metal {
+        let stock = self.stock.or(of_machine).unwrap_or(Stock::Surface {});
+        let body = stock.body(self.surface);
+        let entries = body.is_none().then(|| Arc::new(EntryPlanes::of(&self.holes)));
+        Metal { body, entries }
+    }
+
     /// Returns the hole list that `reference` writes.
     pub fn list(&self) -> HoleList {
-        HoleList { unit: Unit::Mm, holes: self.holes.clone() }
+        HoleList { unit: Unit::Mm, holes: self.holes.clone(), stock: self.stock }
     }
 }
 

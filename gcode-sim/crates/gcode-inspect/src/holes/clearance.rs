@@ -261,7 +261,7 @@ mod tests {
     fn machine_for(surface: Surface) -> Machine {
         let about = match surface {
             Surface::Ellipsoid { .. } => Vector3::y_axis(),
-            Surface::Cylinder { .. } => Vector3::x_axis(),
+            _ => Vector3::x_axis(),
         };
         Machine {
             head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0),

@@ -1,7 +1,9 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
+mod axis_box;
 mod clamping;
 mod clearance;
 mod cutting;
+mod entries;
 #[cfg(test)]
 pub(crate) mod event_script;
 mod group;
@@ -10,6 +12,7 @@ mod line;
 mod line_findings;
 mod machine_requests;
 pub(crate) mod per_block;
+mod rapid_paths;
 mod rapids;
 pub(crate) mod spindle;
 #[cfg(test)]
@@ -29,12 +32,13 @@ pub(crate) use work_zero::UnknownWorkZero;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
+use self::entries::CutEntries;
 use self::group::DrillPass;
 use self::line::{CuttingLine, ToolExit};
 use self::per_block::Findings;
 use self::rapids::TOUCH_DEPTH;
 use self::work_zero::WorkZeroTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, Setup};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
@@ -43,7 +47,7 @@ use gcode_lang::motion::{
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
-use gcode_part::{HoleList, ProcessLimits, Surface, Unit};
+use gcode_part::{HoleList, Metal, ProcessLimits, Surface, Unit};
 
 /// Largest number of passes that are kept: an endless loop must not fill the memory.
 const MAX_PASSES: usize = 200_000;
@@ -65,6 +69,8 @@ pub struct HoleExtraction {
     pub(crate) unknown_work_zero: Option<UnknownWorkZero>,
     /// Limits with which the motion was compared.
     pub(crate) process_limits: ProcessLimits,
+    /// The stock or the surface is known, and all motion was compared with it.
+    pub(crate) is_metal_known: bool,
 }
 
 /// Sink for the events of a run that extracts the holes.
@@ -72,6 +78,9 @@ pub struct HoleExtraction {
 pub struct HoleExtractor<'m> {
     machine: &'m Machine,
     surface: Option<Surface>,
+    /// Metal round the nominal holes, where neither stock nor surface is known.
+    entries: Option<CutEntries>,
+    rapid_path: RapidPath,
     axis_position: Position,
     setup: Setup,
     cutting_state: CuttingState,
@@ -86,6 +95,8 @@ pub struct HoleExtractor<'m> {
     /// True once the tool has been outside the part: its position before that is unknown.
     has_been_outside: bool,
     current_line: Option<Box<CuttingLine>>,
+    /// Block of the last motion, if metal is known.
+    last_motion: Option<Backtrace>,
     passes: Vec<DrillPass>,
     max_passes: usize,
     /// First pass beyond `max_passes`.
@@ -116,6 +127,8 @@ impl<'m> HoleExtractor<'m> {
         Self {
             machine,
             surface: None,
+            entries: None,
+            rapid_path: machine.rapid,
             axis_position,
             setup,
             cutting_state: CuttingState::default(),
@@ -126,6 +139,7 @@ impl<'m> HoleExtractor<'m> {
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
             has_been_outside: false,
             current_line: None,
+            last_motion: None,
             passes: Vec::new(),
             max_passes: MAX_PASSES,
             first_excess_pass: None,
@@ -145,6 +159,23 @@ impl<'m> HoleExtractor<'m> {
         self
     }
 
+    /// Sets what is known to be metal; motion in it and near it is then checked.
+    #[must_use]
+    pub fn with_metal(mut self, metal: Metal) -> Self {
+        self.surface = metal.body;
+        self.entries = metal.entries.map(CutEntries::new);
+        self
+    }
+
+    /// Takes every rapid as a straight line (LRP).
+    #[must_use]
+    pub fn with_straight_rapids(mut self, are_straight: bool) -> Self {
+        if are_straight {
+            self.rapid_path = RapidPath::Straight;
+        }
+        self
+    }
+
     /// Sets the limits of the process with which the motion is compared.
     #[must_use]
     pub fn with_process_limits(mut self, limits: &ProcessLimits) -> Self {
@@ -154,6 +185,7 @@ impl<'m> HoleExtractor<'m> {
 
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
+        self.end_in_metal();
         self.end_line(false);
         let mut findings = self.findings.finish();
         findings.extend(self.first_excess_pass.map(|backtrace| {
@@ -170,6 +202,7 @@ impl<'m> HoleExtractor<'m> {
             length_mismatches: self.length_mismatches,
             unknown_work_zero: self.work_zero.finish(self.machine),
             process_limits: self.process_limits,
+            is_metal_known: self.surface.is_some(),
         }
     }
 
@@ -193,6 +226,9 @@ impl<'m> HoleExtractor<'m> {
 
     fn motion(&mut self, event: &Event<'_>, kind: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.axis_position;
+        if self.surface.is_some() || self.entries.is_some() {
+            self.last_motion = Some(event.backtrace());
+        }
         self.check_idle_axes(event, &from, to);
         self.check_clamp_released(event, &from, to);
         let before = self.pose;
@@ -209,7 +245,11 @@ impl<'m> HoleExtractor<'m> {
         let travel = AxisMotion { from: &from, to, arc };
         if !self.machine.is_straight(&travel) {
             self.end_line(kind == MotionKind::Feed);
-            self.check_curved(event, &travel, kind);
+            match kind {
+                MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
+                MotionKind::Feed => drop(self.check_curved(event, &travel, kind)),
+                MotionKind::Probe => {}
+            }
             self.update_outside();
             return;
         }
@@ -218,8 +258,13 @@ impl<'m> HoleExtractor<'m> {
         }
         let free_from = self.update_line(event, kind, before.tip);
         match (kind, free_from) {
-            (MotionKind::Rapid, Some(start)) => self.check_rapid(event, &start, &self.pose.tip.clone()),
-            (MotionKind::Feed, Some(start)) => self.start_line(event, start),
+            (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
+            (MotionKind::Feed, start) => {
+                self.follow_feed_at_holes(event, &[before.tip, self.pose.tip]);
+                if let Some(start) = start {
+                    self.start_line(event, start);
+                }
+            }
             _ => {}
         }
         self.update_outside();
@@ -376,6 +421,6 @@ impl HoleExtraction {
     /// Returns the holes as a list; `locate` returns the program and the line of a block.
     pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
         let holes = self.holes.iter().map(|hole| hole.hole(&locate)).collect();
-        HoleList { unit: Unit::Mm, holes }
+        HoleList { unit: Unit::Mm, holes, stock: None }
     }
 }

@@ -10,6 +10,7 @@ mod inverse;
 mod path;
 mod probe;
 mod random;
+mod rapid;
 mod sources;
 mod touch;
 mod wheel;
@@ -23,12 +24,15 @@ pub use head::{Head, HeadKind, HeadMessage};
 pub use path::AxisMotion;
 pub use probe::Probe;
 pub use random::RandomStream;
+pub use rapid::RapidPath;
+pub(crate) use rapid::arrivals;
 pub use sources::{ErrorSource, Quantity};
 pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex, Position};
 use gcode_lang::units::Deg;
+use gcode_part::Stock;
 
 /// Rotation and translation of a point; lengths in mm.
 pub type Frame = IsometryMatrix3<f64>;
@@ -58,6 +62,10 @@ pub struct Machine {
     pub part: Placement,
     /// Touch probe.
     pub probe: Option<Probe>,
+    /// Path of a rapid of several axes.
+    pub rapid: RapidPath,
+    /// Solid material of the part; `None` for that of the reference.
+    pub stock: Option<Stock>,
 }
 
 /// A tool of the machine's tool table.
@@ -131,6 +139,8 @@ impl Default for Machine {
             offsets: Vec::new(),
             part: Placement::default(),
             probe: None,
+            rapid: RapidPath::default(),
+            stock: None,
         }
     }
 }

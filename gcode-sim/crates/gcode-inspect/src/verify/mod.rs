@@ -90,6 +90,7 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
+    verdict.unchecked_motion = (!extraction.is_metal_known).then_some(not_checked::MOTION);
     verdict.not_checked = not_checked::lines(comparison, extraction, reference, machine, locate);
     verdict
 }

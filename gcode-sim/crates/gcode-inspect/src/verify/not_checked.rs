@@ -9,6 +9,9 @@ use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
 use gcode_part::{Reference, ToolProcess};
 
+/// Motion that no check covers if neither stock nor surface is known, for the first line of a verdict.
+pub(super) const MOTION: &str = "motion beside the holes (no stock)";
+
 /// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
 pub(super) fn lines(
     comparison: &Comparison<'_>,
@@ -24,10 +27,11 @@ pub(super) fn lines(
     if machine.head.kind == HeadKind::Free && drilled.all(|hole| hole.tool_axis_deviation == Deg::ZERO) {
         all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());
     }
-    if reference.surface.is_none() {
-        all.push(
-            "rapid motion through the part: the reference has no surface; a job file has one".to_owned(),
-        );
+    if !extraction.is_metal_known {
+        all.push(format!(
+            "{MOTION}: give [stock] in the reference or the machine file; the metal is known only round the \
+             nominal holes, to 1 mm from their walls"
+        ));
     } else if let Some(unknown) = &extraction.unknown_work_zero {
         all.push(unknown.describe(locate(unknown.backtrace.block)));
     }

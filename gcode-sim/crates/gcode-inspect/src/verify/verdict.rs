@@ -54,6 +54,9 @@ pub struct Verdict {
     pub neighbours: Option<Neighbours>,
     /// Sentences on what the verdict does not cover.
     pub not_checked: Vec<String>,
+    /// Motion that no check covers, for the first line of the printed verdict.
+    #[serde(skip)]
+    pub unchecked_motion: Option<&'static str>,
     /// The findings with their locations, for the printed report.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
@@ -203,6 +206,7 @@ pub(super) fn verdict(
         findings: findings.iter().map(as_data).collect(),
         neighbours: None,
         not_checked: Vec::new(),
+        unchecked_motion: None,
         holes,
         diagnostics: limit_per_kind(findings.into_iter().filter(|one| !one.is_folded).map(|one| one.finding)),
     }
