@@ -38,7 +38,15 @@ pub(crate) fn alarm(case: &Case) {
 
 fn shown(ran: &Ran) -> String {
     let mut text = String::new();
+    // Of the axes that are unknown only those at machine coordinates are shown.
+    let mut at_machine_position = 0;
     for (span, kind, _) in &ran.recorder.0 {
+        if let EventKind::PositionUnknown { axes } = kind {
+            let before = std::mem::replace(&mut at_machine_position, axes.at_machine_position);
+            if before == at_machine_position {
+                continue;
+            }
+        }
         writeln!(text, "{:>3}  {}", line(ran, *span), event(ran, kind)).unwrap();
     }
     match &ran.outcome {
@@ -102,9 +110,8 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
             LengthCompensation::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
             LengthCompensation::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
         },
-        EventKind::WorkZeroUnknown { axes: unplaced } => {
-            let letters = axes.iter().filter(|(axis, _)| unplaced >> axis & 1 == 1);
-            format!("not placed on the part: {}", letters.map(|(_, letter)| letter).collect::<String>())
+        EventKind::PositionUnknown { axes: unknown } => {
+            format!("not placed on the part: {}", axes.names(unknown.at_machine_position))
         }
         EventKind::Spindle { direction: turning, speed } => {
             format!("spindle {turning:?} {}", speed.0).to_lowercase()

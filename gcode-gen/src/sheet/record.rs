@@ -173,7 +173,7 @@ impl EventSink for RunRecorder {
                 self.stops.push((stop, event.backtrace()));
             }
             EventKind::ToolLength { .. }
-            | EventKind::WorkZeroUnknown { .. }
+            | EventKind::PositionUnknown { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => {}

@@ -25,6 +25,11 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "#N=VALUE")]
     pub(super) set: Vec<String>,
 
+    /// Where an axis stands before the start, in the work coordinates active then, e.g. Z=250. (repeatable); overrides
+    /// [start] in the machine file
+    #[arg(long, value_name = "AXIS=POSITION", allow_hyphen_values = true)]
+    pub(super) start: Vec<String>,
+
     /// The control: fanuc-31i, fanuc-0i-f or haas-ngc
     #[arg(long, value_name = "NAME")]
     pub(super) dialect: Option<String>,

@@ -6,10 +6,14 @@ use super::library::Folders;
 use super::{UsageError, input, overwrite_guard, page, unused_machine};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
+use gcode_lang::motion::{Axes, AxisIndex};
 use gcode_part::NominalPart;
 use gcode_part::ProbedPart;
 use gcode_part::job::{Rotary, control_file};
 use gcode_session::Request;
+
+/// Largest position of --start, mm or degrees, as in [start] of a machine file.
+const MAX_START: f64 = 100_000.0;
 
 /// Reads the program and the machine, and applies every setting in order.
 pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), UsageError> {
@@ -44,6 +48,11 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     }
     for text in &arguments.set {
         request.variables.push(assignment(text)?);
+    }
+    for text in &arguments.start {
+        let (axis, position) = start_position(text, &request.settings.axes)?;
+        request.machine.start.retain(|(other, _)| *other != axis);
+        request.machine.start.push((axis, position));
     }
     request.limits = Limits { blocks: arguments.max_blocks };
     if let Some(path) = &arguments.part {
@@ -161,6 +170,22 @@ fn assignment(text: &str) -> Result<(u32, f64), UsageError> {
         Some((number.trim().parse().ok()?, value))
     });
     parsed.ok_or_else(|| UsageError::new(format!("--set {text}: write a variable and a number, '#500=12.5'")))
+}
+
+/// Parses `Z=250.`.
+fn start_position(text: &str, axes: &Axes) -> Result<(AxisIndex, f64), UsageError> {
+    let parsed = text.split_once('=').and_then(|(letter, value)| {
+        let [letter] = letter.trim().as_bytes() else { return None };
+        let value = value.trim().parse::<f64>().ok().filter(|value| value.abs() <= MAX_START)?;
+        Some((axes.find(letter.to_ascii_uppercase())?, value))
+    });
+    parsed.ok_or_else(|| {
+        let letters: String = axes.iter().map(|(_, letter)| letter).collect();
+        UsageError::new(format!(
+            "--start {text}: write one of the control's axes {letters} and a position of -{MAX_START} to \
+             {MAX_START} (mm and degrees), Z=250."
+        ))
+    })
 }
 
 /// Parses `#5041`.

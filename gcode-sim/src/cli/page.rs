@@ -84,6 +84,7 @@ pub(super) fn flags(conditions: &RunConditions) -> Vec<String> {
     let RunConditions {
         libraries,
         set,
+        start,
         dialect,
         max_blocks,
         control,
@@ -105,6 +106,7 @@ pub(super) fn flags(conditions: &RunConditions) -> Vec<String> {
     control.iter().for_each(|setting| add("--control", setting));
     code.iter().for_each(|call| add("--code", call));
     set.iter().for_each(|variable| add("--set", variable));
+    start.iter().for_each(|position| add("--start", position));
     input.iter().for_each(|signal| add("--input", signal));
     skip.iter().for_each(|part| add("--skip", &part.to_string()));
     part.iter().for_each(|file| add("--part", &path(file)));

@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
         output::write(path, &bytes)?;
     }
-    let report = RunReport::new(&run, moves.as_ref(), system);
+    let report = RunReport::new(&run, &request.machine, moves.as_ref(), system);
     output::report(&report, RunReport::text, arguments.format)?;
     let in_part = super::findings(&rapids, &run);
     let status = in_part.max(super::findings(&run.findings().collect::<Vec<_>>(), &run));

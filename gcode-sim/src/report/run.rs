@@ -7,6 +7,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use gcode_control::{Outcome, Value, printable};
+use gcode_inspect::machine::Machine;
 use gcode_lang::alarm::remedy;
 use gcode_lang::motion::{Axes, Event, EventKind, EventSink, Position};
 use gcode_lang::source::Span;
@@ -41,6 +42,9 @@ pub(crate) struct RunReport {
     pub(crate) seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) path: Option<Vec<MoveReport>>,
+    /// Letters of the axes that nothing has commanded, as in `Y and Z`.
+    #[serde(skip)]
+    uncommanded: String,
     /// Unit of the linear axes in the active work coordinate system.
     #[serde(skip)]
     work_unit: &'static str,
@@ -173,10 +177,16 @@ impl EventSink for MoveRecorder {
 
 impl RunReport {
     /// Builds the report of a run; `moves` and the values of `system` variables are optional.
-    pub(crate) fn new(run: &Run, moves: Option<&MoveRecorder>, system: Vec<(u32, Value)>) -> Self {
+    pub(crate) fn new(
+        run: &Run,
+        machine: &Machine,
+        moves: Option<&MoveRecorder>,
+        system: Vec<(u32, Value)>,
+    ) -> Self {
         let control = &run.control;
         let axes = &control.settings().axes;
-        let machine = control.machine_position();
+        let position = control.machine_position();
+        let uncommanded = machine.needed_axes(control.unknown_axes().uncommanded);
         let path = moves.map(|moves| {
             let report =
                 |(kind, to, seconds, feed, block): &(&'static str, Position, f64, Option<f64>, Span)| {
@@ -218,11 +228,12 @@ impl RunReport {
             variables: control.variables().collect(),
             system: system.into_iter().map(|(number, value)| (number, value.as_number())).collect(),
             position: Coordinates::new(axes, |axis| control.work_position(axis)),
-            machine: Coordinates::new(axes, |axis| machine[axis]),
+            machine: Coordinates::new(axes, |axis| position[axis]),
             blocks: control.blocks(),
             moves: control.moves(),
             seconds: control.seconds().0,
             path,
+            uncommanded: axes.names(uncommanded),
             work_unit: if control.is_inch() { "inches" } else { "mm" },
         }
     }
@@ -238,6 +249,13 @@ impl RunReport {
         let _ = writeln!(text, "outcome    {word}");
         let _ = writeln!(text, "position   {} ({}, degrees)", self.position, self.work_unit);
         let _ = writeln!(text, "machine    {} (mm, degrees)", self.machine);
+        if !self.uncommanded.is_empty() {
+            let _ = writeln!(
+                text,
+                "unknown    {}: where the last job left it; no block commands it in G90",
+                self.uncommanded
+            );
+        }
         let _ = writeln!(text, "executed   {} blocks, {} moves", self.blocks, self.moves);
         let _ = writeln!(text, "time       {:.1} s (paths and rapid rates, no acceleration)", self.seconds);
         for stop in &self.stops {

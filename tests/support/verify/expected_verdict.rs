@@ -4,6 +4,7 @@
 //!
 //! | line | holds when |
 //! |---|---|
+//! | `start X=0 Z=250` | always: these axes stand there before the program, as with `--start` |
 //! | `machine grinder.toml` | always: the program runs on this machine file in `suite/verify/` |
 //! | `reference burr.toml` | always: the program is compared with this reference there |
 //! | `FAIL 16 of 28, 12 missing, 16 extra, 28 folded` | the verdict, the number of good nominal holes or of flutes, and the counts other than 0 agree; folded findings are those on single holes that one on several holes replaces |
@@ -53,7 +54,7 @@ impl ActualVerdict {
         for line in expected.lines().filter(|line| !line.starts_with('#')) {
             let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
             match word {
-                "machine" | "reference" | "layout" => {}
+                "machine" | "reference" | "start" | "layout" => {}
                 "PASS" | "FAIL" => verdicts.push(line),
                 "alarm" | "error" | "warning" | "note" => {
                     findings.push(line.split_once(" with ").unwrap_or((line, "")));

@@ -24,7 +24,14 @@ use crate::Case;
 
 pub(crate) fn run(case: &Case) {
     let text = case.text("expect.txt");
-    let machine = machine_of(&case.dir).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
+    let mut machine =
+        machine_of(&case.dir).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
+    let starts = text.lines().filter_map(|line| line.strip_prefix("start ")).flat_map(str::split_whitespace);
+    machine.start.extend(starts.map(|start| {
+        let (letter, position) = start.split_once('=').unwrap();
+        let axis = machine.axes.find(letter.as_bytes()[0]).unwrap();
+        (axis, position.parse::<f64>().unwrap())
+    }));
     let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let nominal = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
     let (actual, layout) = match nominal {

@@ -302,9 +302,12 @@ impl Executor {
             if !syntax.node.is_accepted(&self.registers.data.settings) {
                 return Err(syntax.node.alarm().located_at(syntax.span));
             }
-            if syntax.node == DialectSyntax::LowerCase {
-                self.log.note(Note::LowerCase, self.flow.block);
-            }
+            let note = match syntax.node {
+                DialectSyntax::LowerCase => Note::LowerCase,
+                DialectSyntax::UnclosedComment => Note::UnclosedComment,
+                _ => continue,
+            };
+            self.log.note(note, self.flow.block);
         }
         Ok(false)
     }

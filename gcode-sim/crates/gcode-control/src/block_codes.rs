@@ -7,7 +7,7 @@ use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
 use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
-use gcode_lang::program::g_codes::{Effect, spelled};
+use gcode_lang::program::g_codes::{Effect, GCodeRow, spelled};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
 use gcode_lang::program::modes::{CutterSide, Polar, Rotation, Scaling, StrokeCheck};
@@ -105,6 +105,9 @@ impl Planner<'_> {
             state.transform.rotation = None;
             state.transform.tilt = None;
         }
+        if state.transform.scaling.is_none() && state.transform.rotation.is_none() {
+            state.transform.unknown_centre = 0;
+        }
         if modal.polar == Polar::On && before.polar == Polar::Off {
             state.polar = PolarPoint::default();
         }
@@ -121,7 +124,7 @@ impl Planner<'_> {
         let axis = self.locate(self.drilling_axis(state))?;
         state.cycle.axis = Some(axis);
         state.cycle.initial = state.programmed[axis];
-        state.cycle.is_initial_unknown = state.work_zero_unknown >> axis & 1 == 1;
+        state.cycle.initial_unknown = state.unknown;
         Ok(())
     }
 
@@ -146,6 +149,13 @@ impl Planner<'_> {
             *code = number;
         }
         self.check_misplaced_words(plan)?;
+        let starts_compensation =
+            |row: &&GCodeRow| matches!(row.effect, Effect::Cutter(CutterSide::Left | CutterSide::Right));
+        if plan.state.codes.d == 0
+            && let Some(row) = self.words.g_codes().find(starts_compensation)
+        {
+            plan.notes.push(Note::CutterRadiusZero(row.code));
+        }
         let is_compensating = plan.state.modal.cutter != CutterSide::Off;
         let selects_side = || self.words.has_non_motion_code(|effect| matches!(effect, Effect::Cutter(_)));
         if self.words.has(b'D')

@@ -144,6 +144,9 @@ impl Control {
         }
         self.loop_detector.endless_loop = None;
         self.executor.log.max_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MIN_MOVE_LIMIT);
+        if self.executor.log.blocks == 0 {
+            self.executor.state_unknown_axes(sink);
+        }
         while self.executor.log.blocks < limits.blocks
             && self.executor.log.moves <= self.executor.log.max_moves
         {
@@ -188,6 +191,9 @@ impl Control {
             return Some(outcome);
         }
         self.executor.log.max_moves = u64::MAX;
+        if self.executor.log.blocks == 0 {
+            self.executor.state_unknown_axes(sink);
+        }
         self.executor.registers.block_effects.set_pause(self.executor.log.blocks + 1);
         let result = self.execute_block(library, sink);
         self.conclude(result, sink).map(|outcome| *outcome)

@@ -48,6 +48,7 @@ impl ControlData {
     pub(super) fn apply_transform_change(&self, state: &mut State) {
         let (programmed, work) = (self.move_end(state), self.work_point(state));
         self.recompute_position(state);
+        state.unknown = state.transform.spread(state.stated_unknown);
         state.last_end_point = (state.programmed != programmed).then_some(EndPoint { programmed, work });
     }
 

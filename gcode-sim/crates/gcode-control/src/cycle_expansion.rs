@@ -1,7 +1,7 @@
 //! Expands a checked block of a canned cycle: its holes, and the steps of the cycle at each of them.
 use super::data::ControlData;
-use super::state::{CycleState, PeckSchedule, State};
-use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
+use super::state::{CycleState, PeckSchedule, State, Transform};
+use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind, UnknownAxes};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::ReturnTo;
 use gcode_lang::units::{MmPerMin, Rpm, Seconds};
@@ -24,16 +24,20 @@ pub(super) struct CyclePlan {
 }
 
 impl CyclePlan {
-    /// Emits the moves of the block one by one.
-    pub(super) fn expand(&self, data: &ControlData, emit: &mut impl FnMut(EventKind, f64)) {
+    /// Emits the moves of the block one by one; returns the axes that the last event has stated as unknown.
+    pub(super) fn expand(&self, data: &ControlData, emit: &mut impl FnMut(EventKind, f64)) -> UnknownAxes {
         let state = &self.start_state;
         let mut motion = CycleMotion {
             data,
             at: state.machine,
-            unknown_axes: state.work_zero_unknown,
+            transform: &state.transform,
+            unknown: state.unknown,
+            stated_unknown: state.stated_unknown,
+            waits_for_move: false,
             rate: self.rate,
             emit,
         };
+        motion.state_unknown();
         let cycle = &state.cycle;
         let (r, z) = (cycle.r_level(), cycle.z_level());
         for hole in &self.holes {
@@ -46,13 +50,14 @@ impl CyclePlan {
             over[self.axis] = motion.at[self.axis];
             motion.rapid(over);
             if self.cycle.starts_at_r {
-                motion.set_work_zero(self.axis, cycle.is_r_unknown());
+                motion.set_unknown(self.axis, cycle.r_unknown(state.unknown_after_absolute(self.axis)));
                 motion.rapid(level(r));
             }
             for step in self.cycle.steps {
                 self.drill_step(*step, data, &level, (r, z), &mut motion);
             }
         }
+        motion.stated_unknown
     }
 
     /// Emits one step of the cycle; `level` is the point of the hole at a height.
@@ -86,7 +91,7 @@ impl CyclePlan {
             | CycleStep::ManualRetract => false,
         };
         if goes_back {
-            motion.set_work_zero(self.axis, state.cycle.is_initial_unknown);
+            motion.set_unknown(self.axis, state.cycle.initial_unknown);
         }
         match step {
             CycleStep::FeedToBottom => motion.feed(level(z)),
@@ -165,18 +170,30 @@ impl CyclePlan {
 struct CycleMotion<'c, T> {
     data: &'c ControlData,
     at: Position,
-    unknown_axes: u8,
+    transform: &'c Transform,
+    /// Axes of unknown position, in programmed coordinates, and those that the last event has stated.
+    unknown: UnknownAxes,
+    stated_unknown: UnknownAxes,
+    /// No move has followed that event.
+    waits_for_move: bool,
     rate: MmPerMin,
     emit: &'c mut T,
 }
 
 impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
     /// Sets whether the position of an axis on the part is unknown from the end of the next move on.
-    fn set_work_zero(&mut self, axis: AxisIndex, is_unknown: bool) {
-        let axes = self.unknown_axes & !(1 << axis) | u8::from(is_unknown) << axis;
-        if axes != self.unknown_axes {
-            self.unknown_axes = axes;
-            (self.emit)(EventKind::WorkZeroUnknown { axes }, 0.0);
+    fn set_unknown(&mut self, axis: AxisIndex, unknown: UnknownAxes) {
+        self.unknown = self.unknown.with_axes_of(1 << axis, unknown);
+        self.state_unknown();
+    }
+
+    /// Emits the axes that are unknown after the next move, if they have changed.
+    fn state_unknown(&mut self) {
+        let axes = self.transform.spread(self.unknown);
+        if axes != self.stated_unknown {
+            self.stated_unknown = axes;
+            self.waits_for_move = true;
+            (self.emit)(EventKind::PositionUnknown { axes }, 0.0);
         }
     }
 
@@ -184,6 +201,15 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
         if to != self.at {
             (self.emit)(EventKind::Rapid { to }, self.data.rapid_seconds(&self.at, &to));
             self.at = to;
+            self.waits_for_move = false;
+        }
+        self.repeat_unknown();
+    }
+
+    /// Repeats the event of the unknown axes if its move has no travel.
+    fn repeat_unknown(&mut self) {
+        if std::mem::take(&mut self.waits_for_move) {
+            (self.emit)(EventKind::PositionUnknown { axes: self.stated_unknown }, 0.0);
         }
     }
 
@@ -199,7 +225,9 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
             let travel = self.data.squared_travel(0..self.data.settings.axes.len(), &self.at, &to);
             (self.emit)(EventKind::Feed { to, rate: self.rate }, travel.seconds_at(self.rate));
             self.at = to;
+            self.waits_for_move = false;
         }
+        self.repeat_unknown();
     }
 
     fn dwell(&mut self, seconds: f64) {

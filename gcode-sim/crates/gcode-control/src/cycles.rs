@@ -65,9 +65,9 @@ impl Planner<'_> {
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = *plan.state;
         // The depth is no move.
-        let mut endpoint = self.resolve_endpoint(&mut plan.state)?.programmed;
+        let mut endpoint = self.compute_endpoint(&mut plan.state)?.programmed;
         endpoint[axis] = from.programmed[axis];
-        plan.state.set_work_zero_unknown(axis, from.work_zero_unknown >> axis & 1 == 1);
+        plan.state.unknown = plan.state.unknown.with_axes_of(1 << axis, from.unknown);
         self.read_cycle_words(plan, axis, incremental)?;
         self.note_cycle(plan, axis);
         if cycle.needs_q {
@@ -83,6 +83,7 @@ impl Planner<'_> {
         }
         if repeats == 0 && !self.data.settings.undocumented.k0_positions {
             plan.notes.push(Note::CycleRepeatsZero);
+            plan.state.unknown = from.unknown;
             return Ok(());
         }
         let first = self.data.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
@@ -99,6 +100,7 @@ impl Planner<'_> {
             let mut to = self.data.to_machine(&plan.state, &plan.state.programmed);
             to[axis] = from.machine[axis];
             plan.state.machine = from.machine;
+            self.push_unknown_axes(plan);
             self.push_rapid(plan, &to);
             return Ok(());
         }
@@ -132,12 +134,12 @@ impl Planner<'_> {
     /// Sets the position to the R point level or the initial level, where the cycle ends.
     fn move_to_return_level(&self, state: &mut State, cycle: &Cycle, axis: AxisIndex) {
         let data = &state.cycle;
-        let (level, is_unknown) = if state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
-            (data.r_level(), data.is_r_unknown())
+        let (level, unknown) = if state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
+            (data.r_level(), data.r_unknown(state.unknown_after_absolute(axis)))
         } else {
-            (data.initial, data.is_initial_unknown)
+            (data.initial, data.initial_unknown)
         };
-        state.set_work_zero_unknown(axis, is_unknown);
+        state.unknown = state.unknown.with_axes_of(1 << axis, unknown);
         state.programmed[axis] = level;
         state.machine = self.data.to_machine(state, &state.programmed);
     }

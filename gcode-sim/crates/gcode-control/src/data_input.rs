@@ -47,6 +47,9 @@ impl Planner<'_> {
             return Err(Alarm::OffsetNumber { number: p as i64 }.located_at(self.block));
         }
         let system = first + number - 1;
+        if !self.names_axis() {
+            plan.notes.push(Note::NoAxis(100));
+        }
         for (axis, _) in self.data.settings.axes.iter() {
             let Some(value) = self.axis_dimension(axis, &plan.state)? else { continue };
             let value = self.table_value(plan, offsets[system][axis], value)?;

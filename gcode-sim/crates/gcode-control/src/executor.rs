@@ -67,13 +67,6 @@ impl Executor {
     pub(super) fn commit<S: EventSink>(&mut self, plan: &mut BlockPlan, sink: &mut S) {
         std::mem::swap(&mut self.registers.state, &mut plan.state);
         self.record_work_use(plan.state.modal.work, plan.commands_axes);
-        let before = plan.state.work_zero_unknown;
-        // A cycle emits the changes along its axis itself.
-        let after = plan.cycle_plan.as_ref().map_or(&*self.registers.state, |cycle| &cycle.start_state);
-        let axes = before & after.work_zero_unknown;
-        if axes != before {
-            self.emit(&EventKind::WorkZeroUnknown { axes }, 0.0, sink);
-        }
         if plan.uses_lookahead {
             self.take_lookahead(&mut plan.lookahead, sink);
         }
@@ -120,11 +113,11 @@ impl Executor {
     }
 
     fn emit_cycle<S: EventSink>(&mut self, cycle_plan: &CyclePlan, sink: &mut S) {
-        let Self { registers: Registers { data, clock, block_effects, .. }, flow, log } = self;
+        let Self { registers: Registers { data, state, clock, block_effects, .. }, flow, log } = self;
         let mut counter = EventCounter { log, block_effects };
         let mut cycle_seconds = 0.0;
         let (block, calls) = (flow.block, &flow.frame.calls);
-        cycle_plan.expand(data, &mut |kind, seconds| {
+        state.stated_unknown = cycle_plan.expand(data, &mut |kind, seconds| {
             cycle_seconds += seconds;
             counter.count_event(&kind);
             sink.event(&Event { kind: &kind, seconds: Seconds(seconds), block, calls });

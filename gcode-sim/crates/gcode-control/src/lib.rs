@@ -92,6 +92,7 @@ mod block;
 mod call_execution;
 mod next_block;
 mod residual_state;
+mod unknown_position;
 
 pub use self::control::{Control, Observer};
 pub use self::next_block::{BlockCommands, UnsimulatedCodes, modal_code};

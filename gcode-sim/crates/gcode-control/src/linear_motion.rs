@@ -6,7 +6,7 @@ use super::data::ControlData;
 use super::quantities::Measure;
 use super::state::{PolarPoint, State};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
+use gcode_lang::motion::{AxisIndex, MAX_AXES, Position, UnknownAxes};
 use gcode_lang::program::modes::{Distance, FeedMode, Plane, Unit};
 use gcode_lang::units::{Deg, MmPerMin};
 
@@ -15,8 +15,8 @@ use gcode_lang::units::{Deg, MmPerMin};
 pub(super) struct Endpoint {
     pub(super) programmed: Position,
     pub(super) machine: Position,
-    /// [`State::work_zero_unknown`] at the end point.
-    pub(super) work_zero_unknown: u8,
+    /// [`State::unknown`] at the end point.
+    pub(super) unknown: UnknownAxes,
 }
 
 /// Origin and units of the axis words of a block.
@@ -27,6 +27,8 @@ pub(super) struct CoordinateBasis {
     /// Axes whose zero and tool length are 0, as bits, axis 1 the lowest.
     unshifted_axes: u8,
     pub(super) is_incremental: bool,
+    /// Axes that an absolute word would make known, as bits; none in G91.
+    pub(super) learnable_axes: u8,
     pub(super) measure: Measure,
     /// Largest coordinate: nine digits in increments, as in a word.
     pub(super) max_coordinate: f64,
@@ -83,6 +85,10 @@ impl ControlData {
             zero,
             unshifted_axes: (0..MAX_AXES).filter(unshifted).fold(0, |axes, axis| axes | 1 << axis),
             is_incremental: state.modal.distance == Distance::Incremental,
+            learnable_axes: match state.modal.distance {
+                Distance::Incremental => 0,
+                Distance::Absolute => state.unknown.uncommanded | state.unknown.at_machine_position,
+            },
             measure: self.measure(state.modal.unit),
             max_coordinate: 999_999_999.0 / self.settings.increment.per_unit(),
         }

@@ -83,7 +83,7 @@ impl Planner<'_> {
             let what = format!("{} in a block with a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.located_at(self.words.span(letter)));
         }
-        let endpoint = self.resolve_endpoint(&mut plan.state)?;
+        let endpoint = self.resolve_endpoint(plan)?;
         if motion == Motion::Thread && self.words.corner.is_some() {
             return Err(Alarm::CornerInThread.located_at(self.block));
         }
@@ -118,13 +118,21 @@ impl Planner<'_> {
         self.locate(self.push_feed(plan, &to))
     }
 
-    /// Returns the end point of the block's axis words, from the position in `state`.
-    pub(super) fn resolve_endpoint(&self, state: &mut State) -> ExecResult<Endpoint> {
-        let State { programmed, machine, work_zero_unknown, .. } = *state;
-        let mut endpoint = Endpoint { programmed, machine, work_zero_unknown };
+    /// Returns the end point of the block's axis words, from the position in the plan, and plans the event of the axes that
+    /// are unknown there.
+    pub(super) fn resolve_endpoint(&self, plan: &mut BlockPlan) -> ExecResult<Endpoint> {
+        let endpoint = self.compute_endpoint(&mut plan.state)?;
+        self.push_unknown_axes(plan);
+        Ok(endpoint)
+    }
+
+    /// Returns the end point as [`Planner::resolve_endpoint`], without the event of the axes that are unknown there.
+    pub(super) fn compute_endpoint(&self, state: &mut State) -> ExecResult<Endpoint> {
+        let State { programmed, machine, unknown, .. } = *state;
+        let mut endpoint = Endpoint { programmed, machine, unknown };
         let basis = self.data.coordinate_basis(state);
         self.resolve_axes(state, &basis, &mut endpoint)?;
-        state.work_zero_unknown = endpoint.work_zero_unknown;
+        state.unknown = endpoint.unknown;
         if state.modal.polar == Polar::On {
             self.resolve_polar(state, &mut endpoint.programmed)?;
         }
@@ -172,6 +180,8 @@ impl Planner<'_> {
         let from = &plan.state.machine;
         if to != from {
             plan.push_move(EventKind::Rapid { to: *to }, self.data.rapid_seconds(from, to));
+        } else {
+            plan.repeat_unknown_axes();
         }
     }
 
@@ -181,6 +191,8 @@ impl Planner<'_> {
         let (rate, seconds) = self.data.feed_seconds(&plan.state, from, to, self.words.has(b'F'))?;
         if to != from {
             plan.push_move(EventKind::Feed { to: *to, rate }, seconds);
+        } else {
+            plan.repeat_unknown_axes();
         }
         Ok(())
     }
@@ -387,7 +399,7 @@ impl Planner<'_> {
             return Err(self.not_simulated(format!("{code} with this number of circles")));
         }
         for _ in 0..passes {
-            let endpoint = self.resolve_endpoint(&mut plan.state)?;
+            let endpoint = self.resolve_endpoint(plan)?;
             self.locate(self.push_feed(plan, &endpoint.machine))?;
             plan.state.programmed = endpoint.programmed;
             for radius in &radii {

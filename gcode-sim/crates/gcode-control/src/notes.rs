@@ -23,6 +23,7 @@ gcode_lang::finding_kinds! {
     LONG_M_CODE = "long-m-code", Warning, "an M code with more than four digits";
     LOWER_CASE = "lower-case", Note, "lower-case letters are read as capitals";
     M_CODE_LOST = "m-code-lost", Warning, "only the last M code of a block counts";
+    MIRROR_ENDED = "mirror-ended", Note, "G50.1 without an axis";
     NO_ANGLE = "no-angle", Warning, "G68 without R";
     NO_AXIS = "no-axis", Warning, "a code without an axis";
     NO_INTERRUPT = "no-interrupt", Warning, "the macro of M96 is never called";
@@ -30,7 +31,9 @@ gcode_lang::finding_kinds! {
     NO_REPEATS = "no-repeats", Note, "K0 stores a cycle and drills nothing";
     NO_SIGNAL = "no-signal", Warning, "G31 goes to its end";
     PARAMETER_WITHOUT_EFFECT = "parameter-without-effect", Warning, "a written parameter has no effect here";
+    RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41 or G42 without D";
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
+    UNCLOSED_COMMENT = "unclosed-comment", Note, "a comment without its closing bracket";
     WORDS_PASSED_ON = "words-passed-on", Warning, "a word beside an M code of the machine builder";
 }
 
@@ -91,6 +94,12 @@ pub enum Note {
     CycleLevelMissing(char),
     /// G43 or G44, × 10, with H0, which is no offset.
     LengthOffsetZero(u32),
+    /// G41 or G42, × 10, with D0, which is no radius.
+    CutterRadiusZero(u32),
+    /// G50.1 without an axis ends the mirror images of all axes.
+    MirrorEnded,
+    /// A comment extends to the end of its block.
+    UnclosedComment,
     /// A block, or the rest of one, after `/`, which depends on a switch of block skip.
     BlockSkip {
         /// Number of the switch.
@@ -138,6 +147,9 @@ impl Note {
             Self::DigitsLost => (&DIGITS_LOST, "DPRNT prints only the lower digits: the format has too few places".into(), "give the format more places, or --control PRINT-EXPANDS=1 for a control that prints all digits"),
             Self::CycleLevelMissing(letter) => (&LEVEL_MISSING, format!("the cycle drills with {letter} at 0: no value was commanded"), "write R and the depth in the block that begins the cycle"),
             Self::LengthOffsetZero(code) => (&LENGTH_OF_NOTHING, format!("G{} with H0 applies no tool length compensation", spelled(code)), "write H with the number of the tool's offset"),
+            Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),
+            Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
+            Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),
             Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
             Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
             Self::DrillsAlongZ(code) => (&DRILL_PLANE, format!("the cycle drills along Z while G{} is in force: a control may drill along the normal of that plane", spelled(code)), "write G17, or give --control FXY=1 for a control that drills along the normal"),

@@ -6,7 +6,7 @@ use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::{AxisWordUse, State};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::motion::{EventKind, LengthCompensation, Position};
+use gcode_lang::motion::{EventKind, LengthCompensation, Position, UnknownAxes};
 use gcode_lang::program::code_facts::{Letters, WithoutAxes};
 use gcode_lang::program::g_codes::{GCodeRow, OneShot};
 use gcode_lang::program::modes::{Distance, Length, WorkSystem};
@@ -84,9 +84,11 @@ impl Planner<'_> {
                 let shift = state.coordinate_shift[axis] + state.local_offset[axis] + work - value;
                 state.coordinate_shift[axis] = self.data.remove_residue(shift);
                 state.local_offset[axis] = 0.0;
+                state.set_shift_origin(axis);
             }),
             OneShot::PresetWorkCoordinateSystem => self.shift_coordinate_system(plan, |state, axis, _| {
                 (state.coordinate_shift[axis], state.local_offset[axis]) = (0.0, 0.0);
+                state.unknown_shift &= !(1 << axis);
             }),
             OneShot::SingleDirection if cycle => Err(self.not_simulated("G60 (in a canned cycle)")),
             OneShot::SingleDirection => self.plan_single_direction(plan),
@@ -135,7 +137,7 @@ impl Planner<'_> {
 
     /// G60, single direction positioning: by rapid to a point before the end by 5440, whose sign is the side, and on to the end.
     fn plan_single_direction(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        let endpoint = self.resolve_endpoint(&mut plan.state)?;
+        let endpoint = self.resolve_endpoint(plan)?;
         let mut before = endpoint.machine;
         for axis in self.named_axes() {
             before[axis] =
@@ -167,7 +169,7 @@ impl Planner<'_> {
                 };
             }
         }
-        self.note_unknown_work_zero(plan, positioned);
+        self.place_at_machine_coordinates(plan, positioned);
         self.push_rapid(plan, &to);
         self.data.recompute_position(&mut plan.state);
         plan.commands_axes = true;
@@ -188,7 +190,7 @@ impl Planner<'_> {
 
     /// Plans a rapid to the end point of the axis words.
     fn rapid_to_endpoint(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        let endpoint = self.resolve_endpoint(&mut plan.state)?;
+        let endpoint = self.resolve_endpoint(plan)?;
         self.push_rapid(plan, &endpoint.machine);
         plan.state.programmed = endpoint.programmed;
         plan.commands_axes = true;
@@ -204,9 +206,12 @@ impl Planner<'_> {
             named |= 1 << axis;
             plan.state.intermediate[axis] = intermediate[axis] - self.data.zero(&plan.state, axis);
             plan.state.has_intermediate |= 1 << axis;
+            let unknown = plan.state.unknown;
+            plan.state.unknown_intermediate =
+                plan.state.unknown_intermediate.with_axes_of(1 << axis, unknown);
             home[axis] = self.data.rollover_target(axis, home[axis], reference[axis]);
         }
-        self.note_unknown_work_zero(plan, named);
+        self.place_at_machine_coordinates(plan, named);
         self.push_rapid(plan, &home);
         // The length offset is cancelled where its axis reaches the reference position.
         let z = self.data.settings.axes.find(b'Z');
@@ -224,7 +229,7 @@ impl Planner<'_> {
         for axis in 0..count {
             home[axis] = self.data.rollover_target(axis, home[axis], 0.0);
         }
-        self.note_unknown_work_zero(plan, (0..count).fold(0, |axes, axis| axes | 1 << axis));
+        self.place_at_machine_coordinates(plan, (0..count).fold(0, |axes, axis| axes | 1 << axis));
         self.push_rapid(plan, &home);
         cancel_length(plan);
         self.data.recompute_position(&mut plan.state);
@@ -240,20 +245,22 @@ impl Planner<'_> {
             }
             let point = plan.state.intermediate[axis] + self.data.zero(&plan.state, axis);
             intermediate[axis] = self.data.remove_residue(point);
-            plan.state.work_zero_unknown &= !(1 << axis);
+            let unknown = plan.state.unknown_intermediate;
+            plan.state.unknown = plan.state.unknown.with_axes_of(1 << axis, unknown);
         }
+        self.push_unknown_axes(plan);
         self.push_rapid(plan, &intermediate);
         self.data.recompute_position(&mut plan.state);
         self.rapid_to_endpoint(plan)
     }
 
-    /// Plans that axes go to machine coordinates. Their position on the part is unknown if nothing has set the work offset.
-    fn note_unknown_work_zero(&self, plan: &mut BlockPlan, axes: u8) {
-        if axes == 0 || self.data.set_systems.contains(&system_index(plan.state.modal.work)) {
-            return;
-        }
-        plan.state.work_zero_unknown |= axes;
-        plan.push_event(EventKind::WorkZeroUnknown { axes: plan.state.work_zero_unknown });
+    /// Plans that axes go to machine coordinates. Their position on the part is known if anything has set the work offset.
+    fn place_at_machine_coordinates(&self, plan: &mut BlockPlan, axes: u8) {
+        let is_offset_known = self.data.set_systems.contains(&system_index(plan.state.modal.work));
+        let at_machine_position = if is_offset_known { 0 } else { axes };
+        let unknown = UnknownAxes { at_machine_position, ..UnknownAxes::default() };
+        plan.state.unknown = plan.state.unknown.with_axes_of(axes, unknown);
+        self.push_unknown_axes(plan);
     }
 }
 

@@ -180,7 +180,8 @@ impl Registers {
             }
             resolved_move.travel.add(*to - state.machine[axis], self.data.settings.axes.is_rotary(axis));
         }
-        (resolved_move.named.axes != 0).then_some(())
+        // A word that makes an axis known has an event.
+        (resolved_move.named.axes != 0 && resolved_move.named.axes & basis.learnable_axes == 0).then_some(())
     }
 
     /// Returns the value of an axis word that is neither a literal nor a free variable; `None` for an alarm.
@@ -208,7 +209,6 @@ impl Registers {
         let modal = &self.state.modal;
         modal.cycle.is_none()
             && !self.state.is_in_parameter_input
-            && self.state.work_zero_unknown == 0
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
             && self.state.last_end_point.is_none()

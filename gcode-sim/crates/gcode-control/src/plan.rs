@@ -167,6 +167,13 @@ impl BlockPlan {
         self.events.push((kind, 0.0));
     }
 
+    /// Repeats the event of the unknown axes if it is the last: its move has no travel.
+    pub(super) fn repeat_unknown_axes(&mut self) {
+        if let Some((kind @ EventKind::PositionUnknown { .. }, _)) = self.events.last() {
+            self.events.push((kind.clone(), 0.0));
+        }
+    }
+
     /// Adds a move; the machine then stands at its end.
     pub(super) fn push_move(&mut self, kind: EventKind, seconds: f64) {
         self.state.machine = kind.end().copied().unwrap_or(self.state.machine);

@@ -150,7 +150,7 @@ impl Planner<'_> {
                 false => self.data.axis_end(axis, value, state, basis),
             };
             if !basis.is_incremental {
-                endpoint.work_zero_unknown &= !(1 << axis);
+                endpoint.unknown = state.apply_absolute(axis, endpoint.unknown);
             }
         }
         Ok(())
@@ -165,9 +165,6 @@ impl Planner<'_> {
             return Ok(());
         }
         let is_incremental = state.modal.distance == Distance::Incremental;
-        if !is_incremental {
-            state.work_zero_unknown &= !(1 << first | 1 << second);
-        }
         // Radius and angle are each absolute or incremental, as the block that commands them has it.
         if radius.is_some() {
             state.polar = PolarPoint { radius, is_incremental, ..state.polar };
@@ -178,6 +175,11 @@ impl Planner<'_> {
         }
         if let Some(angle) = angle {
             state.polar.angle = if is_incremental { state.polar.angle + angle } else { angle };
+        }
+        if !state.polar.is_incremental {
+            for axis in [first, second] {
+                state.unknown = state.apply_absolute(axis, state.unknown);
+            }
         }
         self.data.polar_point(&state.polar, (first, second), point);
         Ok(())

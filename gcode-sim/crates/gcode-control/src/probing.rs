@@ -23,7 +23,7 @@ impl Planner<'_> {
         if self.words.has_any(b"PQ") {
             return Err(self.not_simulated("G31 (multi-step and torque limit skip)"));
         }
-        let endpoint = self.resolve_endpoint(&mut plan.state)?;
+        let endpoint = self.resolve_endpoint(plan)?;
         let (from, to) = (plan.state.machine, endpoint.machine);
         let (rate, seconds) =
             self.locate(self.data.feed_seconds(&plan.state, &from, &to, self.words.has(b'F')))?;

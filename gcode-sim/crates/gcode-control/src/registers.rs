@@ -10,6 +10,7 @@ use super::state::State;
 use super::variables::{OperandStack, Vars};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
+use gcode_lang::motion::UnknownAxes;
 
 /// Values from which expressions, words and system variables are evaluated, and which blocks change.
 #[derive(Clone, Debug)]
@@ -31,10 +32,13 @@ pub(super) struct Registers {
 impl Registers {
     pub(super) fn new(settings: Settings) -> Self {
         let variables = Vars::new(settings.extra_commons, settings.aliases_commons);
+        let uncommanded = (0..settings.axes.len()).fold(0, |axes, axis| axes | 1 << axis);
+        let state =
+            State { unknown: UnknownAxes { uncommanded, ..UnknownAxes::default() }, ..State::default() };
         Self {
             data: ControlData::new(settings),
             variables,
-            state: Box::default(),
+            state: Box::new(state),
             lookahead: Lookahead::default(),
             panel: Panel::default(),
             clock: Clock::default(),

@@ -1,6 +1,6 @@
 //! State that one block can change besides variables and offset tables: modes, positions, codes with a number, the transform
 //! of coordinates. It is small enough to copy, so that a block that raises an alarm leaves no trace.
-use gcode_lang::motion::{AxisIndex, LengthCompensation, MAX_AXES, Position, SpindleDirection};
+use gcode_lang::motion::{AxisIndex, LengthCompensation, MAX_AXES, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::program::cycles::Cycle;
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{
@@ -30,8 +30,14 @@ pub struct State {
     pub(super) intermediate: Position,
     /// Axes with an intermediate point, as bits.
     pub(super) has_intermediate: u8,
-    /// Axes at positions commanded in machine coordinates while nothing has set the active work offset, as bits.
-    pub(super) work_zero_unknown: u8,
+    /// Axes that were unknown at the intermediate point.
+    pub(super) unknown_intermediate: UnknownAxes,
+    /// Axes of unknown position on the part, in programmed coordinates.
+    pub(super) unknown: UnknownAxes,
+    /// Axes that the last event has stated as unknown, in machine coordinates.
+    pub(super) stated_unknown: UnknownAxes,
+    /// Axes whose coordinates count from an unknown position since G92, as bits.
+    pub(super) unknown_shift: u8,
     /// End of the last G31 in machine coordinates, #5061….
     pub(super) skip_position: Position,
     /// Radius of cutter compensation, read by D or G41, G42; negative if it swaps sides.
@@ -52,10 +58,6 @@ pub struct State {
 }
 
 impl State {
-    pub(super) fn set_work_zero_unknown(&mut self, axis: AxisIndex, is_unknown: bool) {
-        self.work_zero_unknown = self.work_zero_unknown & !(1 << axis) | u8::from(is_unknown) << axis;
-    }
-
     /// Applies a code of group 01, which ends a canned cycle (operator's manual, canned cycle for drilling).
     #[inline]
     pub(super) fn set_motion_mode(&mut self, motion: Motion) {
@@ -124,8 +126,8 @@ pub struct CycleState {
     pub(super) axis: Option<AxisIndex>,
     /// Position of that axis when the cycle began.
     pub(super) initial: f64,
-    /// That position on the part is unknown, as in [`State::work_zero_unknown`].
-    pub(super) is_initial_unknown: bool,
+    /// Axes that were unknown then.
+    pub(super) initial_unknown: UnknownAxes,
     pub(super) r: CycleLevel,
     pub(super) z: CycleLevel,
     pub(super) p: f64,
@@ -163,8 +165,9 @@ impl CycleState {
         Self { q: self.q.map(|q| q / scale_factor), pecks, ..self }
     }
 
-    pub(super) fn is_r_unknown(&self) -> bool {
-        self.r.is_incremental && self.is_initial_unknown
+    /// Returns the axes that are unknown at the R point level; `absolute` are those in G90.
+    pub(super) fn r_unknown(&self, absolute: UnknownAxes) -> UnknownAxes {
+        if self.r.is_incremental { self.initial_unknown } else { absolute }
     }
 
     pub(super) fn r_level(&self) -> f64 {
@@ -302,12 +305,14 @@ pub(super) struct Transform {
     pub(super) scaling: Option<Scale>,
     pub(super) rotation: Option<PlaneRotation>,
     pub(super) tilt: Option<Tilt>,
+    /// Axes whose centre of rotation or scaling is an unknown position, as bits.
+    pub(super) unknown_centre: u8,
 }
 
 /// G68.2: p = o + Rz(I)·Rx(J)·Rz(K)·q in the coordinates of X, Y and Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tilt {
-    axes: [AxisIndex; 3],
+    pub(super) axes: [AxisIndex; 3],
     origin: [f64; 3],
     rows: [[f64; 3]; 3],
 }

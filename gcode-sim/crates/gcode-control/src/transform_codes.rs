@@ -28,6 +28,10 @@ impl Planner<'_> {
         let centre = Transform { rotation: None, tilt: None, ..state.transform }.forward(centre);
         let (mirrored, _) = state.transform.arc_effect(plane);
         let angle = if mirrored { -angle } else { angle };
+        let axes = [plane.0, plane.1].into_iter().filter(|axis| !self.names(*axis));
+        if axes.fold(0, |bits, axis| bits | 1 << axis) & state.unknown.all() != 0 {
+            state.transform.unknown_centre |= 1 << plane.0 | 1 << plane.1;
+        }
         state.transform.rotation = Some(PlaneRotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
         self.data.apply_transform_change(state);
         Ok(())
@@ -55,8 +59,9 @@ impl Planner<'_> {
         let unit = if self.data.settings.has_coarse_scaling { 1000.0 } else { 100_000.0 };
         let mut scale = Scale { centre: plan.state.programmed, factor: Position([1.0; MAX_AXES]) };
         for (axis, letter) in self.data.settings.axes.iter() {
-            if let Some(value) = self.axis_dimension(axis, &plan.state)? {
-                scale.centre[axis] = value;
+            match self.axis_dimension(axis, &plan.state)? {
+                Some(value) => scale.centre[axis] = value,
+                None => plan.state.transform.unknown_centre |= plan.state.unknown.all() & 1 << axis,
             }
             let own = match letter {
                 'X' => self.factor(b'I')?,
@@ -82,6 +87,7 @@ impl Planner<'_> {
         let state = &mut plan.state;
         if !is_on && !self.names_axis() {
             state.transform.mirrored_axes = 0;
+            plan.notes.push(Note::MirrorEnded);
         }
         for axis in 0..self.data.settings.axes.len() {
             let Some(value) = self.axis_dimension(axis, state)? else { continue };

@@ -44,7 +44,6 @@ gcode_lang::finding_kinds! {
     JOB_TOOL = "job-tool", Warning, "the tool is not the one of the job, or no tool was inserted";
     LEAVES_HOLE_SIDEWAYS = "leaves-hole-sideways", Error, "the tool leaves the hole sideways";
     LENGTH_OFFSET = "length-offset", Error, "the tool's length offset is not its own";
-    MACHINE_POSITION = "machine-position", Warning, "the tool cuts at a position that G28, G30 or G53 left";
     MIRROR_IMAGE = "mirror-image", Error, "the pattern is mirrored, but not by the table";
     PATH_NOT_READ = "path-not-read", Error, "the path of an edge finder leaves the surface";
     RAPID_BEYOND_CUT = "rapid-beyond-cut", Error, "a rapid beyond the cut";
@@ -60,6 +59,7 @@ gcode_lang::finding_kinds! {
     SPINDLE_IN_HOLE = "spindle-in-hole", Error, "the spindle stops or reverses while a drill is in the hole";
     SPINDLE_REVERSED = "spindle-reversed", Warning, "a hole is drilled with M04";
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
+    START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";
     TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends with the tool in the metal";
     TOOL_SHORT = "tool-short", Warning, "a tool goes deeper than it is long";
     TOOL_UNKNOWN = "tool-unknown", Warning, "a tool that is missing in the tool table";

@@ -30,3 +30,4 @@ pub mod program;
 pub mod source;
 pub mod syntax;
 pub mod units;
+mod unknown_axes;

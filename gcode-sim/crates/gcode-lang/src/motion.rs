@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::source::Span;
 use crate::units::{Deg, MmPerMin, Rpm, Seconds};
+pub use crate::unknown_axes::UnknownAxes;
 
 /// Largest number of axes of a control.
 pub const MAX_AXES: usize = 8;
@@ -82,6 +83,16 @@ impl Axes {
     /// Returns the letters as bits, A the lowest.
     pub fn letter_bits(&self) -> u32 {
         self.letter_bits
+    }
+
+    /// Returns the letters of axes given as bits, as in `X, Y and Z`.
+    pub fn names(&self, axes: u8) -> String {
+        let named = self.iter().filter(|(axis, _)| axes >> axis & 1 == 1);
+        let letters: Vec<_> = named.map(|(_, letter)| letter.to_string()).collect();
+        match letters.split_last() {
+            Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+            _ => letters.concat(),
+        }
     }
 
     /// Iterates over the axes with their letters as characters.
@@ -220,13 +231,13 @@ pub enum EventKind {
         /// Code and offset number that the offset comes from.
         compensation: LengthCompensation,
     },
-    /// Axes whose end position on the part is unknown; causes no motion.
+    /// Axes whose position on the part is unknown after the next move; causes no motion.
     ///
-    /// After the next move these axes are at a position commanded in machine coordinates (G28, G30, G53)
-    /// while no program has set the active work offset.
-    WorkZeroUnknown {
-        /// Axes as bits, axis 1 the lowest.
-        axes: u8,
+    /// The first of a run precedes every other event and states the axes at the start. Later ones come where
+    /// the axes change; an event is repeated in place of a move without travel.
+    PositionUnknown {
+        /// Axes by cause.
+        axes: UnknownAxes,
     },
     /// Change of spindle direction or speed.
     Spindle {
@@ -268,7 +279,7 @@ impl EventKind {
             Self::Dwell { .. }
             | Self::ToolChange { .. }
             | Self::ToolLength { .. }
-            | Self::WorkZeroUnknown { .. }
+            | Self::PositionUnknown { .. }
             | Self::Spindle { .. }
             | Self::Coolant { .. }
             | Self::Auxiliary { .. }

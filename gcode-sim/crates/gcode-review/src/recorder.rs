@@ -351,7 +351,7 @@ impl Recorder {
                 self.length = *offset;
                 StepKind::Length(*offset)
             }
-            EventKind::WorkZeroUnknown { .. } => return,
+            EventKind::PositionUnknown { .. } => return,
             EventKind::Spindle { direction, speed } => {
                 // The speed of a stopped spindle is recorded when it starts.
                 let is_off = *direction == SpindleDirection::Off;

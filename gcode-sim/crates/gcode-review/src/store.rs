@@ -12,7 +12,7 @@ use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
 use super::record::{BlockLocation, EndState, Record, Totals};
 use super::steps::{Step, StepKind, UnsimulatedKind, difference};
 use gcode_inspect::holes::DrilledHole;
-use gcode_lang::motion::{Axes, Backtrace, PlanarArc, Position, SpindleDirection, StopKind};
+use gcode_lang::motion::{Axes, Backtrace, PlanarArc, Position, SpindleDirection, StopKind, UnknownAxes};
 use gcode_lang::units::Deg;
 
 /// Version of the format.
@@ -401,6 +401,7 @@ impl Hole {
             backtrace: Backtrace::default(),
             axis_position: Position::default(),
             tool_axis_deviation: Deg::ZERO,
+            unknown_axes: UnknownAxes::default(),
             earlier_passes: Vec::new(),
             first_on_line: self.again.unwrap_or(number),
         })

@@ -164,6 +164,9 @@ pub fn run_observed<S: EventSink>(
     for (number, value) in presets.chain(request.variables.iter().copied()) {
         control.set_variable(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
     }
+    for (axis, position) in &request.machine.start {
+        control.set_start(*axis, *position);
+    }
     if let Some(progress) = &request.progress {
         control.set_progress(Arc::clone(progress));
     }

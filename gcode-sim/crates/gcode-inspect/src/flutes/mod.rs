@@ -14,12 +14,14 @@ use wheel_collisions::{CollisionTracker, MotionMode, MovedAxes};
 use wheel_state::WheelState;
 pub(crate) use wheel_state::{FirstOccurrence, StoppedWheel};
 
-use crate::holes::UnknownWorkZero;
-use crate::holes::work_zero::WorkZeroTracker;
+use crate::holes::UnknownRapids;
+use crate::holes::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, LinkMotion, Machine, Wheel};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{AxisIndex, Backtrace, Event, EventKind, EventSink, PlanarArc, Position};
+use gcode_lang::motion::{
+    Axes, AxisIndex, Backtrace, Event, EventKind, EventSink, PlanarArc, Position, UnknownAxes,
+};
 use gcode_lang::units::{Deg, Rpm};
 use gcode_part::Flutes;
 
@@ -70,6 +72,8 @@ pub struct GrindingPass {
     pub(crate) moves: usize,
     /// Least and largest angle of the swivelled wheel; `None` if no axis swivels it.
     pub(crate) head_range: Option<(Deg, Deg)>,
+    /// Axes of unknown position on the burr in any move.
+    pub(crate) unknown_axes: UnknownAxes,
     /// First move with the wheel stopped.
     pub(crate) stopped_wheel: Option<StoppedWheel>,
     /// First move with M04 in force.
@@ -90,7 +94,9 @@ pub struct GrindingResult {
     /// Number of rapids before the wheel is first off the blank: their start is unknown, and they are not checked.
     pub(crate) unchecked_rapids: usize,
     /// Rapids whose path is unknown because axes are in machine coordinates.
-    pub(crate) unknown_work_zero: Option<UnknownWorkZero>,
+    pub(crate) unknown_rapids: Option<UnknownRapids>,
+    /// Axes of the control.
+    pub(crate) axes: Axes,
     /// End of the burr's cylinder relative to the C axis, x and y, by the machine file; `None` if no C rotates about z.
     pub(crate) offset: Option<[f64; 2]>,
     /// Directions of the axes by their letters, 1 or −1.
@@ -106,6 +112,8 @@ pub struct FluteTracker<'m> {
     wheel: Wheel,
     /// Axis that rotates the burr about itself.
     burr_axis: AxisIndex,
+    /// Axes that move the burr or swivel the wheel, as bits.
+    contact_axes: u8,
     flutes: Flutes,
     axis_position: Position,
     moved_axes: MovedAxes,
@@ -113,7 +121,7 @@ pub struct FluteTracker<'m> {
     result: GrindingResult,
     collisions: CollisionTracker,
     wheel_state: WheelState,
-    work_zero: WorkZeroTracker,
+    positions: PositionTracker,
     moves: usize,
     kept_points: usize,
     max_kept_points: usize,
@@ -137,6 +145,7 @@ impl<'m> FluteTracker<'m> {
             machine,
             wheel,
             burr_axis: burr_axis.ok_or(GrinderError::NoBurrAxis)?,
+            contact_axes: contact_axes(machine, &wheel),
             flutes,
             axis_position: Position::default(),
             moved_axes: MovedAxes::default(),
@@ -144,11 +153,12 @@ impl<'m> FluteTracker<'m> {
             result: GrindingResult {
                 offset: c_axis_offset(machine),
                 signs: axis_signs(machine),
+                axes: machine.axes.clone(),
                 ..GrindingResult::default()
             },
             collisions: CollisionTracker::default(),
             wheel_state: WheelState::default(),
-            work_zero: WorkZeroTracker::default(),
+            positions: PositionTracker::default(),
             moves: 0,
             kept_points: 0,
             max_kept_points: most_kept,
@@ -161,11 +171,21 @@ impl<'m> FluteTracker<'m> {
     /// Ends the run and returns its passes.
     pub fn finish(mut self) -> GrindingResult {
         self.end_pass();
+        self.ignore_common_start();
         self.result.unchecked_rapids = self.collisions.unchecked_rapids;
         self.result.plunges = std::mem::take(&mut self.collisions.plunges);
         self.result.collisions = self.collisions.finish();
-        self.result.unknown_work_zero = self.work_zero.finish(self.machine);
+        self.result.unknown_rapids = self.positions.finish(self.machine);
         self.result
+    }
+
+    /// Ignores an unknown angle of the burr about itself if it is unknown in all passes: the flutes count from the first.
+    fn ignore_common_start(&mut self) {
+        let burr_axis = 1 << self.burr_axis;
+        let passes = &mut self.result.passes;
+        if passes.iter().all(|pass| pass.unknown_axes.uncommanded & burr_axis != 0) {
+            passes.iter_mut().for_each(|pass| pass.unknown_axes = pass.unknown_axes.without(burr_axis));
+        }
     }
 
     fn end_pass(&mut self) {
@@ -188,14 +208,18 @@ impl<'m> FluteTracker<'m> {
         if self.is_full || (from == *to && arc.is_none()) {
             return;
         }
-        let (was, is) = self.work_zero.advance();
+        // The rotation of the burr about itself changes no depth. Axes that nothing has commanded yet are those that have not
+        // moved.
+        let (was, is) = self.positions.advance(self.machine);
+        let [was, is] =
+            [was, is].map(|axes| UnknownAxes { uncommanded: 0, ..axes.without(1 << self.burr_axis) });
         let before = self.moved_axes;
         self.record_moved_axes(&from, to);
         self.moves += 1;
         if self.moves > MAX_MOVES {
             return self.report_limit(event, format!("more than {MAX_MOVES} moves"));
         }
-        if rapid && was | is != 0 {
+        if rapid && !was.union(is).is_none() {
             return self.check_unknown_rapid(event, (was, is), to);
         }
         let travel = AxisMotion { from: &from, to, arc };
@@ -231,11 +255,13 @@ impl<'m> FluteTracker<'m> {
             backtrace: event.backtrace(),
             moves: 0,
             head_range: None,
+            unknown_axes: UnknownAxes::default(),
             stopped_wheel: None,
             reversed_wheel: None,
             speeds: Vec::new(),
         });
         pass.moves += 1;
+        pass.unknown_axes = pass.unknown_axes.union(self.positions.unknown_axes().only(self.contact_axes));
         pass.trace.append(&self.flutes, &path, event.seconds.0, event.backtrace());
         self.wheel_state.record(pass, || FirstOccurrence { backtrace: event.backtrace(), point: path[0] });
         if let Some((one, other)) = head {
@@ -247,10 +273,15 @@ impl<'m> FluteTracker<'m> {
     }
 
     /// Checks the end of a rapid from or to an unknown position, if that end is known.
-    fn check_unknown_rapid(&mut self, event: &Event<'_>, (was, is): (u8, u8), to: &Position) {
+    fn check_unknown_rapid(
+        &mut self,
+        event: &Event<'_>,
+        (was, is): (UnknownAxes, UnknownAxes),
+        to: &Position,
+    ) {
         self.end_pass();
-        self.work_zero.note_rapid(event, was | is);
-        if is == 0 {
+        self.positions.note_rapid(event, was.union(is));
+        if is.is_none() {
             let end = self.machine.contact(&self.wheel, to);
             self.collisions.check_motion(
                 &self.flutes,
@@ -292,6 +323,12 @@ impl<'m> FluteTracker<'m> {
     }
 }
 
+/// Returns the axes that move the burr or swivel the wheel, as bits.
+fn contact_axes(machine: &Machine, wheel: &Wheel) -> u8 {
+    let carry = machine.table.0.iter().map(|link| link.axis);
+    carry.chain(wheel.swivel_axis.map(|(axis, _)| axis)).fold(0, |axes, axis| axes | 1 << axis)
+}
+
 /// Returns the part's origin relative to the C axis with all axes at 0.
 fn c_axis_offset(machine: &Machine) -> Option<[f64; 2]> {
     let axis = machine.axes.find(b'C')?;
@@ -321,10 +358,7 @@ impl EventSink for FluteTracker<'_> {
             EventKind::Rapid { to } => self.motion(event, true, to, None),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, false, to, Some(arc)),
-            // The rotation of the burr about itself changes no depth.
-            EventKind::WorkZeroUnknown { axes } => {
-                self.work_zero.apply_event(self.machine, axes & !(1 << self.burr_axis))
-            }
+            EventKind::PositionUnknown { axes } => self.positions.apply_event(self.machine, *axes),
             EventKind::Spindle { .. } | EventKind::Auxiliary { .. } => {
                 self.wheel_state.apply_event(event.kind)
             }

@@ -45,7 +45,7 @@ impl WheelState {
             | EventKind::Dwell { .. }
             | EventKind::ToolChange { .. }
             | EventKind::ToolLength { .. }
-            | EventKind::WorkZeroUnknown { .. }
+            | EventKind::PositionUnknown { .. }
             | EventKind::Coolant { .. }
             | EventKind::Stop { .. } => {}
         }

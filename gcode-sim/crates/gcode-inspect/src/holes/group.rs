@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Unit, Vector3};
 
 use crate::machine::Machine;
-use gcode_lang::motion::{Backtrace, Position};
+use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
 use gcode_part::{Clusters, Hole, Origin, PointTree};
@@ -30,6 +30,8 @@ pub(super) struct DrillPass {
     pub tool: Option<u32>,
     pub backtrace: Backtrace,
     pub axis_position: Position,
+    /// Axes of unknown position on the part.
+    pub unknown_axes: UnknownAxes,
 }
 
 /// A hole that the program drills, in the part's frame; lengths in mm.
@@ -53,6 +55,8 @@ pub struct DrilledHole {
     pub tool_axis_deviation: Deg,
     /// Passes before the finishing one.
     pub earlier_passes: Vec<EarlierPass>,
+    /// Axes of unknown position on the part in any pass.
+    pub unknown_axes: UnknownAxes,
     /// Index in the list of the first hole on this line. A later one with the same index is this hole drilled again by a
     /// tool that has cut it before.
     pub first_on_line: usize,
@@ -167,13 +171,17 @@ fn push_holes<'p>(
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
             tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.feed_direction).clamp(-1.0, 1.0)),
+            unknown_axes: pass.unknown_axes,
             earlier_passes,
             first_on_line,
         }
     };
     let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
     let start = finishing.map(|pass| height(&pass.start)).fold(f64::NEG_INFINITY, f64::max);
-    holes.push(hole(finish, start, lowest, earlier.collect()));
+    let mut finished = hole(finish, start, lowest, earlier.collect());
+    finished.unknown_axes =
+        cutting.iter().fold(UnknownAxes::default(), |axes, pass| axes.union(pass.unknown_axes));
+    holes.push(finished);
     let again = |pass: &&DrillPass| hole(pass, height(&pass.start), height(&pass.bottom), Vec::new());
     holes.extend(repeated.iter().map(again));
 }

@@ -4,7 +4,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::DrillPass;
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
-use gcode_lang::motion::{Backtrace, Position};
+use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::units::MmPerMin;
 
 /// Least additional depth of a stroke that cuts, mm.
@@ -34,8 +34,8 @@ pub(super) struct CuttingLine {
     /// Modal state and clamp at the start of the feed.
     pub cutting_state: CuttingState,
     pub clamp_state: ClampState,
-    /// Axes of unknown position on the part, as bits, axis 1 the lowest.
-    pub unknown_work_zero_axes: u8,
+    /// Axes of unknown position on the part.
+    pub unknown_axes: UnknownAxes,
     /// Distance of the tip beyond the programmed point; `None` if they agree.
     pub length_excess: Option<f64>,
     /// Slowest and fastest feed that cuts.
@@ -100,7 +100,7 @@ impl CuttingLine {
             tool_axis: None,
             cutting_state: CuttingState::default(),
             clamp_state: ClampState::default(),
-            unknown_work_zero_axes: 0,
+            unknown_axes: UnknownAxes::default(),
             length_excess: None,
             feed_range: None,
             surface_depth: None,
@@ -310,6 +310,7 @@ impl CuttingLine {
             tool: self.cutting_state.tool,
             backtrace: end.backtrace.clone(),
             axis_position: end.axis_position,
+            unknown_axes: self.unknown_axes,
         }
     }
 }

@@ -98,7 +98,6 @@ impl HoleExtractor<'_> {
     fn report_feed(&mut self, line: &CuttingLine, tilt: Option<Deg>) {
         let backtrace = line.backtrace();
         self.check_clamped(backtrace, line.clamp_state);
-        self.check_work_zero_known(backtrace, line.unknown_work_zero_axes);
         if let Some(feeds) = line.cutting_feeds() {
             self.cut_conditions.add(backtrace, &line.cutting_state, feeds, line.pecks());
         }

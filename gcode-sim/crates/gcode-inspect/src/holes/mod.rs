@@ -17,7 +17,7 @@ mod rapids;
 pub(crate) mod spindle;
 #[cfg(test)]
 mod tests;
-pub(crate) mod work_zero;
+pub(crate) mod unknown_axes;
 
 use nalgebra::Point3;
 
@@ -27,7 +27,7 @@ pub use group::{DrilledHole, EarlierPass};
 pub(crate) use group::{MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
-pub(crate) use work_zero::UnknownWorkZero;
+pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
@@ -37,7 +37,7 @@ use self::group::DrillPass;
 use self::line::{CuttingLine, ToolExit};
 use self::per_block::Findings;
 use self::rapids::TOUCH_DEPTH;
-use self::work_zero::WorkZeroTracker;
+use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
@@ -66,7 +66,9 @@ pub struct HoleExtraction {
     /// Feeds of tools whose length differs from their length offset.
     pub(crate) length_mismatches: Vec<LengthMismatch>,
     /// Rapids whose path over the part is unknown; `None` if there are none.
-    pub(crate) unknown_work_zero: Option<UnknownWorkZero>,
+    pub(crate) unknown_rapids: Option<UnknownRapids>,
+    /// Rotary axes of the default machine that the program never commands, as bits; they count as 0.
+    pub(crate) assumed_axes: u8,
     /// Limits with which the motion was compared.
     pub(crate) process_limits: ProcessLimits,
     /// The stock or the surface is known, and all motion was compared with it.
@@ -101,7 +103,7 @@ pub struct HoleExtractor<'m> {
     max_passes: usize,
     /// First pass beyond `max_passes`.
     first_excess_pass: Option<Backtrace>,
-    work_zero: WorkZeroTracker,
+    positions: PositionTracker,
     findings: Findings,
     close_motions: CloseMotions,
     cut_conditions: CutConditionsByBlock,
@@ -143,7 +145,7 @@ impl<'m> HoleExtractor<'m> {
             passes: Vec::new(),
             max_passes: MAX_PASSES,
             first_excess_pass: None,
-            work_zero: WorkZeroTracker::default(),
+            positions: PositionTracker::default(),
             findings: Findings::default(),
             close_motions: CloseMotions::default(),
             cut_conditions: CutConditionsByBlock::default(),
@@ -187,6 +189,10 @@ impl<'m> HoleExtractor<'m> {
     pub fn finish(mut self) -> HoleExtraction {
         self.end_in_metal();
         self.end_line(false);
+        let mut holes = group::group_holes(&self.passes, self.machine);
+        let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
+        unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
+        self.report_unknown_positions(&holes);
         let mut findings = self.findings.finish();
         findings.extend(self.first_excess_pass.map(|backtrace| {
             let message =
@@ -195,12 +201,13 @@ impl<'m> HoleExtractor<'m> {
             finding.help("check for a loop that never ends; otherwise split the program")
         }));
         HoleExtraction {
-            holes: group::group_holes(&self.passes, self.machine),
+            holes,
             findings,
             close_motions: self.close_motions.finish(),
             cut_conditions: self.cut_conditions.finish(),
             length_mismatches: self.length_mismatches,
-            unknown_work_zero: self.work_zero.finish(self.machine),
+            unknown_rapids: self.positions.finish(self.machine),
+            assumed_axes,
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
         }
@@ -237,12 +244,12 @@ impl<'m> HoleExtractor<'m> {
         }
         self.axis_position = *to;
         self.pose = self.machine.tool_pose(to, &self.setup).relative_to(&self.frame);
-        let (was, is) = self.work_zero.advance();
-        if was | is != 0 && kind != MotionKind::Feed {
-            self.report_unknown_rapid(event, &before.tip, (was, is));
+        let (was, is) = self.positions.advance(self.machine);
+        let travel = AxisMotion { from: &from, to, arc };
+        if !was.union(is).is_none() && kind != MotionKind::Feed {
+            self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             return;
         }
-        let travel = AxisMotion { from: &from, to, arc };
         if !self.machine.is_straight(&travel) {
             self.end_line(kind == MotionKind::Feed);
             match kind {
@@ -330,7 +337,7 @@ impl<'m> HoleExtractor<'m> {
             line.tool_axis = self.pose.axis;
             line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
             line.clamp_state = self.clamp_state;
-            line.unknown_work_zero_axes = self.work_zero.unknown_axes();
+            line.unknown_axes = self.positions.unknown_axes();
             line.length_excess = self.length_excess();
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
@@ -351,7 +358,7 @@ impl<'m> HoleExtractor<'m> {
 
     fn update_outside(&mut self) {
         if let (false, true, Some(surface)) =
-            (self.has_been_outside, self.work_zero.unknown_axes() == 0, &self.surface)
+            (self.has_been_outside, self.positions.is_known(self.machine), &self.surface)
         {
             self.has_been_outside = surface.value(&self.pose.tip) > 0.0;
         }
@@ -392,7 +399,10 @@ impl EventSink for HoleExtractor<'_> {
                 self.update_setup(|setup| setup.offset = *offset);
                 self.cutting_state.compensation = *compensation;
             }
-            EventKind::WorkZeroUnknown { axes } => self.work_zero.apply_event(self.machine, *axes),
+            EventKind::PositionUnknown { axes } => {
+                self.positions.apply_event(self.machine, *axes);
+                self.update_outside();
+            }
             EventKind::Spindle { direction, speed } => {
                 // S0 stops the spindle.
                 let before = self.cutting_state.spindle_direction;

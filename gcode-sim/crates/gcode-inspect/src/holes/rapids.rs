@@ -164,7 +164,7 @@ impl HoleExtractor<'_> {
     /// Reports a run that ends with the tool in the metal; the line on which it stands makes its hole.
     pub(super) fn end_in_metal(&mut self) {
         let tip = self.pose.tip;
-        let is_known = self.work_zero.unknown_axes() == 0 && (self.has_been_outside || self.surface.is_none());
+        let is_known = self.positions.is_known(self.machine) && (self.has_been_outside || self.surface.is_none());
         let depth = self.known_depth(&tip).filter(|depth| is_known && TOUCH_DEPTH < *depth);
         let Some((depth, backtrace)) = depth.zip(self.last_motion.take()) else { return };
         let level = match self.hole_at(&tip) {

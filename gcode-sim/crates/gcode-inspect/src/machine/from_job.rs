@@ -9,8 +9,12 @@ impl Machine {
     /// Returns the arrangement of the job's family. `None` if the control lacks the rotary axis, and for a
     /// burr, which needs the machine file next to its programs.
     pub fn from_job(job: &Job) -> Option<Self> {
-        let nominal =
-            Self { dialect: job.control().dialect, increment: job.control().increment, ..Self::default() };
+        let nominal = Self {
+            dialect: job.control().dialect,
+            increment: job.control().increment,
+            has_default_table: false,
+            ..Self::default()
+        };
         match job {
             Job::PinHoles(job) => {
                 let axes = &nominal.axes;

@@ -48,6 +48,8 @@ pub struct Machine {
     pub increment: Increment,
     /// Axes that carry the part, from the bed outwards.
     pub table: Chain,
+    /// True if no machine file and no job describes the table.
+    pub has_default_table: bool,
     /// Axes that carry the tool: those of X, Y and Z that do not carry the part.
     pub slides: Chain,
     /// Head that holds the tool.
@@ -58,6 +60,8 @@ pub struct Machine {
     pub tools: Vec<Tool>,
     /// Work offsets at the start of a run.
     pub offsets: Vec<WorkOffset>,
+    /// Known positions of axes at the start of a run, in the work coordinate system active then, mm or degrees.
+    pub start: Vec<(AxisIndex, f64)>,
     /// Position of the part.
     pub part: Placement,
     /// Touch probe.
@@ -130,6 +134,7 @@ impl Default for Machine {
         Self {
             slides: Chain::default_slides(&axes, &Chain::default()),
             table: Chain::default_table(&axes, Point3::origin()),
+            has_default_table: true,
             axes,
             dialect: Dialect::default(),
             increment: Increment::default(),
@@ -137,6 +142,7 @@ impl Default for Machine {
             wheel: None,
             tools: Vec::new(),
             offsets: Vec::new(),
+            start: Vec::new(),
             part: Placement::default(),
             probe: None,
             rapid: RapidPath::default(),
@@ -209,6 +215,20 @@ impl Machine {
     /// Returns the diameter of the tool in the spindle, mm; `None` if the tool or its diameter is unknown.
     pub(crate) fn diameter_of(&self, tool: Option<u32>) -> Option<f64> {
         self.find_tool(tool?)?.diameter
+    }
+
+    /// Returns the rotary axes of a table that nothing describes, as bits: a program without them needs none.
+    pub(crate) fn assumed_rotary_axes(&self) -> u8 {
+        match self.has_default_table {
+            true => self.table.rotary_axes().fold(0, |axes, axis| axes | 1 << axis),
+            false => 0,
+        }
+    }
+
+    /// Returns those of some axes, as bits, that move something on this machine, without an assumed rotary.
+    pub fn needed_axes(&self, axes: u8) -> u8 {
+        let used = self.axes.iter().filter(|(axis, _)| self.is_axis_used(*axis));
+        used.fold(0, |all, (axis, _)| all | 1 << axis) & axes & !self.assumed_rotary_axes()
     }
 
     /// Returns true if the axis moves the tool, the part, the head or the wheel.

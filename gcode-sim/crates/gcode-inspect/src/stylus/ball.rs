@@ -51,7 +51,7 @@ impl Ball {
                     HeadMessage::Unrelated => BallUpdate::Unchanged,
                 }
             }
-            EventKind::WorkZeroUnknown { .. }
+            EventKind::PositionUnknown { .. }
             | EventKind::Stop { .. }
             | EventKind::Dwell { .. }
             | EventKind::Spindle { .. }

@@ -2,7 +2,7 @@
 use super::ball::{Ball, BallMove, BallUpdate};
 use crate::findings::RAPID_INTO_PART;
 use crate::holes::per_block::PerBlock;
-use crate::holes::work_zero::WorkZeroTracker;
+use crate::holes::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Machine};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, EventKind, EventSink, Position};
@@ -21,7 +21,7 @@ pub struct RapidChecker<'m> {
     ball: Ball,
     /// True once the ball has been outside: a run starts at machine zero, where no ball is.
     has_been_outside: bool,
-    work_zero: WorkZeroTracker,
+    positions: PositionTracker,
     findings: PerBlock<(), Diagnostic>,
 }
 
@@ -34,7 +34,7 @@ impl<'m> RapidChecker<'m> {
             radius,
             ball: Ball::default(),
             has_been_outside: false,
-            work_zero: WorkZeroTracker::default(),
+            positions: PositionTracker::default(),
             findings: PerBlock::default(),
         }
     }
@@ -82,17 +82,17 @@ impl<'m> RapidChecker<'m> {
 
 impl EventSink for RapidChecker<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        if let EventKind::WorkZeroUnknown { axes } = event.kind {
-            self.work_zero.apply_event(self.machine, *axes);
+        if let EventKind::PositionUnknown { axes } = event.kind {
+            self.positions.apply_event(self.machine, *axes);
         }
         let BallUpdate::Moved { from, to, arc, kind } = self.ball.apply_event(self.machine, event) else {
             return;
         };
-        let (was, is) = self.work_zero.advance();
+        let (was, is) = self.positions.advance(self.machine);
         match kind {
             // Only the end of a rapid from an unknown position can be checked.
-            BallMove::Rapid if is != 0 => {}
-            BallMove::Rapid if was != 0 => self.report_rapid(event, self.depth(to), 0.0),
+            BallMove::Rapid if !is.is_none() => {}
+            BallMove::Rapid if !was.is_none() => self.report_rapid(event, self.depth(to), 0.0),
             BallMove::Rapid => self.check_rapid(event, &AxisMotion { from: &from, to, arc }),
             BallMove::Probe | BallMove::Feed => {}
         }

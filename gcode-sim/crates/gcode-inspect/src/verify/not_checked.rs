@@ -27,12 +27,18 @@ pub(super) fn lines(
     if machine.head.kind == HeadKind::Free && drilled.all(|hole| hole.tool_axis_deviation == Deg::ZERO) {
         all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());
     }
+    if extraction.assumed_axes != 0 && !extraction.holes.is_empty() {
+        all.push(format!(
+            "{}, where the last job left it: no block commands it, and it counts as 0",
+            machine.axes.names(extraction.assumed_axes)
+        ));
+    }
     if !extraction.is_metal_known {
         all.push(format!(
             "{MOTION}: give [stock] in the reference or the machine file; the metal is known only round the \
              nominal holes, to 1 mm from their walls"
         ));
-    } else if let Some(unknown) = &extraction.unknown_work_zero {
+    } else if let Some(unknown) = &extraction.unknown_rapids {
         all.push(unknown.describe(locate(unknown.backtrace.block)));
     }
     all

@@ -9,6 +9,8 @@ use super::g_codes;
 pub enum DialectSyntax {
     /// Letters in lower case.
     LowerCase,
+    /// Comment without its closing bracket.
+    UnclosedComment,
     /// Abbreviated keyword: `WH[…]DO1`, `GO 5`.
     ShortWord,
     /// Relation signs in a condition: `=`, `<>`, `<`, `&`.
@@ -39,6 +41,7 @@ impl DialectSyntax {
         let undocumented = &settings.undocumented;
         match self {
             Self::LowerCase => undocumented.reads_lower_case,
+            Self::UnclosedComment => true,
             Self::ShortWord => undocumented.allows_short_words,
             Self::RelationSigns => undocumented.allows_relation_signs,
             Self::SeveralAssignments => undocumented.allows_several_assignments,
@@ -57,6 +60,7 @@ impl DialectSyntax {
     pub fn alarm(self) -> Alarm {
         match self {
             Self::LowerCase => Alarm::LowerCase,
+            Self::UnclosedComment => Alarm::NotSimulated { what: "a comment without `)`".into() },
             Self::ShortWord => Alarm::ShortWord,
             Self::RelationSigns => Alarm::RelationSymbol,
             Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },

@@ -11,6 +11,7 @@ mod probe;
 mod rapid;
 mod sections;
 mod spread;
+mod start;
 mod tool;
 mod wheel;
 
@@ -26,6 +27,7 @@ use probe::FileProbe;
 use rapid::FileRapid;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use start::{FileStart, start_positions};
 use tool::FileTool;
 use wheel::FileWheel;
 
@@ -58,6 +60,10 @@ pub struct File {
     /// The work offsets G54 to G59 at the start of the run, by axis, mm and degrees; axes that are not named are 0.
     #[serde(default, with = "Optional::<FileOffsets>")]
     offsets: Option<<FileOffsets as FileKey>::Value>,
+    /// Positions of the axes at the start of the run, by axis, mm and degrees, in the work coordinate system active then;
+    /// axes that are not named are where the last job left them.
+    #[serde(default, with = "Optional::<FileStart>")]
+    start: Option<<FileStart as FileKey>::Value>,
     /// Nominal position of the part on the machine, and its misalignment.
     #[serde(default, with = "Optional::<Section<FilePart>>")]
     part: Option<FilePart>,
@@ -148,6 +154,8 @@ impl Machine {
             slides: Chain::default_slides(&axes, &table),
             wheel: file.wheel.map(|wheel| wheel.check(&reader, &axes, &table, &head)).transpose()?,
             offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, offsets))?,
+            start: file.start.map_or(Ok(Vec::new()), |start| start_positions(&reader, &axes, start))?,
+            has_default_table: file.table.is_none(),
             axes,
             table,
             head,
@@ -205,7 +213,8 @@ mod tests {
 
     #[test]
     fn the_shortest_file_is_the_machine_of_the_paper() {
-        assert_eq!(Machine::parse(PAPER).unwrap(), Machine::default());
+        let paper = Machine { has_default_table: false, ..Machine::default() };
+        assert_eq!(Machine::parse(PAPER).unwrap(), paper);
     }
 
     #[test]
@@ -232,6 +241,9 @@ length = 80.5
 diameter = 6.0
 [offsets]
 G54 = { X = 500.0, B = -3 }
+[start]
+Z = 250.0
+B = -90
 [part]
 origin = [500.0, 0.0, -200.0]
 shift = [0.1, 0.0, 0.0]
@@ -245,6 +257,7 @@ tilt = [0.0, 0.0, 1.0]
         assert_eq!(machine.head.pivot, 120.0);
         assert_eq!(machine.tools, [Tool { number: 12, length: Some(80.5), diameter: Some(6.0) }]);
         assert_eq!(machine.offsets[0].values, [(4, -3.0), (0, 500.0)]);
+        assert_eq!(machine.start, [(4, -90.0), (2, 250.0)]);
         assert_eq!(machine.part.origin.z, -200.0);
         assert_eq!(machine.part.tilt[2], Deg(1.0));
     }
@@ -268,7 +281,7 @@ tilt = [0.0, 0.0, 1.0]
     fn an_unusable_key_is_named_with_its_line() {
         let cases = r#"
 tables = []
-=> line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, part, probe, rapid, stock, errors
+=> line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, start, part, probe, rapid, stock, errors
 
 [[table]]
 letter = "B"
@@ -325,6 +338,10 @@ G54 = { V = 1.0 }
 [offsets]
 G54.X = 100001
 => line 2: key 'offsets.G54.X' is 100001: -100000 to 100000 (mm and degrees)
+
+[start]
+V = 1.0
+=> line 2: key 'start.V': the control has no axis V
 
 [part]
 tilt = [0.0, nan, 0.0]

@@ -20,6 +20,7 @@ mod row_pitch;
 mod row_seam;
 mod row_short;
 mod signs;
+mod start_unknown;
 mod stopped;
 mod through;
 mod tool_short;
@@ -43,28 +44,29 @@ type Check = fn(&HoleInspection<'_>, &mut HoleFindings);
 
 /// The checks in order, each with the codes of its findings; each sees the findings of those above it.
 pub(super) const ALL: &[Check] = &[
-    mirrored::check,     // rotary-sign, mirror-image
-    row_group::check,    // row-group
-    row_angle::check,    // row-angle
-    row_seam::check,     // row-seam
-    row_pitch::check,    // row-pitch
-    missing::check,      // hole-missing
-    extra::check,        // hole-extra, hole-twice
-    position::check,     // hole-position, hole-tilted
-    cut_outside::check,  // hole-cut-aside
-    depth::check,        // hole-depth
-    diameter::check,     // hole-diameter
-    tools::check,        // hole-tools
-    overlap::check,      // hole-overlap
-    row_short::check,    // row-short
-    row_missing::check,  // row-missing
-    air::check,          // hole-in-air
-    through::check,      // hole-through
-    tool_short::check,   // tool-short
-    stopped::check,      // hole-missing
-    common_shift::check, // holes-alike, hole-twice
-    reach::check,        // length-offset
-    signs::check,        // axis-signs
-    clearance::check,    // turns-near-part, rapid-near-part
-    cutting::check,      // drill-speed, drill-feed, drill-peck, spindle-reversed, job-tool, length-offset
+    start_unknown::check, // start-unknown
+    mirrored::check,      // rotary-sign, mirror-image
+    row_group::check,     // row-group
+    row_angle::check,     // row-angle
+    row_seam::check,      // row-seam
+    row_pitch::check,     // row-pitch
+    missing::check,       // hole-missing
+    extra::check,         // hole-extra, hole-twice
+    position::check,      // hole-position, hole-tilted
+    cut_outside::check,   // hole-cut-aside
+    depth::check,         // hole-depth
+    diameter::check,      // hole-diameter
+    tools::check,         // hole-tools
+    overlap::check,       // hole-overlap
+    row_short::check,     // row-short
+    row_missing::check,   // row-missing
+    air::check,           // hole-in-air
+    through::check,       // hole-through
+    tool_short::check,    // tool-short
+    stopped::check,       // hole-missing
+    common_shift::check,  // holes-alike, hole-twice
+    reach::check,         // length-offset
+    signs::check,         // axis-signs
+    clearance::check,     // turns-near-part, rapid-near-part
+    cutting::check,       // drill-speed, drill-feed, drill-peck, spindle-reversed, job-tool, length-offset
 ];

@@ -6,7 +6,8 @@ use super::Inspection;
 use super::measured_range::SPEED_TOLERANCE;
 use crate::findings::{
     BURR_OFFSET, FLUTE_END, FLUTE_EXTRA, FLUTE_HEAD, FLUTE_HELIX, FLUTE_INDEX, FLUTE_MISSING, FLUTE_SPEED,
-    FLUTE_SURFACE, FLUTE_TWICE, FLUTES_MEET, SPINDLE_STOPPED, WHEEL_FEED, WHEEL_INTO_BURR, WHEEL_SPEED,
+    FLUTE_SURFACE, FLUTE_TWICE, FLUTES_MEET, SPINDLE_STOPPED, START_UNKNOWN, WHEEL_FEED, WHEEL_INTO_BURR,
+    WHEEL_SPEED,
 };
 use crate::flutes::{GrindingResult, Window};
 use crate::verify::verdict::{Answer, Finding, finding_of, limit_per_kind};
@@ -145,7 +146,8 @@ impl FluteVerdict {
 }
 
 /// Short descriptions of findings about flutes.
-const SHORT: [(&FindingKind, &str); 15] = [
+const SHORT: [(&FindingKind, &str); 16] = [
+    (&START_UNKNOWN, "an axis at an unknown position"),
     (&FLUTE_MISSING, "a flute is missing"),
     (&FLUTE_EXTRA, "an extra flute"),
     (&FLUTE_TWICE, "a flute is ground twice"),
@@ -279,7 +281,7 @@ fn not_checked(
              position is unknown"
         ));
     }
-    let unknown = actual.unknown_work_zero.as_ref();
+    let unknown = actual.unknown_rapids.as_ref();
     all.extend(unknown.map(|unknown| unknown.describe(locate(unknown.backtrace.block))));
     all
 }

@@ -38,6 +38,10 @@ impl Lowering {
         if let Some(span) = block.short_word {
             self.record_syntax(DialectSyntax::ShortWord, span);
         }
+        let unclosed = |comment: &&ast::Comment| comment.mark == ast::CommentMark::Unclosed;
+        if let Some(comment) = block.comments.iter().find(unclosed) {
+            self.record_syntax(DialectSyntax::UnclosedComment, comment.span);
+        }
         let kind = self.lower_kind(block).unwrap_or_else(OpKind::Alarm);
         let skip = block.skip.as_ref().map(|s| s.node);
         let body = match skip.is_some() || !self.dialect_syntax.is_empty() {

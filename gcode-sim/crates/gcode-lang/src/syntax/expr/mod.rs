@@ -21,6 +21,9 @@ const MAX_BRACKET_DEPTH: u8 = 5;
 /// shallow.
 const MAX_OPERATORS: usize = 100;
 
+/// Most signs before one operand; the limit keeps the tree shallow.
+const MAX_SIGNS: usize = 10;
+
 enum ExprOrCondition {
     Expr(Expr),
     Condition(Condition),
@@ -146,14 +149,29 @@ pub(super) fn require_value<'a, T>(read: ReadResult<'a, T>, at: Input<'a>) -> Re
     }
 }
 
+/// Reads an operand with its signs: `-#1`, `-+5`; a sign may follow an operator or another sign.
 fn signed(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    signed_after(line, input, depth, 0)
+}
+
+/// Reads an operand with its signs after a number of others.
+fn signed_after(
+    line: LineInput,
+    input: Input<'_>,
+    depth: u8,
+    signs: usize,
+) -> ReadResult<'_, ExprOrCondition> {
     let start = spaces(input);
     let wrap: fn(Box<Expr>) -> ExprKind = match start.first() {
         Some(b'-') => ExprKind::Negate,
         Some(b'+') => ExprKind::Plus,
         _ => return primary(line, input, depth),
     };
-    let (rest, mixed) = require_value(primary(line, &start[1..], depth), &start[1..])?;
+    if signs == MAX_SIGNS {
+        return no_expression(start);
+    }
+    let operand = signed_after(line, &start[1..], depth, signs + 1);
+    let (rest, mixed) = require_value(operand, &start[1..])?;
     let (rest, inner) = number(rest, start, mixed)?;
     Ok((rest, ExprOrCondition::Expr(Expr { kind: wrap(Box::new(inner)), span: line.span(start, rest) })))
 }

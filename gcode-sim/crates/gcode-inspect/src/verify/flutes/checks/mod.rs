@@ -9,6 +9,7 @@ mod offset;
 mod signs;
 mod spacing;
 mod speed;
+mod start_unknown;
 mod surface;
 mod turning;
 mod twice;
@@ -26,6 +27,7 @@ type Check = fn(&Inspection<'_>, &mut Vec<Diagnostic>);
 
 /// The checks, in the order of their findings.
 pub(super) const ALL: &[Check] = &[
+    start_unknown::check,
     offset::check,
     signs::check,
     count::check,

@@ -1,0 +1,232 @@
+//! Axes whose position on the part is unknown: not commanded since the start, sent to machine coordinates without a known
+//! work offset, or counted from a G92 at an unknown position.
+use nalgebra::Point3;
+
+use super::group::DrilledHole;
+use super::line::{CuttingLine, ToolExit};
+use super::{HoleExtractor, MotionKind};
+use crate::findings::START_UNKNOWN;
+use crate::machine::{AxisMotion, Machine};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{Axes, AxisIndex, Backtrace, Event, UnknownAxes};
+
+/// Sine of the largest angle at which an axis moves along a hole.
+const MAX_SINE: f64 = 1e-3;
+
+/// Largest displacement of a hole by an axis that has no effect on it, mm.
+const MAX_DISPLACEMENT: f64 = 1e-6;
+
+/// Rapids from or to positions that are unknown on the part.
+#[derive(Clone, Debug)]
+pub(crate) struct UnknownRapids {
+    /// Block of the first rapid.
+    pub backtrace: Backtrace,
+    /// Letters of the axes of all of them, as in `X and Z`.
+    pub letters: String,
+    /// Number of rapids.
+    pub count: u64,
+}
+
+/// Axes of unknown position now and after the next move.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PositionTracker {
+    /// True after the first event, which states the axes at the start.
+    has_started: bool,
+    current: UnknownAxes,
+    upcoming: UnknownAxes,
+    /// First rapid, axes of all rapids, and their number.
+    rapids: Option<(Backtrace, u8, u64)>,
+}
+
+impl PositionTracker {
+    /// Applies the event before a move: the axes of unknown position at its end.
+    pub(crate) fn apply_event(&mut self, machine: &Machine, axes: UnknownAxes) {
+        let used = machine.axes.iter().filter(|(axis, _)| machine.is_axis_used(*axis));
+        let axes = axes.only(used.fold(0, |mask, (axis, _)| mask | 1 << axis));
+        // A move without travel has no event of its own.
+        self.current = if self.has_started { self.upcoming } else { axes };
+        self.upcoming = axes;
+        self.has_started = true;
+    }
+
+    /// Returns the axes of unknown position before and after a move. A rotary of the default machine counts as known while
+    /// nothing commands it.
+    pub(crate) fn advance(&mut self, machine: &Machine) -> (UnknownAxes, UnknownAxes) {
+        let was = std::mem::replace(&mut self.current, self.upcoming);
+        (without_assumed(was, machine), without_assumed(self.current, machine))
+    }
+
+    /// Counts a rapid from or to an unknown position; one whose axes are merely not commanded yet is not counted.
+    pub(crate) fn note_rapid(&mut self, event: &Event<'_>, axes: UnknownAxes) {
+        let axes = axes.at_machine_position | axes.shifted;
+        if axes == 0 {
+            return;
+        }
+        let (_, all, count) = self.rapids.get_or_insert_with(|| (event.backtrace(), 0, 0));
+        *all |= axes;
+        *count += 1;
+    }
+
+    pub(crate) fn finish(self, machine: &Machine) -> Option<UnknownRapids> {
+        let (backtrace, axes, count) = self.rapids?;
+        Some(UnknownRapids { backtrace, letters: machine.axes.names(axes), count })
+    }
+
+    /// Returns the axes of unknown position now.
+    pub(crate) fn unknown_axes(&self) -> UnknownAxes {
+        self.current
+    }
+
+    /// Returns true if every position is known, that of an assumed rotary included.
+    pub(crate) fn is_known(&self, machine: &Machine) -> bool {
+        without_assumed(self.current, machine).is_none()
+    }
+
+    /// Returns the rotary axes of the default machine that no block of the run has commanded, as bits.
+    pub(crate) fn untouched_rotary_axes(&self, machine: &Machine) -> u8 {
+        self.upcoming.uncommanded & machine.assumed_rotary_axes()
+    }
+}
+
+/// Returns the unknown axes without the uncommanded rotaries of the default machine.
+fn without_assumed(axes: UnknownAxes, machine: &Machine) -> UnknownAxes {
+    UnknownAxes { uncommanded: axes.uncommanded & !machine.assumed_rotary_axes(), ..axes }
+}
+
+impl UnknownRapids {
+    /// Returns a sentence on what is not checked; `first` is the program and the line of the first rapid.
+    pub(crate) fn describe(&self, first: (String, u32)) -> String {
+        let (program, line) = first;
+        let moves = match self.count {
+            1 => format!("1 move, {program} line {line}"),
+            count => format!("{count} moves, first {program} line {line}"),
+        };
+        format!(
+            "the clearance of rapids from and to the positions where G28, G30 or G53 sends {} ({moves}): \
+             the machine file lacks the work offset in effect ([offsets]), so the position of machine zero \
+             on the part is unknown",
+            self.letters
+        )
+    }
+}
+
+impl HoleExtractor<'_> {
+    /// Follows a rapid from or to an unknown position, and checks its end if that is known. `from` is the computed start;
+    /// `was` and `is` are the unknown axes before and after.
+    pub(super) fn report_unknown_rapid(
+        &mut self,
+        event: &Event<'_>,
+        kind: MotionKind,
+        travel: &AxisMotion<'_>,
+        from: &Point3<f64>,
+        (was, is): (UnknownAxes, UnknownAxes),
+    ) {
+        // With the same axes unknown the motion itself is known.
+        if was == is && self.machine.is_straight(travel) {
+            if (self.pose.tip - from).norm() >= 1e-9 {
+                self.update_line(event, kind, *from);
+            }
+        } else if let Some(line) = self.current_line.take() {
+            let is_out = self.is_out_along(&line, is.all() & !was.all());
+            let exit = if is_out { ToolExit::AlongLine } else { line.curved_exit() };
+            self.report_line(line, exit, false);
+        }
+        self.positions.note_rapid(event, was.union(is));
+        let Some(surface) = self.surface else { return };
+        let to = self.pose.tip;
+        if is.is_none() && self.has_been_outside {
+            let note = "the start of this rapid is unknown";
+            self.check_rapid_end(event, &surface, &to, Severity::Error, note);
+        } else if is.at_machine_position | is.shifted == 0 && !self.has_been_outside {
+            self.check_first_rapid(event, &surface, from, &to);
+        }
+        self.update_outside();
+    }
+
+    /// Returns true if all these axes move the tool along the line: out of the hole, since machine zero is outside the
+    /// part.
+    fn is_out_along(&self, line: &CuttingLine, axes: u8) -> bool {
+        let is_along = |axis: AxisIndex| {
+            let mut beside = self.axis_position;
+            beside[axis] += 1.0;
+            let by = self.machine.forward(&beside, &self.setup).tip - self.pose.tip;
+            by.cross(&line.out).norm() <= MAX_SINE * by.norm()
+        };
+        self.machine.axes.iter().filter(|(axis, _)| axes >> axis & 1 == 1).all(|(axis, _)| is_along(axis))
+    }
+}
+
+/// Removes the axes that don't matter from the unknown ones of each hole: a rotary on whose axis the hole lies, and
+/// those in `assumed`.
+pub(super) fn keep_effective(holes: &mut [DrilledHole], machine: &Machine, assumed: u8) {
+    for hole in holes.iter_mut().filter(|hole| !hole.unknown_axes.is_none()) {
+        let axes = hole.unknown_axes.all();
+        let effective = machine.axes.iter().filter(|(axis, _)| axes >> axis & 1 == 1);
+        let effective =
+            effective.filter(|(axis, _)| assumed >> axis & 1 == 0 && has_effect(machine, hole, *axis));
+        hole.unknown_axes = hole.unknown_axes.only(effective.fold(0, |mask, (axis, _)| mask | 1 << axis));
+    }
+}
+
+/// Returns true if an axis displaces the hole on the part.
+fn has_effect(machine: &Machine, hole: &DrilledHole, axis: AxisIndex) -> bool {
+    if !machine.table.has_axis(axis) {
+        return true;
+    }
+    let mut beside = hole.axis_position;
+    beside[axis] += 90.0;
+    let by = machine.part_frame(&beside).inverse() * machine.part_frame(&hole.axis_position);
+    [hole.entry, hole.bottom()].iter().any(|point| (by * point - point).norm() > MAX_DISPLACEMENT)
+}
+
+impl HoleExtractor<'_> {
+    /// Reports holes that are cut with axes of unknown position, by their blocks.
+    pub(super) fn report_unknown_positions(&mut self, holes: &[DrilledHole]) {
+        for hole in holes.iter().filter(|hole| !hole.unknown_axes.is_none()) {
+            let axes = hole.unknown_axes;
+            self.findings.add(&START_UNKNOWN, &hole.backtrace, u32::from(axes.all()), |_| {
+                unknown_position_finding(&self.machine.axes, axes, "a hole is cut")
+            });
+        }
+    }
+}
+
+/// Returns the finding about a cut with axes of unknown position; `cut` is its subject and verb, as in `hole 1 is cut`.
+pub(crate) fn unknown_position_finding(names: &Axes, axes: UnknownAxes, cut: &str) -> Diagnostic {
+    let letters = |axes| names.names(axes);
+    let UnknownAxes { uncommanded, at_machine_position, shifted } = axes;
+    if uncommanded != 0 {
+        let letters = letters(uncommanded);
+        let starts: Vec<_> = names
+            .iter()
+            .filter(|(axis, _)| uncommanded >> axis & 1 == 1)
+            .map(|(_, letter)| format!("--start {letter}=…"))
+            .collect();
+        let message = format!(
+            "{cut} with {letters} at an unknown position: no earlier block commands {letters} in G90"
+        );
+        return Diagnostic::new(&START_UNKNOWN, message).help(format!(
+            "command {letters} in G90 in this block or before it, or state where the run starts: {}, or [start] \
+             in the machine file",
+            starts.join(" ")
+        ));
+    }
+    if at_machine_position != 0 {
+        let letters = letters(at_machine_position);
+        let message = format!(
+            "{cut} with {letters} where G28, G30 or G53 sent it: this position on the part is unknown"
+        );
+        return Diagnostic::new(&START_UNKNOWN, message)
+            .note("the machine file lacks the work offset in effect; machine zero is taken as the work zero")
+            .help(format!(
+                "command {letters} in G90 before this block, or give the offset under [offsets] in the machine file"
+            ));
+    }
+    let letters = letters(shifted);
+    let message =
+        format!("{cut} with {letters} counted from a zero that was set at an unknown position of {letters}");
+    Diagnostic::new(&START_UNKNOWN, message)
+        .note("G92 gives the current position new coordinates; G68 and G51 without a centre take it as their centre")
+        .help("command the axis in G90 before that block, or state where the run starts: --start, or [start] in the \
+               machine file")
+}
