@@ -6,8 +6,8 @@ use super::library::Folders;
 use super::{UsageError, input, output};
 use crate::report::page::{Document, ObservedProgram, Page};
 use gcode_inspect::verify::Verdict;
-use gcode_part::Reference;
 use gcode_part::Metal;
+use gcode_part::Reference;
 use gcode_review::Revision;
 use gcode_session::{Request, Trace};
 

@@ -151,7 +151,9 @@ fn holes(
         output::written("page", path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, reference.metal(request.machine.stock));
+    let simulate = |request: &Request| {
+        gcode_session::simulate(request, &mut folders, reference.metal(request.machine.stock))
+    };
     let simulation = progress::of_run(request, simulate)?;
     print(&simulation, &simulation.verify(reference, tolerances, &machine))
 }

@@ -20,7 +20,7 @@ const PARALLEL_COSINE: f64 = 0.996_194_698_091_745_5;
 pub struct Metal {
     /// Stock, or the surface of the part.
     pub body: Option<Surface>,
-    /// Metal round the holes, where neither stock nor surface is known.
+    /// Metal round the nominal holes; `None` without a reference.
     pub entries: Option<Arc<EntryPlanes>>,
 }
 
@@ -58,7 +58,8 @@ impl EntryPlanes {
     /// Returns the metal round these holes.
     pub fn of(holes: &[Hole]) -> Self {
         let collars: Vec<Collar> = holes.iter().map(Collar::of).collect();
-        let middle = |collar: &Collar| collar.rod.base + collar.rod.axis.into_inner() * (collar.rod.length / 2.0);
+        let middle =
+            |collar: &Collar| collar.rod.base + collar.rod.axis.into_inner() * (collar.rod.length / 2.0);
         let reach = |collar: &Collar| libm::hypot(collar.rod.length / 2.0, collar.rod.radius);
         Self {
             middles: PointTree::new(collars.iter().map(middle)),
@@ -91,12 +92,25 @@ impl EntryPlanes {
 
     /// Calls `each` with the holes whose metal may reach into the box from `low` to `high`.
     pub fn near(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
-        if let Some((out, top)) = self.top {
-            let lowest = (0..3).map(|i| (out[i] * low[i]).min(out[i] * high[i])).sum::<f64>();
-            if top < lowest {
-                return;
-            }
+        if !self.is_above_all(low, high) {
+            self.around(low, high, each);
         }
+    }
+
+    /// Returns true if the box from `low` to `high` is above every entry, where all holes have one direction.
+    pub fn is_above_all(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
+        self.top.is_some_and(|(out, top)| {
+            top < (0..3).map(|i| (out[i] * low[i]).min(out[i] * high[i])).sum::<f64>()
+        })
+    }
+
+    /// Returns a lower bound of the distance from the metal round any hole, mm.
+    pub fn nearest_metal(&self, p: &Point3<f64>) -> f64 {
+        self.middles.nearest(p).map_or(f64::INFINITY, |(_, distance)| distance - self.reach)
+    }
+
+    /// Calls `each` with the holes whose metal, or the space above it, may reach into the box from `low` to `high`.
+    pub fn around(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
         let margin = Vector3::repeat(self.reach);
         self.middles.in_box(&(low - margin), &(high + margin), each);
     }
@@ -207,16 +221,17 @@ mod tests {
         // Half way down at 45° the travel is at radius 4: x 14, z −5.
         let slanting = piece(&up, [9.0, 0.0, 0.0], [29.0, 0.0, -20.0]);
         assert_eq!(slanting, Some([[9.01, 0.0, -0.01], [14.0, 0.0, -5.0]]));
-        assert_eq!(piece(&hole([10.0, 0.0, 0.0], [0.0, 0.0, 1.0], None), [0.0, 1.001, -1.0], [60.0, 1.001, -1.0]), None);
+        assert_eq!(
+            piece(&hole([10.0, 0.0, 0.0], [0.0, 0.0, 1.0], None), [0.0, 1.001, -1.0], [60.0, 1.001, -1.0]),
+            None
+        );
     }
 
     #[test]
     fn only_holes_that_a_box_reaches_are_near() {
         let up = [0.0, 0.0, 1.0];
-        let planes = EntryPlanes::of(&[
-            hole([10.0, 0.0, 0.0], up, Some(6.0)),
-            hole([40.0, 0.0, -5.0], up, None),
-        ]);
+        let planes =
+            EntryPlanes::of(&[hole([10.0, 0.0, 0.0], up, Some(6.0)), hole([40.0, 0.0, -5.0], up, None)]);
         let near = |low: [f64; 3], high: [f64; 3]| {
             let mut found = Vec::new();
             planes.near(&low.into(), &high.into(), &mut |index| found.push(index));

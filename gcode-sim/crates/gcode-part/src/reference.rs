@@ -50,12 +50,10 @@ impl Reference {
     }
 
     /// Returns what is known to be metal; `of_machine` is the stock of the machine file, which that of the reference
-    /// overrides. Without either it is the part inside its surface, and for a hole list the metal round its holes.
+    /// overrides. Without either the body is the part inside its surface; a hole list has none.
     pub fn metal(&self, of_machine: Option<Stock>) -> Metal {
         let stock = self.stock.or(of_machine).unwrap_or(Stock::Surface {});
-        let body = stock.body(self.surface);
-        let entries = body.is_none().then(|| Arc::new(EntryPlanes::of(&self.holes)));
-        Metal { body, entries }
+        Metal { body: stock.body(self.surface), entries: Some(Arc::new(EntryPlanes::of(&self.holes))) }
     }
 
     /// Returns the hole list that `reference` writes.

@@ -62,7 +62,8 @@ impl Rod {
     pub fn nearest(&self, p: &Point3<f64>) -> NearestPoint {
         let (height, away, distance) = self.cylindrical(p);
         let axis = self.axis.into_inner();
-        let beyond = axis * (height - height.clamp(0.0, self.length)) + away * (distance - self.radius).max(0.0);
+        let beyond =
+            axis * (height - height.clamp(0.0, self.length)) + away * (distance - self.radius).max(0.0);
         nearest(beyond, || self.face(p))
     }
 }
@@ -86,7 +87,8 @@ mod tests {
     use crate::Surface;
 
     fn bodies() -> [Surface; 2] {
-        let block = Surface::Block { min: Point3::new(-10.0, -20.0, -5.0), max: Point3::new(30.0, 20.0, 0.0) };
+        let block =
+            Surface::Block { min: Point3::new(-10.0, -20.0, -5.0), max: Point3::new(30.0, 20.0, 0.0) };
         let axis = Unit::new_normalize(Vector3::new(0.0, 0.6, 0.8));
         let rod = Rod { base: Point3::new(1.0, 2.0, 3.0), axis, length: 20.0, radius: 5.0 };
         [block, Surface::Rod(rod)]

@@ -101,7 +101,8 @@ mod tests {
     fn each_kind_is_the_body_that_its_numbers_say() {
         let read = |text: &str| serde_json::from_str::<Stock>(text).unwrap();
         let block = read(r#"{"kind": "box", "min": [0, 0, -20], "max": [100, 50, 0]}"#);
-        let depth = |stock: &Stock, p: [f64; 3]| -stock.body(None).unwrap().nearest(&Point3::from(p)).distance;
+        let depth =
+            |stock: &Stock, p: [f64; 3]| -stock.body(None).unwrap().nearest(&Point3::from(p)).distance;
         assert_eq!(depth(&block, [50.0, 25.0, -3.0]), 3.0);
         let bar = read(r#"{"kind": "cylinder", "axis": "x", "diameter": 40, "from": -5, "to": 60}"#);
         assert_eq!(depth(&bar, [10.0, 0.0, 18.0]), 2.0);

@@ -136,8 +136,7 @@ impl Revision {
         let recorder = RefCell::new(Recorder::default());
         let (mut sink, mut both) =
             (SharedRecorder(&recorder), ObserverPair(SharedRecorder(&recorder), observer));
-        let mut simulation =
-            gcode_session::simulate_observed(request, library, metal, &mut sink, &mut both)?;
+        let mut simulation = gcode_session::simulate_observed(request, library, metal, &mut sink, &mut both)?;
         let recorder = recorder.into_inner();
         if recorder.is_truncated {
             let message = format!("more than {MOST_STEPS} moves: later ones are not compared");

@@ -302,6 +302,7 @@ pub fn simulate_observed<S: EventSink>(
     let metal = metal.into();
     let mut extractor = HoleExtractor::new(&request.machine)
         .with_metal(Metal { body: metal.body.or(request.part), ..metal })
+        .with_straight_rapids(request.settings.rapids_are_straight)
         .with_process_limits(&request.process_limits);
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();

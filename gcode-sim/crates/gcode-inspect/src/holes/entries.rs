@@ -1,7 +1,7 @@
 //! Motion in the metal round the holes of a list: rapids that cut it, feeds beside a hole, and the depth cut so far.
 use std::sync::Arc;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::axis_box::Bodies;
@@ -10,13 +10,19 @@ use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
 use crate::machine::AxisMotion;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Event;
-use gcode_part::{EntryPlanes, NearestPoint};
+use gcode_part::{EntryPlanes, NearestPoint, Surface};
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
 const MAX_OFFSET: f64 = 0.5;
 
 /// Rounding of a point on a hole's wall, mm.
 const ROUNDING: f64 = 1e-6;
+
+/// Height above a hole up to which a tool counts as above it, mm.
+const MAX_HEIGHT: f64 = 50.0;
+
+/// Half diagonal up to which the holes in a box are few, mm.
+const SMALL_BOX: f64 = 20.0;
 
 /// Excess of a tool's radius that still fits a hole, mm.
 const FIT: f64 = 0.01;
@@ -29,11 +35,14 @@ pub(super) struct CutEntries {
     cuts: Vec<Vec<Cut>>,
 }
 
-/// Depth below the entry plane that tools of one radius have cut; an unknown radius is infinite.
+/// Metal that tools have cut from a hole, to one radius; an unknown radius is infinite.
 #[derive(Clone, Copy, Debug)]
 struct Cut {
     radius: f64,
+    /// Depth below the entry, mm.
     depth: f64,
+    /// Height above the bottom, for a hole that is entered from the far side too, mm.
+    height: f64,
 }
 
 /// A point in the metal round a hole.
@@ -49,26 +58,96 @@ impl CutEntries {
         Self { cuts: vec![Vec::new(); planes.len()], planes }
     }
 
-    /// Returns the metal round the holes as convex bodies, holes that are cut included.
-    pub(super) fn bodies(&self) -> Box<Bodies<'_>> {
-        Box::new(|p, reach, each: &mut dyn FnMut(NearestPoint)| {
-            let margin = nalgebra::Vector3::repeat(reach);
-            self.planes.near(&(p - margin), &(p + margin), &mut |hole| each(self.planes.collar(hole).rod.nearest(p)));
+    /// Returns the metal round the holes as convex bodies, cut or not; without the holes that `is_left_out` names.
+    pub(super) fn bodies<'c>(&'c self, is_left_out: impl Fn(usize) -> bool + 'c) -> Box<Bodies<'c>> {
+        Box::new(move |p, reach, each: &mut dyn FnMut(NearestPoint)| {
+            let (low, high) = (p - reach, p + reach);
+            if self.planes.is_above_all(&low, &high) || self.planes.nearest_metal(p) > reach.norm() {
+                return true;
+            }
+            let is_small = reach.norm() <= SMALL_BOX;
+            if is_small {
+                self.planes.near(&low, &high, &mut |hole| {
+                    if !is_left_out(hole) {
+                        each(self.planes.collar(hole).rod.nearest(p));
+                    }
+                });
+            }
+            is_small
         })
     }
 
-    /// Returns the depth to which a tool of this radius finds the hole cut; an unknown radius fits every hole.
-    fn depth_for(&self, hole: usize, radius: Option<f64>) -> f64 {
+    /// Returns depth and height to which a tool of this radius finds the hole cut; an unknown radius fits every hole.
+    fn cut_for(&self, hole: usize, radius: Option<f64>) -> (f64, f64) {
         let fits = |cut: &&Cut| radius.is_none_or(|radius| radius <= cut.radius + FIT);
-        self.cuts[hole].iter().filter(fits).map(|cut| cut.depth).fold(0.0, f64::max)
+        let cuts = self.cuts[hole].iter().filter(fits);
+        cuts.fold((0.0, 0.0), |(depth, height), cut| (cut.depth.max(depth), cut.height.max(height)))
     }
 
-    fn record(&mut self, hole: usize, radius: Option<f64>, depth: f64) {
-        let radius = radius.unwrap_or(f64::INFINITY);
+    /// Returns true if the points and all between them lie where a tool of this radius finds the hole cut, or above it.
+    pub(super) fn are_in_cut(&self, hole: usize, radius: Option<f64>, points: &[Point3<f64>]) -> bool {
+        let collar = self.planes.collar(hole);
+        let (depth, height) = self.cut_for(hole, radius);
+        let is_above = |p: &Point3<f64>| collar.depth(p) <= depth + TOUCH_DEPTH;
+        let is_below = |p: &Point3<f64>| collar.rod.length - collar.depth(p) <= height + TOUCH_DEPTH;
+        points.iter().all(|p| collar.from_axis(p) <= collar.hole_radius + ROUNDING)
+            && (0.0 < depth && points.iter().all(is_above) || 0.0 < height && points.iter().all(is_below))
+    }
+
+    /// Returns true if the points and all between them lie in one hole, where a tool of this radius finds it cut.
+    pub(super) fn are_in_one_cut(&self, radius: Option<f64>, points: &[Point3<f64>]) -> bool {
+        let Some(first) = points.first() else { return false };
+        let (low, high) = points.iter().fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
+        let mut is_in_cut = false;
+        self.planes.near(&low, &high, &mut |hole| is_in_cut |= self.are_in_cut(hole, radius, points));
+        is_in_cut
+    }
+
+    /// Returns true if a tool of this radius, from its tip upwards, is inside a cut hole at two points and all between them.
+    fn has_room(&self, radius: f64, points: &[Point3<f64>; 2]) -> bool {
+        let has_room = |hole: usize, cut: &Cut| {
+            let collar = self.planes.collar(hole);
+            let most = collar.hole_radius.max(cut.radius) + FIT - radius;
+            points.iter().all(|p| collar.from_axis(p) <= most && collar.depth(p) <= cut.depth + TOUCH_DEPTH)
+        };
+        let margin = Vector3::repeat(MAX_HEIGHT);
+        let mut is_free = false;
+        for p in points {
+            self.planes.around(&(p - margin), &(p + margin), &mut |hole| {
+                is_free = is_free || self.cuts[hole].iter().any(|cut| has_room(hole, cut));
+            });
+        }
+        is_free
+    }
+
+    /// Records the cut of a feed inside a hole; `ends` are those of its piece in the collar.
+    fn record(
+        &mut self,
+        hole: usize,
+        radius: Option<f64>,
+        from: &Point3<f64>,
+        to: &Point3<f64>,
+        ends: &[Point3<f64>; 2],
+    ) {
+        let collar = self.planes.collar(hole);
+        let aside = ends.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
+        let radius = radius.map_or(f64::INFINITY, |radius| radius + aside);
+        let is_from_below = collar.rod.length < collar.depth(from) && collar.depth(to) < collar.depth(from);
+        let deeper = |p: &Point3<f64>| collar.depth(p);
+        let depth = ends.iter().map(deeper).fold(0.0, f64::max);
+        // Along the hole the bottom of the collar does not limit the cut.
+        let depth = if collar.is_parallel(&(to - from)) { deeper(to).max(depth) } else { depth };
+        let height = ends.iter().map(|p| collar.rod.length - collar.depth(p)).fold(0.0, f64::max);
+        let cut = match is_from_below {
+            true => Cut { radius, depth: 0.0, height },
+            false => Cut { radius, depth, height: 0.0 },
+        };
         let cuts = &mut self.cuts[hole];
-        match cuts.iter_mut().find(|cut| cut.radius == radius) {
-            Some(cut) => cut.depth = cut.depth.max(depth),
-            None => cuts.push(Cut { radius, depth }),
+        match cuts.iter_mut().find(|other| other.radius == radius) {
+            Some(other) => {
+                (other.depth, other.height) = (other.depth.max(cut.depth), other.height.max(cut.height));
+            }
+            None => cuts.push(cut),
         }
     }
 
@@ -88,7 +167,7 @@ impl CutEntries {
             let within = collar.hole_radius.max(MAX_OFFSET) + ROUNDING;
             let Some(point) = ends.iter().find(|p| within < collar.from_axis(p)) else {
                 is_along_hole |= collar.is_parallel(&along);
-                self.record(hole, radius, ends.iter().map(|p| collar.depth(p)).fold(0.0, f64::max));
+                self.record(hole, radius, from, to, &ends);
                 return;
             };
             let depth = collar.depth(point);
@@ -124,13 +203,41 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Returns the id of the hole in whose metal a point is; `None` if there is none.
-    pub(super) fn hole_at(&self, p: &Point3<f64>) -> Option<&str> {
-        let entries = self.entries.as_ref()?;
-        Some(entries.planes.id(entries.deepest_at(p)?.0))
+    /// Returns the level from which [`Self::known_depth`] counts: `the surface`, or `the nominal entry of hole 1`.
+    pub(super) fn level_at(&self, p: &Point3<f64>) -> String {
+        let entries = self.entries.as_ref().filter(|_| self.surface.is_none());
+        match entries.and_then(|entries| Some(entries.planes.id(entries.deepest_at(p)?.0))) {
+            Some(id) => format!("the nominal entry of hole {id}"),
+            None => "the surface".to_owned(),
+        }
     }
 
-    fn tool_radius(&self) -> Option<f64> {
+    /// Returns true if all that a straight travel has below the surface lies in a hole that is cut already.
+    pub(super) fn is_in_cut_hole(
+        &self,
+        surface: &Surface,
+        (from, to): (&Point3<f64>, &Point3<f64>),
+        deepest: &Point3<f64>,
+    ) -> bool {
+        let Some(entries) = &self.entries else { return false };
+        let Some((along, length)) = Unit::try_new_and_get(to - from, 1e-9) else {
+            return entries.are_in_one_cut(self.tool_radius(), &[*deepest]);
+        };
+        let at = (deepest - from).dot(&along);
+        let end = |out: Unit<Vector3<f64>>, most: f64| {
+            let inside = surface.exit(deepest, &out).map_or(most, |exit| (exit - deepest).norm());
+            deepest + out.into_inner() * inside.min(most)
+        };
+        entries.are_in_one_cut(self.tool_radius(), &[end(along, length - at), end(-along, at)])
+    }
+
+    /// Returns true if the tool moves in a hole that it finds cut, or above one.
+    pub(super) fn has_room_in_hole(&self, points: &[Point3<f64>; 2]) -> bool {
+        let radius = self.tool_radius();
+        self.entries.as_ref().zip(radius).is_some_and(|(entries, radius)| entries.has_room(radius, points))
+    }
+
+    pub(super) fn tool_radius(&self) -> Option<f64> {
         self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
     }
 
@@ -147,22 +254,23 @@ impl HoleExtractor<'_> {
         planes.near(&from.inf(to), &from.sup(to), &mut |hole| {
             let collar = planes.collar(hole);
             let Some(ends) = collar.piece(from, to, TOUCH_DEPTH) else { return };
-            let in_wall = ends.iter().find(|p| collar.hole_radius + ROUNDING < collar.from_axis(p));
-            let deeper = ends.iter().max_by(|a, b| collar.depth(a).total_cmp(&collar.depth(b)));
-            let deep = deeper.filter(|p| entries.depth_for(hole, radius) + TOUCH_DEPTH < collar.depth(p));
-            if let Some(point) = deep.or(in_wall) {
-                let depth = collar.depth(point);
-                if worst.is_none_or(|worst| worst.depth < depth) {
-                    worst = Some(PointInMetal { hole, point: *point, depth });
-                }
+            if entries.are_in_cut(hole, radius, &ends) {
+                return;
+            }
+            let [a, b] = ends;
+            let point = if collar.depth(&a) < collar.depth(&b) { b } else { a };
+            let depth = collar.depth(&point);
+            if worst.is_none_or(|worst| worst.depth < depth) {
+                worst = Some(PointInMetal { hole, point, depth });
             }
         });
         let Some(PointInMetal { hole, point, depth }) = worst else { return false };
         let id = planes.id(hole);
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
             let point = format_point(&point);
-            let message =
-                format!("rapid into the metal at hole {id}, {depth:.3} mm below its nominal entry, at {point}");
+            let message = format!(
+                "rapid into the metal at hole {id}, {depth:.3} mm below its nominal entry, at {point}"
+            );
             Diagnostic::new(kind, message)
                 .help("end the rapid above the entry of the hole; only a feed may enter the metal")
         });
@@ -175,24 +283,30 @@ impl HoleExtractor<'_> {
         let Some(entries) = &mut self.entries else { return };
         let cut = path.windows(2).filter_map(|chord| entries.cut_by_feed(radius, &chord[0], &chord[1]));
         let deepest = cut.reduce(|a, b| if a.depth < b.depth { b } else { a });
-        let Some(PointInMetal { hole, point, depth }) = deepest else { return };
+        // In a known body other checks cover such feeds.
+        let Some(PointInMetal { hole, point, depth }) = deepest.filter(|_| self.surface.is_none()) else {
+            return;
+        };
         let id = entries.planes.id(hole);
         self.findings.add(&FEED_BESIDE_HOLE, &event.backtrace(), 0, |kind| {
             let point = format_point(&point);
             let message =
                 format!("the feed cuts beside hole {id}, {depth:.3} mm below its nominal entry, at {point}");
-            Diagnostic::new(kind, message).help("retract above the entry of the hole before a motion beside it")
+            Diagnostic::new(kind, message)
+                .help("retract above the entry of the hole before a motion beside it")
         });
     }
 
-    /// Follows a curved motion in chords; a rapid returns true if it cuts.
+    /// Follows a curved motion in chords; a rapid returns true if it cuts metal round a hole.
     pub(super) fn follow_curve_at_holes(
         &mut self,
         event: &Event<'_>,
         travel: &AxisMotion<'_>,
         is_rapid: bool,
     ) -> bool {
-        let Some(entries) = &self.entries else { return false };
+        let Some(entries) = self.entries.as_ref().filter(|_| !is_rapid || self.surface.is_none()) else {
+            return false;
+        };
         let chords = |tolerance: f64| {
             let mut tips = Vec::new();
             self.machine.for_each_pose(travel, &self.setup, tolerance, |pose| tips.push(pose.tip));
@@ -200,7 +314,7 @@ impl HoleExtractor<'_> {
         };
         // Coarse chords come first: most paths are far away.
         let coarse = 20.0;
-        let margin = nalgebra::Vector3::repeat(coarse);
+        let margin = Vector3::repeat(coarse);
         let mut is_near = false;
         for chord in chords(coarse).windows(2) {
             let (low, high) = (chord[0].inf(&chord[1]) - margin, chord[0].sup(&chord[1]) + margin);

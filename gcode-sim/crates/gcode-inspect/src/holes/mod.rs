@@ -27,8 +27,10 @@ pub use group::{DrilledHole, EarlierPass};
 pub(crate) use group::{MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
+pub(crate) use rapid_paths::UnsearchedRapids;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
+use self::axis_box::SearchBudget;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
@@ -73,6 +75,8 @@ pub struct HoleExtraction {
     pub(crate) process_limits: ProcessLimits,
     /// The stock or the surface is known, and all motion was compared with it.
     pub(crate) is_metal_known: bool,
+    /// Rapids whose paths are not searched to the end; `None` if there are none.
+    pub(crate) unsearched_rapids: Option<UnsearchedRapids>,
 }
 
 /// Sink for the events of a run that extracts the holes.
@@ -80,7 +84,7 @@ pub struct HoleExtraction {
 pub struct HoleExtractor<'m> {
     machine: &'m Machine,
     surface: Option<Surface>,
-    /// Metal round the nominal holes, where neither stock nor surface is known.
+    /// Nominal holes with their cuts, and the metal round them; `None` without a reference.
     entries: Option<CutEntries>,
     rapid_path: RapidPath,
     axis_position: Position,
@@ -98,7 +102,7 @@ pub struct HoleExtractor<'m> {
     has_been_outside: bool,
     current_line: Option<Box<CuttingLine>>,
     /// Block of the last motion, if metal is known.
-    last_motion: Option<Backtrace>,
+    last_block: Option<Backtrace>,
     passes: Vec<DrillPass>,
     max_passes: usize,
     /// First pass beyond `max_passes`.
@@ -110,6 +114,9 @@ pub struct HoleExtractor<'m> {
     length_mismatches: Vec<LengthMismatch>,
     /// Number of probing moves.
     probe_count: u64,
+    search_budget: SearchBudget,
+    /// Rapids whose paths are not searched to the end; `None` if there are none.
+    unsearched_rapids: Option<UnsearchedRapids>,
 }
 
 /// Kind of a motion.
@@ -141,7 +148,7 @@ impl<'m> HoleExtractor<'m> {
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
             has_been_outside: false,
             current_line: None,
-            last_motion: None,
+            last_block: None,
             passes: Vec::new(),
             max_passes: MAX_PASSES,
             first_excess_pass: None,
@@ -151,6 +158,8 @@ impl<'m> HoleExtractor<'m> {
             cut_conditions: CutConditionsByBlock::default(),
             length_mismatches: Vec::new(),
             probe_count: 0,
+            search_budget: SearchBudget::default(),
+            unsearched_rapids: None,
         }
     }
 
@@ -210,6 +219,7 @@ impl<'m> HoleExtractor<'m> {
             assumed_axes,
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
+            unsearched_rapids: self.unsearched_rapids,
         }
     }
 
@@ -234,7 +244,7 @@ impl<'m> HoleExtractor<'m> {
     fn motion(&mut self, event: &Event<'_>, kind: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.axis_position;
         if self.surface.is_some() || self.entries.is_some() {
-            self.last_motion = Some(event.backtrace());
+            self.last_block = Some(event.backtrace());
         }
         self.check_idle_axes(event, &from, to);
         self.check_clamp_released(event, &from, to);

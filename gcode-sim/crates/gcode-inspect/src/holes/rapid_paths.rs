@@ -1,14 +1,24 @@
 //! Rapids of several axes: any axis may arrive first, unless the rates of the axes or LRP give the path.
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
-use super::axis_box::{AxisBox, DeepPoint};
-use super::rapids::{TOUCH_DEPTH, format_point};
+use super::axis_box::{AxisBox, DeepPoint, Deepest};
+use super::entries::CutEntries;
+use super::rapids::{PLUNGE_COSINE, TOUCH_DEPTH, format_point};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::{AxisMotion, RapidPath, arrivals};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{AxisIndex, Event, Position};
-use gcode_part::NearestPoint;
+use gcode_lang::motion::{Backtrace, Event, Position};
+use gcode_part::{NearestPoint, Surface};
+
+/// Rapids whose paths are too many to be searched.
+#[derive(Clone, Debug)]
+pub(crate) struct UnsearchedRapids {
+    /// Block of the first.
+    pub backtrace: Backtrace,
+    /// Their number.
+    pub count: u64,
+}
 
 impl HoleExtractor<'_> {
     /// Checks a rapid on every path that it can take. `start` is the point from which a straight path on the part moved
@@ -23,24 +33,34 @@ impl HoleExtractor<'_> {
             return;
         }
         let (machine, setup) = (self.machine, self.setup);
-        let reachable = AxisBox::new(machine, &setup, from, to);
-        if reachable.axes.len() < 2 || self.rapid_path == RapidPath::Straight {
-            self.check_path(event, (from, to), start);
-            return;
+        let mut all = AxisBox::new(machine, &setup, from, to);
+        if 1 < all.len()
+            && let Some(axis) = self.axis_about_part()
+        {
+            all.leave_out(axis);
         }
-        if let RapidPath::Rates(rates) = self.rapid_path
+        let is_line = all.len() < 2 || self.rapid_path == RapidPath::Straight;
+        let mut positions = vec![*from, *to];
+        if let (false, RapidPath::Rates(rates)) = (is_line, self.rapid_path)
             && let Some(path) = arrivals(&rates, from, to)
         {
-            let mut last = *from;
-            for leg in path {
-                self.check_path(event, (&last, &leg), Some(machine.forward(&last, &setup).tip));
-                last = leg;
+            positions = std::iter::once(*from).chain(path).collect();
+        } else if !is_line {
+            let is_reported = self.check_path(event, (from, to), start);
+            if !is_reported && (self.has_been_outside || self.surface.is_none()) {
+                let is_reported = self.check_box(event, &all, from);
+                if !is_reported {
+                    self.check_tool_body(event, &all, (from, to), start);
+                }
             }
             return;
         }
-        let is_reported = self.check_path(event, (from, to), start);
-        if !is_reported && (self.has_been_outside || self.surface.is_none()) {
-            self.check_box(event, &reachable, from);
+        for (leg, ends) in positions.windows(2).enumerate() {
+            let (from, to) = (&ends[0], &ends[1]);
+            let begin = if leg == 0 { start } else { Some(machine.forward(from, &setup).tip) };
+            if !self.check_path(event, (from, to), begin) {
+                self.check_tool_body(event, &AxisBox::line(machine, &setup, from, to), (from, to), begin);
+            }
         }
     }
 
@@ -59,27 +79,38 @@ impl HoleExtractor<'_> {
         start.is_some_and(|start| self.check_rapid(event, &start, &tip))
     }
 
-    /// Reports a rapid that cuts if its axes arrive in another order than along the straight path.
-    fn check_box(&mut self, event: &Event<'_>, reachable: &AxisBox<'_>, from: &Position) {
+    /// Reports a rapid that cuts if its axes arrive in another order than along the straight path; returns true if one
+    /// does.
+    fn check_box(&mut self, event: &Event<'_>, all: &AxisBox<'_>, from: &Position) -> bool {
+        // Between the corners of a straight box there is nothing else.
+        let (corners, radius) = (all.straight_corners(), self.tool_radius());
+        let mut budget = std::mem::take(&mut self.search_budget);
         let deepest = match (&self.surface, &self.entries) {
-            (Some(surface), _) => {
-                let bodies = |p: &Point3<f64>, _: f64, each: &mut dyn FnMut(NearestPoint)| each(surface.nearest(p));
-                reachable.deepest(&bodies, TOUCH_DEPTH)
+            (Some(surface), entries) => {
+                let is_in_cut = |entries: &CutEntries| {
+                    corners.as_ref().is_some_and(|corners| entries.are_in_one_cut(radius, corners))
+                };
+                match all.deepest(&distance_from(surface), TOUCH_DEPTH, &mut budget) {
+                    Deepest::Metal(_) if entries.as_ref().is_some_and(is_in_cut) => Deepest::Clear,
+                    deepest => deepest,
+                }
             }
-            (None, Some(entries)) => reachable.deepest(&entries.bodies(), TOUCH_DEPTH),
-            (None, None) => None,
+            (None, Some(entries)) => {
+                let is_cut =
+                    |hole| corners.as_ref().is_some_and(|corners| entries.are_in_cut(hole, radius, corners));
+                all.deepest(&entries.bodies(is_cut), TOUCH_DEPTH, &mut budget)
+            }
+            (None, None) => Deepest::Clear,
         };
-        let Some(found) = deepest else { return };
-        let depth = self.known_depth(&found.tip).unwrap_or(found.depth);
-        let level = match self.hole_at(&found.tip) {
-            Some(id) => format!("the nominal entry of hole {id}"),
-            None => "the surface".to_owned(),
-        };
-        let order = self.arrival_order(&found, &reachable.axes);
+        self.search_budget = budget;
+        let Some(found) = self.found(event, deepest) else { return false };
+        let depth = self.known_depth(&found.point).unwrap_or(found.depth);
+        let level = self.level_at(&found.point);
+        let order = self.arrival_order(&found, all);
         let start = self.machine.forward(from, &self.setup).tip;
         let starts_inside = self.known_depth(&start).is_some_and(|depth| TOUCH_DEPTH < depth);
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
-            let point = format_point(&found.tip);
+            let point = format_point(&found.point);
             let message = format!("rapid into the part{order}: {depth:.3} mm below {level} at {point}");
             let help = match starts_inside {
                 true => "retract by a feed: the axes of a rapid do not stay on a line; or give [rapid] in the machine file",
@@ -89,17 +120,81 @@ impl HoleExtractor<'_> {
                 .note("each axis of a rapid moves at its own rate, so that any of them may arrive first")
                 .help(help)
         });
+        true
+    }
+
+    /// Reports a rapid during which the flank of the tool, its shank or its holder cuts a known body although the tip
+    /// does not.
+    fn check_tool_body(
+        &mut self,
+        event: &Event<'_>,
+        path: &AxisBox<'_>,
+        (from, to): (&Position, &Position),
+        start: Option<Point3<f64>>,
+    ) {
+        let Some(surface) = self.surface.filter(|_| self.has_been_outside) else { return };
+        let is_straight = self.machine.is_straight(&AxisMotion { from, to, arc: None });
+        let pose = self.machine.forward(to, &self.setup);
+        let Some(axis) = pose.axis else { return };
+        if is_straight {
+            let Some(start) = start else { return };
+            // Out along its axis the tool leaves the way that it has come.
+            let along = pose.tip - start;
+            if PLUNGE_COSINE * along.norm() <= along.dot(&axis) || self.has_room_in_hole(&[start, pose.tip]) {
+                return;
+            }
+        }
+        let mut budget = std::mem::take(&mut self.search_budget);
+        let parts = self.machine.tool_body(&self.setup);
+        let deepest = parts
+            .into_iter()
+            .map(|part| path.with_tool(part).deepest(&distance_from(&surface), TOUCH_DEPTH, &mut budget))
+            .find(|deepest| !matches!(deepest, Deepest::Clear));
+        self.search_budget = budget;
+        let Some(found) = deepest.and_then(|deepest| self.found(event, deepest)) else { return };
+        let orders = if path.len() < 2 { "" } else { " on some of its paths" };
+        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+            let (depth, point) = (found.depth, format_point(&found.point));
+            let message = format!(
+                "the side of the tool cuts the part in a rapid{orders}, {depth:.3} mm below the surface at {point}"
+            );
+            Diagnostic::new(kind, message)
+                .help("keep the diameters of the tool and its holder away from the part until the feed")
+        });
+    }
+
+    /// Returns the point that a search has found; counts a search that was given up.
+    fn found(&mut self, event: &Event<'_>, deepest: Deepest) -> Option<DeepPoint> {
+        match deepest {
+            Deepest::Clear => None,
+            Deepest::Metal(point) => Some(point),
+            Deepest::Unknown => {
+                let first = || UnsearchedRapids { backtrace: event.backtrace(), count: 0 };
+                self.unsearched_rapids.get_or_insert_with(first).count += 1;
+                None
+            }
+        }
     }
 
     /// Returns the order of arrival that leads to a corner: ` if X arrives before Y`.
-    fn arrival_order(&self, found: &DeepPoint, axes: &[AxisIndex]) -> String {
+    fn arrival_order(&self, found: &DeepPoint, all: &AxisBox<'_>) -> String {
         let Some(arrived) = found.arrived else { return " on some of its paths".to_owned() };
         let letters = |has_arrived: bool| {
-            let some = axes.iter().filter(|axis| (arrived >> **axis & 1 == 1) == has_arrived);
-            some.map(|axis| self.machine.axes.letter(*axis).to_string()).collect::<Vec<_>>()
+            let some = all.axes().filter(|axis| (arrived >> axis & 1 == 1) == has_arrived);
+            some.map(|axis| self.machine.axes.letter(axis).to_string()).collect::<Vec<_>>()
         };
         let (first, last) = (letters(true), letters(false));
         let verb = if first.len() == 1 { "arrives" } else { "arrive" };
         format!(" if {} {verb} before {}", first.join(" and "), last.join(" and "))
+    }
+}
+
+/// Returns the distance from one body, whatever the reach.
+fn distance_from(
+    surface: &Surface,
+) -> impl Fn(&Point3<f64>, &Vector3<f64>, &mut dyn FnMut(NearestPoint)) -> bool + '_ {
+    |p, _, each| {
+        each(surface.nearest(p));
+        true
     }
 }

@@ -13,7 +13,7 @@ use gcode_part::Surface;
 pub(super) const TOUCH_DEPTH: f64 = 0.01;
 
 /// Cosine of the largest angle of a plunge to the tool's axis: 6°.
-const PLUNGE_COSINE: f64 = 0.995;
+pub(super) const PLUNGE_COSINE: f64 = 0.995;
 
 impl HoleExtractor<'_> {
     /// Reports a rapid that returns along the line deeper than it was cut.
@@ -63,6 +63,9 @@ impl HoleExtractor<'_> {
         let depth = surface.depth(&deepest);
         if depth <= TOUCH_DEPTH {
             self.record_close_rapid(event, &surface, from, to);
+            return false;
+        }
+        if self.is_in_cut_hole(&surface, (from, to), &deepest) {
             return false;
         }
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
@@ -164,13 +167,11 @@ impl HoleExtractor<'_> {
     /// Reports a run that ends with the tool in the metal; the line on which it stands makes its hole.
     pub(super) fn end_in_metal(&mut self) {
         let tip = self.pose.tip;
-        let is_known = self.positions.is_known(self.machine) && (self.has_been_outside || self.surface.is_none());
+        let is_known =
+            self.positions.is_known(self.machine) && (self.has_been_outside || self.surface.is_none());
         let depth = self.known_depth(&tip).filter(|depth| is_known && TOUCH_DEPTH < *depth);
-        let Some((depth, backtrace)) = depth.zip(self.last_motion.take()) else { return };
-        let level = match self.hole_at(&tip) {
-            Some(id) => format!("the nominal entry of hole {id}"),
-            None => "the surface".to_owned(),
-        };
+        let Some((depth, backtrace)) = depth.zip(self.last_block.take()) else { return };
+        let level = self.level_at(&tip);
         self.findings.add(&TOOL_LEFT_IN_HOLE, &backtrace, 0, |kind| {
             let point = format_point(&tip);
             let message = format!("the run ends with the tool {depth:.3} mm below {level}, at {point}");

@@ -12,6 +12,7 @@ mod probe;
 mod random;
 mod rapid;
 mod sources;
+mod tool_body;
 mod touch;
 mod wheel;
 
@@ -27,6 +28,7 @@ pub use random::RandomStream;
 pub use rapid::RapidPath;
 pub(crate) use rapid::arrivals;
 pub use sources::{ErrorSource, Quantity};
+pub(crate) use tool_body::ToolCylinder;
 pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};
@@ -73,7 +75,7 @@ pub struct Machine {
 }
 
 /// A tool of the machine's tool table.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tool {
     /// Number of the tool.
     pub number: u32,
@@ -82,6 +84,14 @@ pub struct Tool {
     pub length: Option<f64>,
     /// Diameter, mm; `None` if unknown.
     pub diameter: Option<f64>,
+    /// Distance from the tip to the shank, mm; `None` without a shank.
+    pub flute_length: Option<f64>,
+    /// Diameter of the shank, mm.
+    pub shank_diameter: Option<f64>,
+    /// Diameter of the holder, mm; `None` if unknown.
+    pub holder_diameter: Option<f64>,
+    /// Length of the holder below the gauge line, mm.
+    pub holder_length: Option<f64>,
 }
 
 /// A work offset at the start of a run.
@@ -290,7 +300,7 @@ mod tests {
     fn the_tip_is_pivot_and_tool_length_below_the_pivot_point_along_the_head() {
         let machine = Machine {
             head: Head::new(HeadKind::Manual { start: None }, 100.0),
-            tools: vec![Tool { number: 2, length: Some(150.0), diameter: None }],
+            tools: vec![Tool { number: 2, length: Some(150.0), diameter: None, ..Tool::default() }],
             ..Machine::default()
         };
         let setup = Setup { head_angle: Some(Deg(30.0)), tool: Some(2), ..Setup::default() };

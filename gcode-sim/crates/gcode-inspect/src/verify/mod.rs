@@ -92,7 +92,7 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    verdict.unchecked_motion = (!extraction.is_metal_known).then_some(not_checked::MOTION);
+    verdict.unchecked_motion = not_checked::unchecked_motion(extraction);
     verdict.not_checked = not_checked::lines(comparison, extraction, reference, machine, locate);
     verdict
 }
