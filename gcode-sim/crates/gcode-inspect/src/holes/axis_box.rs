@@ -149,7 +149,8 @@ impl<'m> AxisBox<'m> {
 
     /// Leaves out an axis that has no effect on the depth.
     pub(super) fn leave_out(&mut self, axis: AxisIndex) {
-        self.groups.retain(|group| *group != [axis]);
+        self.groups.iter_mut().for_each(|group| group.retain(|other| *other != axis));
+        self.groups.retain(|group| !group.is_empty());
     }
 
     /// Returns the same positions with a part of the tool instead of its tip.
@@ -316,7 +317,63 @@ impl<'m> AxisBox<'m> {
         if !are_all {
             bound = f64::INFINITY;
         }
+        let found = best.map_or(least, |best| best.depth);
+        if let (true, Some(at)) = (found + RESOLUTION < bound, self.deeper_side(&cell.middle, bodies)) {
+            let point = self.point(&at);
+            bodies(&point, &Vector3::zeros(), &mut |nearest| {
+                let depth = -nearest.distance;
+                if best.map_or(least, |best| best.depth) < depth {
+                    *best = Some(DeepPoint { point, depth, arrived: None });
+                }
+            });
+        }
         BoundedCell { bound, cell, widest: spread.widest }
+    }
+
+    /// Returns the parameters of the point on the tool's side that faces the nearest body at the same height; `None` for the
+    /// tip.
+    fn deeper_side(&self, at: &[f64; MAX_PARAMETERS], bodies: &Bodies<'_>) -> Option<[f64; MAX_PARAMETERS]> {
+        let (tool, motion) = (self.tool?, self.groups.len());
+        let mut on_axis = *at;
+        on_axis[motion + 1..motion + 3].fill(0.0);
+        let position = self.position(at);
+        let frame = self.machine.part_frame(&position);
+        let axis = self.machine.tool_pose(&position, self.setup).axis?;
+        let mut nearest_body: Option<NearestPoint> = None;
+        bodies(&self.point(&on_axis), &Vector3::zeros(), &mut |nearest| {
+            if nearest_body.as_ref().is_none_or(|body| nearest.distance < body.distance) {
+                nearest_body = Some(nearest);
+            }
+        });
+        let normal = frame.rotation * nearest_body?.normal.into_inner();
+        let [across, beside] = directions_across(&axis).map(|direction| normal.dot(&direction));
+        let length = libm::hypot(across, beside);
+        if length < 1e-9 {
+            return None;
+        }
+        on_axis[motion + 1] = -tool.radius * across / length;
+        on_axis[motion + 2] = -tool.radius * beside / length;
+        Some(on_axis)
+    }
+
+    /// Returns true if a tangent plane at an end of the motion has every point of the tool on its outer side; false if that
+    /// is not certain.
+    pub(super) fn is_clear_by_planes(&self, parts: &[ToolCylinder], nearest: impl Fn(&Point3<f64>) -> NearestPoint) -> bool {
+        let (Some(corners), Some(axis)) =
+            (self.straight_corners(), self.machine.forward(&self.from, self.setup).axis)
+        else {
+            return false;
+        };
+        let is_outside = |p: &Point3<f64>| {
+            let NearestPoint { distance, normal } = nearest(p);
+            let (along, most) = (normal.dot(&axis), libm::sqrt((1.0 - normal.dot(&axis).powi(2)).max(0.0)));
+            let travel = corners.iter().map(|corner| (corner - p).dot(&normal)).fold(0.0, f64::min);
+            parts.iter().all(|part| {
+                let end = (along * part.from).min(along * part.to);
+                0.0 <= distance + travel + end - part.radius * most
+            })
+        };
+        corners.first().into_iter().chain(corners.last()).any(is_outside)
     }
 
     /// Returns the longest lever of a rotation at a position; an axis of the table may move the centre of the next.

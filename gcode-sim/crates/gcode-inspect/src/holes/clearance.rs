@@ -199,12 +199,13 @@ impl HoleExtractor<'_> {
 
     /// Returns the only axis of the table if it rotates the part about the axis of its own surface.
     pub(super) fn axis_about_part(&self) -> Option<AxisIndex> {
+        let surface = self.surface?;
         let [link] = self.machine.table.0.as_slice() else { return None };
         let LinkMotion::Rotary { about, centre } = &link.motion else { return None };
         let part = self.machine.part.frame();
         let (about, centre) =
             (part.rotation.inverse_transform_unit_vector(about), part.inverse_transform_point(centre));
-        self.surface.is_some_and(|surface| surface.is_round(&centre, &about)).then_some(link.axis)
+        surface.is_round(&centre, &about).then_some(link.axis)
     }
 
     /// Returns the distance from the edge of a flat end to the surface, on the side that is inclined towards it; `None`

@@ -34,9 +34,8 @@ impl HoleExtractor<'_> {
         }
         let (machine, setup) = (self.machine, self.setup);
         let mut all = AxisBox::new(machine, &setup, from, to);
-        if 1 < all.len()
-            && let Some(axis) = self.axis_about_part()
-        {
+        let round = self.axis_about_part().filter(|axis| from[*axis] != to[*axis]);
+        if let Some(axis) = round {
             all.leave_out(axis);
         }
         let is_line = all.len() < 2 || self.rapid_path == RapidPath::Straight;
@@ -59,7 +58,11 @@ impl HoleExtractor<'_> {
             let (from, to) = (&ends[0], &ends[1]);
             let begin = if leg == 0 { start } else { Some(machine.forward(from, &setup).tip) };
             if !self.check_path(event, (from, to), begin) {
-                self.check_tool_body(event, &AxisBox::line(machine, &setup, from, to), (from, to), begin);
+                let mut line = AxisBox::line(machine, &setup, from, to);
+                if let Some(axis) = round {
+                    line.leave_out(axis);
+                }
+                self.check_tool_body(event, &line, (from, to), begin);
             }
         }
     }
@@ -144,8 +147,11 @@ impl HoleExtractor<'_> {
                 return;
             }
         }
-        let mut budget = std::mem::take(&mut self.search_budget);
         let parts = self.machine.tool_body(&self.setup);
+        if path.is_clear_by_planes(&parts, |p| surface.nearest(p)) {
+            return;
+        }
+        let mut budget = std::mem::take(&mut self.search_budget);
         let deepest = parts
             .into_iter()
             .map(|part| path.with_tool(part).deepest(&distance_from(&surface), TOUCH_DEPTH, &mut budget))
