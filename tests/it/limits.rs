@@ -170,8 +170,8 @@ proptest! {
 struct CancelAtMove(Arc<Progress>);
 
 impl EventSink for CancelAtMove {
-    fn event(&mut self, _: &Event<'_>) {
-        self.0.cancel.store(true, Ordering::Relaxed);
+    fn event(&mut self, event: &Event<'_>) {
+        self.0.cancel.fetch_or(event.kind.end().is_some(), Ordering::Relaxed);
     }
 }
 

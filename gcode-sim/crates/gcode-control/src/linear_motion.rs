@@ -87,7 +87,7 @@ impl ControlData {
             is_incremental: state.modal.distance == Distance::Incremental,
             learnable_axes: match state.modal.distance {
                 Distance::Incremental => 0,
-                Distance::Absolute => state.unknown.uncommanded | state.unknown.at_machine_position,
+                Distance::Absolute => state.learnable_axes(),
             },
             measure: self.measure(state.modal.unit),
             max_coordinate: 999_999_999.0 / self.settings.increment.per_unit(),

@@ -293,6 +293,16 @@ mod tests {
         }
     }
 
+    /// Without a centre for B, G51 leaves it unknown; after G50 the next absolute word makes it known.
+    #[test]
+    fn a_plain_move_makes_an_axis_known_that_counted_from_an_unknown_centre() {
+        let text = "O1\nG51 X0 Y0 P2000\nB0\nG50\nA0\nB0\nM30\n";
+        let (plain, stepped) = (run(text, settings()).0, run(text, never_plain()).0);
+        assert_eq!(plain, stepped);
+        let last = plain.iter().rfind(|event| event.contains("PositionUnknown"));
+        assert!(last.is_some_and(|event| event.contains("shifted: 0")), "{last:?}");
+    }
+
     #[test]
     fn modes_that_make_more_of_axis_words_exclude_plain_moves() {
         let is_plain = |text: &str| run(text, settings()).1;

@@ -13,7 +13,14 @@ impl State {
         UnknownAxes { shifted, ..UnknownAxes::default() }
     }
 
-    /// Applies an absolute command of some axes, as bits, to the unknown ones.
+    /// Returns the axes, as bits, of which an absolute command changes what is unknown.
+    pub(super) fn learnable_axes(&self) -> u8 {
+        let UnknownAxes { uncommanded, at_machine_position, shifted } = self.unknown;
+        let remains = self.unknown_shift | self.transform.unknown_centre;
+        uncommanded | at_machine_position | shifted & !remains
+    }
+
+    /// Applies an absolute command of an axis to the unknown ones.
     pub(super) fn apply_absolute(&self, axis: AxisIndex, unknown: UnknownAxes) -> UnknownAxes {
         unknown.with_axes_of(1 << axis, self.unknown_after_absolute(axis))
     }

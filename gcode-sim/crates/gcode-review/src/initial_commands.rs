@@ -54,7 +54,7 @@ fn moves_of_both(alignment: &Alignment<'_>) -> Vec<SharedMove> {
     pairs
 }
 
-/// Returns true unless a modal code differs from that of power-on: without it the moves themselves differ.
+/// Returns true unless a modal code differs from that of power-on: without it the moves or the final modes differ.
 fn is_power_on_default(command: &FirstCommand) -> bool {
     let group = command.name.parse().ok();
     let default = group.and_then(|group| Modal::default().code(group)).map(modal_code);

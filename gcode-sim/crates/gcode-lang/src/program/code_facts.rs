@@ -210,7 +210,11 @@ pub(super) const ROTATION: CodeFacts = CodeFacts {
 pub(super) const TILT: CodeFacts =
     CodeFacts { words: CodeWords { angles: Letters::of(b"IJK"), ..CodeWords::NONE }, ..MODAL };
 
-/// Code without effect in a run.
+/// Mode that takes no words and has no effect in a run.
+pub(super) const MODE_WITHOUT_EFFECT: CodeFacts =
+    CodeFacts { unsimulated: Unsimulated::Code(NO_LETTERS), ..MODAL };
+
+/// Code with words and without effect in a run.
 pub(super) const WITHOUT_EFFECT: CodeFacts = CodeFacts {
     words: CodeWords { without_effect: Letters::of(b"IPQR"), ..CodeWords::NONE },
     unsimulated: Unsimulated::Code(VALUES),

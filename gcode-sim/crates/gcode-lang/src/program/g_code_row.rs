@@ -93,9 +93,10 @@ impl Effect {
     }
 
     /// Returns true if events, the end of a block or modal conditions show the effect to a comparison of two runs.
+    /// A mode that only the final state shows is not shown: a program can switch it on and off again.
     pub(super) const fn is_shown(self) -> bool {
         match self {
-            Self::NoEffect | Self::LookAhead | Self::Smoothness => false,
+            Self::NoEffect | Self::LookAhead | Self::Smoothness | Self::StrokeCheck(_) => false,
             Self::Motion(_)
             | Self::Plane(_)
             | Self::Distance(_)
@@ -114,8 +115,8 @@ impl Effect {
             | Self::Polar(_)
             | Self::Mirror(_)
             | Self::OneShot(_) => true,
-            // The simulator has one state of the spindle mode, and the state of the stroke check is recorded at the end.
-            Self::SpindleMode(_) | Self::StrokeCheck(_) => true,
+            // The simulator has one state of the spindle mode.
+            Self::SpindleMode(_) => true,
             // They call a program or raise an alarm.
             Self::Call | Self::NotSimulated => true,
         }

@@ -1,4 +1,4 @@
-//! Rule: a feed move or a canned cycle that no F precedes on any path, PS0011.
+//! Rule: a feed move or a canned cycle that no F precedes on any path: PS0011, and PS0025 for an arc.
 //!
 //! The motion mode and the cycle are carried along all paths to a block. They are unknown where a setting of
 //! the control decides them (at power-on), a caller or a called program; an unknown mode is no finding.
@@ -18,11 +18,11 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let before = modes_before(context, unit);
-    let unfed = unit.reached_words().filter(|(block, words)| {
-        before[*block].is_some_and(|before| lacks_feed(context, unit, *block, words, &before))
+    let alarms = unit.reached_words().filter_map(|(block, words)| {
+        let alarm = missing_feed_alarm(context, unit, block, words, &before[block]?)?;
+        Some((block, alarm.located_at(unit.op(block).span)))
     });
-    let alarm = |block| Alarm::FeedZero.located_at(unit.op(block).span);
-    unfed.map(|(block, _)| context.alarm_finding(unit, &RULE.kind, block, &alarm(block))).collect()
+    alarms.map(|(block, alarm)| context.alarm_finding(unit, &RULE.kind, block, &alarm)).collect()
 }
 
 /// Possible modes before a block: each is true if it holds on some path to the block.
@@ -32,38 +32,56 @@ struct PossibleModes {
     has_feed: bool,
     /// The motion mode is G00.
     is_rapid: bool,
+    /// The motion mode is not an arc.
+    is_straight: bool,
     /// No canned cycle is in force.
     is_outside_cycle: bool,
+    /// A canned cycle is in force.
+    is_in_cycle: bool,
     /// No earlier block lacks F. The first that does stops the control, and its F serves the blocks after it.
     is_unreported: bool,
 }
 
 impl PossibleModes {
     /// Modes at power-on; a setting of the control decides between G00 and G01.
-    const POWER_ON: Self =
-        Self { has_feed: false, is_rapid: true, is_outside_cycle: true, is_unreported: true };
+    const POWER_ON: Self = Self {
+        has_feed: false,
+        is_rapid: true,
+        is_straight: true,
+        is_outside_cycle: true,
+        is_in_cycle: false,
+        is_unreported: true,
+    };
     const ANYTHING: Self = Self { has_feed: true, ..Self::POWER_ON };
 
     fn join(self, other: Self) -> Self {
         Self {
             has_feed: self.has_feed | other.has_feed,
             is_rapid: self.is_rapid | other.is_rapid,
+            is_straight: self.is_straight | other.is_straight,
             is_outside_cycle: self.is_outside_cycle | other.is_outside_cycle,
+            is_in_cycle: self.is_in_cycle | other.is_in_cycle,
             is_unreported: self.is_unreported | other.is_unreported,
         }
     }
 
     fn with_unknown_motion(self) -> Self {
-        Self { is_rapid: true, is_outside_cycle: true, ..self }
+        Self { is_rapid: true, is_straight: true, is_outside_cycle: true, ..self }
     }
 
     /// Returns the modes after a G code; a code of group 01 ends a cycle.
     fn after_effect(self, effect: Effect) -> Self {
         match effect {
-            Effect::Motion(motion) => {
-                Self { is_rapid: motion == Motion::Rapid, is_outside_cycle: true, ..self }
+            Effect::Motion(motion) => Self {
+                is_rapid: motion == Motion::Rapid,
+                is_straight: !matches!(motion, Motion::Clockwise | Motion::Counterclockwise),
+                is_outside_cycle: true,
+                is_in_cycle: false,
+                ..self
+            },
+            Effect::Cycle(cycle) => {
+                Self { is_outside_cycle: cycle.is_none(), is_in_cycle: cycle.is_some(), ..self }
             }
-            Effect::Cycle(cycle) => Self { is_outside_cycle: cycle.is_none(), ..self },
             _ => self,
         }
     }
@@ -95,7 +113,7 @@ fn modes_after(
             if let Some((_, short)) = words.skipped_form() {
                 after = after.join(after_words(context, short, before));
             }
-            after.is_unreported &= !lacks_feed(context, unit, block, words, before);
+            after.is_unreported &= missing_feed_alarm(context, unit, block, words, before).is_none();
             after_call(context, unit, block, before, after)
         }
         // The conditional part may have F.
@@ -153,36 +171,37 @@ fn is_computed_g_code(word: &LoweredWord) -> bool {
     word.letter == b'G' && !matches!(word.value, WordOperand::G(..))
 }
 
-/// Returns true if a block is a feed move or a canned cycle that no F precedes, and no block before it is.
-fn lacks_feed(
+/// Returns the alarm of a block that is a feed move or a canned cycle without a preceding F, if no block before it has raised it.
+fn missing_feed_alarm(
     context: &CheckContext<'_>,
     unit: &ProgramUnit<'_>,
     block: OpIndex,
     words: &Words,
     before: &PossibleModes,
-) -> bool {
+) -> Option<Alarm> {
     let names_axis = || words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
-    before.is_unreported
+    let lacks_feed = before.is_unreported
         && !before.has_feed
         && !has_feed_word(words)
         && names_axis()
         // The words may be arguments of a code that calls a program.
         && words.call().is_none()
-        && unit.call_in(block).is_none()
-        && moves_at_feed(context, words, before)
+        && unit.call_in(block).is_none();
+    let modes = lacks_feed.then(|| modes_of_move(context, words, before)).flatten()?;
+    let is_feed = !(modes.is_rapid && modes.is_outside_cycle);
+    let is_arc = !modes.is_straight && !modes.is_in_cycle;
+    is_feed.then_some(if is_arc { Alarm::ArcFeedZero } else { Alarm::FeedZero })
 }
 
-/// Returns true if the axis words of a block are a feed move or a hole of a cycle on every path.
-fn moves_at_feed(context: &CheckContext<'_>, words: &Words, before: &PossibleModes) -> bool {
+/// Returns the modes in which a block moves its axes; `None` if its axis words may be no move.
+fn modes_of_move(context: &CheckContext<'_>, words: &Words, before: &PossibleModes) -> Option<PossibleModes> {
     let mut modes = *before;
     for word in words.list.iter().filter(|word| word.letter == b'G') {
-        match context.g_code_row(word) {
-            Some(row) if !uses_axis_words(row) => modes = modes.after_effect(row.effect),
-            // A computed code, one that the control lacks, or one for which the axis words are no move.
-            Some(_) | None => return false,
-        }
+        // A computed code and one that the control lacks have no row.
+        let row = context.g_code_row(word).filter(|row| !uses_axis_words(row))?;
+        modes = modes.after_effect(row.effect);
     }
-    !(modes.is_rapid && modes.is_outside_cycle)
+    Some(modes)
 }
 
 /// Returns true for a code for which the axis words of its block are neither a move nor a hole, and for one that
@@ -202,7 +221,7 @@ fn uses_axis_words(row: &GCodeRow) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{NOWHERE, lines};
+    use super::super::testing::{NOWHERE, lines, messages};
     use super::RULE;
 
     #[test]
@@ -230,6 +249,20 @@ mod tests {
             ("O1\nG1\nG69 X5.\nM30\n", 3),
         ] {
             assert_eq!(lines(&RULE, text), [found], "{text}");
+        }
+    }
+
+    #[test]
+    fn an_arc_has_an_alarm_of_its_own() {
+        for (text, alarm) in [
+            ("O1\nG2 X1. R5.\nM30\n", "PS0025"),
+            ("O1\nG1\nG3 X1. R5.\nM30\n", "PS0025"),
+            ("O1\nG2\nG1 X1.\nM30\n", "PS0011"),
+            ("O1\nG2\nG81 X1. Z-5. R2.\nM30\n", "PS0011"),
+            ("O1\nIF[#500 EQ 1]GOTO 5\nG1\nGOTO 6\nN5 G2\nN6 X1. R5.\nM30\n", "PS0011"),
+        ] {
+            let found = messages(&RULE, text);
+            assert!(found.len() == 1 && found[0].starts_with(alarm), "{text}: {found:?}");
         }
     }
 
