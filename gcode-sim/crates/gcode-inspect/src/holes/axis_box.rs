@@ -358,7 +358,11 @@ impl<'m> AxisBox<'m> {
 
     /// Returns true if a tangent plane at an end of the motion has every point of the tool on its outer side; false if that
     /// is not certain.
-    pub(super) fn is_clear_by_planes(&self, parts: &[ToolCylinder], nearest: impl Fn(&Point3<f64>) -> NearestPoint) -> bool {
+    pub(super) fn is_clear_by_planes(
+        &self,
+        parts: &[ToolCylinder],
+        nearest: impl Fn(&Point3<f64>) -> NearestPoint,
+    ) -> bool {
         let (Some(corners), Some(axis)) =
             (self.straight_corners(), self.machine.forward(&self.from, self.setup).axis)
         else {

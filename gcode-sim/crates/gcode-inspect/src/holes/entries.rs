@@ -151,6 +151,28 @@ impl CutEntries {
         }
     }
 
+    /// Returns the deepest point of a straight travel in metal that a tool of this radius finds uncut, `Some(None)` if it
+    /// leads through cut holes alone, and `None` beside all holes.
+    fn uncut_between(
+        &self,
+        radius: Option<f64>,
+        from: &Point3<f64>,
+        to: &Point3<f64>,
+    ) -> Option<Option<PointInMetal>> {
+        let mut worst: Option<Option<PointInMetal>> = None;
+        self.planes.near(&from.inf(to), &from.sup(to), &mut |hole| {
+            let collar = self.planes.collar(hole);
+            let Some([a, b]) = collar.piece(from, to, TOUCH_DEPTH) else { return };
+            let worst = worst.get_or_insert(None);
+            let point = if collar.depth(&a) < collar.depth(&b) { b } else { a };
+            let depth = collar.depth(&point);
+            if worst.is_none_or(|worst| worst.depth < depth) && !self.are_in_cut(hole, radius, &[a, b]) {
+                *worst = Some(PointInMetal { hole, point, depth });
+            }
+        });
+        worst
+    }
+
     /// Follows a straight feed of a tool. Returns its deepest point beside a hole; along a hole there is none.
     fn cut_by_feed(
         &mut self,
@@ -231,6 +253,21 @@ impl HoleExtractor<'_> {
         entries.are_in_one_cut(self.tool_radius(), &[end(along, length - at), end(-along, at)])
     }
 
+    /// Returns true if a travel leads through metal that is known, false if all that is known there is cut, and `None` if
+    /// nothing is known.
+    pub(super) fn cuts_known_metal(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
+        if let Some(surface) = self.surface {
+            let deepest = surface.deepest_between(from, to);
+            let is_inside = TOUCH_DEPTH < surface.depth(&deepest);
+            return Some(is_inside && !self.is_in_cut_hole(&surface, (from, to), &deepest));
+        }
+        let (entries, radius) = (self.entries.as_ref()?, self.tool_radius());
+        match entries.uncut_between(radius, from, to)? {
+            Some(_) => Some(true),
+            None => entries.are_in_one_cut(radius, &[*from, *to]).then_some(false),
+        }
+    }
+
     /// Returns true if the tool moves in a hole that it finds cut, or above one.
     pub(super) fn has_room_in_hole(&self, points: &[Point3<f64>; 2]) -> bool {
         let radius = self.tool_radius();
@@ -249,21 +286,8 @@ impl HoleExtractor<'_> {
         to: &Point3<f64>,
     ) -> bool {
         let Some(entries) = &self.entries else { return false };
-        let (planes, radius) = (&entries.planes, self.tool_radius());
-        let mut worst: Option<PointInMetal> = None;
-        planes.near(&from.inf(to), &from.sup(to), &mut |hole| {
-            let collar = planes.collar(hole);
-            let Some(ends) = collar.piece(from, to, TOUCH_DEPTH) else { return };
-            if entries.are_in_cut(hole, radius, &ends) {
-                return;
-            }
-            let [a, b] = ends;
-            let point = if collar.depth(&a) < collar.depth(&b) { b } else { a };
-            let depth = collar.depth(&point);
-            if worst.is_none_or(|worst| worst.depth < depth) {
-                worst = Some(PointInMetal { hole, point, depth });
-            }
-        });
+        let (planes, worst) =
+            (&entries.planes, entries.uncut_between(self.tool_radius(), from, to).flatten());
         let Some(PointInMetal { hole, point, depth }) = worst else { return false };
         let id = planes.id(hole);
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {

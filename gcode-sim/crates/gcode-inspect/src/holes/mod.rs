@@ -318,7 +318,7 @@ impl<'m> HoleExtractor<'m> {
                     MotionKind::Rapid | MotionKind::Probe => {
                         let (again, uncut) = line.rapid_to(&tip);
                         if uncut {
-                            self.report_rapid_beyond_cut(event, &line);
+                            self.report_rapid_beyond_cut(event, &line, &from);
                         }
                         again
                     }

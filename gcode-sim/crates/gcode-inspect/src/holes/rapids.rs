@@ -17,9 +17,14 @@ pub(super) const PLUNGE_COSINE: f64 = 0.995;
 
 impl HoleExtractor<'_> {
     /// Reports a rapid that returns along the line deeper than it was cut.
-    pub(super) fn report_rapid_beyond_cut(&mut self, event: &Event<'_>, line: &CuttingLine) {
-        let depth = self.known_depth(&line.bottom());
-        if depth.is_some_and(|depth| depth <= TOUCH_DEPTH) {
+    pub(super) fn report_rapid_beyond_cut(
+        &mut self,
+        event: &Event<'_>,
+        line: &CuttingLine,
+        from: &Point3<f64>,
+    ) {
+        let cuts = self.cuts_known_metal(from, &line.bottom());
+        if cuts == Some(false) {
             return;
         }
         self.findings.add(&RAPID_BEYOND_CUT, &event.backtrace(), 0, |kind| {
@@ -28,7 +33,7 @@ impl HoleExtractor<'_> {
                 line.cut_depth()
             );
             Diagnostic::new(kind, message)
-                .with_severity(error_if(depth.is_some()))
+                .with_severity(error_if(cuts.is_some()))
                 .help("end the rapid above the depth already drilled")
         });
     }
