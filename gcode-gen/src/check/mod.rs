@@ -108,7 +108,7 @@ fn check_holes(
     reference: &Reference,
 ) -> Result<CheckedPackage, CheckError> {
     request.process_limits = reference.process_limits.clone();
-    let simulation = simulate(&request, &mut Programs(package), reference.surface)
+    let simulation = simulate(&request, &mut Programs(package), reference.metal(request.machine.stock))
         .map_err(|e| broken_package("the main program", &e))?;
     let verdict = simulation.verify(reference, Tolerances::of(reference, None), &request.machine);
     let top = top::of_verdict(&request.name, &simulation, reference, &verdict, &request.machine);

@@ -473,6 +473,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::machine::{Chain, Head, HeadKind};
     use gcode_part::Surface;
 
     fn at([x, y, z, b]: [f64; 4]) -> Position {
@@ -526,6 +527,37 @@ mod tests {
         // The corner of the box is 137.9 mm from B's axis.
         let corner = deepest(block, [160.0, 0.0, 0.0, 0.0], [130.0, 0.0, 0.0, 180.0]).unwrap();
         assert!(corner.arrived.is_none() && 1.0 < corner.depth, "{corner:?}");
+    }
+
+    /// A tool of 10 and 40 long over a box of 200 × 10 × 190: at y 9.98 its side is 0.02 mm in the box, and at 10.2 it
+    /// passes. Its upper end reaches 5 mm beyond the box if it comes from below.
+    #[test]
+    fn the_side_of_a_tool_is_searched() {
+        let block =
+            Surface::Block { min: Point3::new(-100.0, -5.0, -95.0), max: Point3::new(100.0, 5.0, 95.0) };
+        let machine = Machine {
+            head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0),
+            table: Chain::default(),
+            ..Machine::default()
+        };
+        let setup = Setup::default();
+        let bodies = |p: &Point3<f64>, _: &Vector3<f64>, each: &mut dyn FnMut(NearestPoint)| {
+            each(block.nearest(p));
+            true
+        };
+        let side = |from: [f64; 4], to: [f64; 4]| {
+            let line = AxisBox::line(&machine, &setup, &at(from), &at(to));
+            let tool = ToolCylinder { from: 3.0, to: 40.0, radius: 5.0 };
+            let is_clear = line.is_clear_by_planes(&[tool], |p| block.nearest(p));
+            let deepest = line.with_tool(tool).deepest(&bodies, 0.01, &mut SearchBudget::default());
+            (is_clear, found(deepest).map(|point| point.depth))
+        };
+        let (is_clear, depth) = side([-150.0, 9.98, 50.0, 0.0], [150.0, 9.98, 50.0, 0.0]);
+        assert!(!is_clear && (depth.unwrap() - 0.02).abs() < 1e-9, "{depth:?}");
+        assert_eq!(side([-150.0, 10.2, 50.0, 0.0], [150.0, 10.2, 50.0, 0.0]).1, None);
+        assert_eq!(side([0.0, 20.0, 200.0, 0.0], [0.0, 20.0, -200.0, 0.0]), (true, None));
+        let (_, depth) = side([0.0, 0.0, -150.0, 0.0], [0.0, 0.0, -130.0, 0.0]);
+        assert!((depth.unwrap() - 5.0).abs() < 0.01, "{depth:?}");
     }
 
     proptest! {

@@ -143,12 +143,14 @@ impl HoleExtractor<'_> {
             let Some(start) = start else { return };
             // Out along its axis the tool leaves the way that it has come.
             let along = pose.tip - start;
-            if PLUNGE_COSINE * along.norm() <= along.dot(&axis) || self.has_room_in_hole(&[start, pose.tip]) {
+            if PLUNGE_COSINE * along.norm() <= along.dot(&axis) {
                 return;
             }
         }
         let parts = self.machine.tool_body(&self.setup);
-        if path.is_clear_by_planes(&parts, |p| surface.nearest(p)) {
+        if path.is_clear_by_planes(&parts, |p| surface.nearest(p))
+            || is_straight && start.is_some_and(|start| self.has_room_in_hole(&[start, pose.tip]))
+        {
             return;
         }
         let mut budget = std::mem::take(&mut self.search_budget);
