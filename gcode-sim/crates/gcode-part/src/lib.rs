@@ -57,7 +57,7 @@ mod surface;
 mod touch_uncertainty;
 
 pub use clusters::Clusters;
-pub use distance::NearestPoint;
+
 pub use entry_planes::{Collar, EntryPlanes, Metal};
 pub use flutes::Flutes;
 pub use hole::{Hole, HoleList, Origin, Unit};
@@ -68,7 +68,7 @@ pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
-pub use solid::Rod;
+pub use solid::{NearestPoint, Rod};
 pub use stock::{Stock, StockAxis};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};

@@ -1,7 +1,14 @@
 //! Convex bodies with flat faces: the distance of their farthest face, and the exact distance.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::distance::NearestPoint;
+/// Distance from a surface, and the normal at the nearest point of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestPoint {
+    /// Distance in mm; negative inside the body.
+    pub distance: f64,
+    /// Outward normal of the surface at the nearest point.
+    pub normal: Unit<Vector3<f64>>,
+}
 
 /// Returns the largest distance of `p` from the faces of a box, and the outward normal of that face.
 pub(super) fn block_face(min: &Point3<f64>, max: &Point3<f64>, p: &Point3<f64>) -> (f64, Vector3<f64>) {

@@ -1,7 +1,8 @@
 //! `[stock]`: the solid material of the part before the program runs, as a reference or a machine file describes it.
 use nalgebra::{Point3, Unit, Vector3};
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, json_schema};
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::solid::Rod;
 use super::surface::Surface;
@@ -11,6 +12,7 @@ use crate::reader::{FileKey, FixedArray};
 /// The solid material of the part, in the part's frame, mm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+#[schemars(transform = describe_kind)]
 pub enum Stock {
     /// A box with edges along the part's axes.
     Box {
@@ -47,6 +49,7 @@ pub enum Stock {
 /// Axis of a cylinder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[schemars(transform = list_axes)]
 pub enum StockAxis {
     /// The part's x.
     X,
@@ -54,6 +57,20 @@ pub enum StockAxis {
     Y,
     /// The part's z.
     Z,
+}
+
+/// Describes the key that distinguishes the kinds.
+fn describe_kind(schema: &mut Schema) {
+    for kind in schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten() {
+        let kind = &mut kind["properties"]["kind"];
+        let description = "box; cylinder; surface: inside the surface of the reference.";
+        *kind = json!({ "type": "string", "enum": [kind["const"]], "description": description });
+    }
+}
+
+/// Lists the axes in one line.
+fn list_axes(schema: &mut Schema) {
+    *schema = json_schema!({ "type": "string", "enum": ["x", "y", "z"] });
 }
 
 impl Stock {

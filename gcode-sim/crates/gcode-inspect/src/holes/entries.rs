@@ -21,6 +21,9 @@ const ROUNDING: f64 = 1e-6;
 /// Height above a hole up to which a tool counts as above it, mm.
 const MAX_HEIGHT: f64 = 50.0;
 
+/// Excess of a tool's radius over that of its hole, mm.
+const MAX_OVERSIZE: f64 = 0.05;
+
 /// Half diagonal up to which the holes in a box are few, mm.
 const SMALL_BOX: f64 = 20.0;
 
@@ -272,6 +275,19 @@ impl HoleExtractor<'_> {
     pub(super) fn has_room_in_hole(&self, points: &[Point3<f64>; 2]) -> bool {
         let radius = self.tool_radius();
         self.entries.as_ref().zip(radius).is_some_and(|(entries, radius)| entries.has_room(radius, points))
+    }
+
+    /// Returns true for a point in a nominal hole or in the metal above it.
+    pub(super) fn is_over_nominal_hole(&self, p: &Point3<f64>) -> bool {
+        let Some(entries) = &self.entries else { return false };
+        let margin = Vector3::repeat(MAX_HEIGHT);
+        let mut is_over = false;
+        entries.planes.around(&(p - margin), &(p + margin), &mut |hole| {
+            let collar = entries.planes.collar(hole);
+            let is_beside = collar.hole_radius.max(MAX_OFFSET) + MAX_OVERSIZE < collar.from_axis(p);
+            is_over = is_over || !is_beside && collar.depth(p) <= collar.rod.length;
+        });
+        is_over
     }
 
     pub(super) fn tool_radius(&self) -> Option<f64> {

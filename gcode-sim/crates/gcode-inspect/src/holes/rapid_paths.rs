@@ -3,7 +3,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
 use super::entries::CutEntries;
-use super::rapids::{PLUNGE_COSINE, TOUCH_DEPTH, format_point};
+use super::rapids::{PLUNGE_COSINE, TOUCH_DEPTH, error_if, format_point};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::{AxisMotion, RapidPath, arrivals};
@@ -160,6 +160,12 @@ impl HoleExtractor<'_> {
             .find(|deepest| !matches!(deepest, Deepest::Clear));
         self.search_budget = budget;
         let Some(found) = deepest.and_then(|deepest| self.found(event, deepest)) else { return };
+        // The metal above a nominal hole goes with the hole: in a steep flank the tool meets it on its way to the entry.
+        if is_straight && self.is_over_nominal_hole(&found.point) {
+            return;
+        }
+        // While an axis rotates, the clearance of the job decides; the shape of the tool's end is only assumed.
+        let severity = error_if(is_straight || self.process_limits.clearance.is_none());
         let orders = if path.len() < 2 { "" } else { " on some of its paths" };
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
             let (depth, point) = (found.depth, format_point(&found.point));
@@ -167,6 +173,7 @@ impl HoleExtractor<'_> {
                 "the side of the tool cuts the part in a rapid{orders}, {depth:.3} mm below the surface at {point}"
             );
             Diagnostic::new(kind, message)
+                .with_severity(severity)
                 .help("keep the diameters of the tool and its holder away from the part until the feed")
         });
     }

@@ -216,7 +216,7 @@ impl HoleExtractor<'_> {
 }
 
 /// Returns the severity of a fault that is certain, or only probable.
-fn error_if(is_certain: bool) -> Severity {
+pub(super) fn error_if(is_certain: bool) -> Severity {
     if is_certain { Severity::Error } else { Severity::Warning }
 }
 
