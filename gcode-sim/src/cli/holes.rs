@@ -6,8 +6,8 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, options, output, page, progress};
-use crate::report::holes as report;
-use gcode_part::HoleList;
+use crate::report::holes::{self as report, Origin};
+use gcode_part::{HoleList, Surface};
 use gcode_session::Simulation;
 
 #[derive(Debug, Args)]
@@ -31,24 +31,36 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if let Some(path) = &arguments.page {
         let traced = page::simulate_traced(&request, &mut folders, None)?;
         page::write_alone(&request, &traced, None, &arguments.program.conditions, path)?;
-        let status = print_result(arguments, &traced.0.simulation)?;
+        let status = print_result(arguments, &traced.0.simulation, request.part.as_ref())?;
         output::written("page", path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }
     let simulation =
         progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))?;
-    print_result(arguments, &simulation)
+    print_result(arguments, &simulation, request.part.as_ref())
 }
 
-fn print_result(arguments: &Arguments, simulation: &Simulation) -> Result<ExitStatus, UsageError> {
-    print(&simulation.hole_list(), arguments.format)?;
+fn print_result(
+    arguments: &Arguments,
+    simulation: &Simulation,
+    surface: Option<&Surface>,
+) -> Result<ExitStatus, UsageError> {
+    let mut list = simulation.hole_list();
+    let origin = match surface {
+        Some(surface) => {
+            list.enter_at(surface);
+            Origin::Surface
+        }
+        None => Origin::FeedStart,
+    };
+    print(&list, origin, arguments.format)?;
     Ok(super::findings(&simulation.extracted.findings, &simulation.run))
 }
 
 /// Prints a list of holes in the given format.
-pub(super) fn print(list: &HoleList, format: ListFormat) -> Result<(), UsageError> {
+pub(super) fn print(list: &HoleList, origin: Origin, format: ListFormat) -> Result<(), UsageError> {
     match format {
-        ListFormat::Text => output::print(&report::text(list)),
+        ListFormat::Text => output::print(&report::text(list, origin)),
         ListFormat::Json => output::json(list),
         ListFormat::Csv => output::print(&report::csv(list)),
     }

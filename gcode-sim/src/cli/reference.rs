@@ -6,6 +6,7 @@ use clap::Args;
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, holes, input, output};
 use crate::report::flute_table;
+use crate::report::holes::Origin;
 use gcode_inspect::verify::flutes::NominalFlutes;
 use gcode_part::NominalPart;
 use gcode_part::job::Job;
@@ -25,7 +26,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let path = &arguments.job;
     let job = Job::parse(&input::text(path)?).map_err(|e| UsageError::in_file(path, e))?;
     match NominalPart::from_job(&job).map_err(|e| UsageError::in_file(path, e))? {
-        NominalPart::Holes(reference) => holes::print(&reference.list(), arguments.format)?,
+        NominalPart::Holes(reference) => holes::print(&reference.list(), Origin::Surface, arguments.format)?,
         NominalPart::Flutes(flutes) => {
             let burr = NominalFlutes::of(&flutes);
             match arguments.format {

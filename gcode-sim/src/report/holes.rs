@@ -3,16 +3,36 @@ use std::fmt::Write;
 
 use gcode_part::HoleList;
 
+/// Point from which the depth of each hole counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// The part's surface.
+    Surface,
+    /// Start of the cutting feed: the surface is unknown.
+    FeedStart,
+}
+
 /// Formats one line per hole, lengths in mm.
-pub(crate) fn text(list: &HoleList) -> String {
-    // A hole of a program names its block; only a reference knows the surface.
-    let is_from_program = list.holes.iter().any(|hole| hole.from.is_some());
-    let entry = if is_from_program { "start of the cutting feed (R point level)" } else { "on the surface" };
-    let mut text = format!("entry: {entry}; axis: unit vector out of the part; depth: from the entry\n");
+pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
+    let (points, length, title) = match origin {
+        Origin::Surface => (
+            ["entry x", "entry y", "entry z"],
+            "depth",
+            "entry: on the surface; axis: unit vector out of the part; depth: from the entry",
+        ),
+        Origin::FeedStart => (
+            ["fed from x", "fed from y", "fed from z"],
+            "length",
+            "fed from: start of the cutting feed (R point level); axis: unit vector out of the part; \
+             length: from there, the surface is unknown",
+        ),
+    };
+    let mut text = format!("{title}\n");
+    let [x, y, z] = points;
     let _ = writeln!(
         text,
-        "{:<6}{:>11}{:>11}{:>11}  {:>9}{:>9}{:>9}{:>9}{:>8}  from",
-        "hole", "entry x", "entry y", "entry z", "axis i", "axis j", "axis k", "depth", "Φ"
+        "{:<6}{x:>11}{y:>11}{z:>11}  {:>9}{:>9}{:>9}{length:>9}{:>8}  from",
+        "hole", "axis i", "axis j", "axis k", "Φ"
     );
     for (index, hole) in list.holes.iter().enumerate() {
         let name = hole.id.clone().unwrap_or_else(|| (index + 1).to_string());

@@ -13,7 +13,7 @@
 //! | `hole r1h0 phi=0.70 depth=+1.000` | deviations of that hole: `phi`, `entry`, `bottom`, `tilt`, `depth`, `dx`, `dy`, `dz`; `hole *` is every one that was found |
 //! | `neighbours six=7 inner=12 nearest=18.138` | the nominal number of inner holes, and the number of those that are drilled and have six neighbours; least and greatest distance (`farthest`) |
 //! | `burr index=0.300 passes=5` | numbers of the flutes: `contact`, `helix_min`, `helix_max`, `index`, `speed_min`, `speed_max`, `nearest`, `passes`, `moves` |
-//! | `made x=10.000 … depth=7.000 at O1:8 by T1` | without a reference: the next hole, by `x`, `y`, `z`, `i`, `j`, `k`, `depth` |
+//! | `made x=10.000 … depth=7.000 at O1:8 by T1` | without a reference: the next hole, by `x`, `y`, `z`, `i`, `j`, `k`, `depth`, `diameter` |
 //! | `not-checked with Z 29` | a line on what isn't checked has these numbers and names |
 //! | `layout` | the printed verdict is `verdict.snap` |
 //!

@@ -173,8 +173,9 @@ fn list_holes(simulation: &Simulation) -> (ActualVerdict, String) {
         writeln!(text, "{}", line.replace("-0.000 ", "0.000 ").replace("-0.0000", "0.0000")).unwrap();
         let by = from.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
         let at = place_label(&from.program, from.line) + &by;
-        let numbers = [("x", x), ("y", y), ("z", z), ("i", i), ("j", j), ("k", k), ("depth", depth)];
-        made.push((at, numbers.to_vec()));
+        let mut numbers = vec![("x", x), ("y", y), ("z", z), ("i", i), ("j", j), ("k", k), ("depth", depth)];
+        numbers.extend(hole.diameter.map(|diameter| ("diameter", diameter)));
+        made.push((at, numbers));
     }
     let findings = &simulation.extracted.findings;
     let actual = ActualVerdict {

@@ -28,6 +28,7 @@ gcode_lang::finding_kinds! {
     HEAD_MESSAGE_UNCLEAR = "head-message-unclear", Warning, "a message about the head without an angle";
     HEAD_NOT_MANUAL = "head-not-manual", Warning, "a message about a head that is not manual";
     HEAD_NOT_SET = "head-not-set", Error, "a feed before the head is set";
+    HOLE_CORE = "hole-core", Error, "a milled hole keeps its core";
     HOLE_CUT_ASIDE = "hole-cut-aside", Error, "a pass cuts outside the finished hole";
     HOLE_DEPTH = "hole-depth", Error, "too deep or too shallow";
     HOLE_DIAMETER = "hole-diameter", Error, "finished with another diameter";
@@ -36,6 +37,7 @@ gcode_lang::finding_kinds! {
     HOLE_MISSING = "hole-missing", Error, "a hole is missing";
     HOLE_OVERLAP = "hole-overlap", Note, "two nominal holes cut into each other";
     HOLE_POSITION = "hole-position", Error, "a hole is out of position";
+    HOLE_ROUNDNESS = "hole-roundness", Error, "a milled hole is not round";
     HOLE_THROUGH = "hole-through", Warning, "a nominal hole goes through the part";
     HOLE_TILTED = "hole-tilted", Error, "a hole is tilted";
     HOLE_TOOLS = "hole-tools", Warning, "a hole lacks a tool that the others have";

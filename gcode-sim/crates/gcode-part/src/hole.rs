@@ -1,8 +1,10 @@
 //! A hole in the part's frame and the hole list: one schema for references and simulated holes.
+use nalgebra::{Point3, Unit as Direction, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::stock::Stock;
+use super::surface::Surface;
 
 /// Block of a program that made a hole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -59,4 +61,20 @@ pub struct HoleList {
     /// Solid material of the part, for a reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stock: Option<Stock>,
+}
+
+impl HoleList {
+    /// Moves the entry of each hole to the point where its axis leaves the surface; its bottom stays. A hole above the
+    /// surface or beside it stays as it is.
+    pub fn enter_at(&mut self, surface: &Surface) {
+        for hole in &mut self.holes {
+            let out = Direction::new_normalize(Vector3::from(hole.axis));
+            let bottom = Point3::from(hole.entry) - out.into_inner() * hole.depth;
+            let Some(entry) = surface.exit(&bottom, &out) else { continue };
+            let depth = (entry - bottom).dot(&out);
+            if 0.0 < depth {
+                (hole.entry, hole.depth) = (entry.coords.into(), depth);
+            }
+        }
+    }
 }

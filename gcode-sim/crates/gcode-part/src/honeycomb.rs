@@ -69,6 +69,7 @@ fn process_limits(job: &Honeycomb) -> ProcessLimits {
             // Shallower holes are drilled without pecks.
             peck: job.drill.peck.filter(|_| 3.0 * diameter < depth),
         }],
+        ..ProcessLimits::default()
     }
 }
 

@@ -67,7 +67,7 @@ pub use overlap::overlaps;
 pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
-pub use reference::{ProcessLimits, Reference, ToolProcess};
+pub use reference::{NominalAxis, ProcessLimits, Reference, ToolProcess};
 pub use solid::{NearestPoint, Rod};
 pub use stock::{Stock, StockAxis};
 pub use surface::{Surface, bisect};

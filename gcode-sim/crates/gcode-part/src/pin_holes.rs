@@ -43,6 +43,7 @@ fn process_limits(job: &PinHoles) -> ProcessLimits {
         rotary: Some(job.machine.rotary),
         clamp: None,
         tools: job.tools.iter().filter(|_| job.are_tools_specified).map(duty).collect(),
+        ..ProcessLimits::default()
     }
 }
 

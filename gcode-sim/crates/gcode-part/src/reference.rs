@@ -38,13 +38,15 @@ impl Reference {
         if let Some(fault) = list.stock.and_then(|stock| stock.fault()) {
             return Err(FileError { line: None, message: format!("stock: {fault}") });
         }
+        let holes = read::check_all(list.holes)?;
+        let hole_axes = holes.iter().map(|hole| NominalAxis { entry: hole.entry, axis: hole.axis }).collect();
         Ok(Self {
-            holes: read::check_all(list.holes)?,
+            holes,
             position: None,
             depth: None,
             surface: None,
             stock: list.stock,
-            process_limits: ProcessLimits::default(),
+            process_limits: ProcessLimits { hole_axes, ..ProcessLimits::default() },
             pattern: None,
         })
     }
@@ -77,6 +79,17 @@ pub struct ProcessLimits {
     pub clamp: Option<Clamp>,
     /// Limits of each tool.
     pub tools: Vec<ToolProcess>,
+    /// Axes of the holes of a list: a mill that plunges there drills.
+    pub hole_axes: Arc<[NominalAxis]>,
+}
+
+/// Axis of a nominal hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NominalAxis {
+    /// Where the axis meets the surface.
+    pub entry: [f64; 3],
+    /// Unit vector out of the part.
+    pub axis: [f64; 3],
 }
 
 /// Limits of one tool.

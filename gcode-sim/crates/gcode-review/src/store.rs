@@ -397,6 +397,8 @@ impl Hole {
             axis: Unit::new_unchecked(axis),
             depth: self.depth,
             diameter: self.diameter,
+            roundness: None,
+            core: None,
             tool: self.tool,
             backtrace: Backtrace::default(),
             axis_position: Position::default(),

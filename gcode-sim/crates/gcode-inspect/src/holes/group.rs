@@ -18,6 +18,9 @@ pub(crate) const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
 /// Least additional depth at which a pass of the same tool cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
 
+/// Largest height of a core on the bottom of a hole that counts as removed, mm.
+const MAX_CORE_HEIGHT: f64 = 0.1;
+
 /// A feed into the part along one line, in the part's frame.
 #[derive(Clone, Debug)]
 pub(super) struct DrillPass {
@@ -32,6 +35,38 @@ pub(super) struct DrillPass {
     pub axis_position: Position,
     /// Axes of unknown position on the part.
     pub unknown_axes: UnknownAxes,
+    /// Circle of a mill; `None` for a stroke.
+    pub circle: Option<MilledCircle>,
+}
+
+/// Path of a mill round a hole, lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MilledCircle {
+    /// Radius of the path.
+    pub radius: f64,
+    /// Largest minus least distance of the path from the axis.
+    pub roundness: f64,
+    /// Diameter of the core that the circles of the tool leave; `None` if they leave none, or if it is unknown.
+    pub core: Option<f64>,
+}
+
+impl DrillPass {
+    /// Returns the diameter that the pass cuts; `None` if the tool table lacks the tool.
+    fn diameter(&self, machine: &Machine) -> Option<f64> {
+        let cutter = machine.diameter_of(self.tool)?;
+        let Some(circle) = self.circle else { return Some(cutter) };
+        // Without the noise of the arithmetic, which would be printed.
+        Some(((cutter + 2.0 * circle.radius) * 1e9).round() / 1e9)
+    }
+
+    /// Returns true if the pass cuts at least as wide as another one. Of a tool of unknown diameter only the path counts; of
+    /// two such tools the later one does.
+    fn is_as_wide(&self, other: &Self, machine: &Machine) -> bool {
+        let path = |pass: &Self| 2.0 * pass.circle.map_or(0.0, |circle| circle.radius);
+        let diameter = |pass: &Self| pass.diameter(machine);
+        let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();
+        !is_comparable || diameter(other).unwrap_or(path(other)) <= diameter(self).unwrap_or(path(self))
+    }
 }
 
 /// A hole that the program drills, in the part's frame; lengths in mm.
@@ -45,6 +80,10 @@ pub struct DrilledHole {
     pub depth: f64,
     /// Diameter of the finishing tool; `None` if the tool table lacks it.
     pub diameter: Option<f64>,
+    /// Largest minus least distance of a mill's path from the axis; `None` for a drilled hole.
+    pub roundness: Option<f64>,
+    /// Diameter of the metal that a mill leaves on the axis, mm; `None` without any.
+    pub core: Option<f64>,
     /// Finishing tool; `None` before the first tool change.
     pub tool: Option<u32>,
     /// Block of the finishing pass.
@@ -139,9 +178,11 @@ fn push_holes<'p>(
 ) {
     let first_on_line = holes.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
-    let mut lowest_by_tool: BTreeMap<Option<u32>, f64> = BTreeMap::new();
+    // A mill cuts the same depth with each radius.
+    let radius = |pass: &DrillPass| pass.circle.map(|circle| (circle.radius * 1000.0).round() as u64);
+    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
     let (cutting, repeated): (Vec<&DrillPass>, Vec<&DrillPass>) = passes.partition(|pass| {
-        let lowest = lowest_by_tool.entry(pass.tool).or_insert(f64::INFINITY);
+        let lowest = lowest_by_tool.entry((pass.tool, radius(pass))).or_insert(f64::INFINITY);
         let cuts = height(&pass.bottom) < *lowest - MIN_DEPTH_GAIN;
         if cuts {
             *lowest = height(&pass.bottom);
@@ -154,9 +195,17 @@ fn push_holes<'p>(
         bottom: pass.bottom,
         axis: pass.axis,
         tool: pass.tool,
-        diameter: machine.diameter_of(pass.tool),
+        diameter: pass.diameter(machine),
         backtrace: pass.backtrace.clone(),
         axis_position: pass.axis_position,
+    });
+    // A core that another tool removes, or may remove, is none.
+    let core = finish.circle.and_then(|circle| circle.core).filter(|core| {
+        !cutting.iter().any(|pass| {
+            let is_core_tool = pass.circle.is_some_and(|circle| circle.core.is_some());
+            let is_as_deep = height(&pass.bottom) <= height(&finish.bottom) + MAX_CORE_HEIGHT;
+            !is_core_tool && is_as_deep && pass.diameter(machine).is_none_or(|diameter| *core <= diameter)
+        })
     });
     let hole = |pass: &DrillPass, start: f64, bottom: f64, earlier_passes: Vec<EarlierPass>| {
         let slope = pass.axis.dot(&out);
@@ -166,7 +215,9 @@ fn push_holes<'p>(
             entry: along(start),
             axis: pass.axis,
             depth: (along(start) - along(bottom)).norm(),
-            diameter: machine.diameter_of(pass.tool),
+            diameter: pass.diameter(machine),
+            roundness: pass.circle.map(|circle| circle.roundness),
+            core: None,
             tool: pass.tool,
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
@@ -178,12 +229,13 @@ fn push_holes<'p>(
     };
     let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
     let start = finishing.map(|pass| height(&pass.start)).fold(f64::NEG_INFINITY, f64::max);
-    let mut finished = hole(finish, start, lowest, earlier.collect());
+    let mut finished = DrilledHole { core, ..hole(finish, start, lowest, earlier.collect()) };
     finished.unknown_axes =
         cutting.iter().fold(UnknownAxes::default(), |axes, pass| axes.union(pass.unknown_axes));
     holes.push(finished);
     let again = |pass: &&DrillPass| hole(pass, height(&pass.start), height(&pass.bottom), Vec::new());
-    holes.extend(repeated.iter().map(again));
+    // A mill goes round more than once to finish.
+    holes.extend(repeated.iter().filter(|pass| pass.circle.is_none()).map(again));
 }
 
 /// Returns the finishing pass: the last pass of the largest tool that reaches half the depth of the hole, without
@@ -195,12 +247,13 @@ fn finishing_pass<'p>(
     machine: &Machine,
 ) -> &'p DrillPass {
     let longest = cutting.iter().map(|pass| height(&pass.start) - lowest).fold(0.0, f64::max);
-    let diameter = |pass: &DrillPass| machine.diameter_of(pass.tool).unwrap_or(0.0);
     let deep = |p: &DrillPass| height(&p.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {
         let goes_on = deep(pass) && height(&pass.bottom) < height(&best.bottom) - MIN_DEPTH_GAIN;
-        if goes_on || (deep(pass), diameter(pass)) >= (deep(best), diameter(best)) {
+        let is_wider =
+            deep(pass) && !deep(best) || deep(pass) == deep(best) && pass.is_as_wide(best, machine);
+        if goes_on || is_wider {
             best = pass;
         }
     }

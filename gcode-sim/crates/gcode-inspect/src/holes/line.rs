@@ -1,10 +1,11 @@
 //! Line of a cutting feed on the part while the tool stays on it: strokes, pecks and the retract.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::DrillPass;
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
+use super::group::DrillPass;
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
+use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
 /// Least additional depth of a stroke that cuts, mm.
@@ -31,6 +32,14 @@ pub(super) struct CuttingLine {
     pub out: Unit<Vector3<f64>>,
     /// Direction of the tool on the part; `None` if unknown.
     pub tool_axis: Option<Unit<Vector3<f64>>>,
+    /// Direction of a tool that stands upright, if that of this one is unknown.
+    pub upright: Option<Unit<Vector3<f64>>>,
+    /// Block of the first feed.
+    pub first_block: Span,
+    /// True if a cycle makes the stroke: its block also positions the tool or retracts it.
+    pub is_cycle: bool,
+    /// True if the motion before the first feed was a feed too.
+    pub is_reached_by_feed: bool,
     /// Modal state and clamp at the start of the feed.
     pub cutting_state: CuttingState,
     pub clamp_state: ClampState,
@@ -98,6 +107,10 @@ impl CuttingLine {
             start,
             out,
             tool_axis: None,
+            upright: None,
+            first_block: end.backtrace.block,
+            is_cycle: false,
+            is_reached_by_feed: false,
             cutting_state: CuttingState::default(),
             clamp_state: ClampState::default(),
             unknown_axes: UnknownAxes::default(),
@@ -311,6 +324,7 @@ impl CuttingLine {
             backtrace: end.backtrace.clone(),
             axis_position: end.axis_position,
             unknown_axes: self.unknown_axes,
+            circle: None,
         }
     }
 }

@@ -1,13 +1,13 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
+use super::HoleExtractor;
 use super::line::{CuttingLine, ToolExit};
 use super::rapids::TOUCH_DEPTH;
-use super::{HoleExtractor, spindle};
+use super::strokes::CutKind;
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
-    SPINDLE_STOPPED,
 };
 use crate::machine::HeadKind;
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::SpindleDirection;
 use gcode_lang::units::Deg;
 
@@ -54,30 +54,30 @@ impl HoleExtractor<'_> {
             }
             ToolExit::OnLine | ToolExit::AlongLine => {}
         }
-        self.report_feed(&line, tilt);
+        let kind = self.cut_kind(&line, is_feeding);
+        if !matches!(kind, CutKind::Oblique) {
+            self.report_feed(&line, tilt);
+        }
+        // A stroke in a hole that was cut before, as of a mill that goes on sideways, has no retract either.
+        let has_retract = !matches!(exit, ToolExit::Sideways { .. });
         let (pass, repeated) = line.finish();
-        self.push_passes(std::iter::once(pass).chain(repeated));
+        let repeated = repeated.filter(|_| has_retract);
+        for pass in std::iter::once(pass).chain(repeated) {
+            self.strokes.push(pass, kind);
+        }
     }
 
-    /// Reports a feed without retract: an error `inside` the part, by its depth, a warning if the surface is unknown.
+    /// Records a feed without retract, unless it belongs to a milled hole: an error `inside` the part, by its depth, a
+    /// warning if the surface is unknown.
     fn report_no_retract(&mut self, line: &CuttingLine, inside: Option<f64>) {
-        let (severity, message, help) = match inside {
-            Some(depth) => (
-                Severity::Error,
-                format!("the feed ends {depth:.3} mm inside the part and the tool does not retract along it"),
-                "retract along the hole before anything else moves",
-            ),
-            None => (
-                Severity::Warning,
-                format!(
-                    "the tool does not retract along a feed of {:.3} mm: not counted as a hole",
-                    line.cut_depth()
-                ),
-                "retract along it before anything else moves, if it is a hole",
-            ),
+        let Some(depth) = inside else {
+            self.engagement.uncounted.add_unretracted(line.backtrace(), line.cut_depth());
+            return;
         };
-        self.findings.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
-            Diagnostic::new(kind, message).with_severity(severity).help(help)
+        self.engagement.errors.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
+            let message =
+                format!("the feed ends {depth:.3} mm inside the part and the tool does not retract along it");
+            Diagnostic::new(kind, message).help("retract along the hole before anything else moves")
         });
     }
 
@@ -103,12 +103,7 @@ impl HoleExtractor<'_> {
         }
         self.check_spindle(backtrace, line);
         if line.cutting_state.spindle_direction == SpindleDirection::Off {
-            let message = "the tool feeds into the part with the spindle stopped";
-            let builder_code = self.builder_code;
-            self.findings.add(&SPINDLE_STOPPED, backtrace, 0, |_| {
-                spindle::spindle_stopped_finding(message, builder_code)
-                    .help("start the spindle with M03 S… before the feed")
-            });
+            self.report_spindle_stopped(line.backtrace());
         }
         let Some(tilt) = tilt else {
             if matches!(self.machine.head.kind, HeadKind::Manual { .. }) {

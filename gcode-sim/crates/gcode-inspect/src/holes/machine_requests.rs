@@ -7,11 +7,11 @@ use gcode_lang::motion::{Event, Position};
 use gcode_lang::units::Deg;
 
 impl HoleExtractor<'_> {
-    /// Reports axes of the control that move and carry nothing on this machine.
+    /// Reports axes of the control that move and carry nothing on this machine, each once.
     pub(super) fn check_idle_axes(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
         for (axis, letter) in self.machine.axes.iter() {
             if from[axis] != to[axis] && !self.machine.is_axis_used(axis) {
-                self.findings.add(&AXIS_CARRIES_NOTHING, &event.backtrace(), axis as u32, |kind| {
+                self.findings.add_in_program(&AXIS_CARRIES_NOTHING, &event.backtrace(), axis as u32, 1, |kind| {
                     let message =
                         format!("{letter} moves to {}; the machine has nothing on that axis", to[axis]);
                     Diagnostic::new(kind, message).help(format!(

@@ -1,4 +1,5 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
+mod arc_run;
 mod axis_box;
 mod clamping;
 mod clearance;
@@ -11,10 +12,12 @@ mod length_mismatch;
 mod line;
 mod line_findings;
 mod machine_requests;
+mod milled;
 pub(crate) mod per_block;
 mod rapid_paths;
 mod rapids;
 pub(crate) mod spindle;
+mod strokes;
 #[cfg(test)]
 mod tests;
 pub(crate) mod unknown_axes;
@@ -35,10 +38,11 @@ use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
 use self::entries::CutEntries;
-use self::group::DrillPass;
 use self::line::{CuttingLine, ToolExit};
+use self::milled::{Engagement, Path};
 use self::per_block::Findings;
 use self::rapids::TOUCH_DEPTH;
+use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
 use gcode_lang::alarm::kinds::LIMIT;
@@ -103,10 +107,10 @@ pub struct HoleExtractor<'m> {
     current_line: Option<Box<CuttingLine>>,
     /// Block of the last motion, if metal is known.
     last_block: Option<Backtrace>,
-    passes: Vec<DrillPass>,
-    max_passes: usize,
-    /// First pass beyond `max_passes`.
-    first_excess_pass: Option<Backtrace>,
+    /// Kind of the last motion, and its block.
+    last_motion: Option<(MotionKind, Span)>,
+    strokes: Strokes,
+    engagement: Engagement,
     positions: PositionTracker,
     findings: Findings,
     close_motions: CloseMotions,
@@ -120,7 +124,7 @@ pub struct HoleExtractor<'m> {
 }
 
 /// Kind of a motion.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum MotionKind {
     Rapid,
     Feed,
@@ -149,9 +153,9 @@ impl<'m> HoleExtractor<'m> {
             has_been_outside: false,
             current_line: None,
             last_block: None,
-            passes: Vec::new(),
-            max_passes: MAX_PASSES,
-            first_excess_pass: None,
+            last_motion: None,
+            strokes: Strokes::new(MAX_PASSES),
+            engagement: Engagement::default(),
             positions: PositionTracker::default(),
             findings: Findings::default(),
             close_motions: CloseMotions::default(),
@@ -191,6 +195,7 @@ impl<'m> HoleExtractor<'m> {
     #[must_use]
     pub fn with_process_limits(mut self, limits: &ProcessLimits) -> Self {
         self.process_limits = limits.clone();
+        self.strokes.set_nominal_axes(&limits.hole_axes);
         self
     }
 
@@ -198,12 +203,15 @@ impl<'m> HoleExtractor<'m> {
     pub fn finish(mut self) -> HoleExtraction {
         self.end_in_metal();
         self.end_line(false);
-        let mut holes = group::group_holes(&self.passes, self.machine);
+        self.end_engagement();
+        let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
+        let mut holes = group::group_holes(&passes, self.machine);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);
         let mut findings = self.findings.finish();
-        findings.extend(self.first_excess_pass.map(|backtrace| {
+        findings.extend(milled.map(MilledStrokes::finding));
+        findings.extend(first_excess.map(|backtrace| {
             let message =
                 format!("more than {MAX_PASSES} feeds into the part: nothing after this is checked");
             let finding = Diagnostic::new(&LIMIT, message).with_backtrace(backtrace);
@@ -231,16 +239,6 @@ impl<'m> HoleExtractor<'m> {
         }
     }
 
-    fn push_passes(&mut self, passes: impl IntoIterator<Item = DrillPass>) {
-        for pass in passes {
-            if self.passes.len() < self.max_passes {
-                self.passes.push(pass);
-            } else {
-                self.first_excess_pass.get_or_insert(pass.backtrace);
-            }
-        }
-    }
-
     fn motion(&mut self, event: &Event<'_>, kind: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.axis_position;
         if self.surface.is_some() || self.entries.is_some() {
@@ -248,23 +246,38 @@ impl<'m> HoleExtractor<'m> {
         }
         self.check_idle_axes(event, &from, to);
         self.check_clamp_released(event, &from, to);
+        let last_motion = self.last_motion.replace((kind, event.block));
         let before = self.pose;
+        let travel = AxisMotion { from: &from, to, arc };
+        let is_rotating = !self.machine.is_straight(&AxisMotion { arc: None, ..travel });
+        if is_rotating {
+            self.end_engagement();
+        }
         if self.machine.table.is_moved(&from, to) {
             self.frame = self.machine.part_frame(to);
         }
         self.axis_position = *to;
         self.pose = self.machine.tool_pose(to, &self.setup).relative_to(&self.frame);
         let (was, is) = self.positions.advance(self.machine);
-        let travel = AxisMotion { from: &from, to, arc };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
+            // With the same axes unknown the motion itself is known.
+            match was == is && !is_rotating {
+                true => self.disengage(&before.tip),
+                false => self.end_engagement(),
+            }
             return;
         }
-        if !self.machine.is_straight(&travel) {
+        if is_rotating || arc.is_some() {
             self.end_line(kind == MotionKind::Feed);
             match kind {
                 MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
-                MotionKind::Feed => drop(self.check_curved(event, &travel, kind)),
+                MotionKind::Feed => {
+                    self.check_curved(event, &travel, kind);
+                    let arc = self.part_arc(&travel, &before.tip);
+                    self.engagement.add_unknown_axes(was.union(is));
+                    self.engage(event, &before.tip, Path::Curved(arc));
+                }
                 MotionKind::Probe => {}
             }
             self.update_outside();
@@ -279,10 +292,17 @@ impl<'m> HoleExtractor<'m> {
             (MotionKind::Feed, start) => {
                 self.follow_feed_at_holes(event, &[before.tip, self.pose.tip]);
                 if let Some(start) = start {
-                    self.start_line(event, start);
+                    self.start_line(event, start, last_motion);
                 }
             }
             _ => {}
+        }
+        match kind {
+            MotionKind::Feed => self.engage(event, &before.tip, Path::Straight),
+            MotionKind::Rapid | MotionKind::Probe => self.disengage(&before.tip),
+        }
+        if self.strokes.has_across() {
+            self.check_upright(&from);
         }
         self.update_outside();
     }
@@ -316,6 +336,7 @@ impl<'m> HoleExtractor<'m> {
                         line.feed_to(&tip, event.backtrace(), &self.axis_position)
                     }
                     MotionKind::Rapid | MotionKind::Probe => {
+                        line.is_cycle |= event.block == line.first_block;
                         let (again, uncut) = line.rapid_to(&tip);
                         if uncut {
                             self.report_rapid_beyond_cut(event, &line, &from);
@@ -323,7 +344,9 @@ impl<'m> HoleExtractor<'m> {
                         again
                     }
                 };
-                self.push_passes(again);
+                if let Some(pass) = again {
+                    self.strokes.push(pass, self.cut_kind(&line, false));
+                }
                 self.current_line = Some(line);
                 None
             }
@@ -339,12 +362,16 @@ impl<'m> HoleExtractor<'m> {
         }
     }
 
-    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>) {
+    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>, last_motion: Option<(MotionKind, Span)>) {
         let rounding = self.machine.increment.size() / 2.0;
         let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
         self.current_line = line.map(|line| {
             let mut line = Box::new(line);
             line.tool_axis = self.pose.axis;
+            line.upright = self.tool_direction();
+            // A block of a cycle positions, feeds and retracts.
+            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
+            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
             line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
             line.clamp_state = self.clamp_state;
             line.unknown_axes = self.positions.unknown_axes();
@@ -381,7 +408,11 @@ impl<'m> HoleExtractor<'m> {
         if self.setup == before {
             return;
         }
+        let after = std::mem::replace(&mut self.setup, before);
         self.end_line(false);
+        self.end_engagement();
+        self.strokes.end_tool();
+        self.setup = after;
         self.pose = self.machine.tool_pose(&self.axis_position, &self.setup).relative_to(&self.frame);
     }
 }

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::Backtrace;
-use gcode_lang::source::Span;
+use gcode_lang::source::{SourceId, Span};
 
 /// Entries in order of first occurrence; `K` distinguishes kinds at one block.
 #[derive(Clone, Debug)]
@@ -52,9 +52,13 @@ impl<K: Ord, T> PerBlock<K, T> {
     }
 }
 
-/// Findings about motion, one per block, code and detail.
+/// Findings about motion: one per block, code and detail, or one in the program.
 #[derive(Debug, Default)]
-pub(super) struct Findings(PerBlock<(&'static str, u32), Diagnostic>);
+pub(super) struct Findings {
+    list: PerBlock<(&'static str, u32), Diagnostic>,
+    /// Findings of which one counts all occurrences, by code and detail, with their index in the list and their number.
+    in_program: BTreeMap<(&'static str, u32), (usize, u64)>,
+}
 
 impl Findings {
     /// Makes the finding on its first occurrence; later ones are counted.
@@ -65,11 +69,50 @@ impl Findings {
         detail: u32,
         make: impl FnOnce(&'static FindingKind) -> Diagnostic,
     ) {
-        self.0.count(backtrace.block, (kind.code, detail), || make(kind).with_backtrace(backtrace.clone()));
+        self.list
+            .count(backtrace.block, (kind.code, detail), || make(kind).with_backtrace(backtrace.clone()));
+    }
+
+    /// Makes the finding on its first occurrence in the program, and counts all; these are `count`.
+    pub(super) fn add_in_program(
+        &mut self,
+        kind: &'static FindingKind,
+        backtrace: &Backtrace,
+        detail: u32,
+        count: u64,
+        make: impl FnOnce(&'static FindingKind) -> Diagnostic,
+    ) {
+        let list = &mut self.list;
+        let entry = self.in_program.entry((kind.code, detail)).or_insert_with(|| {
+            let first = || make(kind).with_backtrace(backtrace.clone());
+            (list.count(backtrace.block, (kind.code, detail), first).0, 0)
+        });
+        entry.1 += count;
+    }
+
+    /// Appends findings of blocks.
+    pub(super) fn append(&mut self, other: Self) {
+        let mut entries: Vec<_> = other.list.index.into_iter().collect();
+        entries.sort_unstable_by_key(|(_, index)| *index);
+        for (((source, start, kind), _), other) in entries.into_iter().zip(other.list.list) {
+            let block = Span { source: SourceId(source), start, end: start };
+            let (_, entry) = self.list.count(block, kind, || other.value);
+            entry.count += other.count - 1;
+        }
     }
 
     pub(super) fn finish(self) -> Vec<Diagnostic> {
-        self.0.into_entries().map(|entry| with_repeat_note(entry.value, entry.count)).collect()
+        let mut counts = vec![None; self.list.list.len()];
+        for (index, count) in self.in_program.into_values() {
+            counts[index] = Some(count);
+        }
+        let entries = self.list.into_entries().zip(counts);
+        entries
+            .map(|(entry, in_program)| match in_program {
+                Some(count) => with_count_note(entry.value, count),
+                None => with_repeat_note(entry.value, entry.count),
+            })
+            .collect()
     }
 }
 
@@ -82,10 +125,18 @@ pub(crate) fn with_repeat_note(finding: Diagnostic, count: u64) -> Diagnostic {
     }
 }
 
+/// Adds a note with the number of further occurrences in the program.
+pub(super) fn with_count_note(finding: Diagnostic, count: u64) -> Diagnostic {
+    match count {
+        0 | 1 => finding,
+        2 => finding.note("once more in the program"),
+        _ => finding.note(format!("{} more times in the program", count - 1)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gcode_lang::source::SourceId;
 
     #[test]
     fn a_block_has_one_entry_per_kind_in_order_of_first_occurrence() {

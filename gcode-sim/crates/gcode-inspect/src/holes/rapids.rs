@@ -45,7 +45,7 @@ impl HoleExtractor<'_> {
         if self.surface.is_some() || is_outward {
             return;
         }
-        self.findings.add(&RAPID_BEYOND_CUT, &event.backtrace(), 0, |kind| {
+        self.findings.add_in_program(&RAPID_BEYOND_CUT, &event.backtrace(), 1, 1, |kind| {
             let message = format!(
                 "the rapid continues {:.3} mm in the direction of a feed of {:.3} mm: not counted as a hole",
                 line.depth_of(to) - line.cut_depth(),
@@ -139,17 +139,17 @@ impl HoleExtractor<'_> {
         if self.follow_curve_at_holes(event, travel, is_rapid) {
             return true;
         }
-        let straight = "feed holes along a straight line, with the table stationary";
-        let (kind, severity, message, help) = match self.surface {
+        let straight = "drill along a straight line, or mill full circles, with the table stationary";
+        let (findings, kind, message, help) = match self.surface {
             _ if depth > 2.0 * TOUCH_DEPTH && is_rapid => (
+                &mut self.findings,
                 &RAPID_INTO_PART,
-                Severity::Error,
                 format!("rapid through the part while an axis rotates, {depth:.3} mm below the surface"),
                 "retract until the tool is outside the part before the table or the head rotates",
             ),
             _ if depth > 2.0 * TOUCH_DEPTH => {
                 let message = format!("a curved feed cuts {depth:.3} mm into the part: not a hole");
-                (&FEED_NO_HOLE, Severity::Error, message, straight)
+                (&mut self.engagement.errors, &FEED_NO_HOLE, message, straight)
             }
             Some(surface) => {
                 if self.has_been_outside {
@@ -157,15 +157,14 @@ impl HoleExtractor<'_> {
                 }
                 return false;
             }
-            None if is_rapid => return false,
             None => {
-                let message = "a curved feed on the part: not counted as a hole".to_owned();
-                (&FEED_NO_HOLE, Severity::Warning, message, straight)
+                if !is_rapid {
+                    self.engagement.uncounted.add_curved(event.backtrace());
+                }
+                return false;
             }
         };
-        self.findings.add(kind, &event.backtrace(), 0, |kind| {
-            Diagnostic::new(kind, message).with_severity(severity).help(help)
-        });
+        findings.add(kind, &event.backtrace(), 0, |kind| Diagnostic::new(kind, message).help(help));
         self.surface.is_some()
     }
 

@@ -31,6 +31,15 @@ impl HoleExtractor<'_> {
         line.spindle = line.spindle.max(state);
     }
 
+    /// Reports a feed into the part with the spindle stopped.
+    pub(super) fn report_spindle_stopped(&mut self, place: &Backtrace) {
+        let builder_code = self.builder_code;
+        self.findings.add(&SPINDLE_STOPPED, place, 0, |_| {
+            spindle_stopped_finding("the tool feeds into the part with the spindle stopped", builder_code)
+                .help("start the spindle with M03 S… before the feed")
+        });
+    }
+
     /// Reports a spindle that stops or reverses in the hole, for a tool with which the job drills.
     pub(super) fn check_spindle(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
         if self.process_limits.tool_process(line.cutting_state.tool).is_none() {

@@ -167,7 +167,7 @@ fn a_table_that_rotates_with_the_tool_in_the_hole_is_an_error() {
 fn an_endless_loop_over_one_hole_ends_at_the_limit_of_passes() {
     let machine = Machine::default();
     let mut extractor = HoleExtractor::new(&machine);
-    extractor.max_passes = 500;
+    extractor.strokes = super::strokes::Strokes::new(500);
     EventScript::new().then("rapid X9 Z2; rapid X0").emit_to(&mut extractor);
     let once = EventScript::new().then("feed Z-3; rapid Z2; rapid X9; rapid X0");
     for _ in 0..505 {

@@ -8,11 +8,13 @@ mod depth;
 mod diameter;
 mod explained_by_rows;
 pub(super) mod extra;
+mod milled_core;
 pub(super) mod mirrored;
 mod missing;
 mod overlap;
 mod position;
 mod reach;
+mod roundness;
 mod row_angle;
 mod row_group;
 mod row_missing;
@@ -56,6 +58,8 @@ pub(super) const ALL: &[Check] = &[
     cut_outside::check,   // hole-cut-aside
     depth::check,         // hole-depth
     diameter::check,      // hole-diameter
+    roundness::check,     // hole-roundness
+    milled_core::check,   // hole-core
     tools::check,         // hole-tools
     overlap::check,       // hole-overlap
     row_short::check,     // row-short

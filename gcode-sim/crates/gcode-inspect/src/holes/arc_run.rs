@@ -1,0 +1,249 @@
+//! Runs of arcs round one axis on the part, and their deepest full turn.
+use std::collections::VecDeque;
+
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::HoleExtractor;
+use crate::machine::{AxisMotion, HeadKind};
+use gcode_lang::motion::{AxisIndex, Backtrace, Position};
+use gcode_lang::units::Deg;
+
+/// A full turn, besides rounding of the arcs' ends, degrees.
+const FULL_TURN: f64 = 360.0 - 0.01;
+
+/// Largest change of height over a level turn, mm.
+const MAX_LEVEL_CHANGE: f64 = 0.01;
+
+/// Largest angle between two samples of an arc, degrees.
+const MAX_SAMPLE: f64 = 5.0;
+
+/// Arc on the part: a circular path, straight along the axis of the circle.
+#[derive(Clone, Debug)]
+pub(super) struct PartArc {
+    /// Centre, at the height of the start.
+    pub centre: Point3<f64>,
+    /// Axis of the circle, out of the part.
+    pub out: Unit<Vector3<f64>>,
+    pub from: Point3<f64>,
+    pub to: Point3<f64>,
+    /// Swept angle, right-handed about `out`.
+    pub sweep: Deg,
+}
+
+impl PartArc {
+    fn radius(&self) -> f64 {
+        (self.from - self.centre).norm()
+    }
+
+    /// Returns the point after the fraction `t` of the arc, 0 to 1.
+    pub(super) fn point(&self, t: f64) -> Point3<f64> {
+        let spoke = self.from - self.centre;
+        let (cos, sin) = ((self.sweep * t).cos(), (self.sweep * t).sin());
+        let rise = (self.to - self.from).dot(&self.out) * t;
+        self.centre + spoke * cos + self.out.cross(&spoke) * sin + self.out.into_inner() * rise
+    }
+
+    /// Returns true if the other arc goes round the same axis in the same sense, with the same radius. Centres given by R
+    /// may be off by some hundredths of the radius.
+    fn continues(&self, other: &Self) -> bool {
+        let slack = (0.03 * self.radius()).max(0.05);
+        let aside = other.centre - self.centre;
+        (aside - self.out.into_inner() * aside.dot(&self.out)).norm() <= slack
+            && (other.radius() - self.radius()).abs() <= slack
+            && self.out.dot(&other.out) > 0.999_999
+            && (self.sweep.0 > 0.0) == (other.sweep.0 > 0.0)
+    }
+}
+
+/// Consecutive arcs round one axis.
+#[derive(Clone, Debug)]
+pub(super) struct ArcRun {
+    /// Arcs of the last full turn, with the angle swept before each, degrees.
+    arcs: VecDeque<(f64, PartArc)>,
+    /// Swept angle of the whole run, degrees.
+    swept: f64,
+    /// Height of the start along the axis.
+    top: f64,
+    turn: Option<FullTurn>,
+}
+
+/// Deepest full turn of a run.
+#[derive(Clone, Debug)]
+struct FullTurn {
+    /// Height of its highest point along the axis.
+    level: f64,
+    /// Last arc.
+    backtrace: Backtrace,
+    axis_position: Position,
+}
+
+/// Circle that the tool's axis describes on the part.
+#[derive(Clone, Debug)]
+pub(super) struct Ring {
+    /// Centre, at the height of the deepest full turn.
+    pub centre: Point3<f64>,
+    pub out: Unit<Vector3<f64>>,
+    pub radius: f64,
+    /// Largest minus least distance of the path from the axis, mm.
+    pub roundness: f64,
+    /// Height of the start of the run along `out`.
+    pub top: f64,
+    /// Block of the last arc.
+    pub backtrace: Backtrace,
+    pub axis_position: Position,
+}
+
+impl Ring {
+    /// Returns the height of the deepest full turn along the axis.
+    pub(super) fn level(&self) -> f64 {
+        self.centre.coords.dot(&self.out)
+    }
+
+    /// Returns true if the tool comes down along the circle.
+    pub(super) fn is_helix(&self) -> bool {
+        self.top - self.level() > MAX_LEVEL_CHANGE
+    }
+}
+
+impl ArcRun {
+    pub(super) fn new(arc: PartArc, place: impl FnOnce() -> (Backtrace, Position)) -> Self {
+        let top = arc.from.coords.dot(&arc.out);
+        let mut run = Self { arcs: VecDeque::new(), swept: 0.0, top, turn: None };
+        run.push(arc, place);
+        run
+    }
+
+    /// Adds an arc; returns it if it doesn't continue the run.
+    pub(super) fn extend(
+        &mut self,
+        arc: PartArc,
+        place: impl FnOnce() -> (Backtrace, Position),
+    ) -> Result<(), PartArc> {
+        if !self.arcs.back().is_some_and(|(_, last)| last.continues(&arc)) {
+            return Err(arc);
+        }
+        self.push(arc, place);
+        Ok(())
+    }
+
+    fn push(&mut self, arc: PartArc, place: impl FnOnce() -> (Backtrace, Position)) {
+        let end = arc.to.coords.dot(&arc.out);
+        let before = self.swept;
+        self.swept += arc.sweep.0.abs();
+        self.arcs.push_back((before, arc));
+        if self.swept < FULL_TURN {
+            return;
+        }
+        let begin = (self.swept - 360.0).max(0.0);
+        while self.arcs.get(1).is_some_and(|(before, _)| *before <= begin) {
+            self.arcs.pop_front();
+        }
+        let heights = self.arcs.iter().map(|(before, arc)| {
+            let t = ((begin - before) / arc.sweep.0.abs()).max(0.0);
+            let (from, to) = (arc.from.coords.dot(&arc.out), arc.to.coords.dot(&arc.out));
+            (from + (to - from) * t.min(1.0)).max(to)
+        });
+        let level = heights.fold(f64::NEG_INFINITY, f64::max);
+        let start = self.height_at(begin);
+        let lowest = self.arcs.iter().map(|(_, arc)| arc.to.coords.dot(&arc.out)).fold(start, f64::min);
+        // A turn that rises follows a thread. A single turn that falls does so too, or begins a helix.
+        let is_level = level - lowest <= MAX_LEVEL_CHANGE;
+        let is_helix = end < start && self.swept >= FULL_TURN + 360.0;
+        if (is_level || is_helix) && self.turn.as_ref().is_none_or(|turn| level < turn.level - 1e-9) {
+            let (backtrace, axis_position) = place();
+            self.turn = Some(FullTurn { level, backtrace, axis_position });
+        }
+    }
+
+    /// Returns the height at a swept angle within the last full turn.
+    fn height_at(&self, swept: f64) -> f64 {
+        let (before, arc) = &self.arcs[0];
+        arc.point(((swept - before) / arc.sweep.0.abs()).clamp(0.0, 1.0)).coords.dot(&arc.out)
+    }
+
+    /// Ends the run; `None` without a full turn that makes a circle.
+    pub(super) fn finish(self) -> Option<Ring> {
+        self.turn.as_ref()?;
+        let out = self.arcs[0].1.out;
+        let (centre, radius, roundness) = self.fit();
+        let FullTurn { level, backtrace, axis_position } = self.turn?;
+        let centre = centre + out.into_inner() * (level - centre.coords.dot(&out));
+        Some(Ring { centre, out, radius, roundness, top: self.top, backtrace, axis_position })
+    }
+
+    /// Returns the least squares circle of the last full turn: centre, radius, and largest minus least distance.
+    fn fit(&self) -> (Point3<f64>, f64, f64) {
+        let (_, first) = &self.arcs[0];
+        let out = first.out;
+        let distance = |centre: &Point3<f64>, p: &Point3<f64>| {
+            let spoke = p - centre;
+            (spoke - out.into_inner() * spoke.dot(&out)).norm()
+        };
+        let begin = self.swept - 360.0;
+        let mut samples = Vec::new();
+        for (before, arc) in &self.arcs {
+            let from = ((begin - before) / arc.sweep.0.abs()).clamp(0.0, 1.0);
+            let steps = (arc.sweep.0.abs() * (1.0 - from) / MAX_SAMPLE).ceil().max(1.0) as u32;
+            let at = |step: u32| from + (1.0 - from) * f64::from(step) / f64::from(steps);
+            samples.extend((0..=steps).map(|step| arc.point(at(step))));
+        }
+        // Gauss-Newton from the first centre; the points are all round it.
+        let mut centre = first.centre;
+        let mut radius = first.radius();
+        for _ in 0..4 {
+            let (mut shift, mut sum) = (Vector3::zeros(), 0.0);
+            for p in &samples {
+                let spoke = p - centre;
+                let spoke = spoke - out.into_inner() * spoke.dot(&out);
+                shift += spoke / spoke.norm() * (spoke.norm() - radius);
+                sum += spoke.norm();
+            }
+            let count = samples.len() as f64;
+            centre += shift * (2.0 / count);
+            radius = sum / count;
+        }
+        let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
+        for p in &samples {
+            let d = distance(&centre, p);
+            (least, largest) = (least.min(d), largest.max(d));
+        }
+        (centre, radius, largest - least)
+    }
+}
+
+impl HoleExtractor<'_> {
+    /// Returns an arc on the part; `None` if the table or the head rotates, or if the axes of the arc aren't square.
+    pub(super) fn part_arc(&self, travel: &AxisMotion<'_>, from: &Point3<f64>) -> Option<PartArc> {
+        let arc = travel.arc?;
+        if !self.machine.is_straight(&AxisMotion { arc: None, ..*travel }) {
+            return None;
+        }
+        let (first, second) = (self.axis_direction(arc.plane.0), self.axis_direction(arc.plane.1));
+        let is_square = first.dot(&second).abs() < 1e-6
+            && (first.norm() - 1.0).abs() < 1e-6
+            && (second.norm() - 1.0).abs() < 1e-6;
+        let normal = is_square.then(|| Unit::new_normalize(first.cross(&second)))?;
+        let centre = from
+            + first * (arc.centre.0 - travel.from[arc.plane.0])
+            + second * (arc.centre.1 - travel.from[arc.plane.1]);
+        let is_out = self.tool_direction().is_none_or(|out| out.dot(&normal) > -0.5);
+        let (out, sweep) = if is_out { (normal, arc.sweep) } else { (-normal, -arc.sweep) };
+        Some(PartArc { centre, out, from: *from, to: self.pose.tip, sweep })
+    }
+
+    /// Returns the motion of the tool on the part for a command of an axis, per mm.
+    fn axis_direction(&self, axis: AxisIndex) -> Vector3<f64> {
+        let mut by = Position::default();
+        by[axis] = 1.0;
+        let motion = self.machine.slides.displacement(&by) - self.machine.table.displacement(&by);
+        self.frame.rotation.inverse_transform_vector(&motion)
+    }
+
+    /// Returns the direction of the tool on the part, out of it. Without a known head that of Z: a mill stands upright.
+    pub(super) fn tool_direction(&self) -> Option<Unit<Vector3<f64>>> {
+        self.pose.axis.or_else(|| {
+            let z = self.machine.axes.find(b'Z').filter(|_| self.machine.head.kind == HeadKind::Free)?;
+            Unit::try_new(self.axis_direction(z), 1e-9)
+        })
+    }
+}

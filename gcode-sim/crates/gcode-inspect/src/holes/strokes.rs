@@ -1,0 +1,320 @@
+//! Which strokes drill: a tool that mills, or a feed along another line than the tool's, makes no hole by going there and
+//! back.
+use std::sync::Arc;
+
+use nalgebra::{Point3, Vector3};
+
+use super::HoleExtractor;
+use super::group::DrillPass;
+use super::line::CuttingLine;
+use super::per_block::with_count_note;
+use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{Backtrace, Position};
+use gcode_part::{NominalAxis, PointTree};
+
+/// Differences of height that come from rounding, mm.
+pub(super) const LEVEL_TOLERANCE: f64 = 0.003;
+
+/// Sine of the largest angle between a stroke and the plane square to Z: 0.5°.
+const MAX_SQUARE_SINE: f64 = 0.01;
+
+/// Cosine of the largest angle between Z and a stroke along an upright tool: 2.5°.
+const MIN_UPRIGHT_COSINE: f64 = 0.999;
+
+/// Cosine of the largest angle between a stroke and a known tool axis: 30°. A larger one is milling.
+const MIN_TOOL_COSINE: f64 = 0.866_025_403_784_438_6;
+
+/// Largest distance of a stroke of a mill from the nominal axis on which it drills, mm.
+const MAX_AXIS_DISTANCE: f64 = 1.0;
+
+/// Cosine of the largest angle to that axis: 5°.
+const MIN_AXIS_COSINE: f64 = 0.996_194_698_091_745_5;
+
+/// Origin of a pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum CutKind {
+    /// A stroke of a cycle, one in a known surface, or a milled circle: it is a hole's.
+    Drilled,
+    /// A stroke along the tool.
+    AlongTool {
+        /// True if a rapid leads to it and another one away.
+        is_between_rapids: bool,
+    },
+    /// A stroke square to Z while the direction of the tool is unknown: the head may be tilted.
+    Across {
+        /// True if a rapid leads to it and another one away.
+        is_between_rapids: bool,
+    },
+    /// A stroke oblique to the tool.
+    Oblique,
+}
+
+/// Passes, and strokes for which later motion decides.
+#[derive(Debug, Default)]
+pub(super) struct Strokes {
+    /// Passes of holes, with their order.
+    passes: Vec<(u32, DrillPass)>,
+    /// Strokes along the current tool, true between rapids.
+    along_tool: Vec<(u32, DrillPass, bool)>,
+    /// Strokes across the upright tool, those of the current tool from `across_begin`.
+    across: Vec<(u32, DrillPass)>,
+    across_begin: usize,
+    next: u32,
+    max_passes: usize,
+    /// First pass beyond `max_passes`.
+    first_excess: Option<Backtrace>,
+    /// Lowest feed across the current tool, by its height along the tool; `None` without one.
+    milled_level: Option<f64>,
+    /// True if the current tool stands upright.
+    is_upright: bool,
+    /// True if any stroke of the program runs along Z.
+    has_upright_stroke: bool,
+    nominal: NominalAxes,
+    /// Strokes that are milling.
+    milled: Option<MilledStrokes>,
+}
+
+/// Feeds that make no hole.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Uncounted {
+    /// Feeds without retract: their number, the first and its length.
+    pub unretracted: Option<(u64, Backtrace, f64)>,
+    /// Curved feeds: their number and the first.
+    pub curved: Option<(u64, Backtrace)>,
+}
+
+impl Uncounted {
+    pub(super) fn add_unretracted(&mut self, place: &Backtrace, length: f64) {
+        self.unretracted.get_or_insert_with(|| (0, place.clone(), length)).0 += 1;
+    }
+
+    pub(super) fn add_curved(&mut self, place: Backtrace) {
+        self.curved.get_or_insert((0, place)).0 += 1;
+    }
+}
+
+/// Strokes that make no hole because they are milling.
+#[derive(Debug)]
+pub(super) struct MilledStrokes {
+    count: u64,
+    first: Backtrace,
+    /// Length of the first, mm.
+    length: f64,
+}
+
+/// Nominal axes, on which a mill may drill.
+#[derive(Debug, Default)]
+struct NominalAxes {
+    axes: Arc<[NominalAxis]>,
+    tree: Option<PointTree>,
+}
+
+impl NominalAxes {
+    /// Returns true if a pass lies on a nominal axis.
+    fn has(&mut self, pass: &DrillPass) -> bool {
+        if self.axes.is_empty() {
+            return false;
+        }
+        let axes = &self.axes;
+        let tree =
+            self.tree.get_or_insert_with(|| PointTree::new(axes.iter().map(|axis| Point3::from(axis.entry))));
+        let margin = Vector3::repeat(MAX_AXIS_DISTANCE);
+        let (low, high) = (pass.start.inf(&pass.bottom) - margin, pass.start.sup(&pass.bottom) + margin);
+        let mut found = false;
+        tree.in_box(&low, &high, &mut |index| {
+            let nominal = &axes[index];
+            let to = Point3::from(nominal.entry) - pass.bottom;
+            let aside = (to - pass.axis.into_inner() * to.dot(&pass.axis)).norm();
+            found |=
+                aside <= MAX_AXIS_DISTANCE && pass.axis.dot(&Vector3::from(nominal.axis)) >= MIN_AXIS_COSINE;
+        });
+        found
+    }
+}
+
+impl Strokes {
+    pub(super) fn new(max_passes: usize) -> Self {
+        Self { max_passes, ..Self::default() }
+    }
+
+    pub(super) fn set_nominal_axes(&mut self, axes: &Arc<[NominalAxis]>) {
+        self.nominal = NominalAxes { axes: axes.clone(), tree: None };
+    }
+
+    /// Records a feed across the tool at a height along it.
+    pub(super) fn note_milling(&mut self, level: f64) {
+        self.milled_level = Some(self.milled_level.map_or(level, |lowest| lowest.min(level)));
+    }
+
+    /// Returns true if the current tool has made strokes across Z.
+    pub(super) fn has_across(&self) -> bool {
+        self.across_begin < self.across.len()
+    }
+
+    /// Records a motion along Z alone after strokes across it: the tool stands upright, and its strokes are milling.
+    pub(super) fn note_upright(&mut self) {
+        self.is_upright = true;
+        for (order, pass) in self.across.split_off(self.across_begin) {
+            self.push_milled(order, pass);
+        }
+    }
+
+    /// Returns true if a pass lies on a nominal axis.
+    pub(super) fn is_nominal(&mut self, pass: &DrillPass) -> bool {
+        self.nominal.has(pass)
+    }
+
+    /// Adds a pass.
+    pub(super) fn push(&mut self, pass: DrillPass, kind: CutKind) {
+        let order = self.next;
+        self.next += 1;
+        match kind {
+            CutKind::Drilled => self.push_pass(order, pass),
+            CutKind::Oblique => self.push_milled(order, pass),
+            CutKind::AlongTool { is_between_rapids } => {
+                self.has_upright_stroke = true;
+                if !self.is_drilled(&pass, is_between_rapids) {
+                    self.push_milled(order, pass);
+                } else if self.passes.len() + self.along_tool.len() < self.max_passes {
+                    self.along_tool.push((order, pass, is_between_rapids));
+                } else {
+                    self.first_excess.get_or_insert(pass.backtrace);
+                }
+            }
+            CutKind::Across { is_between_rapids } => {
+                let is_milling = self.is_upright || self.milled_level.is_some() || !is_between_rapids;
+                if is_milling || self.max_passes <= self.across.len() {
+                    self.push_milled(order, pass);
+                } else {
+                    self.across.push((order, pass));
+                }
+            }
+        }
+    }
+
+    /// Ends the use of a tool: its strokes drill, unless it mills as deep.
+    pub(super) fn end_tool(&mut self) {
+        for (order, pass, is_between_rapids) in std::mem::take(&mut self.along_tool) {
+            match self.is_drilled(&pass, is_between_rapids) {
+                true => self.push_pass(order, pass),
+                false => self.push_milled(order, pass),
+            }
+        }
+        if self.milled_level.is_some() {
+            self.note_upright();
+        }
+        self.across_begin = self.across.len();
+        (self.milled_level, self.is_upright) = (None, false);
+    }
+
+    /// Returns the passes in their order, the strokes that are milling, and the first pass beyond the limit.
+    pub(super) fn finish(mut self) -> (Vec<DrillPass>, Option<MilledStrokes>, Option<Backtrace>) {
+        self.end_tool();
+        for (order, pass) in std::mem::take(&mut self.across) {
+            match self.has_upright_stroke {
+                true => self.push_milled(order, pass),
+                false => self.push_pass(order, pass),
+            }
+        }
+        self.passes.sort_by_key(|(order, _)| *order);
+        let passes = self.passes.into_iter().map(|(_, pass)| pass).collect();
+        (passes, self.milled, self.first_excess)
+    }
+
+    /// Returns true if a stroke along the tool drills, as far as known: between rapids one that goes deeper than anything
+    /// the tool mills, else one of a tool that never feeds across below its start.
+    fn is_drilled(&self, pass: &DrillPass, is_between_rapids: bool) -> bool {
+        let Some(lowest) = self.milled_level else { return true };
+        let height = |p: &Point3<f64>| p.coords.dot(&pass.axis);
+        match is_between_rapids {
+            true => height(&pass.bottom) < lowest - LEVEL_TOLERANCE,
+            false => height(&pass.start) <= lowest + LEVEL_TOLERANCE,
+        }
+    }
+
+    fn push_pass(&mut self, order: u32, pass: DrillPass) {
+        if self.passes.len() < self.max_passes {
+            self.passes.push((order, pass));
+        } else {
+            self.first_excess.get_or_insert(pass.backtrace);
+        }
+    }
+
+    /// Adds a stroke of a mill: a hole only where a nominal one is.
+    fn push_milled(&mut self, order: u32, pass: DrillPass) {
+        if self.nominal.has(&pass) {
+            self.push_pass(order, pass);
+            return;
+        }
+        let length = (pass.start - pass.bottom).norm();
+        let first = || MilledStrokes { count: 0, first: pass.backtrace, length };
+        self.milled.get_or_insert_with(first).count += 1;
+    }
+}
+
+impl MilledStrokes {
+    /// Returns the warning about all of them.
+    pub(super) fn finding(self) -> Diagnostic {
+        let message = format!(
+            "the tool mills: a feed of {:.3} mm and the way back along it are not counted as a hole",
+            self.length
+        );
+        let finding = Diagnostic::new(&FEED_NO_HOLE, message)
+            .with_severity(Severity::Warning)
+            .with_backtrace(self.first)
+            .help("if it is a hole, drill it by a cycle, or enter it in the reference");
+        with_count_note(finding, self.count)
+    }
+}
+
+impl HoleExtractor<'_> {
+    /// Returns the kind of a stroke that the tool has left, in feed if `is_feeding`.
+    pub(super) fn cut_kind(&self, line: &CuttingLine, is_feeding: bool) -> CutKind {
+        if self.surface.is_some() || line.is_cycle {
+            return CutKind::Drilled;
+        }
+        let is_between_rapids = !line.is_reached_by_feed && !is_feeding;
+        let along_tool = CutKind::AlongTool { is_between_rapids };
+        if let Some(axis) = line.tool_axis {
+            return if axis.dot(&line.out) < MIN_TOOL_COSINE { CutKind::Oblique } else { along_tool };
+        }
+        match line.upright.map(|upright| upright.dot(&line.out)) {
+            Some(cosine) if cosine.abs() <= MAX_SQUARE_SINE => CutKind::Across { is_between_rapids },
+            Some(cosine) if cosine < MIN_UPRIGHT_COSINE => CutKind::Oblique,
+            _ => along_tool,
+        }
+    }
+
+    /// Reports feeds that make no hole, each kind once in the program.
+    pub(super) fn report_uncounted(&mut self, feeds: Uncounted) {
+        if let Some((count, place, length)) = feeds.unretracted {
+            self.findings.add_in_program(&FEED_WITHOUT_RETRACT, &place, 0, count, |kind| {
+                let message = format!(
+                    "the tool does not retract along a feed of {length:.3} mm: not counted as a hole"
+                );
+                Diagnostic::new(kind, message)
+                    .with_severity(Severity::Warning)
+                    .help("retract along it before anything else moves, if it is a hole")
+            });
+        }
+        if let Some((count, place)) = feeds.curved {
+            self.findings.add_in_program(&FEED_NO_HOLE, &place, 0, count, |kind| {
+                Diagnostic::new(kind, "a curved feed on the part: not counted as a hole")
+                    .with_severity(Severity::Warning)
+                    .help("a hole is drilled along a straight line, or milled by full circles with the table stationary")
+            });
+        }
+    }
+
+    /// Follows a motion after strokes across Z: one along Z alone shows that the tool stands upright. G28 to machine zero
+    /// doesn't.
+    pub(super) fn check_upright(&mut self, from: &Position) {
+        let Some(z) = self.machine.axes.find(b'Z') else { return };
+        let to = &self.axis_position;
+        let is_along_z = (0..to.0.len()).all(|axis| (axis == z) == (from[axis] != to[axis]));
+        if is_along_z && to[z] != 0.0 {
+            self.strokes.note_upright();
+        }
+    }
+}
