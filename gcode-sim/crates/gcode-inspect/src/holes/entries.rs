@@ -9,7 +9,7 @@ use super::rapids::{TOUCH_DEPTH, format_point};
 use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
 use crate::machine::AxisMotion;
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::Event;
+use gcode_lang::motion::{Event, SpindleDirection};
 use gcode_part::{EntryPlanes, NearestPoint, Surface};
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
@@ -106,21 +106,23 @@ impl CutEntries {
         is_in_cut
     }
 
-    /// Returns true if a tool of this radius, from its tip upwards, is inside a cut hole at two points and all between them.
-    fn has_room(&self, radius: f64, points: &[Point3<f64>; 2]) -> bool {
-        let has_room = |hole: usize, cut: &Cut| {
-            let collar = self.planes.collar(hole);
-            let most = collar.hole_radius.max(cut.radius) + FIT - radius;
-            points.iter().all(|p| collar.from_axis(p) <= most && collar.depth(p) <= cut.depth + TOUCH_DEPTH)
-        };
+    /// Returns the largest radius about two points and all between them that is cut, in a hole and above it.
+    fn room_about(&self, points: &[Point3<f64>; 2]) -> Option<f64> {
         let margin = Vector3::repeat(MAX_HEIGHT);
-        let mut is_free = false;
+        let mut room: Option<f64> = None;
         for p in points {
             self.planes.around(&(p - margin), &(p + margin), &mut |hole| {
-                is_free = is_free || self.cuts[hole].iter().any(|cut| has_room(hole, cut));
+                let collar = self.planes.collar(hole);
+                let aside = points.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
+                let depth = points.iter().map(|p| collar.depth(p)).fold(f64::NEG_INFINITY, f64::max);
+                for cut in self.cuts[hole].iter().filter(|cut| depth <= cut.depth + TOUCH_DEPTH) {
+                    let radius = if cut.radius.is_finite() { cut.radius } else { 0.0 };
+                    let free = collar.hole_radius.max(radius) - aside;
+                    room = Some(room.map_or(free, |room| room.max(free)));
+                }
             });
         }
-        is_free
+        room
     }
 
     /// Records the cut of a feed inside a hole; `ends` are those of its piece in the collar.
@@ -169,7 +171,7 @@ impl CutEntries {
             let worst = worst.get_or_insert(None);
             let point = if collar.depth(&a) < collar.depth(&b) { b } else { a };
             let depth = collar.depth(&point);
-            if worst.is_none_or(|worst| worst.depth < depth) && !self.are_in_cut(hole, radius, &[a, b]) {
+            if worst.is_none_or(|worst| worst.depth < depth) && !self.are_in_one_cut(radius, &[a, b]) {
                 *worst = Some(PointInMetal { hole, point, depth });
             }
         });
@@ -271,10 +273,10 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Returns true if the tool moves in a hole that it finds cut, or above one.
-    pub(super) fn has_room_in_hole(&self, points: &[Point3<f64>; 2]) -> bool {
-        let radius = self.tool_radius();
-        self.entries.as_ref().zip(radius).is_some_and(|(entries, radius)| entries.has_room(radius, points))
+    /// Returns the largest radius about a straight travel that is cut, with [`FIT`] added; 0 beside the cut holes.
+    pub(super) fn room_in_hole(&self, points: &[Point3<f64>; 2]) -> f64 {
+        let room = self.entries.as_ref().and_then(|entries| entries.room_about(points));
+        room.map_or(0.0, |room| room + FIT)
     }
 
     /// Returns true for a point in a nominal hole or in the metal above it.
@@ -290,7 +292,12 @@ impl HoleExtractor<'_> {
         is_over
     }
 
+    /// Returns the radius of the tool; `None` if it is unknown, and for a boring bar with the spindle stopped, which is
+    /// shifted off the wall.
     pub(super) fn tool_radius(&self) -> Option<f64> {
+        if self.cutting_state.spindle_direction == SpindleDirection::Off {
+            return None;
+        }
         self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
     }
 

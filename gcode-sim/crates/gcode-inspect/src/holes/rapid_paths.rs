@@ -148,22 +148,28 @@ impl HoleExtractor<'_> {
             }
         }
         let parts = self.machine.tool_body(&self.setup);
-        if path.is_clear_by_planes(&parts, |p| surface.nearest(p))
-            || is_straight && start.is_some_and(|start| self.has_room_in_hole(&[start, pose.tip]))
-        {
+        if path.is_clear_by_planes(&parts, |p| surface.nearest(p)) {
             return;
         }
+        let room = start.filter(|_| is_straight).map_or(0.0, |start| self.room_in_hole(&[start, pose.tip]));
         let mut budget = std::mem::take(&mut self.search_budget);
-        let deepest = parts
-            .into_iter()
-            .map(|part| path.with_tool(part).deepest(&distance_from(&surface), TOUCH_DEPTH, &mut budget))
-            .find(|deepest| !matches!(deepest, Deepest::Clear));
-        self.search_budget = budget;
-        let Some(found) = deepest.and_then(|deepest| self.found(event, deepest)) else { return };
-        // The metal above a nominal hole goes with the hole: in a steep flank the tool meets it on its way to the entry.
-        if is_straight && self.is_over_nominal_hole(&found.point) {
-            return;
+        let mut found = None;
+        for (index, part) in parts.into_iter().enumerate().filter(|(_, part)| room < part.radius) {
+            // A boring bar with the spindle stopped is shifted off the wall.
+            let is_cutter = index == 0;
+            if is_cutter && 0.0 < room && self.tool_radius().is_none() {
+                continue;
+            }
+            let deepest = path.with_tool(part).deepest(&distance_from(&surface), TOUCH_DEPTH, &mut budget);
+            found = self.found(event, deepest);
+            // The metal above a nominal hole goes with the hole: in a steep flank the tool meets it on its way to the entry.
+            found = found.filter(|at| !(is_cutter && is_straight && self.is_over_nominal_hole(&at.point)));
+            if found.is_some() {
+                break;
+            }
         }
+        self.search_budget = budget;
+        let Some(found) = found else { return };
         // While an axis rotates, the clearance of the job decides; the shape of the tool's end is only assumed.
         let severity = error_if(is_straight || self.process_limits.clearance.is_none());
         let orders = if path.len() < 2 { "" } else { " on some of its paths" };
