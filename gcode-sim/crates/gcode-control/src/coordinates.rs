@@ -13,9 +13,34 @@ impl ControlData {
         Position(std::array::from_fn(|axis| self.zero(state, axis)))
     }
 
-    /// Returns a programmed point in machine coordinates, tool length included.
+    /// Returns a programmed end point in machine coordinates, tool length included.
     pub(super) fn to_machine(&self, state: &State, point: &Position) -> Position {
-        let work = state.transform.forward(*point);
+        self.work_to_machine(state, &self.to_work(state, point))
+    }
+
+    /// Returns a programmed point that is no end point in machine coordinates, as [`ControlData::to_machine`] without
+    /// rounding.
+    pub(super) fn to_machine_unrounded(&self, state: &State, point: &Position) -> Position {
+        self.work_to_machine(state, &state.transform.forward(*point))
+    }
+
+    /// Returns a programmed end point in work coordinates; those that rotation or scaling computes are rounded to the least
+    /// input increment.
+    pub(super) fn to_work(&self, state: &State, point: &Position) -> Position {
+        let mut work = state.transform.forward(*point);
+        let computed = state.transform.computed_axes();
+        for axis in (0..MAX_AXES).filter(|axis| computed >> axis & 1 == 1) {
+            work[axis] = self.round_to_increment(state, axis, work[axis]);
+        }
+        work
+    }
+
+    /// Returns a computed coordinate as a multiple of the least input increment, halves away from zero.
+    pub(super) fn round_to_increment(&self, state: &State, axis: AxisIndex, value: f64) -> f64 {
+        self.to_stored(state, Some(axis), self.to_program_unit(state, Some(axis), value))
+    }
+
+    fn work_to_machine(&self, state: &State, work: &Position) -> Position {
         let zero = self.zeros(state);
         let to_machine = |axis| self.on_machine(work[axis], zero[axis], state.length_offset[axis]);
         let mut machine = Position(std::array::from_fn(to_machine));
@@ -94,7 +119,7 @@ impl ControlData {
         }
     }
 
-    /// Converts an offset from the active unit to mm, a multiple of the increment, as it is stored.
+    /// Converts a length from the active unit to mm, a multiple of the increment, as offsets are stored.
     pub(super) fn to_stored(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
         let is_rotary = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
         let increment = self.settings.increment;

@@ -193,7 +193,7 @@ impl Planner<'_> {
                 let last = holes[holes.len() - 1];
                 (hole[plane.0], hole[plane.1]) = (last[plane.0], last[plane.1]);
                 state.polar.angle = first_angle + repeat * angle_step;
-                self.data.polar_point(&state.polar, plane, &mut hole);
+                self.data.polar_point(state, plane, &mut hole);
             }
             holes.push(hole);
         }

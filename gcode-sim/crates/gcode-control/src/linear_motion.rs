@@ -4,7 +4,7 @@ use std::hint::cold_path;
 use super::coordinates::shortest_rotation;
 use super::data::ControlData;
 use super::quantities::Measure;
-use super::state::{PolarPoint, State};
+use super::state::State;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, MAX_AXES, Position, UnknownAxes};
 use gcode_lang::program::modes::{Distance, FeedMode, Plane, Unit};
@@ -132,16 +132,14 @@ impl ControlData {
     }
 
     /// Moves a point to the position of a radius and an angle.
-    pub(super) fn polar_point(
-        &self,
-        polar: &PolarPoint,
-        plane: (AxisIndex, AxisIndex),
-        point: &mut Position,
-    ) {
+    pub(super) fn polar_point(&self, state: &State, plane: (AxisIndex, AxisIndex), point: &mut Position) {
+        let polar = &state.polar;
         let centre = if polar.is_incremental { (point[plane.0], point[plane.1]) } else { (0.0, 0.0) };
         let radius = polar.radius.unwrap_or(0.0);
-        point[plane.0] = self.remove_residue(centre.0 + radius * Deg(polar.angle).cos());
-        point[plane.1] = self.remove_residue(centre.1 + radius * Deg(polar.angle).sin());
+        let end = [centre.0 + radius * Deg(polar.angle).cos(), centre.1 + radius * Deg(polar.angle).sin()];
+        for (axis, value) in [plane.0, plane.1].into_iter().zip(end) {
+            point[axis] = self.round_to_increment(state, axis, value);
+        }
     }
 
     /// Returns the seconds of a rapid: all axes start together at their own rates, the slowest determines the time.

@@ -305,7 +305,7 @@ impl Planner<'_> {
         }
         let mut centre_point = state.programmed;
         (centre_point[plane.0], centre_point[plane.1]) = centre;
-        let middle = self.data.to_machine(state, &centre_point);
+        let middle = self.data.to_machine_unrounded(state, &centre_point);
         let centre = (middle[plane.0], middle[plane.1]);
         let (radius, sweep) = if is_round {
             let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());

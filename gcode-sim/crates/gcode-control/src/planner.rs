@@ -181,7 +181,7 @@ impl Planner<'_> {
                 state.unknown = state.apply_absolute(axis, state.unknown);
             }
         }
-        self.data.polar_point(&state.polar, (first, second), point);
+        self.data.polar_point(state, (first, second), point);
         Ok(())
     }
 }

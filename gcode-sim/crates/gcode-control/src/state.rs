@@ -391,6 +391,17 @@ impl Transform {
         self.mirrored_axes == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
     }
 
+    /// Returns the axes, as bits, whose work coordinates are products: scaled, or of a rotated plane.
+    pub(super) fn computed_axes(&self) -> u8 {
+        let rotated = self.rotation.map_or(0, |rotation| 1 << rotation.plane.0 | 1 << rotation.plane.1);
+        let tilted = self.tilt.map_or(0, |tilt| tilt.axes.iter().fold(0, |axes, axis| axes | 1 << axis));
+        let scaled = self.scaling.map_or(0, |scale| {
+            let is_scaled = |axis: &AxisIndex| scale.factor[*axis].abs() != 1.0;
+            (0..MAX_AXES).filter(is_scaled).fold(0, |axes, axis| axes | 1 << axis)
+        });
+        rotated | tilted | scaled
+    }
+
     pub(super) fn forward(&self, mut point: Position) -> Position {
         if self.is_none() {
             return point;

@@ -237,7 +237,7 @@ impl Registers {
     /// Returns the end of the last block: as programmed, or after mirror, scaling and rotation.
     fn end_point(&self) -> Position {
         match self.data.settings.undocumented.shows_transformed {
-            true => self.state.transform.forward(self.state.programmed),
+            true => self.data.to_work(&self.state, &self.state.programmed),
             false => {
                 if self.state.last_end_point.is_some() {
                     self.block_effects.record_note(Note::EndPointBeforeTransform);

@@ -6,17 +6,20 @@ mod ball;
 mod rapids;
 #[cfg(test)]
 mod tests;
+mod unknown;
 mod unread;
 
 use nalgebra::{Point3, Unit};
 
 use self::ball::{Ball, BallMove, BallUpdate};
+use self::unknown::UnknownPositions;
 use self::unread::{UnreadFeed, UnreadFeeds, UnreadReason};
 use crate::holes::unclear_head;
+use crate::holes::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Machine, Placement};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Backtrace, Event, EventSink};
+use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, UnknownAxes};
 use gcode_part::Surface;
 
 pub use self::rapids::RapidChecker;
@@ -110,6 +113,8 @@ pub struct Stylus<'m> {
     /// Radius of the ball, mm.
     radius: f64,
     ball: Ball,
+    positions: PositionTracker,
+    unknown_positions: UnknownPositions,
     current_pass: Option<ReadingPass>,
     unread_feeds: UnreadFeeds,
     result: StylusReadings,
@@ -128,6 +133,8 @@ impl<'m> Stylus<'m> {
             surface,
             radius,
             ball: Ball::default(),
+            positions: PositionTracker::default(),
+            unknown_positions: UnknownPositions::default(),
             current_pass: None,
             unread_feeds: UnreadFeeds::default(),
             result: StylusReadings::default(),
@@ -141,7 +148,7 @@ impl<'m> Stylus<'m> {
         self.end_pass();
         self.unread_feeds.finish(self.result.passes.len());
         let UnreadFeeds { gaps, approach_retract_counts, mut findings, .. } = self.unread_feeds;
-        findings.extend(self.result.findings);
+        findings.extend(self.unknown_positions.finish().chain(self.result.findings));
         StylusReadings { gaps, approach_retract_counts, findings, ..self.result }
     }
 
@@ -149,7 +156,8 @@ impl<'m> Stylus<'m> {
         self.result.passes.extend(self.current_pass.take());
     }
 
-    fn motion(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, kind: BallMove) {
+    /// Reads a motion; `unknown` are the axes of unknown position at its start or its end.
+    fn motion(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, kind: BallMove, unknown: UnknownAxes) {
         if self.is_full() || (travel.from == travel.to && travel.arc.is_none()) {
             return;
         }
@@ -167,6 +175,7 @@ impl<'m> Stylus<'m> {
                 return self.report_limit(event);
             }
         }
+        self.unknown_positions.report(self.machine, event, unknown, "the part's surface is read");
         if self.current_pass.is_none() {
             self.unread_feeds.begin_reading(self.result.passes.len());
         }
@@ -295,9 +304,13 @@ impl<'m> Stylus<'m> {
 
 impl EventSink for Stylus<'_> {
     fn event(&mut self, event: &Event<'_>) {
+        if let EventKind::PositionUnknown { axes } = event.kind {
+            self.positions.apply_event(self.machine, *axes);
+        }
         match self.ball.apply_event(self.machine, event) {
             BallUpdate::Moved { from, to, arc, kind } => {
-                self.motion(event, &AxisMotion { from: &from, to, arc }, kind);
+                let (was, is) = self.positions.advance(self.machine);
+                self.motion(event, &AxisMotion { from: &from, to, arc }, kind, was.union(is));
             }
             BallUpdate::Changed => self.end_pass(),
             BallUpdate::Unclear(text) => {

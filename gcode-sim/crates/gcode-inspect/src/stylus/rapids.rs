@@ -1,5 +1,6 @@
 //! Rapids with the ball of a stylus in the part: no probe detects that contact.
 use super::ball::{Ball, BallMove, BallUpdate};
+use super::unknown::UnknownPositions;
 use crate::findings::RAPID_INTO_PART;
 use crate::holes::per_block::PerBlock;
 use crate::holes::unknown_axes::PositionTracker;
@@ -22,6 +23,7 @@ pub struct RapidChecker<'m> {
     /// True once the ball has been outside: a run starts at machine zero, where no ball is.
     has_been_outside: bool,
     positions: PositionTracker,
+    unknown_positions: UnknownPositions,
     findings: PerBlock<(), Diagnostic>,
 }
 
@@ -35,13 +37,16 @@ impl<'m> RapidChecker<'m> {
             ball: Ball::default(),
             has_been_outside: false,
             positions: PositionTracker::default(),
+            unknown_positions: UnknownPositions::default(),
             findings: PerBlock::default(),
         }
     }
 
-    /// Returns the first finding of each block.
+    /// Returns the findings: one of each block, and one for each combination of axes with which the part is touched while
+    /// their position is unknown.
     pub fn finish(self) -> Vec<Diagnostic> {
-        self.findings.into_entries().map(|entry| entry.value).collect()
+        let rapids = self.findings.into_entries().map(|entry| entry.value);
+        self.unknown_positions.finish().chain(rapids).collect()
     }
 
     /// Returns the depth of the ball in the part.
@@ -94,7 +99,11 @@ impl EventSink for RapidChecker<'_> {
             BallMove::Rapid if !is.is_none() => {}
             BallMove::Rapid if !was.is_none() => self.report_rapid(event, self.depth(to), 0.0),
             BallMove::Rapid => self.check_rapid(event, &AxisMotion { from: &from, to, arc }),
-            BallMove::Probe | BallMove::Feed => {}
+            // A touch that ends in a known plane is where that is, whatever its start.
+            BallMove::Probe => {
+                self.unknown_positions.report(self.machine, event, is, "the part is touched");
+            }
+            BallMove::Feed => {}
         }
     }
 }

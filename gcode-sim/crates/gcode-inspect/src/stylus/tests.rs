@@ -1,9 +1,10 @@
 //! Readings of an edge finder round a sphere and an ellipsoid, computed by hand.
 use super::*;
-use crate::findings::PATH_NOT_READ;
+use crate::findings::{PATH_NOT_READ, START_UNKNOWN};
 use crate::holes::event_script::EventScript;
 use crate::machine::{Head, HeadKind};
-use gcode_lang::units::Deg;
+use gcode_lang::motion::Position;
+use gcode_lang::units::{Deg, MmPerMin};
 
 const SPHERE: Surface = Surface::Ellipsoid { a: 100.0, b: 100.0 };
 
@@ -173,4 +174,49 @@ fn feeds_without_a_reading_end_at_the_limit_of_points() {
     let limits: Vec<_> = many.findings.iter().filter(|finding| finding.kind == &LIMIT).collect();
     assert_eq!(limits.len(), 1, "{limits:?}");
     assert!(limits[0].message.contains("no readings after this"), "{limits:?}");
+}
+
+/// Unknown axes in the order X Y Z A B C.
+fn uncommanded(axes: u8) -> EventKind {
+    EventKind::PositionUnknown { axes: UnknownAxes { uncommanded: axes, ..UnknownAxes::default() } }
+}
+
+fn unknown_starts(findings: &[Diagnostic]) -> Vec<&str> {
+    findings.iter().filter(|f| f.kind == &START_UNKNOWN).map(|f| f.message.as_str()).collect()
+}
+
+/// Z is never commanded. A feed that begins at the unknown position is read there too.
+#[test]
+fn a_reading_with_an_axis_that_nothing_commands_is_an_error() {
+    let (x, y) = (103.0 * Deg(10.0).sin(), 103.0 * Deg(10.0).cos());
+    let path = |script: EventScript| {
+        script.then(&format!("rapid X-{x} Y200; feed Y{y}")).then(&format!("feed X{x}; feed Y200"))
+    };
+    let all = EventScript::new().with(uncommanded(0b111));
+    let without_z = readings(&Machine::default(), &path(all.clone().with(uncommanded(0b100))));
+    let expected =
+        "the part's surface is read with Z at an unknown position: no earlier block commands Z in G90";
+    assert_eq!(unknown_starts(&without_z.findings), [expected]);
+    assert_eq!(without_z.passes.len(), 1, "it is read all the same");
+    let with_z = readings(&Machine::default(), &path(all.with(uncommanded(0))));
+    assert_eq!(unknown_starts(&with_z.findings), [""; 0]);
+}
+
+/// Of a touch only the end counts: where the ball starts along its path does not matter.
+#[test]
+fn a_touch_with_an_axis_that_nothing_commands_is_an_error() {
+    let machine = Machine::default();
+    let touch = |end: u8| {
+        let mut to = Position::default();
+        to[1] = 103.0;
+        let script = EventScript::new().with(uncommanded(0b111)).with(uncommanded(end));
+        let script = script.with(EventKind::Skip { to, rate: MmPerMin(100.0), has_signal: true });
+        let mut rapids = RapidChecker::new(&machine, SPHERE, 3.0);
+        script.emit_to(&mut rapids);
+        rapids.finish()
+    };
+    let expected =
+        "the part is touched with X and Z at an unknown position: no earlier block commands X and Z in G90";
+    assert_eq!(unknown_starts(&touch(0b101)), [expected]);
+    assert_eq!(unknown_starts(&touch(0)), [""; 0]);
 }
