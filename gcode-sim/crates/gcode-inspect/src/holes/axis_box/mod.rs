@@ -305,8 +305,9 @@ impl<'m> AxisBox<'m> {
             bound = f64::INFINITY;
         }
         let found = best.map_or(least, |best| best.depth);
-        if let (true, Some(at)) = (found + RESOLUTION < bound, self.deeper_side(&cell.middle, bodies)) {
-            let point = self.point(&at);
+        let sides =
+            if found + RESOLUTION < bound { self.deeper_sides(&cell.middle, bodies) } else { Vec::new() };
+        for point in sides.iter().map(|side| self.point(side)) {
             bodies(&point, &Vector3::zeros(), &mut |nearest| {
                 let depth = -nearest.distance;
                 if best.map_or(least, |best| best.depth) < depth {

@@ -24,34 +24,38 @@ impl AxisBox<'_> {
         libm::hypot((u.abs() - half_u).max(0.0), (v.abs() - half_v).max(0.0)) <= tool.radius
     }
 
-    /// Returns the parameters of the point on the tool's side that faces the nearest body at the same height; `None` for the
-    /// tip.
-    pub(super) fn deeper_side(
+    /// Returns the parameters of the points on the tool's side that face the nearest body, at the same height and at the
+    /// end of the cylinder there; none for the tip.
+    pub(super) fn deeper_sides(
         &self,
         at: &[f64; MAX_PARAMETERS],
         bodies: &Bodies<'_>,
-    ) -> Option<[f64; MAX_PARAMETERS]> {
-        let (tool, motion) = (self.tool?, self.groups.len());
-        let mut on_axis = *at;
-        on_axis[motion + 1..motion + 3].fill(0.0);
+    ) -> Vec<[f64; MAX_PARAMETERS]> {
+        let (Some(tool), motion) = (self.tool, self.groups.len()) else { return Vec::new() };
+        let mut side = *at;
+        side[motion + 1..motion + 3].fill(0.0);
         let position = self.position(at);
         let frame = self.machine.part_frame(&position);
-        let axis = self.machine.tool_pose(&position, self.setup).axis?;
         let mut nearest_body: Option<NearestPoint> = None;
-        bodies(&self.point(&on_axis), &Vector3::zeros(), &mut |nearest| {
+        bodies(&self.point(&side), &Vector3::zeros(), &mut |nearest| {
             if nearest_body.as_ref().is_none_or(|body| nearest.distance < body.distance) {
                 nearest_body = Some(nearest);
             }
         });
-        let normal = frame.rotation * nearest_body?.normal.into_inner();
+        let (Some(axis), Some(body)) = (self.machine.tool_pose(&position, self.setup).axis, nearest_body)
+        else {
+            return Vec::new();
+        };
+        let normal = frame.rotation * body.normal.into_inner();
         let [across, beside] = directions_across(&axis).map(|direction| normal.dot(&direction));
         let length = libm::hypot(across, beside);
-        if length < 1e-9 {
-            return None;
+        if 1e-9 < length {
+            side[motion + 1] = -tool.radius * across / length;
+            side[motion + 2] = -tool.radius * beside / length;
         }
-        on_axis[motion + 1] = -tool.radius * across / length;
-        on_axis[motion + 2] = -tool.radius * beside / length;
-        Some(on_axis)
+        let mut ends = [side; 3];
+        (ends[1][motion], ends[2][motion]) = (tool.from, tool.to);
+        ends.into()
     }
 
     /// Returns true if a tangent plane at an end of the motion has every point of the tool on its outer side; false if that
