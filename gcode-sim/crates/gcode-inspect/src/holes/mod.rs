@@ -328,6 +328,10 @@ impl<'m> HoleExtractor<'m> {
         }
         match line.exit_after(&from, &tip) {
             ToolExit::OnLine => {
+                // Beyond the start of the feed the tool moves freely.
+                let (before, after) = (line.depth_of(&from), line.depth_of(&tip));
+                let is_beyond = kind == MotionKind::Rapid && after < 0.0 && after < before;
+                let free_from = is_beyond.then(|| if before > 0.0 { line.start } else { from });
                 let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {
@@ -348,7 +352,7 @@ impl<'m> HoleExtractor<'m> {
                     self.strokes.push(pass, self.cut_kind(&line, false));
                 }
                 self.current_line = Some(line);
-                None
+                free_from
             }
             exit @ (ToolExit::AlongLine | ToolExit::Sideways { .. }) => {
                 let is_along = exit == ToolExit::AlongLine;
