@@ -331,7 +331,7 @@ impl<'m> HoleExtractor<'m> {
                 // Beyond the start of the feed the tool moves freely.
                 let (before, after) = (line.depth_of(&from), line.depth_of(&tip));
                 let is_beyond = kind == MotionKind::Rapid && after < 0.0 && after < before;
-                let free_from = is_beyond.then(|| if before > 0.0 { line.start } else { from });
+                let free_from = is_beyond.then_some(if before > 0.0 { line.start } else { from });
                 let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {

@@ -72,7 +72,8 @@ impl AxisBox<'_> {
         };
         let is_outside = |p: &Point3<f64>| {
             let NearestPoint { distance, normal } = nearest(p);
-            let (along, most) = (normal.dot(&axis), libm::sqrt((1.0 - normal.dot(&axis).powi(2)).max(0.0)));
+            let along = normal.dot(&axis);
+            let most = libm::sqrt((1.0 - along * along).max(0.0));
             let travel = corners.iter().map(|corner| (corner - p).dot(&normal)).fold(0.0, f64::min);
             parts.iter().all(|part| {
                 let end = (along * part.from).min(along * part.to);
