@@ -7,7 +7,7 @@ use super::HoleExtractor;
 use super::axis_box::Bodies;
 use super::rapids::{TOUCH_DEPTH, format_point};
 use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
-use crate::machine::AxisMotion;
+use crate::machine::{AxisMotion, Pose};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, SpindleDirection};
 use gcode_part::{EntryPlanes, NearestPoint, Surface};
@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-6;
 /// Height above a hole up to which a tool counts as above it, mm.
 const MAX_HEIGHT: f64 = 50.0;
 
-/// Excess of a tool's radius over that of its hole, mm.
+/// Distance of a tool's side from the wall of the hole over which it stands, mm.
 const MAX_OVERSIZE: f64 = 0.05;
 
 /// Half diagonal up to which the holes in a box are few, mm.
@@ -279,15 +279,21 @@ impl HoleExtractor<'_> {
         room.map_or(0.0, |room| room + FIT)
     }
 
-    /// Returns true for a point in a nominal hole or in the metal above it.
-    pub(super) fn is_over_nominal_hole(&self, p: &Point3<f64>) -> bool {
-        let Some(entries) = &self.entries else { return false };
+    /// Returns true for a point in a nominal hole, or in the metal above it, if the tool stands above the entry in the
+    /// direction of the hole.
+    pub(super) fn is_over_nominal_hole(&self, p: &Point3<f64>, pose: &Pose) -> bool {
+        let (Some(entries), Some(axis)) = (&self.entries, pose.axis) else { return false };
+        let radius = self.machine.diameter_of(self.setup.tool).unwrap_or(0.0) / 2.0;
         let margin = Vector3::repeat(MAX_HEIGHT);
         let mut is_over = false;
         entries.planes.around(&(p - margin), &(p + margin), &mut |hole| {
             let collar = entries.planes.collar(hole);
-            let is_beside = collar.hole_radius.max(MAX_OFFSET) + MAX_OVERSIZE < collar.from_axis(p);
-            is_over = is_over || !is_beside && collar.depth(p) <= collar.rod.length;
+            let within = collar.hole_radius.max(radius) + MAX_OVERSIZE;
+            is_over |= collar.is_parallel(&axis)
+                && collar.depth(&pose.tip) <= TOUCH_DEPTH
+                && collar.from_axis(&pose.tip) <= within - radius
+                && collar.from_axis(p) <= within
+                && collar.depth(p) <= collar.rod.length;
         });
         is_over
     }

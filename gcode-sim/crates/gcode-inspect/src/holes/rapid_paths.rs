@@ -6,7 +6,7 @@ use super::entries::CutEntries;
 use super::rapids::{PLUNGE_COSINE, TOUCH_DEPTH, error_if, format_point};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
-use crate::machine::{AxisMotion, RapidPath, arrivals};
+use crate::machine::{AxisMotion, Pose, RapidPath, arrivals};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};
@@ -163,7 +163,11 @@ impl HoleExtractor<'_> {
             let deepest = path.with_tool(part).deepest(&distance_from(&surface), TOUCH_DEPTH, &mut budget);
             found = self.found(event, deepest);
             // The metal above a nominal hole goes with the hole: in a steep flank the tool meets it on its way to the entry.
-            found = found.filter(|at| !(is_cutter && is_straight && self.is_over_nominal_hole(&at.point)));
+            let is_at_hole = |at: &DeepPoint| {
+                let from = Pose { tip: start.unwrap_or(pose.tip), ..pose };
+                [from, pose].iter().any(|pose| self.is_over_nominal_hole(&at.point, pose))
+            };
+            found = found.filter(|at| !(is_cutter && is_straight && is_at_hole(at)));
             if found.is_some() {
                 break;
             }

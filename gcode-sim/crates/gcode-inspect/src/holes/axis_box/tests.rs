@@ -58,7 +58,8 @@ fn rotations_are_searched_with_the_slides() {
 }
 
 /// A tool of 10 and 40 long over a box of 200 × 10 × 190: at y 9.98 its side is 0.02 mm in the box, and at 10.2 it
-/// passes. Its upper end reaches 5 mm beyond the box if it comes from below.
+/// passes. Its lower end, 3 above the tip, stays above the box if the tip ends at z 93. Its upper end reaches 5 mm into the
+/// box if it comes from below.
 #[test]
 fn the_side_of_a_tool_is_searched() {
     let block = Surface::Block { min: Point3::new(-100.0, -5.0, -95.0), max: Point3::new(100.0, 5.0, 95.0) };
@@ -82,7 +83,8 @@ fn the_side_of_a_tool_is_searched() {
     let (is_clear, depth) = side([-150.0, 9.98, 50.0, 0.0], [150.0, 9.98, 50.0, 0.0]);
     assert!(!is_clear && (depth.unwrap() - 0.02).abs() < 1e-9, "{depth:?}");
     assert_eq!(side([-150.0, 10.2, 50.0, 0.0], [150.0, 10.2, 50.0, 0.0]).1, None);
-    assert_eq!(side([0.0, 20.0, 200.0, 0.0], [0.0, 20.0, -200.0, 0.0]), (true, None));
+    assert_eq!(side([0.0, 20.0, 200.0, 0.0], [0.0, 20.0, -200.0, 0.0]).1, None);
+    assert_eq!(side([0.0, 0.0, 150.0, 0.0], [50.0, 4.0, 93.0, 0.0]), (true, None));
     let (_, depth) = side([0.0, 0.0, -150.0, 0.0], [0.0, 0.0, -130.0, 0.0]);
     assert!((depth.unwrap() - 5.0).abs() < 0.01, "{depth:?}");
 }
