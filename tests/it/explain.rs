@@ -15,7 +15,7 @@ use gcode_sim::report::explain::{self, Page};
 use gcode_tests::{expect, files_below, workspace};
 
 fn is_finding(page: &Page) -> bool {
-    page.code == "limit" || page.code.contains('-')
+    matches!(page.code, "assumption" | "limit") || page.code.contains('-')
 }
 
 #[test]
@@ -132,7 +132,11 @@ fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
         Some(reference)
             if surface.is_none() || reference.pattern.is_some() || page.code.starts_with("hole-") =>
         {
-            simulation.verify(&reference, Tolerances::of(&reference, None), &machine).diagnostics
+            let mut verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
+            if page.code == "assumption" {
+                simulation.add_assumptions(&mut verdict, &request, surface, true);
+            }
+            verdict.diagnostics
         }
         _ => simulation.extracted.findings,
     }

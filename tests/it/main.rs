@@ -5,6 +5,7 @@ mod accepted;
 mod alignment;
 mod alignment_state;
 mod arithmetic;
+mod assumptions;
 mod blocks;
 mod budget;
 mod burr;
@@ -32,6 +33,7 @@ mod limits;
 mod misplaced;
 mod module_circles;
 mod mutations;
+mod one_verdict;
 #[cfg(feature = "browser")]
 mod page;
 mod pin_holes;

@@ -39,8 +39,13 @@ fn nominal(r: f64, y: f64, angles: &[f64]) -> Reference {
         diameter: None,
         from: None,
     };
-    Reference::of_list(HoleList { unit: Unit::Mm, holes: angles.iter().map(hole).collect(), stock: None })
-        .unwrap()
+    Reference::of_list(HoleList {
+        unit: Unit::Mm,
+        holes: angles.iter().map(hole).collect(),
+        stock: None,
+        assumptions: None,
+    })
+    .unwrap()
 }
 
 fn misplaced(lines: &str) -> Machine {

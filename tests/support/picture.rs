@@ -141,12 +141,30 @@ fn described(text: &str) -> (gcode_draw::Picture, String, [u32; 4]) {
         tolerance: form.tolerance,
         rotary: "B".to_owned(),
         purpose: PicturePurpose::Verdict,
+        verdict: verdict(&form.hole),
         holes: form.hole.iter().map(drawn_hole).collect(),
         path: form.path.iter().map(stroke).collect(),
         ..TopView::default()
     };
     let picture = if form.unrolled { development(&view).unwrap() } else { top_view(&view) };
     (picture, form.size, form.crop)
+}
+
+/// The line of a verdict on these holes; none if no hole is judged.
+fn verdict(holes: &[HoleCase]) -> Option<(HoleStatus, String)> {
+    let count = |standing: &str| holes.iter().filter(|hole| hole.standing == standing).count();
+    let [good, bad, missing, extra] = ["good", "bad", "missing", "extra"].map(count);
+    let all = good + bad + missing;
+    if all + extra == 0 {
+        return None;
+    }
+    if good == all && extra == 0 {
+        return Some((HoleStatus::Good, format!("PASS: {good} of {all} holes in tolerance")));
+    }
+    let others = [(bad, "out"), (missing, "missing"), (extra, "extra")];
+    let others = others.iter().filter(|(number, _)| *number != 0);
+    let others: String = others.map(|(number, word)| format!(", {number} {word}")).collect();
+    Some((HoleStatus::Bad, format!("FAIL: {good} of {all} in tolerance{others}")))
 }
 
 fn stroke(case: &PathCase) -> Stroke<3> {

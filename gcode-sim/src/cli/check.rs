@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         FindingFormat::Json => output::json(&CheckReport::new(&checked))?,
         FindingFormat::Sarif => {
             let sources = checked.memory.sources();
-            output::sarif(checked.findings.iter().map(|finding| Finding::of(finding, sources)))?;
+            output::sarif(checked.findings.iter().map(|finding| Finding::of(finding, sources)), None)?;
         }
     }
     Ok(if checked.has_findings() { ExitStatus::Failed } else { ExitStatus::Passed })

@@ -1,7 +1,40 @@
 //! Conditions of a run: the arguments of every command that executes a program.
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+
+use gcode_inspect::verify::denied_assumptions;
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::Backtrace;
+use gcode_part::Assumption;
+
+/// What a result must not rest on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Denial {
+    /// Values that the run reads and nothing in the program sets
+    Assumptions,
+}
+
+/// Denial of assumptions.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(super) struct Denials {
+    /// Fail if a hole depends on a value that the run reads and nothing in the program sets: a common variable, an
+    /// input, a clock, a block skip, an offset, an M code of the machine builder
+    #[arg(long, value_name = "WHAT", value_enum)]
+    deny: Option<Denial>,
+}
+
+impl Denials {
+    /// Returns true if assumptions are denied.
+    pub(super) fn denies_assumptions(self) -> bool {
+        self.deny == Some(Denial::Assumptions)
+    }
+
+    /// Returns the errors of assumptions that are denied; `holes` is the number of all holes.
+    pub(super) fn errors(self, assumptions: &[(Assumption, Backtrace)], holes: usize) -> Vec<Diagnostic> {
+        if self.denies_assumptions() { denied_assumptions(assumptions, holes) } else { Vec::new() }
+    }
+}
 
 /// A program and the conditions of its run.
 #[derive(Debug, Default, Args)]

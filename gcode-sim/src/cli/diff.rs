@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     match arguments.format {
         FindingFormat::Json => output::json(&report)?,
         FindingFormat::Text => output::print(&report.text())?,
-        FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name))?,
+        FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name), None)?,
     }
     if let Some(path) = &arguments.picture {
         let names = [&new_request, &old_request].map(render::name);
@@ -110,14 +110,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
     if let (Some(path), Some(old_trace), Some(new_trace)) = (&arguments.page, &old_trace, &new_trace) {
-        let judged = |revision: &Revision| {
-            let verify = |reference| {
+        let judged = |revision: &Revision, request: &Request| {
+            let verify = |reference: &Reference| {
                 let tolerances = Tolerances::of(reference, None);
-                revision.simulation.verify(reference, tolerances, &new_request.machine)
+                let mut verdict = revision.simulation.verify(reference, tolerances, &new_request.machine);
+                let body = reference.body(request.machine.stock);
+                revision.simulation.add_assumptions(&mut verdict, request, body, false);
+                verdict
             };
             reference.as_ref().map(verify)
         };
-        let (old_verdict, new_verdict) = (judged(&old), judged(&new));
+        let (old_verdict, new_verdict) = (judged(&old, &old_request), judged(&new, &new_request));
         let seen = |request, revision, trace, verdict| ObservedProgram { request, revision, trace, verdict };
         let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
         let of_old = arguments.old_libraries.iter().map(|folder| format!("--old-lib {}", folder.display()));

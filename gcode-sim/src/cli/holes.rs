@@ -3,17 +3,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::conditions::ProgramArguments;
+use super::conditions::{Denials, ProgramArguments};
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, options, output, page, progress};
 use crate::report::holes::{self as report, Origin};
-use gcode_part::{HoleList, Surface};
-use gcode_session::Simulation;
+use gcode_part::HoleList;
+use gcode_session::{Request, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
+
+    #[command(flatten)]
+    denials: Denials,
 
     /// Also write a page to this file: the holes, the path, the blocks and the values of the variables; opens in
     /// any browser
@@ -31,30 +34,34 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if let Some(path) = &arguments.page {
         let traced = page::simulate_traced(&request, &mut folders, None)?;
         page::write_alone(&request, &traced, None, &arguments.program.conditions, path)?;
-        let status = print_result(arguments, &traced.0.simulation, request.part.as_ref())?;
+        let status = print_result(arguments, &request, &traced.0.simulation)?;
         output::written("page", path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }
     let simulation =
         progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))?;
-    print_result(arguments, &simulation, request.part.as_ref())
+    print_result(arguments, &request, &simulation)
 }
 
 fn print_result(
     arguments: &Arguments,
+    request: &Request,
     simulation: &Simulation,
-    surface: Option<&Surface>,
 ) -> Result<ExitStatus, UsageError> {
     let mut list = simulation.hole_list();
-    let origin = match surface {
+    let origin = match &request.part {
         Some(surface) => {
             list.enter_at(surface);
             Origin::Surface
         }
         None => Origin::FeedStart,
     };
+    let assumed = simulation.dependences(request, None).numbered(&simulation.run);
+    let denied = arguments.denials.errors(&assumed, list.holes.len());
+    list.assumptions = Some(assumed.into_iter().map(|(assumption, _)| assumption).collect());
     print(&list, origin, arguments.format)?;
-    Ok(super::findings(&simulation.extracted.findings, &simulation.run))
+    let of_run = super::findings(&simulation.extracted.findings, &simulation.run);
+    Ok(of_run.max(super::findings(&denied, &simulation.run)))
 }
 
 /// Prints a list of holes in the given format.

@@ -36,6 +36,7 @@ use args::{Arguments, Command};
 
 use crate::report::diagnostic;
 use gcode_draw::PictureError;
+use gcode_inspect::verify::{Answer, Conclusion, Ending};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_session::{GrindingError, Run, SessionError};
 
@@ -50,6 +51,16 @@ pub enum ExitStatus {
     Invalid = 2,
     /// The control stopped with an alarm, or a limit ended the run: exit code 3.
     Stopped = 3,
+}
+
+impl From<Conclusion<'_>> for ExitStatus {
+    fn from(conclusion: Conclusion<'_>) -> Self {
+        match (conclusion.ending, conclusion.answer) {
+            (Ending::Alarm | Ending::Limit, _) => Self::Stopped,
+            (Ending::End, Answer::Fail) => Self::Failed,
+            (Ending::End, Answer::Pass) => Self::Passed,
+        }
+    }
 }
 
 impl From<ExitStatus> for ExitCode {
@@ -121,6 +132,12 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Man(folder) => packaging::man::<Arguments>(&folder),
         Command::Compare(arguments) => compare::run(&arguments),
     }
+}
+
+/// Prints the findings of a verdict and returns its exit status.
+fn concluded(conclusion: Conclusion<'_>, all: &[Diagnostic], run: &Run) -> ExitStatus {
+    findings(all, run);
+    conclusion.into()
 }
 
 /// Prints the findings and returns the exit status of the most severe one.

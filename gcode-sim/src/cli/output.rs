@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::UsageError;
 use super::format::TextFormat;
-use crate::report::sarif::{self, Finding};
+use crate::report::sarif::{self, Finding, Invocation};
 
 /// Prints a result. A reader that closes the pipe early (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), UsageError> {
@@ -38,10 +38,13 @@ pub fn report<R: serde::Serialize>(
     }
 }
 
-/// Prints findings as SARIF for a code review.
-pub(super) fn sarif(findings: impl IntoIterator<Item = Finding>) -> Result<(), UsageError> {
+/// Prints findings as SARIF for a code review, those of a verdict with its conclusion.
+pub(super) fn sarif(
+    findings: impl IntoIterator<Item = Finding>,
+    conclusion: Option<Invocation>,
+) -> Result<(), UsageError> {
     let folder = std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default();
-    json(&sarif::log(&findings.into_iter().collect::<Vec<_>>(), &folder))
+    json(&sarif::log(&findings.into_iter().collect::<Vec<_>>(), conclusion, &folder))
 }
 
 /// Prints `picture: top.png` for a further file that is written, if the results are text.

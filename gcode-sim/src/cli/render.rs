@@ -3,15 +3,16 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::conditions::ProgramArguments;
+use super::conditions::{Denials, ProgramArguments};
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
 use gcode_draw::{FluteView, Picture, Size, TopView};
-use gcode_inspect::verify::Tolerances;
-use gcode_part::NominalPart;
-use gcode_session::Request;
+use gcode_inspect::verify::{Answer, Tolerances};
+use gcode_lang::diag::Diagnostic;
+use gcode_part::{Assumption, NominalPart};
+use gcode_session::{Request, Run};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -29,6 +30,9 @@ pub(super) struct Arguments {
     /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
+
+    #[command(flatten)]
+    denials: Denials,
 
     /// The view [default: top, or side for a burr]
     #[arg(long, value_enum)]
@@ -66,14 +70,25 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     )?;
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
-    let (picture, view, run) = match nominal {
+    let drawn = match nominal {
+        Some(NominalPart::Flutes(_)) if arguments.denials.denies_assumptions() => {
+            return Err(UsageError::new("--deny is for holes, and the reference is a burr"));
+        }
         Some(NominalPart::Flutes(mut flutes)) => {
             flutes.surface_tolerance = tolerance.unwrap_or(flutes.surface_tolerance);
             let grind = |request: &Request| gcode_session::grind(request, &mut folders, &flutes);
             let grinding = progress::of_run(&mut request, grind)?;
-            let drawn = flute_view::of(&name(&request), &grinding, &grinding.verify());
+            let verdict = grinding.verify();
             let view = arguments.view.unwrap_or(View::Side);
-            (flute_picture(view, &drawn)?, view, grinding.run)
+            let picture = flute_picture(view, &flute_view::of(&name(&request), &grinding, &verdict))?;
+            Drawn {
+                picture,
+                view,
+                verdict: Some((verdict.verdict, verdict.summary.clone())),
+                status: Some(verdict.conclusion().into()),
+                findings: verdict.diagnostics,
+                run: grinding.run,
+            }
         }
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
@@ -82,23 +97,62 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             request.process_limits = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
             let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, metal.clone());
             let simulation = progress::of_run(&mut request, simulate)?;
-            let drawn = match &reference {
+            let view = arguments.view.unwrap_or(View::Top);
+            match &reference {
                 Some(reference) => {
                     let tolerances = Tolerances::of(reference, tolerance);
-                    let verdict = simulation.verify(reference, tolerances, &request.machine);
-                    top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine)
+                    let mut verdict = simulation.verify(reference, tolerances, &request.machine);
+                    let is_denied = arguments.denials.denies_assumptions();
+                    simulation.add_assumptions(&mut verdict, &request, reference.body(stock), is_denied);
+                    let drawn =
+                        top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
+                    Drawn {
+                        picture: hole_picture(view, &drawn)?,
+                        view,
+                        verdict: Some((verdict.verdict, verdict.summary.clone())),
+                        status: Some(verdict.conclusion().into()),
+                        findings: verdict.diagnostics,
+                        run: simulation.run,
+                    }
                 }
-                None => top::of_holes(&name(&request), &simulation, &request.machine),
-            };
-            let view = arguments.view.unwrap_or(View::Top);
-            (hole_picture(view, &drawn)?, view, simulation.run)
+                None => {
+                    let found = simulation.dependences(&request, None);
+                    let assumed = found.numbered(&simulation.run);
+                    let denied = arguments.denials.errors(&assumed, found.hole_count());
+                    let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();
+                    let drawn = top::of_holes(&name(&request), &simulation, &request.machine, &assumed);
+                    let findings: Vec<Diagnostic> = simulation.run.findings().chain(denied).collect();
+                    Drawn {
+                        picture: hole_picture(view, &drawn)?,
+                        view,
+                        verdict: None,
+                        status: None,
+                        findings,
+                        run: simulation.run,
+                    }
+                }
+            }
         }
     };
-    write(&picture, &arguments.size, &arguments.output)?;
-    let view = view.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
-    let report = RenderReport { picture: arguments.output.display().to_string(), view };
+    write(&drawn.picture, &arguments.size, &arguments.output)?;
+    let view = drawn.view.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+    let (verdict, summary) = drawn.verdict.unzip();
+    let report = RenderReport { picture: arguments.output.display().to_string(), view, verdict, summary };
     output::report(&report, RenderReport::text, arguments.format)?;
-    Ok(super::findings(&run.findings().collect::<Vec<_>>(), &run))
+    let of_findings = super::findings(&drawn.findings, &drawn.run);
+    Ok(drawn.status.unwrap_or(of_findings))
+}
+
+/// A picture with the verdict that it shows.
+struct Drawn {
+    picture: Picture,
+    view: View,
+    /// Answer and summary; `None` without a reference.
+    verdict: Option<(Answer, String)>,
+    /// Exit status of the verdict; that of the findings without one.
+    status: Option<ExitStatus>,
+    findings: Vec<Diagnostic>,
+    run: Run,
 }
 
 fn hole_picture(view: View, drawn: &TopView) -> Result<Picture, UsageError> {

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::conditions::ProgramArguments;
+use super::conditions::{Denials, ProgramArguments};
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress};
 use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport};
@@ -19,6 +19,9 @@ pub(super) struct Arguments {
     /// Add every move to the result, in machine coordinates
     #[arg(long)]
     moves: bool,
+
+    #[command(flatten)]
+    denials: Denials,
 
     /// Write what the program prints (DPRNT, BPRNT) to this file
     #[arg(long, value_name = "FILE")]
@@ -62,10 +65,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
         output::write(path, &bytes)?;
     }
-    let report = RunReport::new(&run, &request.machine, moves.as_ref(), system);
+    let found = run.dependences(&request);
+    let (assumed, holes) = (found.numbered(&run), found.hole_count());
+    let denied = arguments.denials.errors(&assumed, holes);
+    let assumptions = (assumed.into_iter().map(|(assumption, _)| assumption).collect(), holes);
+    let report = RunReport::new(&run, &request.machine, moves.as_ref(), system, assumptions);
     output::report(&report, RunReport::text, arguments.format)?;
     let in_part = super::findings(&rapids, &run);
-    let status = in_part.max(super::findings(&run.findings().collect::<Vec<_>>(), &run));
+    let of_run = super::findings(&run.findings().collect::<Vec<_>>(), &run);
+    let status = in_part.max(of_run).max(super::findings(&denied, &run));
     if moves.is_some_and(|moves| moves.is_truncated) {
         output::print_message(&format!(
             "error: --moves: more than {MAX_MOVES} moves; later ones are not in the list\n"

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::conditions::ProgramArguments;
+use super::conditions::{Denials, ProgramArguments};
 use super::format::FindingFormat;
 use super::library::Folders;
 use super::{ExitStatus, UsageError, options, output, page, progress, render};
-use crate::report::sarif::Finding;
+use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view, top};
 use gcode_draw::Picture;
-use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_inspect::verify::{Conclusion, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Flutes;
 use gcode_part::NominalPart;
@@ -36,6 +36,9 @@ pub(super) struct Arguments {
     /// Tolerance of a hole's depth either way, mm [default: the job's, or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     depth_tolerance: Option<f64>,
+
+    #[command(flatten)]
+    denials: Denials,
 
     /// List the worst hole first
     #[arg(long)]
@@ -74,6 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
                 ("--depth-tolerance", depth.is_some()),
+                ("--deny", arguments.denials.denies_assumptions()),
                 ("--worst-first", arguments.worst_first),
                 ("--full", arguments.full),
                 ("--page", arguments.page.is_some()),
@@ -97,14 +101,14 @@ fn flutes(
     let verdict = grinding.verify();
     let table = || flute_table::table(&verdict);
     let picture = || gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
-    let result = (&verdict, verdict.verdict, verdict.diagnostics.as_slice());
+    let result = (&verdict, verdict.conclusion(), verdict.diagnostics.as_slice());
     print_verdict(arguments, result, &grinding.run, table, picture)
 }
 
 /// Prints a verdict with its findings and draws its picture.
 fn print_verdict(
     arguments: &Arguments,
-    (verdict, answer, findings): (&impl Serialize, Answer, &[Diagnostic]),
+    (verdict, conclusion, findings): (&impl Serialize, Conclusion<'_>, &[Diagnostic]),
     run: &Run,
     table: impl Fn() -> String,
     picture: impl Fn() -> Picture,
@@ -113,16 +117,17 @@ fn print_verdict(
     match arguments.format {
         FindingFormat::Json => output::json(verdict)?,
         FindingFormat::Text => output::print(&table())?,
-        FindingFormat::Sarif => output::sarif(findings.iter().map(|finding| Finding::of(finding, sources)))?,
+        FindingFormat::Sarif => {
+            let findings = findings.iter().map(|finding| Finding::of(finding, sources));
+            let exit_code = ExitStatus::from(conclusion) as u8;
+            output::sarif(findings, Some(Invocation::new(exit_code, conclusion.line())))?;
+        }
     }
     if let Some(path) = &arguments.picture {
         render::write(&picture(), "1600x1200", path)?;
         output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
-    Ok(match (super::findings(findings, run), answer) {
-        (ExitStatus::Passed, Answer::Fail) => ExitStatus::Failed,
-        (status, _) => status,
-    })
+    Ok(super::concluded(conclusion, findings, run))
 }
 
 fn holes(
@@ -138,13 +143,18 @@ fn holes(
     let print = |simulation: &Simulation, verdict: &Verdict| {
         let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
         let view = || top::of_verdict(&name, simulation, reference, verdict, &machine);
-        let result = (verdict, verdict.verdict, verdict.diagnostics.as_slice());
+        let result = (verdict, verdict.conclusion(), verdict.diagnostics.as_slice());
         let picture = || gcode_draw::main_view(&view());
         print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
+    let add_assumptions = |simulation: &Simulation, verdict: &mut Verdict, request: &Request| {
+        let is_denied = arguments.denials.denies_assumptions();
+        simulation.add_assumptions(verdict, request, reference.body(request.machine.stock), is_denied);
+    };
     if let Some(path) = &arguments.page {
         let traced = page::simulate_traced(request, &mut folders, reference.metal(request.machine.stock))?;
-        let verdict = traced.0.simulation.verify(reference, tolerances, &machine);
+        let mut verdict = traced.0.simulation.verify(reference, tolerances, &machine);
+        add_assumptions(&traced.0.simulation, &mut verdict, request);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
         page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;
         let status = print(&traced.0.simulation, &verdict)?;
@@ -155,5 +165,7 @@ fn holes(
         gcode_session::simulate(request, &mut folders, reference.metal(request.machine.stock))
     };
     let simulation = progress::of_run(request, simulate)?;
-    print(&simulation, &simulation.verify(reference, tolerances, &machine))
+    let mut verdict = simulation.verify(reference, tolerances, &machine);
+    add_assumptions(&simulation, &mut verdict, request);
+    print(&simulation, &verdict)
 }

@@ -77,6 +77,7 @@ pub fn of_changes(
         is_rotary_reversed: rotary.is_reversed(),
         holes,
         purpose: PicturePurpose::Change,
+        verdict: None,
         other_differences: others.len(),
         ending: others.iter().find(|(code, _)| *code == "outcome").map(|_| {
             let stops = |record: &Record| record.outcome() != "end";

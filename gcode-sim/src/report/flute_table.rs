@@ -1,7 +1,7 @@
 //! The verdict on flutes as text, with the helix angles of both laws side by side.
 use std::fmt::Write;
 
-use super::verdict_table::answer_word;
+use super::verdict_table::append_conclusion;
 use gcode_inspect::verify::flutes::{FluteVerdict, LawAngles, NominalFlutes};
 
 /// Formats the verdict; lengths in mm, angles in degrees. Values are judged unrounded and shown rounded.
@@ -54,7 +54,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
         }
         text.push('\n');
     }
-    let _ = writeln!(text, "{}     {}", answer_word(verdict.verdict), verdict.sentence());
+    append_conclusion(&mut text, &verdict.conclusion(), &verdict.likely_causes);
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }

@@ -1,10 +1,10 @@
 //! Contents of a burr's pictures: its outline, the ground flutes, and the helix angle along them.
 use nalgebra::Point3;
 
+use super::top::drawn_conclusion;
 use gcode_draw::{Fault, FlutePoint, FluteView, HelixCourses, HelixPoint, HoleStatus};
 use gcode_inspect::findings::{FLUTE_EXTRA, FLUTE_MISSING};
 use gcode_inspect::flutes::{GrindingPass, Trace};
-use gcode_inspect::verify::Answer;
 use gcode_inspect::verify::flutes::{FluteVerdict, describe_kind};
 use gcode_lang::units::Deg;
 use gcode_part::job::FluteLaw;
@@ -31,10 +31,7 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
     };
     FluteView {
         name: name.to_owned(),
-        verdict: match verdict.verdict {
-            Answer::Pass => (HoleStatus::Good, format!("PASS: {}", verdict.sentence())),
-            Answer::Fail => (HoleStatus::Bad, format!("FAIL: {}", verdict.sentence())),
-        },
+        verdict: drawn_conclusion(&verdict.conclusion()),
         lines: vec![
             format!("Law: {}, {}° on the cylinder", verdict.law, verdict.helix),
             format!(

@@ -1,6 +1,7 @@
 //! A list of holes as a table and as CSV.
 use std::fmt::Write;
 
+use super::verdict_table::append_assumptions;
 use gcode_part::HoleList;
 
 /// Point from which the depth of each hole counts.
@@ -50,6 +51,7 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
         );
     }
     let _ = writeln!(text, "{} holes, mm, in the part's frame", list.holes.len());
+    append_assumptions(&mut text, list.assumptions.as_deref().unwrap_or_default(), list.holes.len());
     text
 }
 

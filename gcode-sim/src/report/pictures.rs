@@ -3,6 +3,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use gcode_draw::Difference;
+use gcode_inspect::verify::Answer;
 
 /// The document of `render --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -11,12 +12,18 @@ pub(crate) struct RenderReport {
     pub(crate) picture: String,
     /// Name of the view.
     pub(crate) view: String,
+    /// The answer of the verdict; null without a reference.
+    pub(crate) verdict: Option<Answer>,
+    /// The reasons for the answer in one line; null without a reference.
+    pub(crate) summary: Option<String>,
 }
 
 impl RenderReport {
     /// Formats the result for a terminal.
     pub(crate) fn text(&self) -> String {
-        format!("picture: {}\n", self.picture)
+        let verdict = self.verdict.zip(self.summary.as_ref());
+        let verdict = verdict.map(|(answer, summary)| format!("{}     {summary}\n", answer.word()));
+        format!("{}picture: {}\n", verdict.unwrap_or_default(), self.picture)
     }
 }
 

@@ -11,6 +11,7 @@ use gcode_inspect::machine::Machine;
 use gcode_lang::alarm::remedy;
 use gcode_lang::motion::{Axes, Event, EventKind, EventSink, Position};
 use gcode_lang::source::Span;
+use gcode_part::Assumption;
 use gcode_review::BlockLocation;
 use gcode_session::Run;
 
@@ -40,6 +41,8 @@ pub(crate) struct RunReport {
     pub(crate) blocks: u64,
     pub(crate) moves: u64,
     pub(crate) seconds: f64,
+    /// Values that the run read and nothing in the program set; `decides` holds numbers of holes as in `holes`.
+    pub(crate) assumptions: Vec<Assumption>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) path: Option<Vec<MoveReport>>,
     /// Letters of the axes that nothing has commanded, as in `Y and Z`.
@@ -48,6 +51,9 @@ pub(crate) struct RunReport {
     /// Unit of the linear axes in the active work coordinate system.
     #[serde(skip)]
     work_unit: &'static str,
+    /// Number of holes that the run makes.
+    #[serde(skip)]
+    hole_count: usize,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -176,12 +182,14 @@ impl EventSink for MoveRecorder {
 }
 
 impl RunReport {
-    /// Builds the report of a run; `moves` and the values of `system` variables are optional.
+    /// Builds the report of a run; `moves` and the values of `system` variables are optional. `assumptions` come with the
+    /// number of holes.
     pub(crate) fn new(
         run: &Run,
         machine: &Machine,
         moves: Option<&MoveRecorder>,
         system: Vec<(u32, Value)>,
+        (assumptions, hole_count): (Vec<Assumption>, usize),
     ) -> Self {
         let control = &run.control;
         let axes = &control.settings().axes;
@@ -232,6 +240,8 @@ impl RunReport {
             blocks: control.blocks(),
             moves: control.moves(),
             seconds: control.seconds().0,
+            assumptions,
+            hole_count,
             path,
             uncommanded: axes.names(uncommanded),
             work_unit: if control.is_inch() { "inches" } else { "mm" },
@@ -269,6 +279,9 @@ impl RunReport {
                 text,
                 "passed on  {code}, first in {program} line {line}: left to the machine builder, not simulated"
             );
+        }
+        for assumption in &self.assumptions {
+            let _ = writeln!(text, "assumes    {}", assumption.sentence(self.hole_count));
         }
         for (number, value) in &self.variables {
             let _ = writeln!(text, "{:<11}{}", format!("#{number}"), plain(*value));

@@ -69,7 +69,24 @@ pub(crate) struct Log {
 struct Run {
     tool: Tool,
     column_kind: &'static str,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    invocations: Vec<Invocation>,
     results: Vec<Outcome>,
+}
+
+/// The run of the tool: its exit code, and what it means.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Invocation {
+    execution_successful: bool,
+    exit_code: u8,
+    exit_code_description: String,
+}
+
+impl Invocation {
+    pub(crate) fn new(exit_code: u8, exit_code_description: String) -> Self {
+        Self { execution_successful: true, exit_code, exit_code_description }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -147,8 +164,9 @@ struct Region {
     start_column: Option<u32>,
 }
 
-/// Builds the log of all findings. Files below `root`, the working directory, have relative names.
-pub(crate) fn log(findings: &[Finding], root: &str) -> Log {
+/// Builds the log of all findings, of a verdict with its conclusion. Files below `root`, the working directory, have
+/// relative names.
+pub(crate) fn log(findings: &[Finding], conclusion: Option<Invocation>, root: &str) -> Log {
     let mut indices: BTreeMap<&str, usize> = findings.iter().map(|finding| (&*finding.code, 0)).collect();
     indices.values_mut().enumerate().for_each(|(number, index)| *index = number);
     let rules = indices.keys().map(|code| rule(code)).collect();
@@ -168,6 +186,7 @@ pub(crate) fn log(findings: &[Finding], root: &str) -> Log {
     let run = Run {
         tool: Tool { driver },
         column_kind: "unicodeCodePoints",
+        invocations: conclusion.into_iter().collect(),
         results: findings.iter().map(outcome).collect(),
     };
     Log { schema: "https://json.schemastore.org/sarif-2.1.0.json", version: "2.1.0", runs: [run] }

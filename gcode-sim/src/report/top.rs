@@ -3,12 +3,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::figures::with_sign;
+use super::figures::{count, with_sign};
 use gcode_draw::{Cylinder, DrawnHole, HoleStatus, Side, TopView};
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::machine::{AxisLink, HeadKind, LinkMotion, Machine};
-use gcode_inspect::verify::{Neighbours, Verdict};
+use gcode_inspect::verify::{Answer, Conclusion, Neighbours, Verdict};
 use gcode_lang::motion::AxisIndex;
+use gcode_part::Assumption;
 use gcode_part::Hole;
 use gcode_part::Pattern;
 use gcode_part::Reference;
@@ -16,7 +17,12 @@ use gcode_part::Surface;
 use gcode_session::Simulation;
 
 /// Builds the view of holes without a reference.
-pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopView {
+pub fn of_holes(
+    name: &str,
+    simulation: &Simulation,
+    machine: &Machine,
+    assumptions: &[Assumption],
+) -> TopView {
     let rotary = Rotary::of(machine);
     let found = simulation.hole_list().holes;
     let side = side_along_holes(&found).unwrap_or_else(|| side(machine));
@@ -31,6 +37,7 @@ pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopVi
     TopView {
         name: name.to_owned(),
         side,
+        lines: assumption_lines(assumptions, holes.len()).collect(),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
@@ -87,13 +94,24 @@ pub fn of_verdict(
             .iter()
             .map(closing_sentence)
             .chain(verdict.neighbours.iter().flat_map(neighbour_range))
+            .chain(assumption_lines(&verdict.assumptions, verdict.holes.len() + verdict.extra.len()))
             .collect(),
+        verdict: Some(drawn_conclusion(&verdict.conclusion())),
         tolerance: Some(verdict.tolerance),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
         ..TopView::default()
     }
+}
+
+/// Returns a conclusion as the line of a picture, with the status that gives its colour.
+pub(super) fn drawn_conclusion(conclusion: &Conclusion<'_>) -> (HoleStatus, String) {
+    let status = match conclusion.answer {
+        Answer::Pass => HoleStatus::Good,
+        Answer::Fail => HoleStatus::Bad,
+    };
+    (status, conclusion.line())
 }
 
 /// Returns a hole without nominal, actual and remarks.
@@ -166,6 +184,17 @@ fn closing_sentence(pattern: &Pattern) -> String {
 fn neighbour_range(neighbours: &Neighbours) -> Option<String> {
     let (min, max) = (neighbours.min.as_ref()?, neighbours.max.as_ref()?);
     Some(format!("neighbours {:.4} to {:.4} mm apart", min.distance, max.distance))
+}
+
+/// Number of assumptions that a picture lists.
+const MAX_ASSUMPTIONS: usize = 3;
+
+/// Returns a line for each of the first assumptions, and the number of the others; `holes` is the number of all holes.
+fn assumption_lines(assumptions: &[Assumption], holes: usize) -> impl Iterator<Item = String> + '_ {
+    let first = assumptions.iter().take(MAX_ASSUMPTIONS);
+    let more = assumptions.len().saturating_sub(MAX_ASSUMPTIONS);
+    let first = first.map(move |assumption| format!("assumes {}", assumption.sentence(holes)));
+    first.chain((0 < more).then(|| format!("and {}", count(more, "more assumption"))))
 }
 
 /// Locates no block: a picture shows none.

@@ -2,7 +2,10 @@
 use std::fmt::Write;
 
 use super::figures::{count, rounded, signed, signed_to};
-use gcode_inspect::verify::{Answer, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict};
+use gcode_inspect::verify::{
+    Conclusion, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict,
+};
+use gcode_part::Assumption;
 
 /// Extent and order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -138,19 +141,7 @@ const MAX_LISTED: usize = 12;
 
 /// Writes the summary below the table: the answer, the worst hole, missing and extra holes.
 fn summary(text: &mut String, verdict: &Verdict) {
-    let good = verdict.holes.iter().filter(|hole| hole.ok).count();
-    let nominal = verdict.holes.len() + verdict.missing.len();
-    let motion = verdict.findings.iter().filter(|f| f.severity == "error" && f.from_motion).count();
-    let others = [
-        (verdict.missing.len(), format!("{} missing", verdict.missing.len())),
-        (verdict.extra.len(), format!("{} extra", verdict.extra.len())),
-        (motion, format!("{} in the motion", count(motion, "error"))),
-    ];
-    let mut parts = vec![format!("{good} of {} in tolerance", count(nominal, "hole"))];
-    parts.extend(others.into_iter().filter(|(number, _)| *number != 0).map(|(_, part)| part));
-    let unchecked = verdict.unchecked_motion.map(|motion| format!("; not checked: {motion}"));
-    let answer = answer_word(verdict.verdict);
-    let _ = writeln!(text, "{answer}     {}{}", parts.join(", "), unchecked.unwrap_or_default());
+    append_conclusion(text, &verdict.conclusion(), &verdict.likely_causes);
     if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
         let _ = writeln!(
             text,
@@ -187,6 +178,7 @@ fn summary(text: &mut String, verdict: &Verdict) {
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }
+    append_assumptions(text, &verdict.assumptions, verdict.holes.len() + verdict.extra.len());
     if !verdict.missing.is_empty() {
         let _ = writeln!(text, "missing  {}", list_first(&verdict.missing, |id| id.clone(), ", "));
     }
@@ -228,17 +220,25 @@ fn made_by(hole: &HoleVerdict) -> String {
     format!("{} line {}{tool}{}", hole.from.program, hole.from.line, calls.concat())
 }
 
-/// Returns the answer in capitals.
-pub(super) fn answer_word(answer: Answer) -> &'static str {
-    match answer {
-        Answer::Pass => "PASS",
-        Answer::Fail => "FAIL",
+/// Writes a line for each assumption; `holes` is the number of all holes of the result.
+pub(super) fn append_assumptions(text: &mut String, assumptions: &[Assumption], holes: usize) {
+    for assumption in assumptions {
+        let _ = writeln!(text, "assumes  {}", assumption.sentence(holes));
+    }
+}
+
+/// Writes the line that stands for the verdict, and below it what probably explains it.
+pub(super) fn append_conclusion(text: &mut String, conclusion: &Conclusion<'_>, likely_causes: &[String]) {
+    let _ = writeln!(text, "{}     {}", conclusion.answer.word(), conclusion.summary);
+    if !likely_causes.is_empty() {
+        let _ = writeln!(text, "cause    {}", list_first(likely_causes, String::clone, "\n         "));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gcode_inspect::verify::{Answer, Ending};
     use gcode_part::Origin;
 
     fn hole(id: &str, phi: f64, error_codes: &[&'static str]) -> HoleVerdict {
@@ -274,6 +274,9 @@ mod tests {
             tolerance: 0.1,
             depth_tolerance: 0.1,
             verdict: Answer::Fail,
+            outcome: Ending::End,
+            summary: "1 of 17 holes in tolerance, 15 missing".to_owned(),
+            likely_causes: Vec::new(),
             worst: Some(0.1234),
             worst_from: Some("hole 2, …".into()),
             rounding: Some(0.0211),
@@ -283,7 +286,7 @@ mod tests {
             findings: Vec::new(),
             neighbours: None,
             not_checked: Vec::new(),
-            unchecked_motion: None,
+            assumptions: Vec::new(),
             diagnostics: Vec::new(),
         }
     }

@@ -1,6 +1,6 @@
 //! The head of the sheet: part, machine, programs, and the verdict of the simulation.
 use gcode_sim::report::encode::sha256;
-use gcode_sim::report::figures::{count, rounded};
+use gcode_sim::report::figures::rounded;
 use maud::{Markup, html};
 
 use super::{blank, cell, kind, mains, table};
@@ -32,17 +32,18 @@ pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
 pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
     html! {
         div.verdict {
-            b { "PASS. " (BASIS) ". " }
             @match &sheet.checked.verdict {
                 PackageVerdict::Holes(verdict) => {
-                    (count(verdict.holes.len(), "hole")) ", all in tolerance"
+                    b { (verdict.conclusion().answer.word()) ". " (BASIS) ". " }
+                    (verdict.summary)
                     @if let Some(worst) = verdict.worst {
                         "; the worst position is Φ" (rounded(worst, 4)) ", tolerance Φ" (verdict.tolerance)
                     }
                     "."
                 }
                 PackageVerdict::Flutes(verdict) => {
-                    (verdict.sentence())
+                    b { (verdict.conclusion().answer.word()) ". " (BASIS) ". " }
+                    (verdict.summary)
                     @if let Some(off) = verdict.surface_deviation {
                         "; contact deviation from the tooth bottom at most " (rounded(off, 4)) " mm, tolerance " (verdict.tolerance)
                         " mm"
@@ -50,6 +51,7 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
                     "."
                 }
                 PackageVerdict::Measured => {
+                    b { "PASS. " (BASIS) ". " }
                     "On simulated parts in known wrong positions:"
                     @for line in sheet.checked.report.lines() { p { (line) } }
                     @for warning in &sheet.checked.warnings { p { b { (warning.trim_end()) } } }

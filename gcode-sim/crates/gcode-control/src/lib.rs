@@ -94,6 +94,8 @@ mod next_block;
 mod residual_state;
 mod unknown_position;
 
+pub mod slice;
+
 pub use self::control::{Control, Observer};
 pub use self::next_block::{BlockCommands, UnsimulatedCodes, modal_code};
 pub use self::notes::Note;

@@ -2,6 +2,7 @@
 
 gcode_lang::finding_kinds! {
     "../../../../docs/explain/";
+    ASSUMPTION = "assumption", Error, "a value that nothing in the program sets decides a hole";
     AXIS_CARRIES_NOTHING = "axis-carries-nothing", Warning, "an axis of the control moves neither part nor tool";
     AXIS_SIGNS = "axis-signs", Warning, "the machine file and the job give an axis opposite signs";
     BACK_BORED = "back-bored", Warning, "a bore from the back is not among the holes";

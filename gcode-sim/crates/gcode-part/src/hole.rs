@@ -3,6 +3,7 @@ use nalgebra::{Point3, Unit as Direction, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::assumption::Assumption;
 use super::stock::Stock;
 use super::surface::Surface;
 
@@ -61,6 +62,9 @@ pub struct HoleList {
     /// Solid material of the part, for a reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stock: Option<Stock>,
+    /// Values that the run read and nothing in the program set; absent in a reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub assumptions: Option<Vec<Assumption>>,
 }
 
 impl HoleList {

@@ -33,6 +33,7 @@
 //! ```
 #![warn(missing_docs)]
 
+mod assumption;
 mod clusters;
 mod distance;
 mod entry_planes;
@@ -56,6 +57,7 @@ mod stock;
 mod surface;
 mod touch_uncertainty;
 
+pub use assumption::{Assumption, AssumptionPlace};
 pub use clusters::Clusters;
 
 pub use entry_planes::{Collar, EntryPlanes, Metal};

@@ -54,13 +54,17 @@ impl Reference {
     /// Returns what is known to be metal; `of_machine` is the stock of the machine file, which that of the reference
     /// overrides. Without either the body is the part inside its surface; a hole list has none.
     pub fn metal(&self, of_machine: Option<Stock>) -> Metal {
-        let stock = self.stock.or(of_machine).unwrap_or(Stock::Surface {});
-        Metal { body: stock.body(self.surface), entries: Some(Arc::new(EntryPlanes::of(&self.holes))) }
+        Metal { body: self.body(of_machine), entries: Some(Arc::new(EntryPlanes::of(&self.holes))) }
+    }
+
+    /// Returns the body of [`Self::metal`].
+    pub fn body(&self, of_machine: Option<Stock>) -> Option<Surface> {
+        self.stock.or(of_machine).unwrap_or(Stock::Surface {}).body(self.surface)
     }
 
     /// Returns the hole list that `reference` writes.
     pub fn list(&self) -> HoleList {
-        HoleList { unit: Unit::Mm, holes: self.holes.clone(), stock: self.stock }
+        HoleList { unit: Unit::Mm, holes: self.holes.clone(), stock: self.stock, assumptions: None }
     }
 }
 

@@ -1,10 +1,10 @@
-//! Likely causes of a verdict: unset work offsets, and numbers without a decimal point; and of an endless loop: a
+//! Likely causes of a verdict: unset work offsets, and what a check of the program's text finds; and of an endless loop: a
 //! counter that its assignment does not change.
 use super::Run;
-use gcode_control::{Control, Value, additional_system_name};
+use gcode_control::{Control, Outcome, Value, additional_system_name};
 use gcode_inspect::findings::WORK_OFFSET;
 use gcode_inspect::machine::Machine;
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_lang::source::Span;
@@ -12,22 +12,32 @@ use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
 use gcode_lint::{check_loaded, rules};
 
-/// Returns the likely causes; numbers without a decimal point are included only if `explain` is true.
-pub(super) fn likely_causes(run: &Run, machine: &Machine, explain: bool) -> Vec<Diagnostic> {
-    let mut found: Vec<Diagnostic> = unset_work_offsets(run, machine, "holes").collect();
-    if explain {
-        let checked = check_loaded(reload(run), run.control.settings(), &mut NoLibrary);
-        let points = checked.findings.into_iter().filter(|finding| finding.kind == rules::MISSING_POINT);
-        found.extend(points.map(|mut finding| {
-            finding.message = finding.message.replacen(" is ", " without a decimal point is ", 1);
-            finding
-        }));
+/// Rules about what a run does not show, or shows better: it finds the programs that it calls.
+const LEFT_OUT: [&str; 1] = ["missing-program"];
+
+/// Returns what a check of the program's text finds: everything from a warning on if the verdict `fails`, otherwise numbers
+/// without a decimal point. The block of an alarm is left out: the alarm says more.
+pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
+    let checked = check_loaded(reload(run), run.control.settings(), &mut NoLibrary);
+    let stopped = match &run.outcome {
+        Outcome::Alarm(stop) => Some(stop.backtrace.block),
+        Outcome::End | Outcome::Limit => None,
+    };
+    let is_cause = |finding: &Diagnostic| {
+        let block = finding.backtrace.as_ref().map(|place| place.block);
+        let is_chosen = finding.kind == rules::MISSING_POINT
+            || fails && Severity::Warning <= finding.severity && !LEFT_OUT.contains(&finding.kind.code);
+        is_chosen && (stopped.is_none() || block != stopped)
+    };
+    let mut found: Vec<Diagnostic> = checked.findings.into_iter().filter(is_cause).collect();
+    for finding in found.iter_mut().filter(|finding| finding.kind == rules::MISSING_POINT) {
+        finding.message = finding.message.replacen(" is ", " without a decimal point is ", 1);
     }
     found
 }
 
 /// Loads the programs of the run in the same order, so that spans remain valid.
-fn reload(run: &Run) -> Memory {
+pub(super) fn reload(run: &Run) -> Memory {
     let mut memory = Memory::default();
     for (_, source) in run.control.memory().sources().iter() {
         memory.load(source.name.clone(), source.bytes.clone());

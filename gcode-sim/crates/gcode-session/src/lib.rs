@@ -21,11 +21,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![warn(missing_docs)]
+mod assumptions;
 mod causes;
 mod trace;
 
 use std::sync::Arc;
 
+pub use assumptions::Dependences;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Note, Observer, Outcome, Progress};
@@ -34,7 +36,7 @@ use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
-use gcode_inspect::verify::{Tolerances, Verdict, verify};
+use gcode_inspect::verify::{Answer, Tolerances, Verdict, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::{Alarm, remedy};
 use gcode_lang::control::Settings;
@@ -159,6 +161,16 @@ pub fn run_observed<S: EventSink>(
         let (line, program) = (memory.sources().line_column(second.span).line, second.label());
         return Err(SessionError::DuplicateProgram { name: request.name.clone(), line, program });
     }
+    let mut control = set_up_control(request, memory)?;
+    if let Some(progress) = &request.progress {
+        control.set_progress(Arc::clone(progress));
+    }
+    let outcome = control.run_observed(request.limits, library, sink, observer);
+    Ok(Run { control, outcome })
+}
+
+/// Returns a control with these programs, set up as the request states.
+fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionError> {
     let mut control = Control::new(memory, request.settings.clone());
     let presets = presets(&request.machine, &request.settings);
     for (number, value) in presets.chain(request.variables.iter().copied()) {
@@ -167,11 +179,7 @@ pub fn run_observed<S: EventSink>(
     for (axis, position) in &request.machine.start {
         control.set_start(*axis, *position);
     }
-    if let Some(progress) = &request.progress {
-        control.set_progress(Arc::clone(progress));
-    }
-    let outcome = control.run_observed(request.limits, library, sink, observer);
-    Ok(Run { control, outcome })
+    Ok(control)
 }
 
 /// Returns the variables of a machine that is set up: work offsets (#5221…), and the tool lengths as geometry
@@ -232,7 +240,12 @@ pub fn grind(
 impl GrindingRun {
     /// Verifies the ground flutes against the nominal ones.
     pub fn verify(&self) -> FluteVerdict {
-        verify_flutes(&self.nominal, &self.result, &|span| self.run.locate(span))
+        let locate = |span| self.run.locate(span);
+        let mut verdict = verify_flutes(&self.nominal, &self.result, &locate);
+        if verdict.verdict == Answer::Fail {
+            verdict.add_likely_causes(causes::text_findings(&self.run, true), &locate);
+        }
+        verdict
     }
 }
 
@@ -299,15 +312,20 @@ pub fn simulate_observed<S: EventSink>(
     sink: &mut S,
     observer: &mut impl Observer,
 ) -> Result<Simulation, SessionError> {
-    let metal = metal.into();
-    let mut extractor = HoleExtractor::new(&request.machine)
-        .with_metal(Metal { body: metal.body.or(request.part), ..metal })
-        .with_straight_rapids(request.settings.rapids_are_straight)
-        .with_process_limits(&request.process_limits);
+    let mut extractor = extractor(request, metal);
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.findings());
     Ok(Simulation { run, extracted })
+}
+
+/// Returns the extractor of a run's holes.
+fn extractor(request: &Request, metal: impl Into<Metal>) -> HoleExtractor<'_> {
+    let metal = metal.into();
+    HoleExtractor::new(&request.machine)
+        .with_metal(Metal { body: metal.body.or(request.part), ..metal })
+        .with_straight_rapids(request.settings.rapids_are_straight)
+        .with_process_limits(&request.process_limits)
 }
 
 impl Simulation {
@@ -315,9 +333,32 @@ impl Simulation {
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
         let locate = |span| self.run.locate(span);
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
-        let causes = causes::likely_causes(&self.run, machine, verdict.has_findings());
+        let mut causes: Vec<Diagnostic> = causes::unset_work_offsets(&self.run, machine, "holes").collect();
+        if verdict.has_findings() {
+            causes.extend(causes::text_findings(&self.run, verdict.verdict == Answer::Fail));
+        }
         verdict.add_likely_causes(causes, &locate);
         verdict
+    }
+
+    /// Adds the assumptions to a verdict on these holes; each is an error if `is_denied`. `surface` is that of the run.
+    pub fn add_assumptions(
+        &self,
+        verdict: &mut Verdict,
+        request: &Request,
+        surface: Option<Surface>,
+        is_denied: bool,
+    ) {
+        let names = verdict.hole_names();
+        let found = self.dependences(request, surface);
+        let found = found.assumptions(&self.run, |hole| names.get(&hole).cloned());
+        verdict.add_assumptions(found, is_denied, &|span| self.run.locate(span));
+    }
+
+    /// Follows the values that the run read and nothing in its program set to the holes, in a second run. `surface` is that of
+    /// the first run.
+    pub fn dependences(&self, request: &Request, surface: Option<Surface>) -> Dependences {
+        assumptions::dependences(request, &self.run, surface, !self.extracted.holes.is_empty())
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.
@@ -327,6 +368,11 @@ impl Simulation {
 }
 
 impl Run {
+    /// Follows the values that the run read and nothing in its program set to the holes that it makes, in a second run.
+    pub fn dependences(&self, request: &Request) -> Dependences {
+        assumptions::dependences(request, self, None, true)
+    }
+
     /// Returns program and line of a block: `O8101`, 31.
     pub fn locate(&self, span: Span) -> (String, u32) {
         let memory = self.control.memory();

@@ -86,7 +86,7 @@ fn print(report: &TestReport, format: TestFormat) -> Result<(), UsageError> {
             let document = junit::document(report);
             output::print(&document.map_err(|why| UsageError::new(format!("no JUnit XML: {why}")))?)
         }
-        TestFormat::Sarif => output::sarif(report.findings()),
+        TestFormat::Sarif => output::sarif(report.findings(), None),
     }
 }
 

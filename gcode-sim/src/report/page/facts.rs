@@ -23,26 +23,38 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
             }
         }
         @for side in sides {
-            @let stopped = side.observed.revision.record.outcome() != "end";
+            @let record = &side.observed.revision.record;
             @if let Some(verdict) = side.observed.verdict {
-                @let good = verdict.holes.iter().filter(|hole| hole.ok).count();
-                @let nominal = verdict.holes.len() + verdict.missing.len();
-                p.answer.yes[verdict.verdict == Answer::Pass].no[verdict.verdict == Answer::Fail] {
+                @let conclusion = verdict.conclusion();
+                p.answer.yes[conclusion.answer == Answer::Pass].no[conclusion.answer == Answer::Fail] {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
-                    @match verdict.verdict { Answer::Pass => "PASS", Answer::Fail => "FAIL" }
-                    ", " (good) " of " (figures::count(nominal, "hole")) " in tolerance"
-                    @if !verdict.missing.is_empty() { ", " (verdict.missing.len()) " missing" }
-                    @if !verdict.extra.is_empty() { ", " (verdict.extra.len()) " extra" }
+                    (conclusion.answer.word()) ", " (shown(conclusion.summary))
                 }
-            }
-            @if stopped {
-                p.answer.no {
-                    @if sides.len() == 2 { (heading(side, sides)) ": " }
-                    "stopped, " (shown(side.observed.revision.record.words()))
+                @let holes = verdict.holes.len() + verdict.extra.len();
+                @for assumption in &verdict.assumptions { p.note { "Assumes " (shown(&assumption.sentence(holes))) } }
+                @for cause in &verdict.likely_causes { p.note { "Likely cause: " (shown(cause)) } }
+            } @else {
+                @if record.outcome() != "end" {
+                    p.answer.no {
+                        @if sides.len() == 2 { (heading(side, sides)) ": " }
+                        "stopped, " (shown(record.words()))
+                    }
                 }
+                @for assumption in assumptions_alone(page, side) { p.note { "Assumes " (shown(&assumption)) } }
             }
         }
     }
+}
+
+/// Returns the assumptions of a program without a reference; a comparison of two has none.
+fn assumptions_alone(page: &Page<'_>, side: &ReviewSide<'_>) -> Vec<String> {
+    if page.old.is_some() {
+        return Vec::new();
+    }
+    let simulation = &side.observed.revision.simulation;
+    let found = simulation.dependences(side.observed.request, None);
+    let numbered = found.numbered(&simulation.run);
+    numbered.iter().map(|(assumption, _)| assumption.sentence(found.hole_count())).collect()
 }
 
 /// Returns the table of both runs in numbers.

@@ -1,7 +1,7 @@
 //! The top view: the part seen along its axis of revolution y, or a cylinder about x seen along the spindle.
 use nalgebra::Vector3;
 
-use super::purpose::PicturePurpose;
+use super::purpose::{PicturePurpose, change_headline};
 use crate::measure::plain;
 use crate::picture::{LegendItem, Picture, Sample, Title};
 use crate::scene::{Axis, HoleStatus, Mark, Pen, Scene, Shape, Stroke, ZoneDeviation};
@@ -29,6 +29,8 @@ pub struct TopView {
     pub holes: Vec<DrawnHole>,
     /// Purpose of the comparison, which selects the wording.
     pub purpose: PicturePurpose,
+    /// Verdict on the holes in one line; a comparison of revisions counts its differences instead.
+    pub verdict: Option<(HoleStatus, String)>,
     /// Number of differences between two revisions that no hole shows.
     pub other_differences: usize,
     /// Sentence on a different end of the two revisions.
@@ -194,8 +196,11 @@ impl TopView {
 
     fn headline(&self) -> Option<(HoleStatus, String)> {
         use HoleStatus::{Bad, Extra, Good, Missing};
+        if self.purpose == PicturePurpose::Verdict {
+            return self.verdict.clone();
+        }
         let counts = [Good, Bad, Missing, Extra].map(|status| self.count(status));
-        let (status, words) = self.purpose.headline(counts, self.other_differences)?;
+        let (status, words) = change_headline(counts, self.other_differences)?;
         Some((status, self.ending.iter().cloned().chain([words]).collect::<Vec<_>>().join("; ")))
     }
 

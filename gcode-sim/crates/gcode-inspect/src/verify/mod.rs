@@ -1,6 +1,8 @@
 //! Comparison of the drilled holes with the nominal ones: matching, deviations, findings and the verdict.
+mod assumption;
 mod causes;
 mod checks;
+mod conclusion;
 mod displacement;
 pub mod flutes;
 mod hole_finding;
@@ -14,10 +16,12 @@ mod rows;
 mod tests;
 mod verdict;
 
+pub use assumption::denied_assumptions;
+pub use conclusion::{Answer, Conclusion, Ending};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
-pub use verdict::{Answer, ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
+pub use verdict::{ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
 use self::checks::mirrored::MirrorImage;
 use self::hole_finding::{HoleFindings, Subject};
@@ -92,7 +96,10 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    verdict.unchecked_motion = not_checked::unchecked_motion(extraction);
+    if let Some(motion) = not_checked::unchecked_motion(extraction) {
+        verdict.summary.push_str("; not checked: ");
+        verdict.summary.push_str(motion);
+    }
     verdict.not_checked = not_checked::lines(comparison, extraction, reference, machine, locate);
     verdict
 }

@@ -5,24 +5,16 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::assumption::{denied_assumptions, denied_words};
+use super::conclusion::{Answer, Conclusion, Ending, hole_counts, stop_sentence, uncounted_errors};
 use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
 use super::{Comparison, HoleNeighbours, HolePair, Neighbours};
 use crate::holes::DrilledHole;
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
-use gcode_lang::motion::CallChain;
+use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::source::Span;
-use gcode_part::{Hole, Origin};
-
-/// The result of the checks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Answer {
-    /// No finding is an error.
-    Pass,
-    /// A finding is an error or an alarm.
-    Fail,
-}
+use gcode_part::{Assumption, Hole, Origin};
 
 /// The result of `verify --format json`. Nothing is rounded.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -35,6 +27,12 @@ pub struct Verdict {
     pub depth_tolerance: f64,
     /// The answer.
     pub verdict: Answer,
+    /// The end of the run.
+    pub outcome: Ending,
+    /// The reasons for the answer in one line.
+    pub summary: String,
+    /// Findings about the program's text that probably explain the answer, one sentence each.
+    pub likely_causes: Vec<String>,
     /// The largest phi; null without a hole.
     pub worst: Option<f64>,
     /// The cause of the worst, in words.
@@ -54,9 +52,8 @@ pub struct Verdict {
     pub neighbours: Option<Neighbours>,
     /// Sentences on what the verdict does not cover.
     pub not_checked: Vec<String>,
-    /// Motion that no check covers, for the first line of the printed verdict.
-    #[serde(skip)]
-    pub unchecked_motion: Option<&'static str>,
+    /// Values that the run read and nothing in the program set, and the holes that each can touch.
+    pub assumptions: Vec<Assumption>,
     /// The findings with their locations, for the printed report.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
@@ -180,7 +177,6 @@ pub(super) fn verdict(
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
     findings.sort_by_key(|one| one.subject == Subject::Motion);
-    let fails = findings.iter().any(is_error);
     let holes = hole_verdicts(comparison, rounding, error_codes_by_hole(comparison, &findings), locate);
     let extra = |index: &usize| ExtraHole {
         hole: comparison.actual[*index].hole(locate),
@@ -191,13 +187,24 @@ pub(super) fn verdict(
         let hole = if let Subject::Nominal(index) = one.subject { Some(comparison.id(index)) } else { None };
         finding_of(&one.finding, hole, one.subject == Subject::Motion, locate)
     };
+    let good = holes.iter().filter(|hole| hole.ok).count();
+    let counts =
+        hole_counts(good, comparison.missing.len(), comparison.extra.len(), comparison.nominal.len());
+    let all = || findings.iter().map(|one| &one.finding);
     let worst = (0..holes.len())
         .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
     Verdict {
         basis: "predicted by simulation, not measured",
         tolerance: comparison.tolerances.position,
         depth_tolerance: comparison.tolerances.depth,
-        verdict: if fails { Answer::Fail } else { Answer::Pass },
+        verdict: Answer::to(all()),
+        outcome: Ending::of(all()),
+        summary: [stop_sentence(all(), locate), uncounted_errors(&findings), Some(counts)]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join("; "),
+        likely_causes: Vec::new(),
         worst: worst.map(|index| holes[index].position_deviation),
         worst_from: worst.map(|index| worst_from(&holes[index], &rounding.axis_shares(index))),
         rounding: rounding.position_deviations.iter().copied().reduce(f64::max),
@@ -206,7 +213,7 @@ pub(super) fn verdict(
         findings: findings.iter().map(as_data).collect(),
         neighbours: None,
         not_checked: Vec::new(),
-        unchecked_motion: None,
+        assumptions: Vec::new(),
         holes,
         diagnostics: limit_per_kind(findings.into_iter().filter(|one| !one.is_folded).map(|one| one.finding)),
     }
@@ -292,6 +299,11 @@ pub(super) fn finding_of(
 }
 
 impl Verdict {
+    /// Returns the value from which every output states the verdict.
+    pub fn conclusion(&self) -> Conclusion<'_> {
+        Conclusion { answer: self.verdict, ending: self.outcome, summary: &self.summary }
+    }
+
     /// Returns true if there is a finding above a note.
     pub fn has_findings(&self) -> bool {
         self.diagnostics.iter().any(|finding| Severity::Warning <= finding.severity)
@@ -299,10 +311,41 @@ impl Verdict {
 
     /// Inserts findings about the program's text before those that they may explain; the verdict stays.
     pub fn add_likely_causes(&mut self, causes: Vec<Diagnostic>, locate: &dyn Fn(Span) -> (String, u32)) {
-        self.findings.splice(0..0, causes.iter().map(|cause| finding_of(cause, None, true, locate)));
-        let alarms =
-            self.diagnostics.iter().take_while(|finding| finding.severity == Severity::Alarm).count();
-        self.diagnostics.splice(alarms..alarms, limit_per_kind(causes.into_iter()));
+        if self.verdict == Answer::Fail {
+            self.likely_causes = cause_sentences(&causes, locate);
+        }
+        insert_causes(&mut self.findings, &mut self.diagnostics, causes, locate);
+    }
+
+    /// Returns the names of the drilled holes by their index: ids, and `extra 1` for those without a nominal hole.
+    pub fn hole_names(&self) -> BTreeMap<usize, String> {
+        let matched = self.holes.iter().map(|hole| (hole.drilled_index, hole.id.clone()));
+        let extra = self.extra.iter().enumerate();
+        let extra = extra.map(|(place, hole)| (hole.drilled_index, format!("extra {}", place + 1)));
+        matched.chain(extra).collect()
+    }
+
+    /// Adds the assumptions; each is an error if they are denied.
+    pub fn add_assumptions(
+        &mut self,
+        assumptions: Vec<(Assumption, Backtrace)>,
+        is_denied: bool,
+        locate: &dyn Fn(Span) -> (String, u32),
+    ) {
+        let drilled = self.holes.len() + self.extra.len();
+        if is_denied && !assumptions.is_empty() {
+            let denied = denied_assumptions(&assumptions, drilled);
+            self.findings.extend(denied.iter().map(|finding| finding_of(finding, None, true, locate)));
+            self.diagnostics.extend(limit_per_kind(denied.into_iter()));
+            self.verdict = Answer::Fail;
+            let denied = denied_words(assumptions.len());
+            // The end of the run comes first.
+            self.summary = match self.outcome {
+                Ending::End => format!("{denied}; {}", self.summary),
+                Ending::Alarm | Ending::Limit => format!("{}; {denied}", self.summary),
+            };
+        }
+        self.assumptions.extend(assumptions.into_iter().map(|(assumption, _)| assumption));
     }
 
     /// Adds the neighbours of each hole, by drilled hole, and their summary.
@@ -312,6 +355,30 @@ impl Verdict {
         }
         self.neighbours = Some(summary);
     }
+}
+
+/// Returns the messages of likely causes with their places: `X25 … is 0.025 mm (O0001 line 5)`.
+pub(super) fn cause_sentences(causes: &[Diagnostic], locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
+    let sentence = |cause: &Diagnostic| match &cause.backtrace {
+        Some(place) => {
+            let (program, line) = locate(place.block);
+            format!("{} ({program} line {line})", cause.message)
+        }
+        None => cause.message.clone(),
+    };
+    causes.iter().map(sentence).collect()
+}
+
+/// Inserts likely causes before the findings that they may explain, behind the alarms.
+pub(super) fn insert_causes(
+    findings: &mut Vec<Finding>,
+    diagnostics: &mut Vec<Diagnostic>,
+    causes: Vec<Diagnostic>,
+    locate: &dyn Fn(Span) -> (String, u32),
+) {
+    findings.splice(0..0, causes.iter().map(|cause| finding_of(cause, None, true, locate)));
+    let alarms = diagnostics.iter().take_while(|finding| finding.severity == Severity::Alarm).count();
+    diagnostics.splice(alarms..alarms, limit_per_kind(causes.into_iter()));
 }
 
 /// Keeps the first findings of each kind, the last of them with a note on the number left out. Alarms come first: what

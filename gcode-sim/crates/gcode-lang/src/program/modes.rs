@@ -104,7 +104,7 @@ group!(/// Group 22: mirror image.
     Mirror { #[default] Off = 501, On = 511, });
 
 /// Group 14: work coordinate system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WorkSystem {
     /// G54 to G59 as 1 to 6.
     Standard(u8),

@@ -10,7 +10,8 @@ use crate::findings::{
     WHEEL_SPEED,
 };
 use crate::flutes::{GrindingResult, Window};
-use crate::verify::verdict::{Answer, Finding, finding_of, limit_per_kind};
+use crate::verify::conclusion::{Answer, Conclusion, Ending, stop_sentence};
+use crate::verify::verdict::{Finding, cause_sentences, finding_of, insert_causes, limit_per_kind};
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
@@ -24,6 +25,12 @@ pub struct FluteVerdict {
     pub basis: &'static str,
     /// The answer.
     pub verdict: Answer,
+    /// The end of the run.
+    pub outcome: Ending,
+    /// The reasons for the answer in one line.
+    pub summary: String,
+    /// Findings about the program's text that probably explain the answer, one sentence each.
+    pub likely_causes: Vec<String>,
     /// Law of the helix angle in the job.
     pub law: &'static str,
     /// Number of flutes ground; repeated passes over a flute do not count.
@@ -124,25 +131,38 @@ pub struct NominalFlutes {
 }
 
 impl FluteVerdict {
-    /// Returns the number of flutes and the kinds of faults in one line.
-    pub fn sentence(&self) -> String {
-        let mut text = match self.flutes <= self.nominal_flutes {
-            true => format!("{} of {} flutes ground", self.flutes, self.nominal_flutes),
-            false => format!("{} flutes ground, {} specified", self.flutes, self.nominal_flutes),
-        };
-        let mut mentioned: Vec<&str> = Vec::new();
-        for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
-            let words = describe_kind(finding.kind).unwrap_or(&finding.code);
-            // The numbers show missing and extra flutes.
-            let is_counted = [&FLUTE_MISSING, &FLUTE_EXTRA].contains(&finding.kind);
-            if !is_counted && !mentioned.contains(&words) {
-                mentioned.push(words);
-                text.push_str(", ");
-                text.push_str(words);
-            }
-        }
-        text
+    /// Returns the value from which every output states the verdict.
+    pub fn conclusion(&self) -> Conclusion<'_> {
+        Conclusion { answer: self.verdict, ending: self.outcome, summary: &self.summary }
     }
+
+    /// Inserts findings about the program's text before those that they may explain; the verdict stays.
+    pub fn add_likely_causes(&mut self, causes: Vec<Diagnostic>, locate: &dyn Fn(Span) -> (String, u32)) {
+        if self.verdict == Answer::Fail {
+            self.likely_causes = cause_sentences(&causes, locate);
+        }
+        insert_causes(&mut self.findings, &mut self.diagnostics, causes, locate);
+    }
+}
+
+/// Returns the number of flutes and the kinds of errors in one line.
+fn flute_counts(flutes: usize, nominal: usize, findings: &[Diagnostic]) -> String {
+    let mut text = match flutes <= nominal {
+        true => format!("{flutes} of {nominal} flutes ground"),
+        false => format!("{flutes} flutes ground, {nominal} specified"),
+    };
+    let mut mentioned: Vec<&str> = Vec::new();
+    for finding in findings.iter().filter(|finding| finding.severity == Severity::Error) {
+        let words = describe_kind(finding.kind).unwrap_or(finding.kind.title);
+        // The numbers show missing and extra flutes.
+        let is_counted = [&FLUTE_MISSING, &FLUTE_EXTRA].contains(&finding.kind);
+        if !is_counted && !mentioned.contains(&words) {
+            mentioned.push(words);
+            text.push_str(", ");
+            text.push_str(words);
+        }
+    }
+    text
 }
 
 /// Short descriptions of findings about flutes.
@@ -207,7 +227,9 @@ pub(super) fn verdict(
     let (nominal, actual, worst) = (inspection.nominal, inspection.actual, inspection.worst_helix());
     let (helix, speed) = (inspection.helix.as_ref(), inspection.speed.as_ref());
     let samples = actual.passes.iter().flat_map(|pass| &pass.trace.samples);
-    let fails = findings.iter().any(|finding| Severity::Error <= finding.severity);
+    let flutes = inspection.spacing.flutes.len();
+    let counts = flute_counts(flutes, nominal.count as usize, &findings);
+    let summary = [stop_sentence(findings.iter(), locate), Some(counts)].into_iter().flatten();
     let gauge = nominal.gauge;
     let worst_pass = worst.map_or(0, |worst| worst.pass);
     let along: Vec<HelixSample> = actual.passes.get(worst_pass).map_or(Vec::new(), |pass| {
@@ -216,9 +238,12 @@ pub(super) fn verdict(
     });
     FluteVerdict {
         basis: "predicted by simulation, not measured",
-        verdict: if fails { Answer::Fail } else { Answer::Pass },
+        verdict: Answer::to(findings.iter()),
+        outcome: Ending::of(findings.iter()),
+        summary: summary.collect::<Vec<_>>().join("; "),
+        likely_causes: Vec::new(),
         law: nominal.law.name(),
-        flutes: inspection.spacing.flutes.len(),
+        flutes,
         nominal_flutes: nominal.count as usize,
         surface_deviation: samples.map(|s| s.deviation.abs()).reduce(f64::max),
         tolerance: nominal.surface_tolerance,

@@ -1,0 +1,222 @@
+//! Effect of axis words on the marks: moves, canned cycles, zero shifts, G10.
+use super::super::data::system_index;
+use super::super::registers::Registers;
+use super::words::{BlockModes, MarkedWord};
+use super::{Block, Marks, OutsideValue, Slice};
+use gcode_lang::control::Settings;
+use gcode_lang::motion::AxisIndex;
+use gcode_lang::program::g_codes::OneShot;
+use gcode_lang::program::modes::{Distance, Motion, Plane, Polar, WorkSystem};
+use gcode_lang::program::{LoweredWord, WordOperand, Words};
+
+/// Returns true if a canned cycle can drill along the axis of this letter.
+pub(super) fn is_drilling(settings: &Settings, plane: Plane, letter: u8) -> bool {
+    let letters: &[u8] = match plane {
+        _ if !settings.drills_by_plane => b"Z",
+        Plane::Xy => b"ZW",
+        Plane::Zx => b"YV",
+        Plane::Yz => b"XU",
+    };
+    letters.contains(&letter)
+}
+
+/// Words of a cycle that stay in force.
+#[derive(Clone, Copy)]
+struct CycleWords {
+    /// Marks of Z, R and all others but those of the place.
+    levels: Marks,
+    has_levels: bool,
+    /// Marks of the words that decide whether and how often the block cuts along its axis.
+    cut: Marks,
+    /// Marks of the number of repeats.
+    repeats: Marks,
+}
+
+impl Slice {
+    pub(super) fn follow_axes(&mut self, block: &Block<'_>, list: &[MarkedWord], modes: &BlockModes) {
+        let settings = &block.registers.data.settings;
+        let axes = &settings.axes;
+        let control = self.branches.marks();
+        let others: Marks = list.iter().map(|word| word.marks).collect();
+        let named = || list.iter().filter_map(|word| Some((axes.find(word.letter)?, *word)));
+        if block.registers.state.is_in_parameter_input {
+            self.machine.rest |= others | control;
+        }
+        match modes.one_shot {
+            None | Some(OneShot::SingleDirection | OneShot::Skip) => {}
+            Some(OneShot::Reference | OneShot::SecondReference) => {
+                for (axis, word) in named() {
+                    let before = if word.is_fixed() { Marks::NONE } else { self.machine.axes[axis] };
+                    self.machine.axes[axis] = before | word.marks | control;
+                }
+                return;
+            }
+            Some(OneShot::MachineCoordinateSystem) => {
+                for (axis, word) in named() {
+                    let before = if word.is_fixed() { Marks::NONE } else { self.machine.axes[axis] };
+                    self.machine.axes[axis] = before | word.marks | control | self.machine.group(3);
+                }
+                return;
+            }
+            Some(OneShot::SetLocalCoordinateSystem) => {
+                for (axis, word) in named() {
+                    let before = if word.is_fixed() { Marks::NONE } else { self.machine.shifts[axis] };
+                    self.machine.shifts[axis] = before | word.marks | control;
+                }
+                return;
+            }
+            Some(OneShot::SetWorkCoordinateSystem | OneShot::PresetWorkCoordinateSystem) => {
+                for (axis, _) in axes.iter() {
+                    let position = self.machine.axes[axis] | self.machine.length;
+                    self.machine.shifts[axis] |= position | others | control;
+                }
+                return;
+            }
+            Some(OneShot::DataInput) => return self.follow_data_input(block, list, others | control),
+            Some(OneShot::Dwell | OneShot::DataInputEnd | OneShot::CheckReference) => return,
+            Some(
+                OneShot::FromReference
+                | OneShot::CornerArc
+                | OneShot::CirclePocket(_)
+                | OneShot::BoltHoles(_),
+            ) => {
+                let all: Marks = self.machine.axes.iter().copied().collect();
+                self.machine.axes.iter_mut().for_each(|axis| *axis |= all | others | control);
+                self.further |= others;
+            }
+        }
+        let is_level = |word: &MarkedWord| {
+            b"RPQIJKL".contains(&word.letter) || is_drilling(settings, modes.plane, word.letter)
+        };
+        let marks_of = |is_one: &dyn Fn(&MarkedWord) -> bool| {
+            list.iter().filter(|word| is_one(word)).map(|word| word.marks).collect::<Marks>()
+        };
+        let words = CycleWords {
+            levels: marks_of(&is_level),
+            has_levels: modes.begins_cycle || list.iter().any(is_level),
+            cut: marks_of(&|word| !b"PQ".contains(&word.letter) && is_level(word)),
+            repeats: marks_of(&|word| b"KL".contains(&word.letter)),
+        };
+        self.follow_move(block, named(), modes, words);
+    }
+
+    /// Follows a block of nothing but numbers for axes in a plain mode; returns false for any other.
+    pub(super) fn follow_plain_move(&mut self, block: &Block<'_>, words: &Words) -> bool {
+        let Registers { data, state, .. } = block.registers;
+        let modal = &state.modal;
+        let is_plain = |word: &LoweredWord| {
+            matches!(word.value, WordOperand::Number(_) | WordOperand::Literal(_))
+                && word.axis.is_none()
+                && data.settings.axes.find(word.letter).is_some()
+        };
+        let is_plain_mode = modal.cycle.is_none()
+            && modal.plane == Plane::Xy
+            && modal.distance == Distance::Absolute
+            && modal.polar == Polar::Off
+            && modal.work == WorkSystem::default()
+            && state.transform.is_none()
+            && !state.is_in_parameter_input
+            && data.settings.code_calls.is_empty();
+        if !is_plain_mode
+            || words.call().is_some()
+            || words.skipped_form().is_some()
+            || !words.list.iter().all(is_plain)
+        {
+            return false;
+        }
+        self.machine.transform = Marks::NONE;
+        let marks = self.branches.marks() | self.machine.coordinate_system();
+        for word in &words.list {
+            if let Some(axis) = data.settings.axes.find(word.letter) {
+                let length = if word.letter == b'Z' { self.machine.length } else { Marks::NONE };
+                self.machine.axes[axis] = marks | self.machine.shifts[axis] | length;
+            }
+        }
+        true
+    }
+
+    fn follow_move(
+        &mut self,
+        block: &Block<'_>,
+        named: impl Iterator<Item = (AxisIndex, MarkedWord)>,
+        modes: &BlockModes,
+        words: CycleWords,
+    ) {
+        let registers = block.registers;
+        let data = &registers.data;
+        let control = self.branches.marks();
+        let settings = &data.settings;
+        let drills = |axis: AxisIndex| is_drilling(settings, modes.plane, settings.axes.letter(axis) as u8);
+        let is_unset =
+            modes.work != WorkSystem::default() && !data.set_systems.contains(&system_index(modes.work));
+        let is_cut = modes.is_in_cycle
+            || modes.one_shot == Some(OneShot::Skip)
+            || modes.one_shot.is_none() && modes.motion != Motion::Rapid;
+        if is_cut {
+            self.further |= words.cut;
+        }
+        let mut work = Marks::NONE;
+        let mut moved = Marks::NONE;
+        for (axis, word) in named {
+            if is_unset && work.is_none() {
+                work = self.outside(OutsideValue::WorkOffset(modes.work), None, block.flow, block.op);
+            }
+            let mut marks = word.marks | control | work | self.machine.coordinates(axis);
+            if word.letter == b'Z' || drills(axis) {
+                marks |= self.machine.length;
+            }
+            let is_incremental = modes.distance == Distance::Incremental;
+            if is_incremental || !word.is_fixed() || modes.is_in_cycle && drills(axis) {
+                marks |= self.machine.axes[axis];
+            }
+            if modes.is_in_cycle && is_incremental {
+                marks |= words.repeats;
+            }
+            self.machine.axes[axis] = marks;
+            moved |= marks;
+        }
+        if modes.one_shot == Some(OneShot::Skip) {
+            let signal = match self.stated.has_part {
+                true => Marks::NONE,
+                false => self.outside(OutsideValue::SkipSignal, None, block.flow, block.op),
+            };
+            self.machine.skip_position = moved | signal;
+            self.machine.axes.iter_mut().for_each(|axis| *axis |= signal);
+        }
+        if modes.is_in_cycle {
+            let drilling = || settings.axes.iter().map(|(axis, _)| axis).filter(|axis| drills(*axis));
+            if words.has_levels {
+                let initial: Marks = drilling().map(|axis| self.machine.axes[axis]).collect();
+                let is_first = modes.begins_cycle && registers.state.modal.cycle.is_none();
+                let before = if is_first { Marks::NONE } else { self.machine.cycle };
+                self.machine.cycle = before | words.levels | initial | control;
+            }
+            for axis in drilling() {
+                self.machine.axes[axis] |= self.machine.cycle;
+            }
+        }
+        let mixes = !registers.state.transform.is_none()
+            || registers.state.modal.polar == Polar::On
+            || !self.machine.transform.is_none();
+        if mixes {
+            let all: Marks = self.machine.axes.iter().copied().collect();
+            self.machine.axes.iter_mut().for_each(|axis| *axis = all);
+        }
+    }
+
+    /// Follows G10.
+    fn follow_data_input(&mut self, block: &Block<'_>, list: &[MarkedWord], marks: Marks) {
+        let value = |letter: u8| list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
+        let number = value(b'P').map(|number| number as u32);
+        match (value(b'L').map(|l| l as u32), number) {
+            (Some(2 | 20), _) => self.machine.work_table |= marks,
+            (Some(l @ (1 | 10..=13)), Some(number)) => {
+                self.machine.tool_table |= marks;
+                let set = if matches!(l, 12 | 13) { &mut self.set_radii } else { &mut self.set_lengths };
+                set.insert(number);
+            }
+            (Some(85), Some(number)) => self.write(block.registers, number, marks),
+            _ => self.machine.rest |= marks,
+        }
+    }
+}

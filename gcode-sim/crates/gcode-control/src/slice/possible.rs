@@ -1,0 +1,121 @@
+//! Effects of operations that outside values decide, whether the run executes them or not.
+use super::moves::is_drilling;
+use super::{Marks, Slice};
+use crate::registers::Registers;
+use gcode_lang::program::g_codes::GCodeRow;
+use gcode_lang::program::m_codes::{self, MCodeEffect};
+use gcode_lang::program::modes::Plane;
+use gcode_lang::program::{AssignmentTarget, OpKind, Slot, Statement, WordOperand, Words};
+
+/// Modal group of tool length compensation.
+const LENGTH_GROUP: u32 = 8;
+
+impl Slice {
+    /// Adds the marks of a condition to everything that an assignment under it can write.
+    pub(super) fn add_possible_assignment(
+        &mut self,
+        registers: &Registers,
+        statement: &Statement,
+        marks: Marks,
+    ) {
+        match statement {
+            Statement::AssignFree(assign) => self.variables.add(usize::from(assign.variable), marks),
+            Statement::Assign { target: AssignmentTarget::Slot(Slot::Free(place)), .. } => {
+                self.variables.add(usize::from(*place), marks);
+            }
+            Statement::Assign { target: AssignmentTarget::Slot(slot), .. } => {
+                self.add_to_variable(registers, slot.number(), marks);
+            }
+            Statement::Assign { .. } => {
+                self.variables.add_to_any(marks);
+                self.machine.add_to_all(marks);
+            }
+            Statement::Assignments(all) => {
+                all.iter().for_each(|one| self.add_possible_assignment(registers, one, marks));
+            }
+            Statement::IfThen { then, .. } => self.add_possible_assignment(registers, then, marks),
+            _ => {}
+        }
+    }
+
+    /// Adds the marks of a condition to everything that an operation under it can change.
+    pub(super) fn add_possible_effects(&mut self, registers: &Registers, kind: &OpKind, marks: Marks) {
+        match kind {
+            OpKind::Empty | OpKind::Alarm(_) => {}
+            OpKind::AssignFree(assign) => self.variables.add(usize::from(assign.variable), marks),
+            OpKind::Statement(statement) => self.add_possible_assignment(registers, statement, marks),
+            OpKind::Words(words) => self.add_possible_words(registers, words, marks),
+            OpKind::If { then, .. } => self.add_possible_effects(registers, then, marks),
+        }
+    }
+
+    /// Adds the marks of a condition to everything that a block of words under it can change.
+    pub(super) fn add_possible_words(&mut self, registers: &Registers, words: &Words, marks: Marks) {
+        let settings = &registers.data.settings;
+        if words.call().is_some() || !settings.code_calls.is_empty() || words.punched_value().is_some() {
+            self.variables.add_to_any(marks);
+            self.machine.add_to_all(marks);
+            self.machine.rest |= marks;
+            self.further |= marks;
+            return;
+        }
+        for word in &words.list {
+            if let Some(axis) = settings.axes.find(word.letter) {
+                self.machine.axes[axis] |= marks;
+                self.further |= marks;
+                let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
+                if planes.into_iter().any(|plane| is_drilling(settings, plane, word.letter)) {
+                    self.machine.cycle |= marks;
+                }
+                continue;
+            }
+            match (word.letter, &word.value) {
+                (b'G', WordOperand::G(_, found)) => {
+                    match found.row_for(settings.codes).and_then(GCodeRow::group) {
+                        Some(group) => {
+                            let before = self.machine.group(group);
+                            self.machine.set_group(group, before | marks);
+                            self.machine.cycle |= marks;
+                            if group == LENGTH_GROUP {
+                                self.machine.length |= marks;
+                            }
+                        }
+                        None => self.machine.add_to_all(marks),
+                    }
+                }
+                (b'M', WordOperand::Literal(number)) => {
+                    self.add_possible_code(registers, number.value(), marks)
+                }
+                (b'M', WordOperand::Number(number)) => self.add_possible_code(registers, *number, marks),
+                (b'G' | b'M', _) => {
+                    self.machine.add_to_all(marks);
+                    self.machine.rest |= marks;
+                }
+                (letter @ (b'F' | b'S' | b'T' | b'H' | b'D'), _) => {
+                    let before = self.machine.code(letter);
+                    self.machine.set_code(letter, before | marks);
+                    self.machine.length |= marks;
+                    self.machine.radius |= marks;
+                }
+                _ => self.machine.cycle |= marks,
+            }
+        }
+    }
+
+    /// Adds marks to what an M code can change.
+    fn add_possible_code(&mut self, registers: &Registers, code: f64, marks: Marks) {
+        match m_codes::find(code as u32, registers.data.settings.codes) {
+            Some(
+                MCodeEffect::SpindleForward
+                | MCodeEffect::SpindleReverse
+                | MCodeEffect::SpindleStop
+                | MCodeEffect::Orient,
+            ) => self.machine.spindle |= marks,
+            Some(MCodeEffect::ToolChange) => self.machine.tool |= marks,
+            Some(MCodeEffect::CoolantOn | MCodeEffect::CoolantOff | MCodeEffect::NoEffect) => {}
+            Some(_) => self.machine.add_to_all(marks),
+            None if self.stated.codes.contains(&(code as u32)) => {}
+            None => self.machine.rest |= marks,
+        }
+    }
+}

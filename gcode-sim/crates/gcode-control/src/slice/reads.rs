@@ -1,0 +1,255 @@
+//! Marks of the values that a block reads: variables, system variables, parameters.
+use super::super::data::ControlData;
+use super::super::evaluation::RoundingTarget;
+use super::super::functions::variable_number;
+use super::super::variables::VariableClass;
+use super::{Block, Marks, OutsideValue, Slice};
+use crate::registers::Registers;
+use gcode_lang::control::OffsetVariables;
+use gcode_lang::motion::MAX_AXES;
+use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
+
+/// Number of axes in each range of positions, #5001 to #5020 and so on.
+const POSITIONS: u32 = 20;
+
+/// Place of the first additional work coordinate system behind EXT and G54 to G59.
+const FIRST_ADDITIONAL: usize = 7;
+
+/// Entry of an offset table.
+enum OffsetEntry {
+    Length(u32),
+    Radius(u32),
+    Work(usize),
+}
+
+/// Returns the entry that a system variable addresses.
+fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
+    let is_haas = offsets == OffsetVariables::Haas;
+    let work =
+        |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
+    Some(match number {
+        2001..=2400 => OffsetEntry::Length((number - 2001) % 200 + 1),
+        2401..=2800 if is_haas => OffsetEntry::Radius((number - 2401) % 200 + 1),
+        2500..=2806 => OffsetEntry::Work((number % 100) as usize),
+        5201..=5220 if is_haas => return None,
+        5201..=5340 => work(5201, 0),
+        7001..=7960 => work(7001, FIRST_ADDITIONAL),
+        10_001..=11_999 => OffsetEntry::Length(number % 1000),
+        12_001..=13_999 => OffsetEntry::Radius(number % 1000),
+        14_001..=20_000 => work(14_001, FIRST_ADDITIONAL),
+        _ => return None,
+    })
+}
+
+impl Block<'_> {
+    /// Returns true if a condition is true.
+    pub(super) fn is_true(&self, condition: &[Instruction]) -> bool {
+        self.registers
+            .without_side_effects(|registers| registers.evaluate_condition(condition).unwrap_or(false))
+    }
+
+    /// Returns the number that the code before an instruction computes.
+    fn number_before(&self, code: &[Instruction], place: usize) -> Option<u32> {
+        let value = self.registers.without_side_effects(|registers| {
+            registers.run_code(&code[..place], RoundingTarget::Whole).ok()
+        })?;
+        variable_number(value).ok()
+    }
+}
+
+impl Slice {
+    pub(super) fn operand_marks(&mut self, block: &Block<'_>, operand: &Operand) -> Marks {
+        match operand {
+            Operand::Number(_) => Marks::NONE,
+            Operand::Variable { slot, .. } => self.variable_marks(block, slot.number()),
+            Operand::Code(code) => self.code_marks(block, code),
+        }
+    }
+
+    /// Returns the marks of everything that code reads.
+    pub(super) fn code_marks(&mut self, block: &Block<'_>, code: &[Instruction]) -> Marks {
+        let mut marks = Marks::NONE;
+        for (place, Instruction { operation, .. }) in code.iter().enumerate() {
+            marks |= match operation {
+                Operation::Add(values)
+                | Operation::Subtract(values)
+                | Operation::Multiply(values)
+                | Operation::Divide(values)
+                | Operation::Compare(_, values)
+                | Operation::Atan2(values)
+                | Operation::Uncommon(UncommonOp::Whole(_, values) | UncommonOp::Power(values)) => {
+                    self.sources_marks(block, values)
+                }
+                Operation::Function(_, value) | Operation::Uncommon(UncommonOp::Load(value)) => {
+                    self.sources_marks(block, std::slice::from_ref(value))
+                }
+                Operation::Uncommon(UncommonOp::Read(number)) => self.variable_marks(block, *number),
+                Operation::Uncommon(UncommonOp::LoadIndirect | UncommonOp::AddPoint) => {
+                    match block.number_before(code, place) {
+                        Some(number) => self.variable_marks(block, number),
+                        None => Marks::NONE,
+                    }
+                }
+                Operation::Uncommon(UncommonOp::Parameter { bit, axis }) => {
+                    let is_whole = !bit && !axis;
+                    let number = block.number_before(code, place).filter(|_| is_whole);
+                    self.outside(OutsideValue::Parameter(number), None, block.flow, block.op)
+                }
+                Operation::Uncommon(
+                    UncommonOp::Push
+                    | UncommonOp::Negate
+                    | UncommonOp::NegateWord
+                    | UncommonOp::Bracket
+                    | UncommonOp::RoundTo(_)
+                    | UncommonOp::Logic(_)
+                    | UncommonOp::AxisNumber(_)
+                    | UncommonOp::NameNumber(_)
+                    | UncommonOp::SystemNumber(_),
+                ) => Marks::NONE,
+            };
+        }
+        marks
+    }
+
+    fn sources_marks(&mut self, block: &Block<'_>, values: &[OperandSource]) -> Marks {
+        let mut marks = Marks::NONE;
+        for value in values {
+            if let OperandSource::Free(place) = value {
+                marks |= self.variable_marks(block, u32::from(*place));
+            }
+        }
+        marks
+    }
+
+    /// Returns the marks of a variable; one that nothing in the program has set is an outside value.
+    pub(super) fn variable_marks(&mut self, block: &Block<'_>, number: u32) -> Marks {
+        match block.registers.variables.classify(number) {
+            VariableClass::Vacant => Marks::NONE,
+            VariableClass::Local(place) => {
+                let is_preset = self.variables.level() == 0
+                    && !self.variables.is_written(place)
+                    && !block.registers.variables.get(place).is_vacant();
+                let outside = if is_preset { self.outside_variable(block, number) } else { Marks::NONE };
+                self.variables.get(place) | outside
+            }
+            VariableClass::Common(place) => {
+                let is_written = self.variables.is_written(place);
+                let outside = if is_written { Marks::NONE } else { self.outside_variable(block, number) };
+                self.variables.get(place) | outside
+            }
+            VariableClass::System => self.system_marks(block, number),
+        }
+    }
+
+    fn outside_variable(&mut self, block: &Block<'_>, number: u32) -> Marks {
+        let value = block.registers.without_side_effects(|registers| registers.read_variable(number).ok());
+        let value = value.and_then(|value| value.as_number());
+        self.outside(OutsideValue::Variable(number), value, block.flow, block.op)
+    }
+
+    /// Returns the marks of a system variable.
+    fn system_marks(&mut self, block: &Block<'_>, number: u32) -> Marks {
+        match number {
+            3000 | 3006 | 3100..=3102 => Marks::NONE,
+            4001..=4130 | 4201..=4330 => self.modal_marks(number % 200),
+            5001..=5060 | 5081..=5100 => self.position_marks(((number - 1) % POSITIONS) as usize),
+            5061..=5080 => {
+                self.machine.skip_position | self.position_marks(((number - 1) % POSITIONS) as usize)
+            }
+            // A clock goes on whatever the program sets.
+            3001 | 3002 | 3011 | 3012 => self.outside_variable(block, number),
+            _ => match self.variables.system(number) {
+                Some(marks) => marks,
+                None if self.is_offset_set(&block.registers.data, number) => self.table_marks(number),
+                None => self.outside_variable(block, number) | self.table_marks(number),
+            },
+        }
+    }
+
+    /// Returns true if the machine file states the tool length H or a block has set it.
+    pub(super) fn is_length_set(&self, number: u32) -> bool {
+        self.stated.lengths.contains(&number) || self.set_lengths.contains(&number)
+    }
+
+    /// Returns true if the machine file states an offset or a block has set it, by its variable.
+    fn is_offset_set(&self, data: &ControlData, number: u32) -> bool {
+        match offset_of(number, data.settings.offset_variables) {
+            Some(OffsetEntry::Length(tool)) => self.is_length_set(tool),
+            Some(OffsetEntry::Radius(tool)) => self.set_radii.contains(&tool),
+            Some(OffsetEntry::Work(system)) => data.set_systems.contains(&system),
+            None => false,
+        }
+    }
+
+    /// Returns the marks of offsets that G10 or another variable may have set.
+    fn table_marks(&self, number: u32) -> Marks {
+        match number {
+            2001..=2999 | 5201..=5340 | 7001..=7960 | 10_001..=20_000 => {
+                self.machine.work_table | self.machine.tool_table
+            }
+            _ => Marks::NONE,
+        }
+    }
+
+    /// Returns the marks of #4000 + `item`.
+    fn modal_marks(&self, item: u32) -> Marks {
+        let machine = &self.machine;
+        match item {
+            107 => machine.code(b'D'),
+            109 => machine.code(b'F'),
+            111 => machine.code(b'H'),
+            119 => machine.code(b'S'),
+            120 => machine.code(b'T'),
+            130 => machine.group(14),
+            group => machine.group(group) | machine.rest,
+        }
+    }
+
+    fn position_marks(&self, axis: usize) -> Marks {
+        let machine = &self.machine;
+        let Some(position) = machine.axes.get(axis).filter(|_| axis < MAX_AXES) else { return Marks::NONE };
+        *position | machine.coordinates(axis) | machine.length
+    }
+
+    /// Writes a variable.
+    pub(super) fn write(&mut self, registers: &Registers, number: u32, marks: Marks) {
+        match registers.variables.classify(number) {
+            VariableClass::Vacant => {}
+            VariableClass::Local(place) | VariableClass::Common(place) => self.variables.set(place, marks),
+            VariableClass::System => {
+                self.variables.set_system(number, marks);
+                self.add_to_tables(number, marks);
+                match offset_of(number, registers.data.settings.offset_variables) {
+                    Some(OffsetEntry::Length(tool)) => _ = self.set_lengths.insert(tool),
+                    Some(OffsetEntry::Radius(tool)) => _ = self.set_radii.insert(tool),
+                    Some(OffsetEntry::Work(_)) | None => {}
+                }
+            }
+        }
+    }
+
+    /// Adds marks to a variable that might have been written.
+    pub(super) fn add_to_variable(&mut self, registers: &Registers, number: u32, marks: Marks) {
+        match registers.variables.classify(number) {
+            VariableClass::Vacant => {}
+            VariableClass::Local(place) | VariableClass::Common(place) => self.variables.add(place, marks),
+            // An alarm or a stop changes nothing.
+            VariableClass::System if matches!(number, 3000 | 3006) => {}
+            VariableClass::System => {
+                match self.variables.system(number) {
+                    Some(before) => self.variables.set_system(number, before | marks),
+                    None => self.machine.rest |= marks,
+                }
+                self.add_to_tables(number, marks);
+            }
+        }
+    }
+
+    fn add_to_tables(&mut self, number: u32, marks: Marks) {
+        match number {
+            2001..=2499 | 10_001..=13_999 => self.machine.tool_table |= marks,
+            2500..=2806 | 5201..=5340 | 7001..=7960 | 14_001..=20_000 => self.machine.work_table |= marks,
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Effect of a block of words on the marks: codes, moves, cycles, offsets, calls.
+use super::super::words::{computed_row, count};
+use super::{Block, LOCALS, Marks, OutsideValue, Slice};
+use crate::registers::Registers;
+use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
+use gcode_lang::program::m_codes::{self, MCodeEffect};
+use gcode_lang::program::modes::{CutterSide, Distance, Length, Motion, Plane, WorkSystem};
+use gcode_lang::program::{ArgumentLocals, CallCode, CallOp, CallTarget, LoweredWord, WordOperand, Words};
+
+/// One word with the marks of its value.
+#[derive(Clone, Copy)]
+pub(super) struct MarkedWord {
+    pub(super) letter: u8,
+    pub(super) marks: Marks,
+    /// Value; `None` for vacant, with which the word counts as absent.
+    pub(super) value: Option<f64>,
+}
+
+impl MarkedWord {
+    /// Returns true if another outside value neither changes the word nor removes it.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.marks.is_none() && self.value.is_some()
+    }
+}
+
+/// Modes that a block has in force.
+pub(super) struct BlockModes {
+    pub(super) motion: Motion,
+    pub(super) plane: Plane,
+    pub(super) distance: Distance,
+    length: Length,
+    cutter: CutterSide,
+    pub(super) work: WorkSystem,
+    pub(super) is_in_cycle: bool,
+    pub(super) begins_cycle: bool,
+    pub(super) one_shot: Option<OneShot>,
+}
+
+impl Slice {
+    pub(super) fn follow_words(&mut self, block: &Block<'_>, words: &Words) {
+        if self.follow_plain_move(block, words) {
+            return;
+        }
+        let data = &block.registers.data;
+        let mut guard = Marks::NONE;
+        if let Some((switch, _)) = words.skipped_form() {
+            let switch = (*switch).max(1);
+            let value = Some(f64::from(u8::from(data.is_skip_on(switch))));
+            guard = self.outside(OutsideValue::BlockSkip(switch), value, block.flow, block.op);
+            self.add_possible_words(block.registers, words, guard);
+        }
+        if block.registers.state.transform.is_none() {
+            self.machine.transform = Marks::NONE;
+        }
+        let words = data.unskipped(words).0;
+        let mut list: Vec<MarkedWord> = Vec::with_capacity(words.list.len());
+        for word in &words.list {
+            let marked = self.marked_word(block, words, word, guard);
+            self.block_marks |= marked.marks;
+            list.push(marked);
+        }
+        let modes = self.follow_g_codes(block, words, &list);
+        self.is_in_cycle = modes.is_in_cycle;
+        self.follow_codes(&list, guard);
+        self.follow_m_codes(block, words, &list);
+        self.follow_offsets(block, &list, &modes);
+        self.follow_axes(block, &list, &modes);
+        if let Some(call) = words.call() {
+            self.follow_call(block, words, call);
+        }
+    }
+
+    fn marked_word(
+        &mut self,
+        block: &Block<'_>,
+        words: &Words,
+        word: &LoweredWord,
+        guard: Marks,
+    ) -> MarkedWord {
+        let mut marks = guard;
+        match &word.value {
+            WordOperand::Variable { slot, .. } => marks |= self.variable_marks(block, slot.number()),
+            WordOperand::Code(place) => marks |= self.code_marks(block, words.code(*place)),
+            WordOperand::Literal(_) | WordOperand::Number(_) | WordOperand::G(..) => {}
+        }
+        if let Some(axis) = word.axis.and_then(|place| words.axis(place)) {
+            marks |= self.operand_marks(block, axis);
+        }
+        let evaluate = |registers: &Registers| registers.evaluate_word(words, word).ok().flatten();
+        let value = block.registers.without_side_effects(evaluate).map(|raw| raw.value());
+        MarkedWord { letter: word.letter, marks, value }
+    }
+
+    fn follow_g_codes(&mut self, block: &Block<'_>, words: &Words, list: &[MarkedWord]) -> BlockModes {
+        let (state, codes) = (&block.registers.state, block.registers.data.settings.codes);
+        let control = self.branches.marks();
+        let mut modes = BlockModes {
+            motion: state.modal.motion,
+            plane: state.modal.plane,
+            distance: state.modal.distance,
+            length: state.modal.length,
+            cutter: state.modal.cutter,
+            work: state.modal.work,
+            is_in_cycle: state.modal.cycle.is_some(),
+            begins_cycle: false,
+            one_shot: None,
+        };
+        for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'G') {
+            let Some(row) = row_of(block, words, word, codes) else { continue };
+            if !marked.marks.is_none() {
+                // Another value is another code.
+                self.machine.add_to_all(marked.marks);
+                self.machine.rest |= marked.marks;
+                self.further |= marked.marks;
+            }
+            if let Some(group) = row.group() {
+                self.machine.set_group(group, control | marked.marks);
+            }
+            match row.effect {
+                Effect::Motion(motion) => {
+                    (modes.is_in_cycle, modes.motion) = (false, motion);
+                    self.machine.cycle = control | marked.marks;
+                }
+                Effect::Cycle(None) => {
+                    modes.is_in_cycle = false;
+                    self.machine.cycle = control | marked.marks;
+                }
+                Effect::Cycle(Some(_)) => (modes.is_in_cycle, modes.begins_cycle) = (true, true),
+                Effect::Plane(plane) => modes.plane = plane,
+                Effect::Distance(distance) => modes.distance = distance,
+                Effect::Length(length) => modes.length = length,
+                Effect::Cutter(side) => modes.cutter = side,
+                Effect::Work(number) => modes.work = WorkSystem::Standard(number),
+                Effect::NumberedWork(number) => modes.work = WorkSystem::Additional(number),
+                Effect::AdditionalWork => {
+                    let place = list.iter().find(|word| word.letter == b'P');
+                    self.machine.set_group(14, control | place.map_or(Marks::NONE, |word| word.marks));
+                    if let Some(number) = place.and_then(|word| word.value) {
+                        modes.work = WorkSystem::Additional(number as u16);
+                    }
+                }
+                Effect::Scaling(_) | Effect::Rotation(_) | Effect::Mirror(_) => {
+                    // A centre that is left out is the current position.
+                    let position: Marks = self.machine.axes.iter().copied().collect();
+                    let words: Marks = list.iter().map(|word| word.marks).collect();
+                    self.machine.transform |= position | words | control;
+                }
+                Effect::OneShot(one) => modes.one_shot = Some(one),
+                _ => {}
+            }
+        }
+        modes
+    }
+
+    /// Follows F, S, T, H and D.
+    fn follow_codes(&mut self, list: &[MarkedWord], guard: Marks) {
+        let control = self.branches.marks() | guard;
+        for word in list.iter().filter(|word| b"FSTHD".contains(&word.letter)) {
+            let before = if word.is_fixed() { Marks::NONE } else { self.machine.code(word.letter) };
+            self.machine.set_code(word.letter, before | word.marks | control);
+        }
+    }
+
+    fn follow_m_codes(&mut self, block: &Block<'_>, words: &Words, list: &[MarkedWord]) {
+        let settings = &block.registers.data.settings;
+        let control = self.branches.marks();
+        for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'M') {
+            if !marked.marks.is_none() {
+                self.machine.add_to_all(marked.marks);
+                self.machine.rest |= marked.marks;
+                self.further |= marked.marks;
+            }
+            let raw = block.registers.without_side_effects(|registers| registers.evaluate_word(words, word));
+            let Some(code) = raw.ok().flatten().and_then(|raw| count(raw, b'M').ok()) else { continue };
+            match m_codes::find(code, settings.codes) {
+                Some(
+                    MCodeEffect::SpindleForward | MCodeEffect::SpindleReverse | MCodeEffect::SpindleStop,
+                ) => {
+                    self.machine.spindle = control | marked.marks;
+                }
+                Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
+                None if settings.code_calls.find_call(b'M', 10 * code).is_none()
+                    && !self.stated.codes.contains(&code) =>
+                {
+                    let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
+                    self.machine.rest |= marks;
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Follows tool length and cutter radius.
+    fn follow_offsets(&mut self, block: &Block<'_>, list: &[MarkedWord], modes: &BlockModes) {
+        let registers = block.registers;
+        let control = self.branches.marks();
+        let number_of = |letter: u8, modal: u32| {
+            let word = list.iter().find(|word| word.letter == letter);
+            word.and_then(|word| word.value).map_or(modal, |value| value as u32)
+        };
+        let h = number_of(b'H', registers.state.codes.h);
+        match modes.length {
+            Length::Off => self.machine.length = control | self.machine.group(8),
+            _ if registers.state.modal.length != modes.length
+                || list.iter().any(|word| word.letter == b'H') =>
+            {
+                let mut marks = self.machine.code(b'H') | self.machine.tool_table | control;
+                if h != 0 && !self.is_length_set(h) {
+                    let value = registers.data.offsets.length(h).ok();
+                    marks |= self.outside(OutsideValue::ToolLength(h), value, block.flow, block.op);
+                }
+                self.machine.length = marks;
+            }
+            _ => {}
+        }
+        let d = number_of(b'D', registers.state.codes.d);
+        let begins =
+            registers.state.modal.cutter != modes.cutter || list.iter().any(|word| word.letter == b'D');
+        match modes.cutter {
+            CutterSide::Off => self.machine.radius = control,
+            _ if begins => {
+                let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
+                if d != 0 && !self.set_radii.contains(&d) {
+                    let value = registers.data.offset_radius(d);
+                    marks |= self.outside(OutsideValue::CutterRadius(d), value, block.flow, block.op);
+                }
+                self.machine.radius = marks;
+            }
+            _ => {}
+        }
+    }
+
+    fn follow_call(&mut self, block: &Block<'_>, words: &Words, call: &CallOp) {
+        let control = self.branches.marks();
+        let mut marks_of = |word: &LoweredWord| self.marked_word(block, words, word, Marks::NONE).marks;
+        let mut decides = Marks::NONE;
+        if let CallTarget::Number(word) = &call.target {
+            decides |= marks_of(word);
+        }
+        for word in call.repeats.iter().chain(&call.start) {
+            decides |= marks_of(word);
+        }
+        let arguments: Vec<(u8, Marks)> =
+            call.arguments.iter().map(|word| (word.letter, marks_of(word))).collect();
+        self.leave(decides);
+        match call.kind {
+            CallCode::Macro => {
+                let mut locals = [control; LOCALS];
+                let mut letters = ArgumentLocals::new(block.registers.data.settings.reads_ijk_plainly, false);
+                for (letter, marks) in arguments {
+                    if let Ok(Some(local)) = letters.next(letter) {
+                        locals[local] |= marks;
+                    }
+                }
+                self.arguments = Some(locals);
+            }
+            CallCode::AfterMoves | CallCode::EveryBlock => {
+                self.modal_arguments |=
+                    arguments.into_iter().map(|(_, marks)| marks).collect::<Marks>() | control;
+            }
+            CallCode::Cancel | CallCode::Subprogram | CallCode::File | CallCode::Local | CallCode::Return => {
+            }
+        }
+    }
+}
+
+/// Returns the row of a G word.
+fn row_of(
+    block: &Block<'_>,
+    words: &Words,
+    word: &LoweredWord,
+    dialect: gcode_lang::control::Dialect,
+) -> Option<&'static GCodeRow> {
+    match &word.value {
+        WordOperand::G(_, found) => found.row_for(dialect),
+        _ => {
+            let raw = block.registers.without_side_effects(|registers| registers.evaluate_word(words, word));
+            computed_row(raw.ok().flatten()?, dialect).ok()
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Conclusion of a verdict: answer, end of the run, and one line of words. Every output states this value.
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::hole_finding::{HoleFinding, Subject};
+use crate::findings::{HOLE_MISSING, HOLE_TWICE};
+use gcode_lang::alarm::kinds::LIMIT;
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
+use gcode_lang::source::Span;
+
+/// The result of the checks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Answer {
+    /// No finding is an error.
+    Pass,
+    /// A finding is an error or an alarm.
+    Fail,
+}
+
+impl Answer {
+    /// Returns the answer to these findings.
+    pub(super) fn to<'f>(mut findings: impl Iterator<Item = &'f Diagnostic>) -> Self {
+        if findings.any(|finding| Severity::Error <= finding.severity) { Self::Fail } else { Self::Pass }
+    }
+
+    /// Returns the answer in capitals.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Pass => "PASS",
+            Self::Fail => "FAIL",
+        }
+    }
+}
+
+/// End of the run that a verdict is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Ending {
+    /// The program's end.
+    End,
+    /// An alarm stopped the control.
+    Alarm,
+    /// A limit of blocks, moves or time.
+    Limit,
+}
+
+impl Ending {
+    /// Returns the end of a run with these findings.
+    pub(super) fn of<'f>(mut findings: impl Iterator<Item = &'f Diagnostic>) -> Self {
+        match findings.find(|finding| finding.severity == Severity::Alarm) {
+            None => Self::End,
+            Some(finding) if finding.kind == &LIMIT => Self::Limit,
+            Some(_) => Self::Alarm,
+        }
+    }
+}
+
+/// Conclusion of a verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Conclusion<'v> {
+    /// The answer.
+    pub answer: Answer,
+    /// The end of the run.
+    pub ending: Ending,
+    /// The reasons in one line, without the answer.
+    pub summary: &'v str,
+}
+
+impl Conclusion<'_> {
+    /// Returns `FAIL: 1 of 2 holes in tolerance, 1 missing`.
+    pub fn line(&self) -> String {
+        format!("{}: {}", self.answer.word(), self.summary)
+    }
+}
+
+/// Returns the sentence on an alarm or a limit that ended the run; `None` if it reached its end.
+pub(super) fn stop_sentence<'f>(
+    mut findings: impl Iterator<Item = &'f Diagnostic>,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Option<String> {
+    let stop = findings.find(|finding| finding.severity == Severity::Alarm)?;
+    if stop.kind == &LIMIT {
+        return Some(stop.message.clone());
+    }
+    let place = stop.backtrace.as_ref().map(|backtrace| {
+        let (program, line) = locate(backtrace.block);
+        format!(" in {program} line {line}")
+    });
+    Some(format!("alarm {}{}: {}", stop.code(), place.unwrap_or_default(), stop.message))
+}
+
+/// Largest number of kinds of errors in a summary.
+const MAX_KINDS: usize = 3;
+
+/// Returns the titles of the errors that no number of holes in the summary counts, with the number of each.
+pub(super) fn uncounted_errors(findings: &[HoleFinding]) -> Option<String> {
+    let mut kinds: Vec<(&FindingKind, usize)> = Vec::new();
+    let is_counted = |one: &HoleFinding| match one.subject {
+        Subject::Nominal(_) | Subject::Extra(_) => true,
+        Subject::Whole | Subject::Motion => [&HOLE_MISSING, &HOLE_TWICE].contains(&one.finding.kind),
+    };
+    for one in findings.iter().filter(|one| one.finding.severity == Severity::Error && !is_counted(one)) {
+        match kinds.iter_mut().find(|(kind, _)| *kind == one.finding.kind) {
+            Some((_, number)) => *number += 1,
+            None => kinds.push((one.finding.kind, 1)),
+        }
+    }
+    let word = |(kind, number): &(&FindingKind, usize)| match number {
+        1 => kind.title.to_owned(),
+        _ => format!("{} ({number} times)", kind.title),
+    };
+    let mut words: Vec<String> = kinds.iter().take(MAX_KINDS).map(word).collect();
+    match kinds.len().saturating_sub(MAX_KINDS) {
+        0 => {}
+        1 => words.push("1 more kind of error".to_owned()),
+        more => words.push(format!("{more} more kinds of errors")),
+    }
+    (!words.is_empty()).then(|| words.join(", "))
+}
+
+/// Returns `5 of 6 holes in tolerance, 1 missing, 2 extra`.
+pub(super) fn hole_counts(good: usize, missing: usize, extra: usize, nominal: usize) -> String {
+    let noun = if nominal == 1 { "hole" } else { "holes" };
+    let others = [(missing, "missing"), (extra, "extra")];
+    let others = others.into_iter().filter(|(number, _)| *number != 0);
+    let others: String = others.map(|(number, word)| format!(", {number} {word}")).collect();
+    format!("{good} of {nominal} {noun} in tolerance{others}")
+}

@@ -1,0 +1,353 @@
+//! Assumptions of a result: values that the run read and nothing in its program set, with the holes that each can touch.
+use std::cell::Cell;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use super::{Request, Run, causes, set_up_control};
+use gcode_control::slice::{Marks, OutsideRead, Slice, StatedValues};
+use gcode_inspect::holes::{DrilledHole, HoleExtractor};
+use gcode_lang::motion::{
+    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
+};
+use gcode_lang::program::NoLibrary;
+use gcode_lang::source::{SourceId, Span};
+use gcode_part::{Assumption, AssumptionPlace, Surface};
+
+/// Holes of a run, and the values from outside on which each depends.
+#[derive(Clone, Debug, Default)]
+pub struct Dependences {
+    reads: Vec<OutsideRead>,
+    /// Sets of reads, by hole in the order of the extraction.
+    holes: Vec<Marks>,
+}
+
+/// Follows the outside values through a second run, if the first one can have read any. `surface` is that of the first run.
+pub(super) fn dependences(
+    request: &Request,
+    run: &Run,
+    surface: Option<Surface>,
+    has_holes: bool,
+) -> Dependences {
+    if run.control.is_cancelled() || !may_read_outside(request, run, has_holes) {
+        return Dependences::default();
+    }
+    let Ok(mut control) = set_up_control(request, causes::reload(run)) else { return Dependences::default() };
+    let mut slice = Slice::new(stated_values(request));
+    let mut sink = MarkedEvents {
+        extractor: super::extractor(request, surface),
+        motion: slice.motion(),
+        strokes: Vec::new(),
+        position: Position::default(),
+        last: None,
+    };
+    control.run_observed(request.limits, &mut NoLibrary, &mut sink, &mut slice);
+    let MarkedEvents { extractor, strokes, .. } = sink;
+    let holes = extractor.finish().holes.iter().map(|hole| marks_of(hole, &strokes)).collect();
+    Dependences { reads: slice.into_reads(), holes }
+}
+
+impl Dependences {
+    /// Returns the assumptions that can touch a hole, each with its block; `names` returns the name of a hole by its index in
+    /// the extraction.
+    pub fn assumptions(
+        &self,
+        run: &Run,
+        names: impl Fn(usize) -> Option<String>,
+    ) -> Vec<(Assumption, Backtrace)> {
+        let assumption = |(index, read): (usize, &OutsideRead)| {
+            let touched = self.holes.iter().enumerate().filter(|(_, marks)| marks.contains(index));
+            let decides: Vec<String> = touched.filter_map(|(hole, _)| names(hole)).collect();
+            let (program, line) = run.locate(read.place.block);
+            let (what, place) = (read.source.name(), AssumptionPlace { program, line });
+            let is_assumed = read.decides_further_cuts || !decides.is_empty();
+            let assumption = Assumption { what, value: read.value, place, decides };
+            is_assumed.then(|| (assumption, read.place.clone()))
+        };
+        self.reads.iter().enumerate().filter_map(assumption).collect()
+    }
+
+    /// Returns the assumptions, with the holes named by their numbers from 1.
+    pub fn numbered(&self, run: &Run) -> Vec<(Assumption, Backtrace)> {
+        self.assumptions(run, |hole| Some((hole + 1).to_string()))
+    }
+
+    /// Returns the number of holes.
+    pub fn hole_count(&self) -> usize {
+        self.holes.len()
+    }
+}
+
+/// Returns true if the run can have read a value that its program does not set. A text that names a variable beyond the
+/// locals counts as reading it. Without holes only those values matter that can decide whether a block is executed, or how.
+fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
+    let control = &run.control;
+    let stated = stated_values(request);
+    let is_code_unknown = || control.auxiliary_codes().keys().any(|code| !stated.codes.contains(code));
+    !request.variables.is_empty()
+        || request.settings.skip_signal.is_some()
+        || has_holes && (!control.unset_work_systems().is_empty() || is_code_unknown())
+        || control
+            .memory()
+            .sources()
+            .iter()
+            .any(|(_, source)| names_outside(&source.bytes, &stated, has_holes))
+}
+
+/// Returns true if a text has a block skip, `#` before anything but a local or a harmless system variable, PRM, or a tool
+/// offset whose value the machine file does not state.
+fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
+    let is_outside = |at: usize| {
+        let is_named = match text[at].to_ascii_uppercase() {
+            b'#' => !matches!(
+                number_behind(text, at),
+                Some(0..=33 | 3000 | 3006 | 3100..=3102 | 4001..=4330 | 5001..=5060)
+            ),
+            // No other function of one argument ends with M.
+            b'[' => text[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M')),
+            letter @ (b'H' | b'D') => match number_behind(text, at) {
+                Some(number) => number != 0 && (letter == b'D' || !stated.lengths.contains(&number)),
+                None => matches!(text[at + 1..].trim_ascii_start().first(), Some(b'#' | b'[')),
+            },
+            _ => !is_division(line_before(text, at)),
+        };
+        is_named && !is_in_comment(line_before(text, at))
+    };
+    memchr::memchr3_iter(b'#', b'/', b'[', text).any(is_outside)
+        || has_holes && memchr::memchr2_iter(b'H', b'D', text).any(is_outside)
+        || has_holes && memchr::memchr2_iter(b'h', b'd', text).any(is_outside)
+}
+
+/// Returns the number behind a byte of a text.
+fn number_behind(text: &[u8], at: usize) -> Option<u32> {
+    let behind = text[at + 1..].trim_ascii_start();
+    let digits = behind.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    std::str::from_utf8(&behind[..digits]).ok()?.parse().ok()
+}
+
+/// Returns the line of a byte up to it.
+fn line_before(text: &[u8], at: usize) -> &[u8] {
+    &text[memchr::memrchr(b'\n', &text[..at]).map_or(0, |end| end + 1)..at]
+}
+
+/// Returns true if a byte behind this part of its line is in a comment.
+fn is_in_comment(before: &[u8]) -> bool {
+    before.iter().rposition(|byte| *byte == b'(') > before.iter().rposition(|byte| *byte == b')')
+}
+
+/// Returns true if a slash behind this part of its line divides: behind `=` or inside brackets.
+fn is_division(before: &[u8]) -> bool {
+    let count = |bracket: u8| before.iter().filter(|byte| **byte == bracket).count();
+    before.contains(&b'=') || count(b']') < count(b'[')
+}
+
+/// Returns what the machine file and the reference state.
+fn stated_values(request: &Request) -> StatedValues {
+    let lengths = request.machine.tools.iter().filter(|tool| tool.length.is_some()).map(|tool| tool.number);
+    let clamp = request.process_limits.clamp.iter().flat_map(|clamp| [clamp.on, clamp.off]);
+    StatedValues { lengths: lengths.collect(), codes: clamp.collect(), has_part: request.part.is_some() }
+}
+
+/// Source of the calls that mark the backtraces of events: no text has it.
+const MARKER: SourceId = SourceId(u32::MAX);
+
+/// Cosine of the largest angle between two moves along one line.
+const MIN_COSINE: f64 = 1.0 - 1e-9;
+
+/// Sink that marks each event with the stroke it belongs to, and records the outside values on which a stroke depends.
+///
+/// A stroke is a series of feeds, with the rapids along the line of the move before. The mark is an innermost call that no
+/// program has, so that the passes of the extraction carry it.
+struct MarkedEvents<'m> {
+    extractor: HoleExtractor<'m>,
+    motion: Rc<Cell<Marks>>,
+    strokes: Vec<Marks>,
+    position: Position,
+    /// Direction of the last move, and whether it was a rapid.
+    last: Option<(Position, bool)>,
+}
+
+impl EventSink for MarkedEvents<'_> {
+    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
+        self.extractor.skip_signal(feed)
+    }
+
+    fn event(&mut self, event: &Event<'_>) {
+        let Some(to) = event.kind.end() else { return self.extractor.event(event) };
+        let is_rapid = matches!(event.kind, EventKind::Rapid { .. });
+        let from = std::mem::replace(&mut self.position, *to);
+        let mut direction = Position::default();
+        (0..MAX_AXES).for_each(|axis| direction[axis] = to[axis] - from[axis]);
+        let length = (0..MAX_AXES).map(|axis| direction[axis] * direction[axis]).sum::<f64>().sqrt();
+        if length > 0.0 {
+            (0..MAX_AXES).for_each(|axis| direction[axis] /= length);
+            let is_along = |last: &Position| {
+                let cosine: f64 = (0..MAX_AXES).map(|axis| last[axis] * direction[axis]).sum();
+                cosine.abs() >= MIN_COSINE
+            };
+            let continues =
+                self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
+            if !continues {
+                self.strokes.push(Marks::NONE);
+            }
+            self.last = Some((direction, is_rapid));
+        } else if self.strokes.is_empty() {
+            self.strokes.push(Marks::NONE);
+        }
+        let stroke = self.strokes.len() - 1;
+        self.strokes[stroke] |= self.motion.get();
+        let place = Span { source: MARKER, start: stroke as u32, end: stroke as u32 };
+        let calls = Some(Arc::new(Call { calling_block: place, outer_calls: event.calls.clone() }));
+        self.extractor.event(&Event { calls: &calls, ..*event });
+    }
+}
+
+/// Returns the outside values on which the passes of a hole depend.
+fn marks_of(hole: &DrilledHole, strokes: &[Marks]) -> Marks {
+    let stroke = |place: &Backtrace| {
+        let call = place.calls.as_ref().filter(|call| call.calling_block.source == MARKER)?;
+        strokes.get(call.calling_block.start as usize).copied()
+    };
+    let passes = hole.earlier_passes.iter().map(|pass| &pass.backtrace);
+    passes.chain([&hole.backtrace]).filter_map(stroke).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate;
+    use gcode_inspect::machine::Machine;
+
+    /// Returns the assumptions of a program as `#510=2.5@3: 1 2`, and its number of holes.
+    fn assumptions_with(blocks: &str, variables: &[(u32, f64)]) -> (Vec<String>, usize) {
+        let text = format!("O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z50.\n{blocks}\nG80 Z50.\nM30\n");
+        let mut request = Request::new("O1.nc", text.into_bytes(), Machine::default());
+        request.variables = variables.to_vec();
+        let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
+        assert!(simulation.run.stop_finding().is_none(), "{blocks}");
+        let holes = simulation.extracted.holes.len();
+        let found = simulation.dependences(&request, None);
+        let all = found.assumptions(&simulation.run, |hole| Some((hole + 1).to_string()));
+        let shown = all.into_iter().map(|(Assumption { what, value, place, decides }, _)| {
+            let value = value.map_or_else(|| "vacant".to_owned(), |value| value.to_string());
+            format!("{what}={value}@{}: {}", place.line, decides.join(" "))
+        });
+        (shown.collect(), holes)
+    }
+
+    /// Asserts the assumptions of a program with this number of holes.
+    fn assert_assumptions(blocks: &str, holes: usize, expected: &[&str]) {
+        assert_eq!(
+            assumptions_with(blocks, &[]),
+            (expected.iter().map(|one| (*one).to_owned()).collect(), holes),
+            "{blocks}"
+        );
+    }
+
+    #[test]
+    fn a_common_decides_the_holes_whose_words_it_reaches() {
+        // Line 4 is the first of these blocks.
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nX20. Y#510\nX30. Y10.", 3, &["#510=vacant@5: 2"]);
+        assert_assumptions(
+            "#100=#510+1.\nG81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.",
+            3,
+            &["#510=vacant@4: 2"],
+        );
+        // Y stays where the hole before has left it.
+        assert_assumptions("G81 X10. Y#510 Z-5. R2. F100.\nX20.\nX30. Y10.", 3, &["#510=vacant@4: 1 2"]);
+        // The depth of a cycle stays until it is cancelled.
+        let cancelled = "G81 X10. Y10. Z-[5.+#510] R2. F100.\nX20.\nG80 Z50.\nG81 X30. Z-5. R2.";
+        assert_assumptions(cancelled, 3, &["#510=vacant@4: 1 2"]);
+    }
+
+    #[test]
+    fn a_value_that_the_program_sets_is_no_assumption() {
+        assert_assumptions("#510=5.\nG81 X10. Y#510 Z-5. R2. F100.", 1, &[]);
+        assert_assumptions("#510=#0\nG81 X10. Y#510 Z-5. R2. F100.", 1, &[]);
+        assert_assumptions("#510=#510+1.\nG81 X10. Y#510 Z-5. R2. F100.", 1, &["#510=vacant@4: 1"]);
+        assert_assumptions("#511=#510\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
+    }
+
+    #[test]
+    fn a_condition_decides_what_is_executed_until_both_ways_meet() {
+        let program = |condition: &str| {
+            format!(
+                "#100=10.\nIF[{condition}]GOTO 5\n#100=20.\nN5 G81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10."
+            )
+        };
+        assert_assumptions(&program("#510EQ1"), 3, &["#510=vacant@5: 2"]);
+        assert_assumptions(&program("#510NE1"), 3, &["#510=vacant@5: 2"]);
+        assert_assumptions(&program("#100EQ1"), 3, &[]);
+        let then = "#100=10.\nIF[#510EQ1]THEN #100=20.\nG81 X10. Y10. Z-5. R2. F100.\nX20. Y#100\nX30. Y10.";
+        assert_assumptions(then, 3, &["#510=vacant@5: 2"]);
+        // One way leads to an alarm: no hole is cut elsewhere.
+        let hole = "G81 X10. Y10. Z-5. R2. F100.";
+        assert_assumptions(&format!("IF[#510EQ1]THEN #3000=1(NO)\n{hole}"), 1, &[]);
+        assert_assumptions(&format!("IF[#510NE1]GOTO5\n#3000=1(NO)\nN5 {hole}"), 1, &[]);
+        // The end of the program is no alarm.
+        assert_assumptions(&format!("IF[#510NE1]GOTO5\nM30\nN5 {hole}"), 1, &["#510=vacant@4: 1"]);
+    }
+
+    #[test]
+    fn a_loop_count_decides_the_holes_of_the_loop() {
+        let text = "G81 X5. Y5. Z-5. R2. F100.\n#1=0\nWHILE[#1LT#510]DO1\n#1=#1+1\nX[10.*#1] Y10.\nEND1\nG80\nG0 X0. Y50. Z50.\nG81 X50. Y50. Z-5. R2. F100.";
+        let (found, holes) = assumptions_with(text, &[(510, 2.0)]);
+        assert_eq!((found, holes), (vec!["#510=2@6: 2 3".to_owned()], 4));
+    }
+
+    #[test]
+    fn arguments_of_a_call_carry_their_values() {
+        let text = "G65 P2 X10. Y#510\nG65 P2 X20. Y10.\nG80\nM30\nO2\nG0 X#24 Y#25\nG81 Z-5. R2. F100.\nG80\nM99\nO3\nM30";
+        assert_assumptions(text, 2, &["#510=vacant@4: 1"]);
+    }
+
+    #[test]
+    fn switches_signals_lengths_and_codes_of_the_builder_are_assumptions() {
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\n/X20.\nX30.", 3, &["/=0@5: 2"]);
+        assert_assumptions("#100=#1005*10.\nG81 X10. Y#100 Z-5. R2. F100.\nX20. Y10.", 2, &["#1005=0@4: 1"]);
+        assert_assumptions("G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &["H1=0@4: 1"]);
+        assert_assumptions("G10 L10 P1 R0\nG43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM21\nX20.", 2, &["M21=vacant@5: 2"]);
+        assert_assumptions(
+            "G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.",
+            2,
+            &["G55=vacant@7: 2"],
+        );
+    }
+
+    #[test]
+    fn a_second_run_is_needed_only_for_texts_that_can_read_outside_values() {
+        let stated = StatedValues { lengths: [1].into(), ..StatedValues::default() };
+        for (text, with_holes, without) in [
+            ("G0 X1. Y2.\nM30\n", false, false),
+            ("#1=2\nX#[1+1] Y[COS[#2]] (#510 / H2)\n", true, true),
+            ("#1=2\nX#2 Y[COS[#2]] (#510 / H2)\n#5041\n", false, false),
+            ("G43 H1\nDO1\nWHILE[#1LT2]DO1\n", false, false),
+            ("G43 H2\n", true, false),
+            ("G41d3\n", true, false),
+            ("G43 H#1\n", true, false),
+            ("X#510\n", true, true),
+            ("#4=ATAN[#2]/[#3]\nX[#4/2]\n", false, false),
+            ("(A) /X1.\n", true, true),
+            ("X[#4/2] /2 Y1.\n", true, true),
+            ("#1=PRM[20]\n", true, true),
+        ] {
+            let found = [true, false].map(|has_holes| names_outside(text.as_bytes(), &stated, has_holes));
+            assert_eq!(found, [with_holes, without], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_value_decides_a_milled_hole_by_any_of_its_feeds() {
+        let text =
+            "G0 X10. Y10. Z2.\nG1 Z-3. F100.\nX[12.+#510]\nG3 I-2.\nG1 X10.\nG0 Z50.\nX40.\nG81 Z-5. R2.";
+        assert_assumptions(text, 2, &["#510=vacant@6: 1"]);
+    }
+
+    #[test]
+    fn a_computed_number_of_a_variable_is_followed() {
+        assert_assumptions("#1=510\nG81 X10. Y#[#1] Z-5. R2. F100.\nX20. Y10.", 2, &["#510=vacant@5: 1"]);
+        // Another #510 would have set another variable.
+        let text = "#101=10.\n#102=20.\n#[101+#510]=30.\nG81 X10. Y#102 Z-5. R2. F100.\nX20. Y10.";
+        assert_assumptions(text, 2, &["#510=vacant@6: 1"]);
+    }
+}
