@@ -104,6 +104,10 @@ fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
             ),
             // No other function of one argument ends with M.
             b'[' => text[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M')),
+            // END1, AND, ROUND: part of a word.
+            b'H' | b'D' if at.checked_sub(1).is_some_and(|before| text[before].is_ascii_alphabetic()) => {
+                false
+            }
             letter @ (b'H' | b'D') => match number_behind(text, at) {
                 Some(number) => number != 0 && (letter == b'D' || !stated.lengths.contains(&number)),
                 None => matches!(text[at + 1..].trim_ascii_start().first(), Some(b'#' | b'[')),
@@ -321,7 +325,7 @@ mod tests {
             ("G0 X1. Y2.\nM30\n", false, false),
             ("#1=2\nX#[1+1] Y[COS[#2]] (#510 / H2)\n", true, true),
             ("#1=2\nX#2 Y[COS[#2]] (#510 / H2)\n#5041\n", false, false),
-            ("G43 H1\nDO1\nWHILE[#1LT2]DO1\n", false, false),
+            ("G43 H1\nWHILE[#1LT2]DO1\nIF[[#1GT1]AND[#2LT3]]GOTO3\n#2=ROUND[#3]\nEND1\n", false, false),
             ("G43 H2\n", true, false),
             ("G41d3\n", true, false),
             ("G43 H#1\n", true, false),
