@@ -117,12 +117,15 @@ impl<'a> Comparison<'a> {
         }
         let (nominal, actual, missing) = (self.nominal, self.actual, &self.missing);
         self.extra.retain(|index| {
-            let (start, end) = (actual[*index].entry, actual[*index].bottom());
+            let end = actual[*index].bottom();
             let is_near = |nominal: &Hole| {
                 let entry = Point3::from(nominal.entry);
                 (entry - end).cross(&actual[*index].axis).norm() <= MAX_LINE_DISTANCE
             };
-            let is_in_air = surface.value(&surface.deepest_between(&start, &end)) > 0.0;
+            // A feed across the tool has no depth: its ends count.
+            let is_in_air = actual[*index]
+                .passes()
+                .all(|pass| surface.value(&surface.deepest_between(&pass.cut.start, &pass.cut.bottom)) > 0.0);
             !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
         });
     }
