@@ -60,6 +60,12 @@ fn jobs_of_every_kind_pass() {
         &[("IS-B", "IS-C"), ("fanuc-31i", "haas-ngc")],
         &[("fanuc-31i", "fanuc-0i-f"), ("letter = \"B\"", "letter = \"A\"")],
         &[("sign = 1 }", "sign = 1 }\nclamp = { on = 10, off = 11 }\nclearance = 0.5\nretract = 0.5")],
+        &[
+            ("diameter = 100.0", "diameter = 20.0"),
+            ("length = 90.0", "length = 3.0"),
+            ("pitch = 20.0", "pitch = 0.45"),
+            ("diameter = 5.0\ndepth = 12.0", "diameter = 0.3\ndepth = 1.0"),
+        ],
         &[("depth = 12.0", "depth = 12.0\nnumber = 12\nspeed = 700\nfeed = 33.3\npeck = 0.7")],
     ] {
         let text = changed(changes);

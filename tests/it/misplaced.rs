@@ -37,7 +37,7 @@ fn nominal(r: f64, y: f64, angles: &[f64]) -> Reference {
         axis: [0.0, 1.0, 0.0],
         depth: 15.0,
         diameter: None,
-        from: None,
+        ..Hole::default()
     };
     Reference::of_list(HoleList {
         unit: Unit::Mm,

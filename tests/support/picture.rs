@@ -187,7 +187,7 @@ fn drawn_hole(case: &HoleCase) -> DrawnHole {
         axis: case.axis.map(|v| v / length),
         depth: 15.0,
         diameter: Some(case.diameter),
-        from: None,
+        ..Hole::default()
     };
     let is_nominal = matches!(standing, HoleStatus::Good | HoleStatus::Bad | HoleStatus::Missing);
     DrawnHole {

@@ -9,7 +9,7 @@ use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::Library;
 use gcode_part::job::Job;
-use gcode_part::{Flutes, NominalPart, Reference, overlaps};
+use gcode_part::{Flutes, NominalPart, Reference, exceeds, overlaps};
 use gcode_session::{Request, Run, grind, simulate};
 use gcode_sim::report::verdict_table::{Layout, table};
 use gcode_sim::report::{diagnostic, flute_table, flute_view, top};
@@ -178,7 +178,7 @@ fn messages(
 /// Returns the share of rounding in position errors that are too large because of it.
 fn rounding_messages(verdict: &Verdict, increment: f64) -> impl Iterator<Item = String> {
     let tolerance = verdict.tolerance;
-    let failed = verdict.holes.iter().filter(move |hole| hole.position_deviation > tolerance);
+    let failed = verdict.holes.iter().filter(move |hole| exceeds(hole.position_deviation, tolerance));
     let by_rounding = failed
         .filter(move |hole| hole.rounding > tolerance - (hole.position_deviation - hole.rounding).max(0.0));
     by_rounding.map(move |hole| {

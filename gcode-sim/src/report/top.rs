@@ -241,7 +241,7 @@ mod tests {
             axis: *axis,
             depth: 10.0,
             diameter: None,
-            from: None,
+            ..Hole::default()
         };
         axes.iter().map(hole).collect()
     }

@@ -5,7 +5,7 @@ use super::figures::{count, rounded, signed, signed_to};
 use gcode_inspect::verify::{
     Conclusion, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict,
 };
-use gcode_part::Assumption;
+use gcode_part::{Assumption, exceeds};
 
 /// Extent and order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -167,7 +167,7 @@ fn summary(text: &mut String, verdict: &Verdict) {
             "rounding to the control's least increment alone can cause Φ{rounding:.4}: {share:.1} % of the \
              tolerance zone"
         );
-        if tolerance < rounding {
+        if exceeds(rounding, tolerance) {
             let _ = writeln!(
                 text,
                 "WARNING  this control's least increment is too coarse for Φ{tolerance}: use a finer \
@@ -255,6 +255,7 @@ mod tests {
             at_bottom: phi / 2.0,
             depth_error: -0.00002,
             drilled_index: 0,
+            far_side_index: None,
             ok: error_codes.is_empty(),
             tilt: 0.0,
             out_of_tolerance: (phi - 0.1).max(0.0),

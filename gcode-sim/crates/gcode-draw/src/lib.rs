@@ -35,7 +35,7 @@
 //! use gcode_part::Hole;
 //!
 //! let nominal =
-//!     Hole { id: None, entry: [40.0, 0.0, 0.0], axis: [0.0, 1.0, 0.0], depth: 15.0, diameter: Some(6.0), from: None };
+//!     Hole { id: None, entry: [40.0, 0.0, 0.0], axis: [0.0, 1.0, 0.0], depth: 15.0, diameter: Some(6.0), ..Hole::default() };
 //! let actual = Hole { entry: [40.02, 0.0, 0.01], ..nominal.clone() };
 //! let hole = DrawnHole {
 //!     id: "1".to_owned(),

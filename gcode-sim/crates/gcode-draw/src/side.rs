@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     fn drilled(entry: [f64; 3], axis: [f64; 3]) -> Hole {
-        Hole { id: None, entry, axis, depth: 10.0, diameter: None, from: None }
+        Hole { id: None, entry, axis, depth: 10.0, diameter: None, ..Hole::default() }
     }
 
     /// Right × up points to the reader: nothing is mirrored.

@@ -12,6 +12,9 @@ gcode_lang::finding_kinds! {
     DRILL_PECK = "drill-peck", Error, "a hole is drilled with other pecks than specified";
     DRILL_SPEED = "drill-speed", Error, "a tool cuts at another speed than specified";
     DRILLS_UNCLAMPED = "drills-unclamped", Error, "a feed into the part with an unclamped rotary";
+    FEATURE_DEPTH = "feature-depth", Error, "a feature of a hole is too deep or too shallow";
+    FEATURE_EXTRA = "feature-extra", Error, "a tool cuts wider than the hole";
+    FEATURE_MISSING = "feature-missing", Error, "a feature of a hole is missing";
     FEED_NO_HOLE = "feed-no-hole", Error, "a feed that makes no hole";
     FEED_NOT_ALONG_TOOL = "feed-not-along-tool", Error, "the feed doesn't run along the tool";
     FEED_WITHOUT_RETRACT = "feed-without-retract", Error, "a feed without retract";
@@ -35,6 +38,7 @@ gcode_lang::finding_kinds! {
     HOLE_EXTRA = "hole-extra", Error, "an extra hole";
     HOLE_IN_AIR = "hole-in-air", Error, "feeds over missing holes end above the part";
     HOLE_MISSING = "hole-missing", Error, "a hole is missing";
+    HOLE_NOT_THROUGH = "hole-not-through", Error, "a through hole does not break out";
     HOLE_OVERLAP = "hole-overlap", Note, "two nominal holes cut into each other";
     HOLE_POSITION = "hole-position", Error, "a hole is out of position";
     HOLE_ROUNDNESS = "hole-roundness", Error, "a milled hole is not round";
@@ -62,6 +66,8 @@ gcode_lang::finding_kinds! {
     SPINDLE_REVERSED = "spindle-reversed", Warning, "a hole is drilled with M04";
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
     START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";
+    TAP_DRILL = "tap-drill", Error, "a thread is as deep as its drilled hole, or deeper";
+    TAP_PITCH = "tap-pitch", Error, "feed and speed do not give the pitch of the thread";
     TOOL_SHORT = "tool-short", Warning, "a tool goes deeper than it is long";
     TOOL_UNKNOWN = "tool-unknown", Warning, "a tool that is missing in the tool table";
     TURNS_CLAMPED = "turns-clamped", Error, "the rotary rotates while clamped";

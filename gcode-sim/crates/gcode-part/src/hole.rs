@@ -2,6 +2,9 @@
 use nalgebra::{Point3, Unit as Direction, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use super::feature::Feature;
 
 use super::assumption::Assumption;
 use super::surface::Surface;
@@ -19,8 +22,9 @@ pub struct Origin {
 }
 
 /// A hole in the part's frame, lengths in mm.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("anyOf" = [json!({ "required": ["depth"] }), json!({ "required": ["features"] })]))]
 pub struct Hole {
     /// Identifier; `None` for holes that a program made and for unnamed entries of a list.
     #[serde(default)]
@@ -29,7 +33,8 @@ pub struct Hole {
     pub entry: [f64; 3],
     /// Unit vector out of the part.
     pub axis: [f64; 3],
-    /// From the entry, along the axis, to the deepest point.
+    /// From the entry, along the axis, to the deepest point; with features it may be left out.
+    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub depth: f64,
     #[serde(default)]
@@ -39,6 +44,23 @@ pub struct Hole {
     #[serde(default)]
     /// Block that made the hole; `None` in a reference.
     pub from: Option<Origin>,
+    /// Diameters, cones and threads on the axis; without them `diameter` and `depth` are one feature.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub features: Vec<Feature>,
+    /// True if the hole goes through the part; `depth` is then the thickness.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub through: bool,
+}
+
+impl Hole {
+    /// Returns the diameter, or that of the widest feature; `None` if unknown.
+    pub fn widest_diameter(&self) -> Option<f64> {
+        self.diameter.into_iter().chain(self.features.iter().map(|feature| feature.diameter)).reduce(f64::max)
+    }
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// Unit of a hole list.

@@ -8,6 +8,7 @@
 use super::hole::Hole;
 use super::pattern::{Pattern, point, solve_pitch};
 use super::reference::{ProcessLimits, Reference, ToolProcess};
+use super::spacing::hole_spacing;
 use super::surface::Surface;
 use crate::job::{Cylinder, Drill, Honeycomb, Metric, Spacing};
 use crate::reader::FileError;
@@ -38,16 +39,17 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, FileError> {
                 axis: out.coords.into(),
                 depth: drill.depth,
                 diameter: Some(drill.diameter),
-                from: None,
+                ..Hole::default()
             });
         }
     }
+    let process_limits = ProcessLimits { hole_spacing: hole_spacing(&holes), ..process_limits(job) };
     Ok(Reference {
         holes,
         position: Some(job.tolerance.position),
         depth: Some(job.tolerance.depth),
         surface: Some(Surface::Cylinder { radius: outer }),
-        process_limits: process_limits(job),
+        process_limits,
         pattern: Some(pattern),
     })
 }

@@ -25,13 +25,14 @@ impl Overlap {
     }
 }
 
-/// Returns all pairs of overlapping holes with known diameters, in the order of the list.
+/// Returns all pairs of overlapping holes with known diameters, in the order of the list. A hole with features counts as wide
+/// as the widest of them.
 pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
     let mut sized: Vec<_> = holes
         .iter()
         .enumerate()
         .filter_map(|(index, hole)| {
-            let radius = hole.diameter? / 2.0;
+            let radius = hole.widest_diameter()? / 2.0;
             let ends = [hole.entry[0], hole.entry[0] - hole.axis[0] * hole.depth];
             let reach = [ends[0].min(ends[1]) - radius, ends[0].max(ends[1]) + radius];
             Some((index, radius, reach))
@@ -84,7 +85,7 @@ mod tests {
     use super::*;
 
     fn hole(entry: [f64; 3], axis: [f64; 3], depth: f64, diameter: f64) -> Hole {
-        Hole { id: None, entry, axis, depth, diameter: Some(diameter), from: None }
+        Hole { id: None, entry, axis, depth, diameter: Some(diameter), ..Hole::default() }
     }
 
     #[test]

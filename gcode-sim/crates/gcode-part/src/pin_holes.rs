@@ -5,6 +5,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::hole::Hole;
 use super::reference::{ProcessLimits, Reference, ToolProcess};
+use super::spacing::hole_spacing;
 use super::surface::Surface;
 use crate::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 use crate::reader::FileError;
@@ -16,13 +17,14 @@ use gcode_lang::units::Deg;
 /// A hole whose line misses the surface.
 pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
-    let holes = job.holes.iter().map(|hole| pin_hole(&surface, hole));
+    let holes = job.holes.iter().map(|hole| pin_hole(&surface, hole)).collect::<Result<Vec<_>, _>>()?;
+    let process_limits = ProcessLimits { hole_spacing: hole_spacing(&holes), ..process_limits(job) };
     Ok(Reference {
-        holes: holes.collect::<Result<_, _>>()?,
+        holes,
         position: Some(job.tolerance.position),
         depth: Some(job.tolerance.depth),
         surface: Some(surface),
-        process_limits: process_limits(job),
+        process_limits,
         pattern: None,
     })
 }
@@ -65,7 +67,7 @@ fn pin_hole(surface: &Surface, spec: &HoleSpec) -> Result<Hole, FileError> {
         axis: axis.into_inner().into(),
         depth: spec.depth,
         diameter: Some(spec.diameter),
-        from: None,
+        ..Hole::default()
     })
 }
 

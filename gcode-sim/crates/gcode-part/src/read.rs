@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
+use super::feature::{Feature, FeatureKind};
 use super::hole::{Hole, HoleList, Unit};
 use crate::reader::FileError;
 
@@ -11,7 +12,11 @@ fn error(line: Option<usize>, message: impl Into<String>) -> FileError {
     FileError { line, message: message.into() }
 }
 
-const COLUMNS: [&str; 9] = ["id", "x", "y", "z", "i", "j", "k", "depth", "diameter"];
+/// Columns of a list; the last three may be left out.
+const COLUMNS: [&str; 11] = ["id", "x", "y", "z", "i", "j", "k", "depth", "diameter", "features", "through"];
+
+/// Columns that every list has.
+const REQUIRED: usize = 8;
 
 pub(super) fn json(text: &str) -> Result<HoleList, FileError> {
     serde_json::from_str(text).map_err(|e| {
@@ -39,16 +44,16 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
     let column = |name: &str| header.iter().position(|h| h == name);
-    for name in COLUMNS {
-        if column(name).is_none() && name != "diameter" {
-            let all = COLUMNS.join(",");
+    for name in &COLUMNS[..REQUIRED] {
+        if column(name).is_none() {
+            let all = COLUMNS[..=REQUIRED].join(",");
             return Err(error(Some(1), format!("column '{name}' is missing: the header is {all}")));
         }
     }
     if let Some(other) = header.iter().find(|h| !COLUMNS.contains(h)) {
         return Err(error(
             Some(1),
-            format!("column '{other}' is unknown: the header is {}", COLUMNS.join(",")),
+            format!("column '{other}' is unknown: the columns are {}", COLUMNS.join(",")),
         ));
     }
     let mut holes = Vec::new();
@@ -64,11 +69,23 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
             id: Some(field("id").to_owned()).filter(|id| !id.is_empty()),
             entry: [number("x")?, number("y")?, number("z")?],
             axis: [number("i")?, number("j")?, number("k")?],
-            depth: number("depth")?,
+            depth: if field("depth").is_empty() && !field("features").is_empty() {
+                0.0
+            } else {
+                number("depth")?
+            },
             diameter: if field("diameter").is_empty() { None } else { Some(number("diameter")?) },
-            from: None,
+            features: features(field("features"))
+                .map_err(|message| error(line, format!("column 'features': {message}")))?,
+            through: match field("through") {
+                "" | "false" => false,
+                "true" => true,
+                other => return Err(error(line, format!("column 'through' is '{other}': true or false"))),
+            },
+            ..Hole::default()
         });
         let last = holes.len() - 1;
+        complete(&mut holes[last]);
         check(&holes[last], last).map_err(|message| error(line, message))?;
     }
     if holes.is_empty() {
@@ -91,6 +108,7 @@ fn csv_error(e: &csv::Error) -> FileError {
 pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, FileError> {
     let mut ids = BTreeMap::new();
     for (index, hole) in holes.iter_mut().enumerate() {
+        complete(hole);
         check(hole, index).map_err(|message| error(None, message))?;
         hole.axis = Vector3::from(hole.axis).normalize().into();
         let id = hole.id.get_or_insert_with(|| format!("#{}", index + 1));
@@ -104,6 +122,20 @@ pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, FileError> {
         }
     }
     Ok(holes)
+}
+
+/// Parses the features of a CSV cell, separated by `;`.
+fn features(cell: &str) -> Result<Vec<Feature>, String> {
+    cell.split(';').map(str::trim).filter(|text| !text.is_empty()).map(Feature::parse).collect()
+}
+
+/// Sets a depth that is left out, or that is less than that of a feature, to that of the deepest one. That of a through hole
+/// is the thickness of the part.
+fn complete(hole: &mut Hole) {
+    let deepest = hole.features.iter().map(Feature::bottom).fold(0.0, f64::max);
+    if hole.depth == 0.0 || (!hole.through && 0.0 < hole.depth && hole.depth < deepest) {
+        hole.depth = deepest;
+    }
 }
 
 /// Checks one hole for finite, plausible values.
@@ -127,11 +159,21 @@ fn check(hole: &Hole, index: usize) -> Result<(), String> {
     if hole.depth <= 0.0 {
         return Err(format!("{name}: the depth is {}: a number above 0", hole.depth));
     }
-    match hole.diameter {
-        Some(diameter) if diameter <= 0.0 => {
-            Err(format!("{name}: the diameter is {diameter}: a number above 0"))
-        }
-        _ => Ok(()),
+    if let Some(diameter) = hole.diameter.filter(|diameter| *diameter <= 0.0) {
+        return Err(format!("{name}: the diameter is {diameter}: a number above 0"));
+    }
+    check_features(hole).map_err(|message| format!("{name}: {message}"))
+}
+
+/// Checks each feature, and that the hole's own diameter is that of one of them.
+fn check_features(hole: &Hole) -> Result<(), String> {
+    let cylinders = hole.features.iter().filter(|feature| feature.kind != FeatureKind::Countersink);
+    let walls: Vec<f64> = cylinders.map(|feature| feature.diameter).collect();
+    hole.features.iter().try_for_each(|feature| feature.check(&walls))?;
+    let is_own = |diameter: f64| hole.features.iter().any(|feature| feature.diameter == diameter);
+    match hole.diameter.filter(|diameter| !hole.features.is_empty() && !is_own(*diameter)) {
+        Some(diameter) => Err(format!("the diameter is {diameter}, which no feature has: leave it out")),
+        None => Ok(()),
     }
 }
 
@@ -156,6 +198,31 @@ mod tests {
     fn json_and_csv_give_the_same_holes() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\r\n1, 1, 2, 3, 0, 0.6, 0.8, 5,\r\n";
         assert_eq!(NominalPart::parse(HOLE).unwrap(), NominalPart::parse(csv).unwrap());
+    }
+
+    #[test]
+    fn json_and_csv_give_the_same_features() {
+        let json = r#"{"unit": "mm", "holes": [{"id": "1", "entry": [1, 2, 3], "axis": [0, 0, 1], "depth": 30,
+            "through": true, "features": [{"kind": "drill", "diameter": 8.5, "depth": 30, "to": "full", "angle": 118},
+            {"kind": "tap", "diameter": 10, "depth": 22, "pitch": 1.5}]}]}"#;
+        let csv = "id,x,y,z,i,j,k,depth,features,through\n\
+                   1,1,2,3,0,0,1,30,drill 8.5 30 to=full angle=118; tap 10 22 pitch=1.5,true\n";
+        assert_eq!(NominalPart::parse(json).unwrap(), NominalPart::parse(csv).unwrap());
+    }
+
+    /// Φ12 at 90° is 6 deep to its point. A through hole is as deep as the part is thick.
+    #[test]
+    fn features_give_the_depth_that_is_left_out_or_less() {
+        let depth = |columns: &str| {
+            let csv = format!("id,x,y,z,i,j,k,depth,features,through\n1,0,0,0,0,0,1,{columns}\n");
+            read_holes(&csv).holes[0].depth
+        };
+        assert_eq!(depth(",drill 6 15; counterbore 10 5,"), 15.0);
+        assert_eq!(depth("5,drill 6 15; counterbore 10 5,false"), 15.0);
+        assert_eq!(depth("18,drill 6 15; counterbore 10 5,"), 18.0);
+        let cone = depth("5,drill 6 5; countersink 12 angle=90,");
+        assert!((cone - 6.0).abs() < 1e-12, "{cone}");
+        assert_eq!(depth("12,drill 6 15; counterbore 10 5,true"), 12.0);
     }
 
     #[test]
@@ -191,6 +258,19 @@ mod tests {
             (
                 "id,x,y,z,i,j,depth,diameter\n".to_owned(),
                 "line 1: column 'k' is missing: the header is id,x,y,z,i,j,k,depth,diameter",
+            ),
+            (
+                "id,x,y,z,i,j,k,depth,through\n1,0,0,0,0,1,0,5,yes\n".to_owned(),
+                "line 2: column 'through' is 'yes': true or false",
+            ),
+            (
+                "id,x,y,z,i,j,k,depth,features\n1,0,0,0,0,1,0,5,drill 6 15; cbore 10 5\n".to_owned(),
+                "line 2: column 'features': 'cbore' is no kind of feature: one of drill, ream",
+            ),
+            ("id,x,y,z,i,j,k,depth,features\n1,0,0,0,0,1,0,,\n".to_owned(), "line 2: column 'depth' is ''"),
+            (
+                "id,x,y,z,i,j,k,depth,diameter,features\n1,0,0,0,0,1,0,15,7,drill 6 15\n".to_owned(),
+                "line 2: hole 1 (id '1'): the diameter is 7, which no feature has: leave it out",
             ),
             (HOLE.replace("depth", "deep"), "line 1: column 86: unknown field `deep`"),
             (HOLE.replace("5}]}", "5}"), "line 1: column 91: EOF while parsing a list"),

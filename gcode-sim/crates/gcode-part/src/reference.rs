@@ -4,6 +4,7 @@ use std::sync::Arc;
 use super::hole::{Hole, HoleList, Unit};
 use super::pattern::Pattern;
 use super::read;
+use super::spacing::hole_spacing;
 use super::surface::Surface;
 use crate::job::{Clamp, Rotary};
 use crate::reader::FileError;
@@ -33,12 +34,13 @@ impl Reference {
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
         let holes = read::check_all(list.holes)?;
         let hole_axes = holes.iter().map(|hole| NominalAxis { entry: hole.entry, axis: hole.axis }).collect();
+        let hole_spacing = hole_spacing(&holes);
         Ok(Self {
             holes,
             position: None,
             depth: None,
             surface: None,
-            process_limits: ProcessLimits { hole_axes, ..ProcessLimits::default() },
+            process_limits: ProcessLimits { hole_axes, hole_spacing, ..ProcessLimits::default() },
             pattern: None,
         })
     }
@@ -64,6 +66,8 @@ pub struct ProcessLimits {
     pub clamp: Option<Clamp>,
     /// Limits of each tool.
     pub tools: Vec<ToolProcess>,
+    /// Least distance of two nominal axes, mm; `None` above 1 mm.
+    pub hole_spacing: Option<f64>,
     /// Axes of the holes of a list: a mill that plunges there drills.
     pub hole_axes: Arc<[NominalAxis]>,
 }

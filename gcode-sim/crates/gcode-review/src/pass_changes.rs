@@ -126,7 +126,7 @@ fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
     let bottom = found.bottom();
     let lowest = |height: f64| height.abs() <= tolerance;
     let others = found.earlier_passes.iter().zip(feeds).take(feeds.len() - 1);
-    let deeper = others.filter(|(cut, _)| lowest((cut.bottom - bottom).dot(&found.axis)));
+    let deeper = others.filter(|(cut, _)| lowest((cut.cut.bottom - bottom).dot(&found.axis)));
     deeper.map(|(_, step)| step).find(|step| depth(step) > tolerance).copied().or(Some(finish))
 }
 
@@ -134,7 +134,7 @@ fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
 fn tip(record: &Record, hole: usize, step: usize) -> Option<Point3<f64>> {
     let (others, feeds) = (&record.holes[hole].earlier_passes, &record.feeds[hole]);
     let index = feeds.iter().position(|feed| *feed == step)?;
-    others.get(index).filter(|_| feeds.len() == others.len() + 1).map(|cut| cut.bottom)
+    others.get(index).filter(|_| feeds.len() == others.len() + 1).map(|cut| cut.cut.bottom)
 }
 
 /// Splits a displacement into its parts along and across a feed.

@@ -11,7 +11,7 @@ use super::legacy_records::present_words;
 use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
 use super::record::{BlockLocation, EndState, Record, Totals};
 use super::steps::{Step, StepKind, UnsimulatedKind, difference};
-use gcode_inspect::holes::DrilledHole;
+use gcode_inspect::holes::{DrilledHole, PassCut};
 use gcode_lang::motion::{Axes, Backtrace, PlanarArc, Position, SpindleDirection, StopKind, UnknownAxes};
 use gcode_lang::units::Deg;
 
@@ -387,24 +387,24 @@ impl Steps<'_> {
 
 impl Hole {
     fn found(&self, number: usize) -> Result<DrilledHole, StoreError> {
-        let axis = Vector3::from(self.axis);
+        let (entry, axis) = (Point3::from(self.entry), Vector3::from(self.axis));
         if (axis.norm() - 1.0).abs() > 1e-9 {
             return Err(StoreError("a hole's axis is not a unit vector".to_owned()));
         }
         Ok(DrilledHole {
-            entry: Point3::from(self.entry),
+            entry,
             // Normalising again would change the last digits.
             axis: Unit::new_unchecked(axis),
             depth: self.depth,
             diameter: self.diameter,
-            roundness: None,
-            core: None,
             tool: self.tool,
             backtrace: Backtrace::default(),
             axis_position: Position::default(),
             tool_axis_deviation: Deg::ZERO,
             unknown_axes: UnknownAxes::default(),
             earlier_passes: Vec::new(),
+            finishing_cut: PassCut::new(entry, entry - axis * self.depth),
+            finishing_index: 0,
             first_on_line: self.again.unwrap_or(number),
         })
     }

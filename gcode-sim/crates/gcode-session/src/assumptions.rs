@@ -1,5 +1,6 @@
 //! Assumptions of a result: values that the run read and nothing in its program set, with the holes that each can touch.
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -56,7 +57,10 @@ impl Dependences {
     ) -> Vec<(Assumption, Backtrace)> {
         let assumption = |(index, read): (usize, &OutsideRead)| {
             let touched = self.holes.iter().enumerate().filter(|(_, marks)| marks.contains(index));
-            let decides: Vec<String> = touched.filter_map(|(hole, _)| names(hole)).collect();
+            // A through hole drilled from both sides is two drilled ones of one name.
+            let mut named = BTreeSet::new();
+            let decides = touched.filter_map(|(hole, _)| names(hole));
+            let decides: Vec<String> = decides.filter(|name| named.insert(name.clone())).collect();
             let (program, line) = run.locate(read.place.block);
             let (what, place) = (read.source.name(), AssumptionPlace { program, line });
             let is_assumed = read.decides_further_cuts || !decides.is_empty();

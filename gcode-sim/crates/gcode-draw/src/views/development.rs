@@ -199,7 +199,7 @@ mod tests {
     fn hole(x: f64, azimuth: f64, radius: f64) -> Hole {
         let (s, c) = (Deg(azimuth).sin(), Deg(azimuth).cos());
         let entry = [x, radius * s, radius * c];
-        Hole { id: None, entry, axis: [0.0, s, c], depth: 5.0, diameter: Some(3.0), from: None }
+        Hole { id: None, entry, axis: [0.0, s, c], depth: 5.0, diameter: Some(3.0), ..Hole::default() }
     }
 
     /// Draws a hole on a cylinder of radius 100 with 8 rows.

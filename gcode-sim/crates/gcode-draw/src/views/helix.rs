@@ -3,6 +3,7 @@ use super::flute_view::{FluteView, HelixCourses, HelixPoint};
 use crate::chart::{Chart, ChartMarker, Curve, Graph};
 use crate::picture::{LegendItem, Picture, Sample, Title};
 use crate::scene::{HoleStatus, Pen, Point};
+use gcode_part::exceeds;
 
 /// Height of a tolerance band, in parts of the graph's height, below which it is drawn as a line.
 const MIN_BAND_SHARE: f64 = 0.1;
@@ -90,7 +91,7 @@ impl HelixCourses {
     /// Returns the largest deviation of a pass if it exceeds the tolerance.
     fn fault(&self, pass: &[HelixPoint]) -> Option<HelixPoint> {
         let worst = pass.iter().copied().max_by(|a, b| a.error().abs().total_cmp(&b.error().abs()))?;
-        (self.tolerance < worst.error().abs()).then_some(worst)
+        exceeds(worst.error().abs(), self.tolerance).then_some(worst)
     }
 
     fn sign(&self, value: impl Fn(&HelixPoint) -> f64) -> Option<ChartMarker> {

@@ -281,7 +281,7 @@ mod tests {
     use super::*;
 
     fn hole(entry: [f64; 3], axis: [f64; 3]) -> Hole {
-        Hole { id: None, entry, axis, depth: 15.0, diameter: Some(6.0), from: None }
+        Hole { id: None, entry, axis, depth: 15.0, diameter: Some(6.0), ..Hole::default() }
     }
 
     fn seen(nominal: &Hole, found: &Hole) -> ZoneDeviation {

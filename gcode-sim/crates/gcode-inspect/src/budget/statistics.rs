@@ -1,4 +1,5 @@
 //! Statistics of many positions: mean and percentiles, exact, from the samples themselves.
+use gcode_part::exceeds;
 
 /// Statistics of one hole over all samples; diameters in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +26,8 @@ impl Statistics {
     pub(super) fn of(samples: &mut [f64], tolerance: f64) -> Self {
         // The sum runs in the order of the samples, so that the number of threads changes no bit.
         let mean = samples.iter().sum::<f64>() / samples.len() as f64;
-        let within = samples.iter().filter(|phi| **phi <= tolerance).count() as f64 / samples.len() as f64;
+        let within =
+            samples.iter().filter(|phi| !exceeds(**phi, tolerance)).count() as f64 / samples.len() as f64;
         let max = samples.iter().copied().fold(0.0, f64::max);
         let mut at = |thousandths: usize| {
             let rank = (samples.len() * thousandths).div_ceil(1000).max(1);

@@ -13,7 +13,7 @@ fn hole(x: f64) -> Hole {
         axis: [0.0, 1.0, 0.0],
         depth: 15.0,
         diameter: None,
-        from: None,
+        ..Hole::default()
     }
 }
 

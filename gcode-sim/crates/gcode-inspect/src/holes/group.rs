@@ -6,11 +6,15 @@ use nalgebra::{Point3, Unit, Vector3};
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
-use gcode_lang::units::Deg;
+use gcode_lang::units::{Deg, MmPerMin, Rpm};
 use gcode_part::{Clusters, Hole, Origin, PointTree};
 
-/// Largest distance of a pass's bottom from the line of another pass of the same hole, mm.
+/// Largest distance between the lines of two passes of one hole, mm.
 pub(crate) const MAX_LINE_OFFSET: f64 = 0.5;
+
+/// Largest distance between the lines of two passes of one tool in one hole, mm: the rounding of a rotary axis to 0.01°, at
+/// 1 m from its centre.
+const MAX_REPEAT_OFFSET: f64 = 0.1;
 
 /// Cosine of the largest angle between the directions of passes of one hole: 5°.
 pub(crate) const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
@@ -21,11 +25,51 @@ const MIN_DEPTH_GAIN: f64 = 0.001;
 /// Largest height of a core on the bottom of a hole that counts as removed, mm.
 const MAX_CORE_HEIGHT: f64 = 0.1;
 
+/// Extent of a pass in the part's frame, with its feed and its spindle.
+#[derive(Clone, Copy, Debug)]
+pub struct PassCut {
+    /// Point at which the feed starts.
+    pub start: Point3<f64>,
+    /// Deepest point.
+    pub bottom: Point3<f64>,
+    /// Feed at the deepest point; `None` if unknown.
+    pub feed: Option<MmPerMin>,
+    /// Speed of the spindle at the start.
+    pub speed: Rpm,
+    /// True if the spindle reverses in the hole, as it does for a tap.
+    pub is_tapping: bool,
+    /// Figures of a mill's circle; `None` for a stroke.
+    pub milled: Option<MilledCut>,
+}
+
+/// Figures of a circle that a mill cuts, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MilledCut {
+    /// Largest minus least distance of the path from the axis.
+    pub roundness: f64,
+    /// Diameter of the metal that the mill leaves on the axis; `None` without any.
+    pub core: Option<f64>,
+}
+
+/// A pass of a drilled hole.
+#[derive(Clone, Copy, Debug)]
+pub struct ToolPass<'a> {
+    /// Tool; `None` before the first tool change.
+    pub tool: Option<u32>,
+    /// Diameter, mm; `None` if unknown.
+    pub diameter: Option<f64>,
+    /// Direction out of the part.
+    pub axis: Unit<Vector3<f64>>,
+    /// Extent, feed and spindle.
+    pub cut: PassCut,
+    /// Block of the pass.
+    pub backtrace: &'a Backtrace,
+}
+
 /// A feed into the part along one line, in the part's frame.
 #[derive(Clone, Debug)]
 pub(super) struct DrillPass {
-    pub start: Point3<f64>,
-    pub bottom: Point3<f64>,
+    pub cut: PassCut,
     /// Direction of the tool out of the part; that of the feed if the tool's is unknown.
     pub axis: Unit<Vector3<f64>>,
     /// Direction of the feed, out of the part.
@@ -80,10 +124,6 @@ pub struct DrilledHole {
     pub depth: f64,
     /// Diameter of the finishing tool; `None` if the tool table lacks it.
     pub diameter: Option<f64>,
-    /// Largest minus least distance of a mill's path from the axis; `None` for a drilled hole.
-    pub roundness: Option<f64>,
-    /// Diameter of the metal that a mill leaves on the axis, mm; `None` without any.
-    pub core: Option<f64>,
     /// Finishing tool; `None` before the first tool change.
     pub tool: Option<u32>,
     /// Block of the finishing pass.
@@ -92,8 +132,12 @@ pub struct DrilledHole {
     pub axis_position: Position,
     /// Angle between the finishing feed and the tool's axis.
     pub tool_axis_deviation: Deg,
-    /// Passes before the finishing one.
+    /// Extent, feed and spindle of the finishing pass.
+    pub finishing_cut: PassCut,
+    /// Passes other than the finishing one, in the order of the program.
     pub earlier_passes: Vec<EarlierPass>,
+    /// Number of these passes that the program makes before the finishing one.
+    pub finishing_index: usize,
     /// Axes of unknown position on the part in any pass.
     pub unknown_axes: UnknownAxes,
     /// Index in the list of the first hole on this line. A later one with the same index is this hole drilled again by a
@@ -101,11 +145,11 @@ pub struct DrilledHole {
     pub first_on_line: usize,
 }
 
-/// A pass of a hole before the finishing one.
+/// A pass of a hole besides the finishing one.
 #[derive(Clone, Debug)]
 pub struct EarlierPass {
-    /// Deepest point.
-    pub bottom: Point3<f64>,
+    /// Extent, feed and spindle.
+    pub cut: PassCut,
     /// Direction out of the part.
     pub axis: Unit<Vector3<f64>>,
     /// Tool; `None` before the first tool change.
@@ -118,7 +162,39 @@ pub struct EarlierPass {
     pub axis_position: Position,
 }
 
+impl PassCut {
+    /// Returns a pass of which only the extent is known.
+    pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
+        Self { start, bottom, feed: None, speed: Rpm(0.0), is_tapping: false, milled: None }
+    }
+}
+
+impl EarlierPass {
+    fn tool_pass(&self) -> ToolPass<'_> {
+        let Self { cut, axis, tool, diameter, .. } = *self;
+        ToolPass { tool, diameter, axis, cut, backtrace: &self.backtrace }
+    }
+}
+
 impl DrilledHole {
+    /// Returns all passes in the order of the program.
+    pub fn passes(&self) -> impl Iterator<Item = ToolPass<'_>> {
+        let finishing = ToolPass {
+            tool: self.tool,
+            diameter: self.diameter,
+            axis: self.axis,
+            cut: self.finishing_cut,
+            backtrace: &self.backtrace,
+        };
+        let (before, after) =
+            self.earlier_passes.split_at(self.finishing_index.min(self.earlier_passes.len()));
+        before
+            .iter()
+            .map(EarlierPass::tool_pass)
+            .chain([finishing])
+            .chain(after.iter().map(EarlierPass::tool_pass))
+    }
+
     /// Returns the deepest point of any tool, on the hole's axis.
     pub fn bottom(&self) -> Point3<f64> {
         self.entry - self.axis.into_inner() * self.depth
@@ -134,13 +210,14 @@ impl DrilledHole {
             depth: self.depth,
             diameter: self.diameter,
             from: Some(Origin { program, line, tool: self.tool }),
+            ..Hole::default()
         }
     }
 }
 
-/// Groups passes to holes, in the order of the first pass of each.
-pub(super) fn group_holes(passes: &[DrillPass], machine: &Machine) -> Vec<DrilledHole> {
-    let first = first_on_same_line(passes);
+/// Groups passes to holes, in the order of the first pass of each. `spacing` is the least distance of two nominal axes, mm.
+pub(super) fn group_holes(passes: &[DrillPass], machine: &Machine, spacing: Option<f64>) -> Vec<DrilledHole> {
+    let first = first_on_same_line(passes, machine, spacing);
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // The sort is stable: passes of one line keep their order.
     order.sort_by_key(|index| first[*index]);
@@ -152,20 +229,49 @@ pub(super) fn group_holes(passes: &[DrillPass], machine: &Machine) -> Vec<Drille
 }
 
 /// Returns for each pass the first one on its line.
-fn first_on_same_line(passes: &[DrillPass]) -> Vec<usize> {
-    let tree = PointTree::new(passes.iter().map(|pass| pass.bottom));
+fn first_on_same_line(passes: &[DrillPass], machine: &Machine, spacing: Option<f64>) -> Vec<usize> {
+    let tree = PointTree::new(passes.iter().map(|pass| pass.cut.bottom));
     let mut groups = Clusters::new(&tree);
+    // Half way to the next nominal hole a pass belongs to that one.
+    let limit = spacing.map_or(MAX_LINE_OFFSET, |spacing| MAX_LINE_OFFSET.min(spacing / 2.0));
     for (index, pass) in passes.iter().enumerate() {
-        let margin = Vector3::repeat(MAX_LINE_OFFSET);
-        let low = pass.start.inf(&pass.bottom) - margin;
-        let high = pass.start.sup(&pass.bottom) + margin;
+        let margin = Vector3::repeat(limit);
+        let low = pass.cut.start.inf(&pass.cut.bottom) - margin;
+        let high = pass.cut.start.sup(&pass.cut.bottom) + margin;
         groups.join(index, &low, &high, &|other| {
-            let to = passes[other].bottom - pass.bottom;
-            let aside = (to - pass.axis.into_inner() * to.dot(&pass.axis)).norm();
-            aside <= MAX_LINE_OFFSET && pass.axis.dot(&passes[other].axis) >= MIN_DIRECTION_COSINE
+            let other = &passes[other];
+            pass.axis.dot(&other.axis) >= MIN_DIRECTION_COSINE
+                && pass.offset_of(other) <= limit.min(max_offset(pass, other, machine))
         });
     }
     groups.representatives()
+}
+
+/// Returns the largest distance between the axes of two passes of one hole, mm: a tool that drills beside its own hole makes
+/// another one, and so does a tool that drills beside the hole of the larger of two tools.
+fn max_offset(one: &DrillPass, other: &DrillPass, machine: &Machine) -> f64 {
+    let by_tool = if one.tool == other.tool { MAX_REPEAT_OFFSET } else { MAX_LINE_OFFSET };
+    match (one.diameter(machine), other.diameter(machine)) {
+        (Some(one), Some(other)) => by_tool.min(one.max(other) / 2.0),
+        _ => by_tool,
+    }
+}
+
+impl DrillPass {
+    /// Returns the distance of another pass from the line of this one, at its bottom or at the lower of both starts, whichever
+    /// is farther.
+    fn offset_of(&self, other: &Self) -> f64 {
+        let height = |point: &Point3<f64>| point.coords.dot(&self.axis);
+        let start = height(&self.cut.start).min(height(&other.cut.start));
+        let slope = other.axis.dot(&self.axis);
+        let bottom = other.cut.bottom;
+        let top = bottom + other.axis.into_inner() * ((start - height(&bottom)) / slope);
+        let aside = |point: Point3<f64>| {
+            let to = point - self.cut.bottom;
+            (to - self.axis.into_inner() * to.dot(&self.axis)).norm()
+        };
+        aside(bottom).max(aside(top))
+    }
 }
 
 /// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. Heights count
@@ -183,57 +289,64 @@ fn push_holes<'p>(
     let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
     let (cutting, repeated): (Vec<&DrillPass>, Vec<&DrillPass>) = passes.partition(|pass| {
         let lowest = lowest_by_tool.entry((pass.tool, radius(pass))).or_insert(f64::INFINITY);
-        let cuts = height(&pass.bottom) < *lowest - MIN_DEPTH_GAIN;
+        let cuts = height(&pass.cut.bottom) < *lowest - MIN_DEPTH_GAIN;
         if cuts {
-            *lowest = height(&pass.bottom);
+            *lowest = height(&pass.cut.bottom);
         }
         cuts
     });
-    let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
+    let lowest = cutting.iter().map(|pass| height(&pass.cut.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing_pass(&cutting, lowest, height, machine);
+    let finishing_index = cutting.iter().take_while(|pass| !std::ptr::eq(**pass, finish)).count();
+    // A core that another tool removes, or may remove, is none.
+    let core = |milled: &DrillPass| {
+        milled.circle.and_then(|circle| circle.core).filter(|core| {
+            !cutting.iter().any(|pass| {
+                let is_core_tool = pass.circle.is_some_and(|circle| circle.core.is_some());
+                let is_as_deep = height(&pass.cut.bottom) <= height(&milled.cut.bottom) + MAX_CORE_HEIGHT;
+                !is_core_tool && is_as_deep && pass.diameter(machine).is_none_or(|diameter| *core <= diameter)
+            })
+        })
+    };
+    let cut = |pass: &DrillPass| {
+        let milled = pass.circle.map(|circle| MilledCut { roundness: circle.roundness, core: core(pass) });
+        PassCut { milled, ..pass.cut }
+    };
     let earlier = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(|pass| EarlierPass {
-        bottom: pass.bottom,
+        cut: cut(pass),
         axis: pass.axis,
         tool: pass.tool,
         diameter: pass.diameter(machine),
         backtrace: pass.backtrace.clone(),
         axis_position: pass.axis_position,
     });
-    // A core that another tool removes, or may remove, is none.
-    let core = finish.circle.and_then(|circle| circle.core).filter(|core| {
-        !cutting.iter().any(|pass| {
-            let is_core_tool = pass.circle.is_some_and(|circle| circle.core.is_some());
-            let is_as_deep = height(&pass.bottom) <= height(&finish.bottom) + MAX_CORE_HEIGHT;
-            !is_core_tool && is_as_deep && pass.diameter(machine).is_none_or(|diameter| *core <= diameter)
-        })
-    });
     let hole = |pass: &DrillPass, start: f64, bottom: f64, earlier_passes: Vec<EarlierPass>| {
         let slope = pass.axis.dot(&out);
-        let along =
-            |level: f64| pass.bottom + pass.axis.into_inner() * ((level - height(&pass.bottom)) / slope);
+        let base = pass.cut.bottom;
+        let along = |level: f64| base + pass.axis.into_inner() * ((level - height(&base)) / slope);
         DrilledHole {
             entry: along(start),
             axis: pass.axis,
             depth: (along(start) - along(bottom)).norm(),
             diameter: pass.diameter(machine),
-            roundness: pass.circle.map(|circle| circle.roundness),
-            core: None,
             tool: pass.tool,
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
             tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.feed_direction).clamp(-1.0, 1.0)),
+            finishing_cut: cut(pass),
+            finishing_index,
             unknown_axes: pass.unknown_axes,
             earlier_passes,
             first_on_line,
         }
     };
     let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
-    let start = finishing.map(|pass| height(&pass.start)).fold(f64::NEG_INFINITY, f64::max);
-    let mut finished = DrilledHole { core, ..hole(finish, start, lowest, earlier.collect()) };
+    let start = finishing.map(|pass| height(&pass.cut.start)).fold(f64::NEG_INFINITY, f64::max);
+    let mut finished = hole(finish, start, lowest, earlier.collect());
     finished.unknown_axes =
         cutting.iter().fold(UnknownAxes::default(), |axes, pass| axes.union(pass.unknown_axes));
     holes.push(finished);
-    let again = |pass: &&DrillPass| hole(pass, height(&pass.start), height(&pass.bottom), Vec::new());
+    let again = |pass: &&DrillPass| hole(pass, height(&pass.cut.start), height(&pass.cut.bottom), Vec::new());
     // A mill goes round more than once to finish.
     holes.extend(repeated.iter().filter(|pass| pass.circle.is_none()).map(again));
 }
@@ -246,11 +359,11 @@ fn finishing_pass<'p>(
     height: impl Fn(&Point3<f64>) -> f64,
     machine: &Machine,
 ) -> &'p DrillPass {
-    let longest = cutting.iter().map(|pass| height(&pass.start) - lowest).fold(0.0, f64::max);
-    let deep = |p: &DrillPass| height(&p.bottom) <= lowest + longest / 2.0;
+    let longest = cutting.iter().map(|pass| height(&pass.cut.start) - lowest).fold(0.0, f64::max);
+    let deep = |p: &DrillPass| height(&p.cut.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {
-        let goes_on = deep(pass) && height(&pass.bottom) < height(&best.bottom) - MIN_DEPTH_GAIN;
+        let goes_on = deep(pass) && height(&pass.cut.bottom) < height(&best.cut.bottom) - MIN_DEPTH_GAIN;
         let is_wider =
             deep(pass) && !deep(best) || deep(pass) == deep(best) && pass.is_as_wide(best, machine);
         if goes_on || is_wider {

@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
-use super::group::DrillPass;
+use super::group::{DrillPass, PassCut};
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
@@ -49,6 +49,8 @@ pub(super) struct CuttingLine {
     pub length_excess: Option<f64>,
     /// Slowest and fastest feed that cuts.
     feed_range: Option<[MmPerMin; 2]>,
+    /// Last feed that cuts.
+    last_feed: Option<MmPerMin>,
     /// Depth at which the part begins; `None` if its surface is unknown.
     pub surface_depth: Option<f64>,
     /// Finished strokes.
@@ -116,6 +118,7 @@ impl CuttingLine {
             unknown_axes: UnknownAxes::default(),
             length_excess: None,
             feed_range: None,
+            last_feed: None,
             surface_depth: None,
             pecks: PeckExtent::default(),
             spindle: SpindleInHole::default(),
@@ -130,6 +133,7 @@ impl CuttingLine {
     /// Records the rate of a feed inwards that cuts.
     pub(super) fn record_feed(&mut self, feed: MmPerMin) {
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
+        self.last_feed = Some(feed);
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
     }
 
@@ -316,8 +320,14 @@ impl CuttingLine {
 
     fn drill_pass(&self, end: &StrokeEnd) -> DrillPass {
         DrillPass {
-            start: self.start,
-            bottom: self.start - self.out.into_inner() * end.depth,
+            cut: PassCut {
+                start: self.start,
+                bottom: self.start - self.out.into_inner() * end.depth,
+                feed: self.last_feed,
+                speed: self.cutting_state.speed,
+                is_tapping: self.spindle == SpindleInHole::Reversed,
+                milled: None,
+            },
             axis: self.tool_axis.unwrap_or(self.out),
             feed_direction: self.out,
             tool: self.cutting_state.tool,

@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
-use super::group::{DrillPass, MilledCircle};
+use super::group::{DrillPass, MilledCircle, PassCut};
 use super::per_block::Findings;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
 use gcode_lang::motion::{Event, SpindleDirection, UnknownAxes};
@@ -249,8 +249,7 @@ impl HoleExtractor<'_> {
             let begin = if begin > ring.level() + LEVEL_TOLERANCE { begin } else { approach_level };
             let length = (begin - ring.level()).max(LEVEL_TOLERANCE);
             DrillPass {
-                start: ring.centre + out.into_inner() * length,
-                bottom: ring.centre,
+                cut: PassCut::new(ring.centre + out.into_inner() * length, ring.centre),
                 axis: out,
                 feed_direction: out,
                 tool,

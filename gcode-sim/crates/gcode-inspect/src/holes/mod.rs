@@ -23,7 +23,7 @@ use nalgebra::Point3;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
-pub use group::{DrilledHole, EarlierPass};
+pub use group::{DrilledHole, EarlierPass, MilledCut, PassCut, ToolPass};
 pub(crate) use group::{MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
@@ -163,7 +163,7 @@ impl<'m> HoleExtractor<'m> {
         self.end_line(false);
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
-        let mut holes = group::group_holes(&passes, self.machine);
+        let mut holes = group::group_holes(&passes, self.machine, self.process_limits.hole_spacing);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);

@@ -120,11 +120,12 @@ impl NominalAxes {
         let tree =
             self.tree.get_or_insert_with(|| PointTree::new(axes.iter().map(|axis| Point3::from(axis.entry))));
         let margin = Vector3::repeat(MAX_AXIS_DISTANCE);
-        let (low, high) = (pass.start.inf(&pass.bottom) - margin, pass.start.sup(&pass.bottom) + margin);
+        let (low, high) =
+            (pass.cut.start.inf(&pass.cut.bottom) - margin, pass.cut.start.sup(&pass.cut.bottom) + margin);
         let mut found = false;
         tree.in_box(&low, &high, &mut |index| {
             let nominal = &axes[index];
-            let to = Point3::from(nominal.entry) - pass.bottom;
+            let to = Point3::from(nominal.entry) - pass.cut.bottom;
             let aside = (to - pass.axis.into_inner() * to.dot(&pass.axis)).norm();
             found |=
                 aside <= MAX_AXIS_DISTANCE && pass.axis.dot(&Vector3::from(nominal.axis)) >= MIN_AXIS_COSINE;
@@ -228,8 +229,8 @@ impl Strokes {
         let Some(lowest) = self.milled_level else { return true };
         let height = |p: &Point3<f64>| p.coords.dot(&pass.axis);
         match is_between_rapids {
-            true => height(&pass.bottom) < lowest - LEVEL_TOLERANCE,
-            false => height(&pass.start) <= lowest + LEVEL_TOLERANCE,
+            true => height(&pass.cut.bottom) < lowest - LEVEL_TOLERANCE,
+            false => height(&pass.cut.start) <= lowest + LEVEL_TOLERANCE,
         }
     }
 
@@ -247,7 +248,7 @@ impl Strokes {
             self.push_pass(order, pass);
             return;
         }
-        let length = (pass.start - pass.bottom).norm();
+        let length = (pass.cut.start - pass.cut.bottom).norm();
         let first = || MilledStrokes { count: 0, first: pass.backtrace, length };
         self.milled.get_or_insert_with(first).count += 1;
     }

@@ -183,7 +183,7 @@ fn an_endless_loop_over_one_hole_ends_at_the_limit_of_passes() {
 /// The countersink is larger, but too shallow to make the hole.
 #[test]
 fn the_largest_deep_tool_finishes_the_hole() {
-    let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter) };
+    let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter), ..Tool::default() };
     let machine = Machine { tools: vec![tool(1, 6.0), tool(2, 5.9), tool(3, 20.0)], ..Machine::default() };
     let steps =
         "tool 2; rapid Z2; feed Z-15; rapid Z2; tool 1; feed Z-14; rapid Z2; tool 3; feed Z-1; rapid Z2";
@@ -222,8 +222,10 @@ const DRILLED: &str = "0 0 2, 0 0 1, 7";
 fn a_feed_needs_a_set_head_a_rotating_spindle_and_a_known_tool() {
     let drill = "rapid Z2; feed Z-5; rapid Z2";
     let unset = Machine { head: Head::new(HeadKind::Manual { start: None }, 0.0), ..Machine::default() };
-    let one_tool =
-        Machine { tools: vec![Tool { number: 1, length: None, diameter: None }], ..Machine::default() };
+    let one_tool = Machine {
+        tools: vec![Tool { number: 1, length: None, diameter: None, ..Tool::default() }],
+        ..Machine::default()
+    };
     for (machine, script, expected) in [
         (&unset, EventScript::new().then(drill), format!("{DRILLED}\nhead-not-set")),
         (&Machine::default(), EventScript::default().then(drill), format!("{DRILLED}\nspindle-stopped")),

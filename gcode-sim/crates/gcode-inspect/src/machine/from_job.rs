@@ -28,6 +28,7 @@ impl Machine {
                     number: tool.number,
                     length: Some(tool.length),
                     diameter: Some(tool.diameter),
+                    ..Tool::default()
                 };
                 Some(Self {
                     table: nominal.rotary_table(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
@@ -43,7 +44,12 @@ impl Machine {
                 Some(Self {
                     table: nominal.rotary_table(job.machine.rotary, Vector3::x_axis(), origin)?,
                     head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0),
-                    tools: vec![Tool { number: job.drill.number(), length: None, diameter }],
+                    tools: vec![Tool {
+                        number: job.drill.number(),
+                        length: None,
+                        diameter,
+                        ..Tool::default()
+                    }],
                     part: Placement { origin, ..Placement::default() },
                     ..nominal
                 })

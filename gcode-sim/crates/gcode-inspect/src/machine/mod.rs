@@ -11,6 +11,7 @@ mod path;
 mod probe;
 mod random;
 mod sources;
+mod tool_shape;
 mod touch;
 mod wheel;
 
@@ -24,6 +25,8 @@ pub use path::AxisMotion;
 pub use probe::Probe;
 pub use random::RandomStream;
 pub use sources::{ErrorSource, Quantity};
+pub(crate) use tool_shape::PointShape;
+pub use tool_shape::ToolKind;
 pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};
@@ -65,7 +68,7 @@ pub struct Machine {
 }
 
 /// A tool of the machine's tool table.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tool {
     /// Number of the tool.
     pub number: u32,
@@ -74,6 +77,10 @@ pub struct Tool {
     pub length: Option<f64>,
     /// Diameter, mm; `None` if unknown.
     pub diameter: Option<f64>,
+    /// Kind; `None` if unknown.
+    pub kind: Option<ToolKind>,
+    /// Full angle of the point, 180° of a flat end; `None` if unknown.
+    pub point_angle: Option<Deg>,
 }
 
 /// A work offset at the start of a run.
@@ -280,7 +287,7 @@ mod tests {
     fn the_tip_is_pivot_and_tool_length_below_the_pivot_point_along_the_head() {
         let machine = Machine {
             head: Head::new(HeadKind::Manual { start: None }, 100.0),
-            tools: vec![Tool { number: 2, length: Some(150.0), diameter: None }],
+            tools: vec![Tool { number: 2, length: Some(150.0), diameter: None, ..Tool::default() }],
             ..Machine::default()
         };
         let setup = Setup { head_angle: Some(Deg(30.0)), tool: Some(2), ..Setup::default() };

@@ -1,10 +1,12 @@
 //! Matching of drilled and nominal holes, the nearest pairs first.
+use std::collections::BTreeMap;
+
 use nalgebra::{Point3, Vector3};
 
-use super::Tolerances;
 use super::position::Deviation;
+use super::{Tolerances, bottom};
 use crate::holes::DrilledHole;
-use gcode_part::{Hole, Pattern, PointTree};
+use gcode_part::{Hole, Pattern, PointTree, Surface, exceeds};
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
 const MAX_LINE_DISTANCE: f64 = 5.0;
@@ -21,6 +23,8 @@ pub struct HolePair {
     pub actual: usize,
     /// Deviation of the drilled hole.
     pub deviation: Deviation,
+    /// Index of a further drilled hole, from the other side of a through hole.
+    pub from_far_side: Option<usize>,
 }
 
 /// Nominal and drilled holes, and their matching.
@@ -55,37 +59,72 @@ impl<'a> Comparison<'a> {
         // Beyond half the distance to its neighbour a hole is that neighbour.
         let near = pattern.map_or(MAX_LINE_DISTANCE, |pattern| MAX_LINE_DISTANCE.min(pattern.pitch / 4.0));
         let reach = near.max(2.0 * tolerances.position);
-        let tree = PointTree::new(nominal.iter().map(|hole| Point3::from(hole.entry)));
+        // A through hole may be drilled from its far side.
+        let through: Vec<usize> = (0..nominal.len()).filter(|index| nominal[*index].through).collect();
+        let far_ends = through.iter().map(|index| bottom(&nominal[*index]));
+        let tree = PointTree::new(nominal.iter().map(|hole| Point3::from(hole.entry)).chain(far_ends));
         let mut candidates = Vec::with_capacity(actual.len());
         for (index, hole) in actual.iter().enumerate() {
             let margin = Vector3::repeat(reach);
-            let bottom = hole.bottom();
-            let low = hole.entry.inf(&bottom) - margin;
-            let high = hole.entry.sup(&bottom) + margin;
+            let deepest = hole.bottom();
+            let low = hole.entry.inf(&deepest) - margin;
+            let high = hole.entry.sup(&deepest) + margin;
             let before = candidates.len();
-            tree.in_box(&low, &high, &mut |other| {
-                if hole.axis.dot(&Vector3::from(nominal[other].axis)) < MIN_DIRECTION_COSINE {
+            tree.in_box(&low, &high, &mut |point| {
+                let other = point.checked_sub(nominal.len()).map_or(point, |far_end| through[far_end]);
+                let cosine = hole.axis.dot(&Vector3::from(nominal[other].axis));
+                // The nearer end of a through hole is the one from which it is drilled.
+                let is_far_end = nominal.len() <= point;
+                if cosine.abs() < MIN_DIRECTION_COSINE || is_far_end != (cosine < 0.0) {
                     return;
                 }
-                if let Some(deviation) = Deviation::new(&nominal[other], &bottom, &hole.axis)
+                if let Some(deviation) = Deviation::new(&nominal[other], &deepest, &hole.axis)
                     && deviation.zone_diameter() <= 2.0 * reach
                 {
-                    candidates.push(HolePair { nominal: other, actual: index, deviation });
+                    candidates.push(HolePair {
+                        nominal: other,
+                        actual: index,
+                        deviation,
+                        from_far_side: None,
+                    });
                 }
             });
             candidates[before..].sort_unstable_by_key(|pair| pair.nominal);
         }
-        let (pair_of, is_taken) = assign_nearest(&candidates, nominal.len(), actual.len());
-        let pairs: Vec<HolePair> = pair_of.iter().flatten().map(|index| candidates[*index]).collect();
+        let (pair_of, mut is_taken) = assign_nearest(&candidates, nominal, actual);
+        let mut pairs: Vec<HolePair> = pair_of.iter().flatten().map(|index| candidates[*index]).collect();
+        if !through.is_empty() {
+            join_far_sides(nominal, actual, &candidates, &mut pairs, &mut is_taken);
+        }
         // The holes may be a part of a list, whose indices they keep.
         let lines = actual.iter().map(|hole| hole.first_on_line + 1).max().unwrap_or(0);
         let mut nominal_by_line = vec![None; lines];
         for pair in &pairs {
-            nominal_by_line[actual[pair.actual].first_on_line] = Some(pair.nominal);
+            for drilled in [pair.actual].into_iter().chain(pair.from_far_side) {
+                nominal_by_line[actual[drilled].first_on_line] = Some(pair.nominal);
+            }
         }
         let missing = (0..nominal.len()).filter(|index| pair_of[*index].is_none()).collect();
         let extra = (0..actual.len()).filter(|index| !is_taken[*index]).collect();
         Self { nominal, actual, tolerances, pattern, pairs, missing, extra, nominal_by_line }
+    }
+
+    /// Leaves out of the extra holes the feeds that end in the air. Those near a missing hole stay: they explain it, as
+    /// the rows of a pattern do that lacks holes.
+    pub(super) fn leave_out_air_feeds(&mut self, surface: &Surface) {
+        if self.pattern.is_some() && !self.missing.is_empty() {
+            return;
+        }
+        let (nominal, actual, missing) = (self.nominal, self.actual, &self.missing);
+        self.extra.retain(|index| {
+            let (start, end) = (actual[*index].entry, actual[*index].bottom());
+            let is_near = |nominal: &Hole| {
+                let entry = Point3::from(nominal.entry);
+                (entry - end).cross(&actual[*index].axis).norm() <= MAX_LINE_DISTANCE
+            };
+            let is_in_air = surface.value(&surface.deepest_between(&start, &end)) > 0.0;
+            !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
+        });
     }
 
     /// Returns the matched pairs with their holes.
@@ -107,7 +146,7 @@ impl<'a> Comparison<'a> {
 
     /// Returns true if the axis of a pair lies in its tolerance zone.
     pub(super) fn is_in_place(&self, pair: &HolePair) -> bool {
-        pair.deviation.zone_diameter() <= self.tolerances.position
+        !exceeds(pair.deviation.zone_diameter(), self.tolerances.position)
     }
 
     /// Returns true if no hole is missing or extra, and every axis lies in its zone.
@@ -124,14 +163,20 @@ impl<'a> Comparison<'a> {
 }
 
 /// Returns the candidate of each nominal hole, and whether each drilled hole is taken: the nearest pairs first, of
-/// equally near ones the first in the list.
-fn assign_nearest(candidates: &[HolePair], nominal: usize, actual: usize) -> (Vec<Option<usize>>, Vec<bool>) {
+/// equally near ones the first in the list; those from the far side of a through hole after all others.
+fn assign_nearest(
+    candidates: &[HolePair],
+    nominal: &[Hole],
+    actual: &[DrilledHole],
+) -> (Vec<Option<usize>>, Vec<bool>) {
     // Non-negative numbers and their bits have the same order.
-    let nearness = |(index, pair): (usize, &HolePair)| (pair.deviation.zone_diameter().to_bits(), index);
-    let mut order: Vec<(u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
+    let nearness = |(index, pair): (usize, &HolePair)| {
+        (is_from_far_side(pair, nominal, actual), pair.deviation.zone_diameter().to_bits(), index)
+    };
+    let mut order: Vec<(bool, u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
     order.sort_unstable();
-    let (mut pair_of, mut is_taken) = (vec![None; nominal], vec![false; actual]);
-    for (_, index) in order {
+    let (mut pair_of, mut is_taken) = (vec![None; nominal.len()], vec![false; actual.len()]);
+    for (.., index) in order {
         let pair = &candidates[index];
         if pair_of[pair.nominal].is_none() && !is_taken[pair.actual] {
             pair_of[pair.nominal] = Some(index);
@@ -139,4 +184,35 @@ fn assign_nearest(candidates: &[HolePair], nominal: usize, actual: usize) -> (Ve
         }
     }
     (pair_of, is_taken)
+}
+
+/// Returns true if a hole is drilled from the far side of a through hole.
+fn is_from_far_side(pair: &HolePair, nominal: &[Hole], actual: &[DrilledHole]) -> bool {
+    let nominal = &nominal[pair.nominal];
+    nominal.through && actual[pair.actual].axis.dot(&Vector3::from(nominal.axis)) < 0.0
+}
+
+/// Adds to the pair of each through hole the nearest hole that is left over on its other side. The pair itself is the one
+/// from the side of the nominal entry, if there are two.
+fn join_far_sides(
+    nominal: &[Hole],
+    actual: &[DrilledHole],
+    candidates: &[HolePair],
+    pairs: &mut [HolePair],
+    is_taken: &mut [bool],
+) {
+    let is_far = |pair: &HolePair| is_from_far_side(pair, nominal, actual);
+    let mut left_over: BTreeMap<usize, Vec<&HolePair>> = BTreeMap::new();
+    for candidate in candidates.iter().filter(|one| nominal[one.nominal].through && !is_taken[one.actual]) {
+        left_over.entry(candidate.nominal).or_default().push(candidate);
+    }
+    for pair in pairs.iter_mut() {
+        let others = left_over.get(&pair.nominal).into_iter().flatten();
+        let others = others.filter(|other| is_far(other) != is_far(pair) && !is_taken[other.actual]);
+        let nearness = |one: &&&HolePair| one.deviation.zone_diameter().to_bits();
+        let Some(other) = others.min_by_key(nearness) else { continue };
+        is_taken[other.actual] = true;
+        let (near, far) = if is_far(pair) { (**other, *pair) } else { (*pair, **other) };
+        *pair = HolePair { from_far_side: Some(far.actual), ..near };
+    }
 }

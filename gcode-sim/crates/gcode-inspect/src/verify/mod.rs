@@ -9,9 +9,11 @@ mod hole_finding;
 mod matching;
 mod neighbours;
 mod not_checked;
+mod outline;
 mod position;
 mod rounding;
 mod rows;
+mod stack;
 #[cfg(test)]
 mod tests;
 mod verdict;
@@ -23,6 +25,7 @@ pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
 pub use verdict::{ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
+use self::checks::features::{FeatureFindings, judge_all};
 use self::checks::mirrored::MirrorImage;
 use self::hole_finding::{HoleFindings, Subject};
 use self::rounding::RoundingDeviation;
@@ -64,6 +67,8 @@ struct HoleInspection<'a> {
     rows: Option<PatternRows<'a>>,
     /// The mirror image of the pattern that was drilled instead of it.
     mirror_image: Option<MirrorImage>,
+    /// Findings on the features of the holes that have any.
+    features: Vec<FeatureFindings>,
     extraction: &'a HoleExtraction,
     reference: &'a Reference,
     machine: &'a Machine,
@@ -78,10 +83,15 @@ pub fn verify(
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
-    let comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
+    let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
+    if let Some(surface) = &reference.surface {
+        comparison.leave_out_air_feeds(surface);
+    }
     let rows = pattern.and_then(|pattern| PatternRows::of(&comparison, pattern));
     let mirror_image = MirrorImage::of(&comparison);
-    let inspection = HoleInspection { comparison, rows, mirror_image, extraction, reference, machine };
+    let features = judge_all(&comparison, reference.surface, machine);
+    let inspection =
+        HoleInspection { comparison, rows, mirror_image, features, extraction, reference, machine };
     let mut findings = HoleFindings::default();
     // A check of its own names the holes of unknown positions.
     for finding in extraction.findings.iter().filter(|finding| finding.kind != &START_UNKNOWN) {
@@ -96,7 +106,7 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    verdict.not_checked = not_checked::lines(comparison, extraction, reference, machine, locate);
+    verdict.not_checked = not_checked::lines(&inspection, locate);
     verdict
 }
 

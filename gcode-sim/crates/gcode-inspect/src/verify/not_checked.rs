@@ -1,7 +1,8 @@
 //! Sentences on what a verdict on holes does not cover.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Comparison;
+use super::checks::features::ShapeGap;
+use super::{Comparison, HoleInspection};
 use crate::holes::HoleExtraction;
 use crate::machine::{HeadKind, Machine};
 use gcode_lang::motion::LengthCompensation;
@@ -10,14 +11,10 @@ use gcode_lang::units::Deg;
 use gcode_part::{Reference, ToolProcess};
 
 /// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
-pub(super) fn lines(
-    comparison: &Comparison<'_>,
-    extraction: &HoleExtraction,
-    reference: &Reference,
-    machine: &Machine,
-    locate: &dyn Fn(Span) -> (String, u32),
-) -> Vec<String> {
+pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
+    let HoleInspection { comparison, extraction, reference, machine, .. } = inspection;
     let mut all = diameters(comparison, machine);
+    all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
     let mut drilled = comparison.matched().map(|(.., drilled)| drilled);
@@ -44,9 +41,15 @@ pub(super) fn lines(
 fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
     let mut by_tool: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
     for (pair, nominal, drilled) in comparison.matched() {
-        if nominal.diameter.is_some() && drilled.diameter.is_none() {
-            let tool = drilled.tool.filter(|_| !machine.tools.is_empty());
-            by_tool.entry(tool).or_default().push(comparison.id(pair.nominal));
+        if nominal.diameter.is_none() && nominal.features.is_empty() {
+            continue;
+        }
+        for pass in drilled.passes().filter(|pass| pass.diameter.is_none()) {
+            let ids = by_tool.entry(pass.tool.filter(|_| !machine.tools.is_empty())).or_default();
+            let id = comparison.id(pair.nominal);
+            if ids.last() != Some(&id) {
+                ids.push(id);
+            }
         }
     }
     let sentence = |(tool, ids): (Option<u32>, Vec<&str>)| {
@@ -63,6 +66,48 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
         }
     };
     by_tool.into_iter().map(sentence).collect()
+}
+
+/// Returns the tools whose end the machine file does not describe, with what was taken for it.
+fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
+    let mut ids: BTreeMap<ShapeGap, Vec<&str>> = BTreeMap::new();
+    for hole in &inspection.features {
+        for gap in &hole.gaps {
+            let holes = ids.entry(*gap).or_default();
+            let id = inspection.comparison.id(hole.nominal);
+            if holes.last() != Some(&id) {
+                holes.push(id);
+            }
+        }
+    }
+    let sentence = |(gap, ids): (ShapeGap, Vec<&str>)| {
+        let holes = match ids[..] {
+            [one] => format!("hole {one}"),
+            _ => format!("{} holes (first: {})", ids.len(), ids[0]),
+        };
+        let name = |tool: Option<u32>| tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+        match gap {
+            ShapeGap::SpotDrill(tool) => {
+                format!(
+                    "the end of {}, taken for a spot drill in {holes}: the machine file has no kind or point_angle",
+                    name(tool)
+                )
+            }
+            ShapeGap::FullDepth(tool) => {
+                format!(
+                    "the depth of the full diameter of {holes}: the machine file has no point_angle of {}",
+                    name(tool)
+                )
+            }
+            ShapeGap::Angle(tool) => {
+                format!(
+                    "the angle of the countersink of {holes}: the machine file has no point_angle of {}",
+                    name(tool)
+                )
+            }
+        }
+    };
+    ids.into_iter().map(sentence).collect()
 }
 
 /// Returns the tools of unknown length, and the length taken for each.

@@ -23,10 +23,13 @@ pub struct Deviation {
 
 impl Deviation {
     /// Returns the deviation of the axis through `deepest`, the deepest point of any tool, out of the part along `axis`;
-    /// `None` for an axis parallel to the planes.
+    /// `None` for an axis parallel to the planes. The axis of a through hole may lead out of either side; the depth then
+    /// counts from that side.
     pub fn new(nominal: &Hole, deepest: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<Self> {
         let (entry, out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
         let end = entry - out * nominal.depth;
+        let is_from_far_side = nominal.through && axis.dot(&out) < 0.0;
+        let (start, out) = if is_from_far_side { (end, -out) } else { (entry, out) };
         let slope = axis.dot(&out);
         if slope < 1e-9 {
             return None;
@@ -39,7 +42,7 @@ impl Deviation {
             bottom: at_end,
             at_entry: (at_entry - entry).norm(),
             at_bottom: (at_end - end).norm(),
-            depth_error: (entry - deepest).dot(&out) - nominal.depth,
+            depth_error: (start - deepest).dot(&out) - nominal.depth,
             // The sine of a small angle has more significant digits than its cosine.
             tilt: Deg::atan2(axis.cross(&out).norm(), slope),
         })
@@ -62,7 +65,7 @@ mod tests {
             axis: [0.0, 0.0, 1.0],
             depth: 10.0,
             diameter: None,
-            from: None,
+            ..Hole::default()
         }
     }
 

@@ -254,7 +254,7 @@ fn missing_repeated_and_extra_holes_are_named() {
 
 #[test]
 fn a_hole_finished_by_the_drill_alone_has_the_wrong_diameter() {
-    let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter) };
+    let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter), ..Tool::default() };
     let machine = Machine { tools: vec![tool(1, 5.9), tool(2, 6.0)], ..Machine::default() };
     let by = |number: u32, holes: &[NominalHole], script: EventScript| {
         holes.iter().fold(script.then(&format!("tool {number}")), |script, nominal| {
@@ -329,7 +329,7 @@ proptest! {
 
         // The same holes with a head that has a pivot and a tool of a length: the pivot point is programmed.
         machine.head = Head::new(HeadKind::Manual { start: None }, pivot);
-        machine.tools = vec![Tool { number: 7, length: Some(length), diameter: None }];
+        machine.tools = vec![Tool { number: 7, length: Some(length), diameter: None, ..Tool::default() }];
         let drilling = Drilling { reach: pivot + length, set_head: true, ..drilling };
         let begin = start(section).then("tool 7");
         let script = holes.iter().fold(begin, |script, nominal| drill(script, section, *nominal, drilling));

@@ -98,6 +98,9 @@ pub struct HoleVerdict {
     /// Index among the drilled holes.
     #[serde(skip)]
     pub drilled_index: usize,
+    /// Index of the drilled hole from the far side of a through hole.
+    #[serde(skip)]
+    pub far_side_index: Option<usize>,
 }
 
 /// A hole in inspection terms; the entry of the actual hole is where its axis crosses the plane of the nominal
@@ -253,7 +256,11 @@ fn hole_verdicts(
             depth_error: deviation.depth_error,
             ok: error_codes.is_empty(),
             tilt: deviation.tilt.0,
-            out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
+            out_of_tolerance: if comparison.is_in_place(pair) {
+                0.0
+            } else {
+                phi - comparison.tolerances.position
+            },
             rounding: *rounding,
             nominal: HoleGeometry {
                 entry: nominal.entry,
@@ -272,6 +279,7 @@ fn hole_verdicts(
             error_codes,
             neighbours: None,
             drilled_index: pair.actual,
+            far_side_index: pair.from_far_side,
         }
     };
     pairs.map(verdict).collect()
@@ -319,7 +327,10 @@ impl Verdict {
 
     /// Returns the names of the drilled holes by their index: ids, and `extra 1` for those without a nominal hole.
     pub fn hole_names(&self) -> BTreeMap<usize, String> {
-        let matched = self.holes.iter().map(|hole| (hole.drilled_index, hole.id.clone()));
+        let matched = self.holes.iter().flat_map(|hole| {
+            let both = [Some(hole.drilled_index), hole.far_side_index];
+            both.into_iter().flatten().map(|index| (index, hole.id.clone()))
+        });
         let extra = self.extra.iter().enumerate();
         let extra = extra.map(|(place, hole)| (hole.drilled_index, format!("extra {}", place + 1)));
         matched.chain(extra).collect()

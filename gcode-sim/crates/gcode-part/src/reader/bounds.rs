@@ -280,6 +280,7 @@ ranges! {
     OffsetNumber: Any i64, 1, 99_999_999, "";
     GaugeLength: Any f64, 0.0, 10_000.0, "mm";
     ToolDiameter: Any f64, 0.001, 10_000.0, "mm";
+    PointAngle: Any f64, 10.0, 180.0, "degrees";
     StylusLength: Any f64, 0.0, 1000.0, "mm";
     ProbeDelay: Any f64, 0.0, 10.0, "seconds";
     PivotLength: Any f64, 0.0, 100_000.0, "mm";

@@ -241,7 +241,10 @@ tilt = [0.0, 0.0, 1.0]
         assert_eq!(machine.table.0, [AxisLink::rotary(3, Vector3::x_axis(), centre, -1.0)]);
         assert_eq!(machine.head.kind, HeadKind::Axis { axis: 4, sign: -1.0, zero: Deg(90.0) });
         assert_eq!(machine.head.pivot, 120.0);
-        assert_eq!(machine.tools, [Tool { number: 12, length: Some(80.5), diameter: Some(6.0) }]);
+        assert_eq!(
+            machine.tools,
+            [Tool { number: 12, length: Some(80.5), diameter: Some(6.0), ..Tool::default() }]
+        );
         assert_eq!(machine.offsets[0].values, [(4, -3.0), (0, 500.0)]);
         assert_eq!(machine.start, [(4, -90.0), (2, 250.0)]);
         assert_eq!(machine.part.origin.z, -200.0);

@@ -2,10 +2,10 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::machine::{Head, HeadKind, Tool};
-use gcode_part::reader::FileError;
-use gcode_part::reader::Reader;
-use gcode_part::reader::bounds::{Bounded, GaugeLength, OffsetNumber, ToolDiameter};
+use crate::machine::{Head, HeadKind, Tool, ToolKind};
+use gcode_lang::units::Deg;
+use gcode_part::reader::bounds::{Bounded, GaugeLength, OffsetNumber, PointAngle, ToolDiameter};
+use gcode_part::reader::{FileError, FileKey, Optional, Reader, Word, WordList};
 
 /// A tool.
 #[derive(Deserialize, JsonSchema)]
@@ -17,6 +17,22 @@ pub(super) struct FileTool {
     length: Option<Bounded<GaugeLength>>,
     /// mm [default: unknown].
     diameter: Option<Bounded<ToolDiameter>>,
+    /// Its kind [default: unknown].
+    #[serde(default, with = "Optional::<Word<ToolKindName>>")]
+    kind: Option<ToolKind>,
+    /// Full angle of its point, 180 of a flat end, degrees [default: 90 of a spot-drill or countersink].
+    point_angle: Option<Bounded<PointAngle>>,
+}
+
+/// Names of the kinds of tools.
+pub(super) enum ToolKindName {}
+
+impl WordList for ToolKindName {
+    type Value = ToolKind;
+
+    fn all() -> Vec<(&'static str, ToolKind)> {
+        ToolKind::NAMES.into()
+    }
 }
 
 impl FileTool {
@@ -30,6 +46,8 @@ impl FileTool {
             number: self.number.get() as u32,
             length: self.length.as_ref().map(Bounded::get),
             diameter: self.diameter.as_ref().map(Bounded::get),
+            kind: self.kind,
+            point_angle: self.point_angle.as_ref().map(Bounded::get).map(Deg),
         })
     }
 }

@@ -17,7 +17,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let bottom = hole.bottom();
         let Some(top) = surface.exit(&bottom, &hole.axis) else { continue };
         let above = (bottom - top).dot(&hole.axis);
-        let aimed = tree.nearest(&top).filter(|(_, off)| *off <= comparison.tolerances.position);
+        let aimed = tree.nearest(&top).filter(|(_, off)| !exceeds(*off, comparison.tolerances.position));
         if let (Some((nearest, _)), true) = (aimed, 0.0 < above) {
             explained.extend([Subject::Nominal(comparison.missing[nearest]), Subject::Extra(*extra)]);
             (low, high) = (low.min(above), high.max(above));

@@ -66,7 +66,7 @@ fn fold_tilted(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> usiz
     let tilted = comparison.matched().filter(|(pair, _, drilled)| {
         let bottom = drilled.bottom();
         let sinks = libm::hypot(bottom.y, bottom.z) * (1.0 - pair.deviation.tilt.cos());
-        (pair.deviation.depth_error - sinks).abs() <= comparison.tolerances.depth
+        !exceeds((pair.deviation.depth_error - sinks).abs(), comparison.tolerances.depth)
     });
     let tilted: BTreeSet<Subject> = tilted.map(|(pair, ..)| Subject::Nominal(pair.nominal)).collect();
     findings.fold(&[&HOLE_DEPTH], |subject| tilted.contains(&subject))

@@ -1,35 +1,63 @@
-//! Earlier passes of a hole lie inside the finished hole: the finishing tool does not restore material.
+//! Passes of a hole besides the finishing one lie inside its nominal outline: no later pass restores material.
 use super::*;
 use crate::findings::HOLE_CUT_ASIDE;
+use crate::verify::outline::Outline;
+use crate::verify::stack::Cut;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
-    let comparison = &inspection.comparison;
-    for (pair, nominal, drilled) in comparison.matched() {
-        for pass in &drilled.earlier_passes {
-            let Some(deviation) = Deviation::new(nominal, &pass.bottom, &pass.axis) else { continue };
-            let offset = deviation.zone_diameter() / 2.0;
-            // The finishing tool removes the deviation of a smaller tool; a countersink must be in position.
-            let sizes = nominal.diameter.or(drilled.diameter).zip(pass.diameter);
-            let spare = sizes.map_or(0.0, |(large, small)| (large - small).max(0.0) / 2.0);
-            let allowed = spare + comparison.tolerances.position / 2.0;
-            if offset <= allowed {
+    let HoleInspection { comparison, machine, .. } = inspection;
+    let sides = comparison.matched().flat_map(|(pair, nominal, drilled)| {
+        let far = pair.from_far_side.map(|index| &comparison.actual[index]);
+        [Some(drilled), far].into_iter().flatten().map(move |drilled| (pair, nominal, drilled))
+    });
+    for (pair, nominal, drilled) in sides {
+        if drilled.earlier_passes.is_empty() {
+            continue;
+        }
+        let outline = match drilled.axis.dot(&Vector3::from(nominal.axis)) < 0.0 {
+            true => Outline::of_far_side(nominal),
+            false => Outline::of(nominal, comparison.tolerances.depth),
+        };
+        for (index, cut) in Cut::all(nominal, drilled, machine).iter().enumerate() {
+            if index == drilled.finishing_index {
                 continue;
             }
-            let tool = pass.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
+            let Some(offset) = offset(nominal, cut) else { continue };
+            // A later pass removes the deviation of a cut that is narrower than the outline.
+            let margin = outline.as_ref().zip(cut.shape()).map(|(outline, shape)| outline.margin(&shape));
+            let spare = margin.filter(|margin| margin.is_finite()).map_or(0.0, |margin| margin.max(0.0));
+            let allowed = spare + comparison.tolerances.position / 2.0;
+            if !exceeds(offset, allowed) {
+                continue;
+            }
+            let tool = cut.pass.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
             let message = format!(
-                "hole {}: an earlier pass{tool} is out of position by {offset:.4} mm, limit \
-                 {allowed:.4}",
+                "hole {}: an earlier pass{tool} is out of position by {offset:.4} mm, limit {allowed:.4}",
                 comparison.id(pair.nominal)
             );
-            let finding = Diagnostic::new(&HOLE_CUT_ASIDE, message).with_backtrace(pass.backtrace.clone());
-            // Another tool of unknown diameter may be small enough.
-            if pass.tool != drilled.tool && pass.diameter.is_none() {
-                let help = "give the tool diameters in the machine file, so that this can be judged";
-                findings.add(Subject::Whole, finding.with_severity(Severity::Warning).help(help));
-            } else {
-                let help = "correct the point of that pass: material cut outside the hole cannot be restored";
-                findings.add(Subject::Nominal(pair.nominal), finding.help(help));
-            }
+            let help = match cut.pass.diameter {
+                None => {
+                    "correct the point of that pass, or give the tool diameters in the machine file: a smaller tool may \
+                     lie inside the finished hole"
+                }
+                Some(_) => "correct the point of that pass: material cut outside the hole cannot be restored",
+            };
+            let finding =
+                Diagnostic::new(&HOLE_CUT_ASIDE, message).with_backtrace(cut.pass.backtrace.clone());
+            findings.add(Subject::Nominal(pair.nominal), finding.help(help));
         }
     }
+}
+
+/// Returns the largest distance of a pass from the nominal axis over its own depth, mm; `None` for a pass across it.
+fn offset(nominal: &Hole, cut: &Cut<'_>) -> Option<f64> {
+    let depth = cut.tip.clamp(f64::MIN_POSITIVE, nominal.depth);
+    let (mut entry, mut out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
+    if cut.pass.axis.dot(&out) < 0.0 {
+        entry -= out * nominal.depth;
+        out = -out;
+    }
+    let own = Hole { entry: entry.into(), axis: out.into(), depth, ..Hole::default() };
+    let deviation = Deviation::new(&own, &cut.pass.cut.bottom, &cut.pass.axis)?;
+    Some(deviation.zone_diameter() / 2.0)
 }

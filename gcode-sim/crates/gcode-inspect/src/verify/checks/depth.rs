@@ -1,12 +1,18 @@
 //! Depth of each hole.
 use super::*;
 use crate::findings::HOLE_DEPTH;
+use crate::holes::PassCut;
+use gcode_lang::motion::Backtrace;
+use gcode_part::{Feature, NOISE};
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
     for (pair, nominal, drilled) in comparison.matched() {
         let error = pair.deviation.depth_error;
-        if error.abs() <= comparison.tolerances.depth {
+        // The check on features covers each of them, but not a point or a pilot below all of them.
+        let deepest = nominal.features.iter().map(Feature::bottom).reduce(f64::max);
+        let is_feature = deepest.is_some_and(|deepest| !exceeds(nominal.depth, deepest));
+        if nominal.through || is_feature || !exceeds(error.abs(), comparison.tolerances.depth) {
             continue;
         }
         let depth = nominal.depth + error;
@@ -20,10 +26,19 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         );
         let finding = Diagnostic::new(&HOLE_DEPTH, message)
             .help("check the programmed depth, the tool length and its offset")
-            .with_backtrace(drilled.backtrace.clone());
+            .with_backtrace(deepest_pass(drilled).clone());
         let note = mistaken_factor(nominal.depth, depth);
         findings.add(Subject::Nominal(pair.nominal), note.into_iter().fold(finding, Diagnostic::note));
     }
+}
+
+/// Returns the block of the deepest pass; the finishing one if it is as deep.
+fn deepest_pass(drilled: &DrilledHole) -> &Backtrace {
+    let height = |cut: &PassCut| cut.bottom.coords.dot(&drilled.axis);
+    let others = drilled.earlier_passes.iter();
+    let lowest = others.min_by(|a, b| height(&a.cut).total_cmp(&height(&b.cut)));
+    let deeper = lowest.filter(|pass| height(&pass.cut) < height(&drilled.finishing_cut) - NOISE);
+    deeper.map_or(&drilled.backtrace, |pass| &pass.backtrace)
 }
 
 /// Returns the cause of a depth that is wrong by a factor: a missing decimal point, or inches and millimetres confused.

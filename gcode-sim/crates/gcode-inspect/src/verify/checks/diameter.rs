@@ -5,8 +5,12 @@ use crate::findings::HOLE_DIAMETER;
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
     for (pair, hole, drilled) in comparison.matched() {
+        // The check on features covers each of them.
+        if !hole.features.is_empty() {
+            continue;
+        }
         let Some((nominal, actual)) = hole.diameter.zip(drilled.diameter) else { continue };
-        if (actual - nominal).abs() <= comparison.tolerances.diameter {
+        if !exceeds((actual - nominal).abs(), comparison.tolerances.diameter) {
             continue;
         }
         let tool = drilled.tool.map_or(String::new(), |tool| format!(" T{tool}"));

@@ -1,17 +1,22 @@
 //! Core of each milled hole: a circle along the wall leaves one if the mill doesn't reach the axis.
 use super::*;
 use crate::findings::HOLE_CORE;
+use crate::holes::MilledCut;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    for (pair, _, drilled) in comparison.matched() {
-        let Some(core) = drilled.core else { continue };
-        let id = comparison.id(pair.nominal);
-        let message =
-            format!("hole {id} keeps a core of Φ{core:.3}: the mill goes round it and nothing removes it");
-        let finding = Diagnostic::new(&HOLE_CORE, message)
-            .help("drill the core first, or mill from the axis outwards")
-            .with_backtrace(drilled.backtrace.clone());
-        findings.add(Subject::Nominal(pair.nominal), finding);
+    // The check on features covers each of them.
+    for (pair, _, drilled) in comparison.matched().filter(|(_, nominal, _)| nominal.features.is_empty()) {
+        let what = format!("hole {}", comparison.id(pair.nominal));
+        if let Some(finding) = drilled.finishing_cut.milled.and_then(|cut| finding(&what, &cut)) {
+            findings.add(Subject::Nominal(pair.nominal), finding.with_backtrace(drilled.backtrace.clone()));
+        }
     }
+}
+
+/// Returns the finding on the core that a mill leaves in a hole or feature.
+pub(super) fn finding(what: &str, cut: &MilledCut) -> Option<Diagnostic> {
+    let message =
+        format!("{what} keeps a core of Φ{:.3}: the mill goes round it and nothing removes it", cut.core?);
+    Some(Diagnostic::new(&HOLE_CORE, message).help("drill the core first, or mill from the axis outwards"))
 }

@@ -8,6 +8,7 @@ mod depth;
 mod diameter;
 mod explained_by_rows;
 pub(super) mod extra;
+pub(super) mod features;
 mod milled_core;
 pub(super) mod mirrored;
 mod missing;
@@ -24,6 +25,7 @@ mod row_short;
 mod signs;
 mod start_unknown;
 mod stopped;
+mod threads;
 mod through;
 mod tool_short;
 mod tools;
@@ -39,7 +41,7 @@ use crate::holes::DrilledHole;
 use crate::machine::{LinkMotion, Machine};
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::units::Deg;
-use gcode_part::{Hole, Pattern, PointTree, ProcessLimits, Surface};
+use gcode_part::{Hole, Pattern, PointTree, ProcessLimits, Surface, exceeds};
 
 /// A check adds findings; it may fold earlier ones.
 type Check = fn(&HoleInspection<'_>, &mut HoleFindings);
@@ -60,6 +62,7 @@ pub(super) const ALL: &[Check] = &[
     diameter::check,      // hole-diameter
     roundness::check,     // hole-roundness
     milled_core::check,   // hole-core
+    features::check,      // feature-*, hole-not-through, tap-*
     tools::check,         // hole-tools
     overlap::check,       // hole-overlap
     row_short::check,     // row-short

@@ -77,8 +77,8 @@ fn finding(mismatch: &LengthMismatch, limits: &ProcessLimits, machine: &Machine)
 /// point.
 fn explains(comparison: &Comparison<'_>, mismatch: &LengthMismatch) -> bool {
     let tolerance = comparison.tolerances.depth;
-    let is_right = |(depth, nominal): (f64, f64)| (depth - nominal).abs() <= tolerance;
-    let is_cut = |(depth, nominal): (f64, f64)| 0.0 < depth && depth <= nominal + tolerance;
+    let is_right = |(depth, nominal): (f64, f64)| !exceeds((depth - nominal).abs(), tolerance);
+    let is_cut = |(depth, nominal): (f64, f64)| 0.0 < depth && !exceeds(depth - nominal, tolerance);
     let mut explained = 0;
     for (end, axis) in &mismatch.feed_ends {
         let actual = depth(comparison, end, axis);

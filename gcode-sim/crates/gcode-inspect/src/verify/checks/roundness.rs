@@ -1,20 +1,27 @@
 //! Roundness of each milled hole: the path of the mill decides it.
 use super::*;
 use crate::findings::HOLE_ROUNDNESS;
+use crate::holes::MilledCut;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    let limit = comparison.tolerances.diameter;
-    for (pair, _, drilled) in comparison.matched() {
-        let Some(roundness) = drilled.roundness.filter(|roundness| limit < *roundness) else { continue };
-        let id = comparison.id(pair.nominal);
-        let message = format!(
-            "hole {id} is not round: the distances of the mill's path from the axis differ by {roundness:.3} mm, \
-             limit {limit}"
-        );
-        let finding = Diagnostic::new(&HOLE_ROUNDNESS, message)
-            .help("mill a full circle by I and J, from a start that lies on it")
-            .with_backtrace(drilled.backtrace.clone());
-        findings.add(Subject::Nominal(pair.nominal), finding);
+    // The check on features covers each of them.
+    for (pair, _, drilled) in comparison.matched().filter(|(_, nominal, _)| nominal.features.is_empty()) {
+        let what = format!("hole {}", comparison.id(pair.nominal));
+        let cut = drilled.finishing_cut.milled;
+        if let Some(finding) = cut.and_then(|cut| finding(&what, &cut, comparison.tolerances.diameter)) {
+            findings.add(Subject::Nominal(pair.nominal), finding.with_backtrace(drilled.backtrace.clone()));
+        }
     }
+}
+
+/// Returns the finding on the roundness of a milled hole or feature.
+pub(super) fn finding(what: &str, cut: &MilledCut, limit: f64) -> Option<Diagnostic> {
+    let message = format!(
+        "{what} is not round: the distances of the mill's path from the axis differ by {:.3} mm, limit {limit}",
+        cut.roundness
+    );
+    let finding = Diagnostic::new(&HOLE_ROUNDNESS, message)
+        .help("mill a full circle by I and J, from a start that lies on it");
+    exceeds(cut.roundness, limit).then_some(finding)
 }

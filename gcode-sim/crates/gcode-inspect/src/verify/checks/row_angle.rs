@@ -12,7 +12,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let (pattern, actual, nominal) = (rows.pattern, rows.typical_gap, rows.nominal_gap());
     // Over a revolution the error of the gaps adds up.
     let sum = (actual - nominal).abs() * (360.0 / nominal.0);
-    if sum < ROUNDING_ALLOWANCE || pattern.arc_length(sum) <= comparison.tolerances.position / 2.0 {
+    if sum < ROUNDING_ALLOWANCE || !exceeds(pattern.arc_length(sum), comparison.tolerances.position / 2.0) {
         return;
     }
     let tolerance = Deg::atan2(comparison.tolerances.position, pattern.diameter / 2.0);

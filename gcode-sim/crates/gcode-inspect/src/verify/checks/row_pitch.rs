@@ -18,7 +18,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     }
     let pitches = (pattern.length / pattern.pitch).floor();
     let sum = (spacing - pattern.pitch).abs() * pitches;
-    if sum <= comparison.tolerances.position / 2.0 {
+    if !exceeds(sum, comparison.tolerances.position / 2.0) {
         return;
     }
     let message = format!(

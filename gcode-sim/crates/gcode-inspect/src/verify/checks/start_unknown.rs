@@ -5,7 +5,10 @@ use gcode_lang::motion::UnknownAxes;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let HoleInspection { comparison, machine, .. } = inspection;
-    let matched = comparison.pairs.iter().map(|pair| (pair.actual, Subject::Nominal(pair.nominal)));
+    let matched = comparison.pairs.iter().flat_map(|pair| {
+        let both = [Some(pair.actual), pair.from_far_side];
+        both.into_iter().flatten().map(|actual| (actual, Subject::Nominal(pair.nominal)))
+    });
     let extra = comparison.extra.iter().map(|extra| (*extra, Subject::Extra(*extra)));
     let mut by_axes: BTreeMap<UnknownAxes, Vec<(usize, Subject)>> = BTreeMap::new();
     for (actual, subject) in matched.chain(extra) {

@@ -11,6 +11,9 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let comparison = &inspection.comparison;
     let Some(surface) = inspection.reference.surface else { return };
     let through = |(index, hole): (usize, &Hole)| {
+        if hole.through {
+            return None;
+        }
         // A hole that ends inside the part does not go through it.
         let is_outside = surface.value(&bottom(hole)) >= 0.0;
         let thickness = is_outside.then(|| thickness(&surface, hole)).filter(|thick| *thick < hole.depth)?;
@@ -41,7 +44,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
 }
 
 /// Returns the distance from the entry along the axis to the far side; 0 if the axis only touches the part.
-fn thickness(surface: &Surface, hole: &Hole) -> f64 {
+pub(super) fn thickness(surface: &Surface, hole: &Hole) -> f64 {
     let entry = Point3::from(hole.entry);
     let into = Unit::new_normalize(-Vector3::from(hole.axis));
     surface.exit(&entry, &into).map_or(0.0, |far| (far - entry).dot(&into).max(0.0))
@@ -52,7 +55,7 @@ mod tests {
     use super::*;
 
     fn thick(surface: Surface, entry: [f64; 3], axis: [f64; 3]) -> f64 {
-        thickness(&surface, &Hole { id: None, entry, axis, depth: 1.0, diameter: None, from: None })
+        thickness(&surface, &Hole { id: None, entry, axis, depth: 1.0, diameter: None, ..Hole::default() })
     }
 
     /// (16/20)² + (7.2/12)² = 1. Parallel to y the far side is at −7.2. The normal there is (16/400, 7.2/144) =

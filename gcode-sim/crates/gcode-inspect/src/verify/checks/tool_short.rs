@@ -17,7 +17,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let mut deep_cuts: BTreeMap<u32, Vec<DeepCut<'_>>> = BTreeMap::new();
     for (pair, nominal, drilled) in comparison.matched() {
         let last = (drilled.tool, drilled.bottom(), &drilled.backtrace);
-        let passes = drilled.earlier_passes.iter().map(|pass| (pass.tool, pass.bottom, &pass.backtrace));
+        let passes = drilled.earlier_passes.iter().map(|pass| (pass.tool, pass.cut.bottom, &pass.backtrace));
         for (tool, bottom, backtrace) in passes.chain([last]) {
             let depth = (Point3::from(nominal.entry) - bottom).dot(&Vector3::from(nominal.axis));
             if let (Some(number), Some(_)) = (tool, length(tool).filter(|length| *length < depth)) {

@@ -100,8 +100,10 @@ fn missing(inspection: &Inspection<'_>, message: String) -> Diagnostic {
 /// Returns a note on flutes in even steps that are not the nominal ones.
 fn describe_gap(inspection: &Inspection<'_>) -> Option<String> {
     let nominal = inspection.nominal;
-    let step =
-        inspection.spacing.index_step(nominal).filter(|step| nominal.index_tolerance < step.error())?;
+    let step = inspection
+        .spacing
+        .index_step(nominal)
+        .filter(|step| exceeds(step.error().0, nominal.index_tolerance.0))?;
     Some(format!(
         "the flutes are {:.3}° apart; {} flutes are {:.3}° apart",
         step.actual.0.abs(),

@@ -24,6 +24,6 @@ fn head_error(nominal: &Flutes, pass: &GrindingPass) -> Option<String> {
     if 1e-9 < max.0 - min.0 {
         return Some(format!("the head swivels from {:.3}° to {:.3}° during a pass", min.0, max.0));
     }
-    (nominal.helix_tolerance < (min - nominal.helix).abs())
+    exceeds((min - nominal.helix).abs().0, nominal.helix_tolerance.0)
         .then(|| format!("the head is at {:.3}°, the helix angle is {:.3}°", min.0, nominal.helix.0))
 }

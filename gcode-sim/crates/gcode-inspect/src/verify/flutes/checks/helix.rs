@@ -6,7 +6,9 @@ use gcode_lang::units::Deg;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     let tolerance = inspection.nominal.helix_tolerance.0;
-    let Some(worst) = inspection.worst_helix().filter(|worst| tolerance < worst.error) else { return };
+    let Some(worst) = inspection.worst_helix().filter(|worst| exceeds(worst.error, tolerance)) else {
+        return;
+    };
     let Some(range) = &inspection.helix else { return };
     let here = format!(
         "{} has a helix angle of {:.2}° at polar angle {:.1}°, nominal {:.2}° (tolerance ±{tolerance}°)",
@@ -15,7 +17,8 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         worst.polar.0,
         worst.nominal
     );
-    let mut wrong: Vec<_> = range.worst_by_pass.iter().filter(|worst| tolerance < worst.error).collect();
+    let mut wrong: Vec<_> =
+        range.worst_by_pass.iter().filter(|worst| exceeds(worst.error, tolerance)).collect();
     let (finding, note) = match common_error(inspection) {
         Some((message, help)) => {
             let finding = Diagnostic::new(&FLUTE_HELIX, message).note(here).help(help);
@@ -85,11 +88,11 @@ fn describe_heads(inspection: &Inspection<'_>) -> Option<String> {
 pub(super) fn do_heads_match(inspection: &Inspection<'_>) -> bool {
     let Some(CommonDeviation::OtherHelix(helix)) = inspection.common_deviation else { return false };
     let tolerance = inspection.nominal.helix_tolerance;
-    let is_at_helix = |angle: Deg| (angle - helix).abs() <= tolerance;
+    let is_at_helix = |angle: Deg| !exceeds((angle - helix).abs().0, tolerance.0);
     let matches = |pass: &GrindingPass| {
         let range = pass.head_range;
         range.is_some_and(|(min, max)| is_at_helix(min) && is_at_helix(max) && max.0 - min.0 <= 1e-9)
     };
-    inspection.worst_helix().is_some_and(|worst| tolerance.0 < worst.error)
+    inspection.worst_helix().is_some_and(|worst| exceeds(worst.error, tolerance.0))
         && inspection.actual.passes.iter().all(matches)
 }

@@ -9,7 +9,9 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         return;
     }
     let tolerance = nominal.index_tolerance;
-    let Some(gap) = inspection.spacing.worst_gap.filter(|gap| tolerance < gap.error) else { return };
+    let Some(gap) = inspection.spacing.worst_gap.filter(|gap| exceeds(gap.error.0, tolerance.0)) else {
+        return;
+    };
     let trace = &passes[gap.pass].trace;
     let finding = match inspection.spacing.index_step(nominal) {
         Some(step) => {

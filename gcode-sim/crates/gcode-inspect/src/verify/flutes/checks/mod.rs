@@ -15,6 +15,7 @@ mod turning;
 mod twice;
 mod wheel;
 
+use gcode_part::exceeds;
 use nalgebra::Point3;
 
 use super::Inspection;

@@ -1,0 +1,88 @@
+//! Kinds of tools and the shape of their ends.
+use gcode_lang::units::Deg;
+use gcode_part::FeatureKind;
+
+use super::Tool;
+
+/// Kind of a tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ToolKind {
+    /// Twist drill.
+    Drill,
+    /// Spot drill or centre drill.
+    SpotDrill,
+    /// Countersink.
+    Countersink,
+    /// Counterbore with a flat end.
+    Counterbore,
+    /// End mill with a flat end.
+    EndMill,
+    /// Reamer.
+    Reamer,
+    /// Boring bar.
+    BoringBar,
+    /// Tap.
+    Tap,
+}
+
+/// End of a tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PointShape {
+    /// The full diameter reaches to the tip.
+    Flat,
+    /// A cone of this full angle.
+    Pointed(Deg),
+    /// The machine file gives neither kind nor angle.
+    Unknown,
+}
+
+impl ToolKind {
+    /// Kinds with their names in the machine file.
+    pub(crate) const NAMES: [(&'static str, Self); 8] = [
+        ("drill", Self::Drill),
+        ("spot-drill", Self::SpotDrill),
+        ("countersink", Self::Countersink),
+        ("counterbore", Self::Counterbore),
+        ("end-mill", Self::EndMill),
+        ("reamer", Self::Reamer),
+        ("boring-bar", Self::BoringBar),
+        ("tap", Self::Tap),
+    ];
+
+    /// Returns true if a tool of this kind can make the feature.
+    pub(crate) fn can_make(self, feature: FeatureKind) -> bool {
+        match self {
+            Self::Drill => feature == FeatureKind::Drill,
+            Self::SpotDrill | Self::Countersink => feature == FeatureKind::Countersink,
+            Self::Counterbore | Self::EndMill | Self::BoringBar => {
+                matches!(feature, FeatureKind::Drill | FeatureKind::Bore | FeatureKind::Counterbore)
+            }
+            Self::Reamer => matches!(feature, FeatureKind::Drill | FeatureKind::Ream),
+            Self::Tap => feature == FeatureKind::Tap,
+        }
+    }
+}
+
+impl Tool {
+    /// Returns the shape of the end: that of the file, or 90° of a spot drill or countersink.
+    pub(crate) fn point(&self) -> PointShape {
+        match (self.point_angle, self.kind) {
+            (Some(angle), _) if angle.0 < 180.0 => PointShape::Pointed(angle),
+            (Some(_), _) => PointShape::Flat,
+            (None, Some(ToolKind::SpotDrill | ToolKind::Countersink)) => PointShape::Pointed(Deg(90.0)),
+            (None, Some(ToolKind::Drill) | None) => PointShape::Unknown,
+            (None, Some(_)) => PointShape::Flat,
+        }
+    }
+}
+
+impl PointShape {
+    /// Returns the length of the end below the full diameter, mm; `None` if unknown.
+    pub(crate) fn length(self, diameter: f64) -> Option<f64> {
+        match self {
+            Self::Flat => Some(0.0),
+            Self::Pointed(angle) => Some(diameter / 2.0 / Deg(angle.0 / 2.0).tan()),
+            Self::Unknown => None,
+        }
+    }
+}

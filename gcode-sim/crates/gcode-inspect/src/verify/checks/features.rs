@@ -1,0 +1,372 @@
+//! Features of each hole: each is made, to its depth, and no tool cuts wider than the hole is.
+use super::*;
+use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH, HOLE_NOT_THROUGH};
+use crate::machine::{PointShape, ToolKind};
+use crate::verify::outline::{CutShape, Outline};
+use crate::verify::stack::{Cut, assign};
+use gcode_part::{Feature, FeatureKind};
+
+/// Length of a drill's point of 118° in diameters: a finishing tool need not reach below the drill's full diameter.
+const POINT_LENGTH: f64 = 0.300_430;
+
+/// Ends taken for a drill, and for a tool of unknown kind, whose angle the machine file lacks.
+const DRILL_POINT: PointShape = PointShape::Pointed(Deg(118.0));
+const SPOT_DRILL_POINT: PointShape = PointShape::Pointed(Deg(90.0));
+
+/// Largest width by which a spot drill may break the edge of a hole, mm in diameter.
+const MAX_EDGE_BREAK: f64 = 1.0;
+
+/// What the end of a tool leaves open, by the tool's number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::verify) enum ShapeGap {
+    /// The tool counts as a spot drill.
+    SpotDrill(Option<u32>),
+    /// The depth of its full diameter is unknown.
+    FullDepth(Option<u32>),
+    /// The angle of its countersink is unknown.
+    Angle(Option<u32>),
+}
+
+/// Findings on the features of a nominal hole, and what they leave open.
+pub(in crate::verify) struct FeatureFindings {
+    pub nominal: usize,
+    findings: Vec<Diagnostic>,
+    pub gaps: Vec<ShapeGap>,
+}
+
+/// Cuts of a nominal hole, its findings and what they leave open.
+pub(super) struct Judgement<'c> {
+    pub comparison: &'c Comparison<'c>,
+    pub nominal: &'c Hole,
+    pub id: &'c str,
+    /// Cuts from the side of the nominal entry, in the order of the program.
+    pub near: Vec<Cut<'c>>,
+    /// Cuts of a through hole from its far side.
+    far: Vec<Cut<'c>>,
+    pub findings: Vec<Diagnostic>,
+    gaps: Vec<ShapeGap>,
+}
+
+pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    for hole in &inspection.features {
+        for finding in &hole.findings {
+            findings.add(Subject::Nominal(hole.nominal), finding.clone());
+        }
+    }
+}
+
+/// Judges the features of all holes; returns those with findings or gaps.
+pub(in crate::verify) fn judge_all(
+    comparison: &Comparison<'_>,
+    surface: Option<Surface>,
+    machine: &Machine,
+) -> Vec<FeatureFindings> {
+    let judge = |pair: &HolePair| {
+        let Judgement { findings, gaps, .. } = judge(comparison, pair, surface, machine)?;
+        let is_whole = findings.is_empty() && gaps.is_empty();
+        (!is_whole).then_some(FeatureFindings { nominal: pair.nominal, findings, gaps })
+    };
+    comparison.pairs.iter().filter_map(judge).collect()
+}
+
+/// Judges the features of a hole; `None` for a hole of one diameter and one pass, which other checks cover.
+fn judge<'c>(
+    comparison: &'c Comparison<'_>,
+    pair: &HolePair,
+    surface: Option<Surface>,
+    machine: &Machine,
+) -> Option<Judgement<'c>> {
+    let (nominal, drilled) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
+    let is_plain = nominal.features.is_empty() && !nominal.through;
+    if is_plain && drilled.earlier_passes.is_empty() {
+        return None;
+    }
+    let out = Vector3::from(nominal.axis);
+    let others = pair.from_far_side.map(|index| &comparison.actual[index]);
+    let (mut near, mut far) = (Vec::new(), Vec::new());
+    for drilled in [drilled].into_iter().chain(others) {
+        let side = if drilled.axis.dot(&out) < 0.0 { &mut far } else { &mut near };
+        side.extend(Cut::all(nominal, drilled, machine));
+    }
+    let id = comparison.id(pair.nominal);
+    let (findings, gaps) = (Vec::new(), Vec::new());
+    let mut judged = Judgement { comparison, nominal, id, near, far, findings, gaps };
+    if nominal.features.is_empty() {
+        judged.judge_one_diameter(drilled, surface);
+    } else {
+        judged.judge_features(surface);
+    }
+    judged.judge_far_widths(drilled);
+    threads::judge(&mut judged);
+    Some(judged)
+}
+
+impl Judgement<'_> {
+    fn judge_features(&mut self, surface: Option<Surface>) {
+        let tolerances = self.comparison.tolerances;
+        let made_by = assign(&self.nominal.features, &self.near, tolerances);
+        for (feature, cut) in self.nominal.features.iter().zip(&made_by) {
+            if self.goes_through(feature) {
+                self.judge_through(Some(feature), surface);
+            } else {
+                match cut.map(|cut| self.near[cut]) {
+                    Some(cut) => {
+                        self.judge_depth(feature, &cut);
+                        self.judge_milling(feature, &cut);
+                    }
+                    None => self.report_missing(feature),
+                }
+            }
+        }
+        let tips = made_by.iter().flatten().map(|cut| self.near[*cut].tip);
+        let bottom = tips.fold(self.nominal.depth, f64::max);
+        let outline = Outline::of(self.nominal, tolerances.depth);
+        let mut deepest = f64::NEG_INFINITY;
+        for cut in 0..self.near.len() {
+            // Another pass of a tool is judged by the feature that the tool makes.
+            let own = self.near[cut].pass;
+            if !made_by.iter().flatten().any(|made| self.near[*made].is_same_size(&own)) {
+                self.judge_width(&self.near[cut].clone(), outline.as_ref(), deepest);
+                self.judge_bottom(cut, bottom);
+            }
+            deepest = deepest.max(self.near[cut].tip);
+        }
+    }
+
+    /// Judges a hole of one diameter that several passes make.
+    fn judge_one_diameter(&mut self, drilled: &DrilledHole, surface: Option<Surface>) {
+        if self.nominal.through {
+            self.judge_through(None, surface);
+        } else {
+            self.judge_finished_depth();
+        }
+        let outline = Outline::of(self.nominal, self.comparison.tolerances.depth);
+        self.judge_widths(&self.near.clone(), outline.as_ref(), drilled);
+    }
+
+    /// Judges the cuts from the far side of a through hole: there it has the diameter that goes through.
+    fn judge_far_widths(&mut self, drilled: &DrilledHole) {
+        if !self.far.is_empty() {
+            let outline = Outline::of_far_side(self.nominal);
+            self.judge_widths(&self.far.clone(), outline.as_ref(), drilled);
+        }
+    }
+
+    /// Reports the cuts that are wider than the hole, without those of the finishing tool, which the check on the diameter
+    /// covers.
+    fn judge_widths(&mut self, cuts: &[Cut<'_>], outline: Option<&Outline>, drilled: &DrilledHole) {
+        let mut deepest = f64::NEG_INFINITY;
+        for cut in cuts {
+            let own = cut.pass;
+            let is_finishing = (own.tool, own.diameter) == (drilled.tool, drilled.diameter);
+            if own.tool.is_none() || !is_finishing || !self.nominal.features.is_empty() {
+                self.judge_width(cut, outline, deepest);
+            }
+            deepest = deepest.max(cut.tip);
+        }
+    }
+
+    fn goes_through(&self, feature: &Feature) -> bool {
+        self.nominal.through && !exceeds(self.nominal.depth, feature.bottom())
+    }
+
+    fn judge_depth(&mut self, feature: &Feature, cut: &Cut<'_>) {
+        let limit = self.comparison.tolerances.depth;
+        let nominal = feature.bottom();
+        if feature.kind == FeatureKind::Countersink && cut.point == PointShape::Unknown {
+            self.gaps.push(ShapeGap::Angle(cut.pass.tool));
+        }
+        let Some(actual) = cut.depth_of(feature) else {
+            self.gaps.push(ShapeGap::FullDepth(cut.pass.tool));
+            // The full diameter ends above the tip.
+            if exceeds(nominal - cut.tip, limit) {
+                self.report_depth(feature, cut, cut.tip);
+            }
+            return;
+        };
+        if exceeds((actual - nominal).abs(), limit) {
+            self.report_depth(feature, cut, actual);
+        }
+    }
+
+    /// Judges the circle of a mill that makes a feature.
+    fn judge_milling(&mut self, feature: &Feature, cut: &Cut<'_>) {
+        let Some(milled) = cut.pass.cut.milled else { return };
+        let what = format!("hole {}: the {}", self.id, feature.describe());
+        let findings = [
+            roundness::finding(&what, &milled, self.comparison.tolerances.diameter),
+            milled_core::finding(&what, &milled),
+        ];
+        let place = cut.pass.backtrace;
+        self.findings
+            .extend(findings.into_iter().flatten().map(|finding| finding.with_backtrace(place.clone())));
+    }
+
+    fn report_depth(&mut self, feature: &Feature, cut: &Cut<'_>, actual: f64) {
+        let (id, limit) = (self.id, self.comparison.tolerances.depth);
+        let error = actual - feature.bottom();
+        let side = if error > 0.0 { "deep" } else { "shallow" };
+        let off = format!("{:.3} mm too {side} (tolerance ±{limit})", error.abs());
+        let message = match (feature.kind, feature.angle) {
+            (FeatureKind::Countersink, Some(angle)) => {
+                let wide = 2.0 * actual * Deg(angle / 2.0).tan();
+                let wide = cut.pass.diameter.map_or(wide, |diameter| wide.min(diameter));
+                format!(
+                    "hole {id}: the {} is Φ{wide:.3} at the entry: its point is {off}",
+                    feature.describe()
+                )
+            }
+            _ => format!("hole {id}: the {} is {actual:.3} mm deep: {off}", feature.describe()),
+        };
+        let finding = Diagnostic::new(&FEATURE_DEPTH, message)
+            .help("check the programmed depth, the tool length and its offset")
+            .with_backtrace(cut.pass.backtrace.clone());
+        self.findings.push(finding);
+    }
+
+    fn report_missing(&mut self, feature: &Feature) {
+        let message = format!("hole {}: no tool makes the {}", self.id, feature.describe());
+        let cuts: Vec<_> =
+            self.near.iter().map(|cut| format!("{} to {:.3} mm", cut.name(), cut.tip)).collect();
+        let finding = Diagnostic::new(&FEATURE_MISSING, message)
+            .note(format!("the hole is cut by {}", cuts.join(", by ")))
+            .help("add its pass, or correct the tool, the tool table or the reference");
+        let is_stuck = |cut: &&Cut<'_>| cut.is_tap() && !cut.pass.cut.is_tapping;
+        let stuck = self.near.iter().find(is_stuck).filter(|_| feature.kind == FeatureKind::Tap);
+        let finding = stuck.into_iter().fold(finding, |finding, tap| {
+            finding.note(format!("the spindle does not reverse while {} is in the hole", tap.name()))
+        });
+        let place = self.near.last().or(self.far.last()).map(|cut| cut.pass.backtrace.clone());
+        self.findings.push(place.into_iter().fold(finding, Diagnostic::with_backtrace));
+    }
+
+    /// Reports a cut that is wider than the hole; `before` is the deepest tip before it.
+    fn judge_width(&mut self, cut: &Cut<'_>, outline: Option<&Outline>, before: f64) {
+        let tolerances = self.comparison.tolerances;
+        let (Some(shape), Some(outline)) = (cut.shape(), outline) else { return };
+        let excess = -2.0 * outline.margin(&shape);
+        if !exceeds(excess, tolerances.diameter) {
+            return;
+        }
+        let point = if cut.kind == Some(ToolKind::Drill) { DRILL_POINT } else { SPOT_DRILL_POINT };
+        let as_spot = -2.0 * outline.margin(&CutShape { point, ..shape });
+        let is_first = before <= cut.tip;
+        if cut.point == PointShape::Unknown && is_first && !exceeds(as_spot, tolerances.diameter) {
+            self.gaps.push(ShapeGap::SpotDrill(cut.pass.tool));
+            return;
+        }
+        let message = format!(
+            "hole {}: {} cuts {excess:.3} mm wider than the hole, {:.3} mm deep",
+            self.id,
+            cut.name(),
+            cut.tip
+        );
+        let finding = Diagnostic::new(&FEATURE_EXTRA, message).with_backtrace(cut.pass.backtrace.clone());
+        let is_edge_break = cut.kind == Some(ToolKind::SpotDrill) && !exceeds(excess, MAX_EDGE_BREAK);
+        let severity = if is_edge_break { Severity::Warning } else { Severity::Error };
+        let finding = match cut.point {
+            PointShape::Unknown => {
+                finding.note("the machine file gives neither its kind nor its point_angle: it counts as flat")
+            }
+            PointShape::Flat | PointShape::Pointed(_) => finding,
+        };
+        let finding = finding.with_severity(severity);
+        self.findings.push(finding.help("remove the pass, or add its feature to the hole in the reference"));
+    }
+
+    /// Reports a cut that makes no feature and goes deeper than `bottom`, the deepest tip that makes one.
+    fn judge_bottom(&mut self, index: usize, bottom: f64) {
+        let cut = self.near[index];
+        let limit = self.comparison.tolerances.depth;
+        // The check on the depth covers a hole that is deeper than its features.
+        let deepest = self.nominal.features.iter().map(Feature::bottom).fold(0.0, f64::max);
+        if self.nominal.through || exceeds(self.nominal.depth, deepest) || !exceeds(cut.tip - bottom, limit) {
+            return;
+        }
+        let error = cut.tip - self.nominal.depth;
+        let message = format!(
+            "hole {}: {} goes {:.3} mm deep, nominal {}: {error:.3} mm too deep (tolerance ±{limit})",
+            self.id,
+            cut.name(),
+            cut.tip,
+            self.nominal.depth
+        );
+        let finding = Diagnostic::new(&HOLE_DEPTH, message).with_backtrace(cut.pass.backtrace.clone());
+        self.findings.push(finding.help("check the programmed depth, the tool length and its offset"));
+    }
+
+    /// Reports a finishing tool or a tap that ends above the bottom of a hole of one diameter.
+    fn judge_finished_depth(&mut self) {
+        let tolerances = self.comparison.tolerances;
+        let (depth, diameter) = (self.nominal.depth, self.nominal.diameter);
+        let is_sized = |cut: &&Cut<'_>| {
+            let off = cut.pass.diameter.zip(diameter).map(|(own, nominal)| (own - nominal).abs());
+            off.is_some_and(|off| !exceeds(off, tolerances.diameter))
+        };
+        let (cut, missed) = if let Some(tap) = deepest(self.near.iter().filter(|cut| cut.is_tap())) {
+            (tap, depth - tap.tip)
+        } else if let Some(sized) = deepest(self.near.iter().filter(is_sized)) {
+            let is_known = self.near.iter().all(|cut| cut.pass.diameter.is_some() || cut.tip <= sized.tip);
+            if !is_known {
+                return;
+            }
+            (sized, depth - POINT_LENGTH * diameter.unwrap_or(0.0) - sized.tip)
+        } else {
+            return;
+        };
+        if !exceeds(missed, tolerances.depth) {
+            return;
+        }
+        let verb = if cut.is_tap() { "taps" } else { "finishes" };
+        let message = format!("hole {}: {} {verb} {:.3} mm of {depth} mm", self.id, cut.name(), cut.tip);
+        let finding = Diagnostic::new(&FEATURE_DEPTH, message)
+            .note("the reference gives the hole one diameter all the way down")
+            .help("correct the programmed depth, or give the hole's features in the reference")
+            .with_backtrace(cut.pass.backtrace.clone());
+        self.findings.push(finding);
+    }
+
+    /// Reports a through hole, or a feature of one, that does not break out.
+    fn judge_through(&mut self, feature: Option<&Feature>, surface: Option<Surface>) {
+        let tolerances = self.comparison.tolerances;
+        let own = self.nominal.diameter;
+        let makes =
+            |cut: &&Cut<'_>| match feature {
+                Some(feature) => cut.mismatch(feature, tolerances).is_some(),
+                // A pilot of another diameter doesn't make the hole.
+                None => cut.pass.diameter.zip(own).is_none_or(|(diameter, nominal)| {
+                    !exceeds((diameter - nominal).abs(), tolerances.diameter)
+                }),
+            };
+        let diameter = feature.map(|feature| feature.diameter).or(self.nominal.diameter).unwrap_or(0.0);
+        let mut gaps = Vec::new();
+        let mut reach = |cuts: &[Cut<'_>]| {
+            let depth = |cut: &Cut<'_>| cut.full_depth(diameter).unwrap_or(cut.tip);
+            let deepest = cuts.iter().filter(makes).max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
+            if deepest.full_depth(diameter).is_none() {
+                gaps.push(ShapeGap::FullDepth(deepest.pass.tool));
+            }
+            Some((depth(deepest).max(0.0), deepest.pass.backtrace.clone()))
+        };
+        let sides = [reach(&self.near), reach(&self.far)];
+        self.gaps.extend(gaps);
+        let depth = surface.map_or(self.nominal.depth, |surface| through::thickness(&surface, self.nominal));
+        let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
+        let Some((_, place)) = sides.into_iter().flatten().next() else {
+            feature.into_iter().for_each(|feature| self.report_missing(feature));
+            return;
+        };
+        if exceeds(depth, cut) {
+            let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
+            let message =
+                format!("hole {}{name} does not break out: {cut:.3} mm of {depth:.3} mm are cut", self.id);
+            let finding = Diagnostic::new(&HOLE_NOT_THROUGH, message).with_backtrace(place);
+            self.findings.push(finding.help("drill deeper: the full diameter has to pass the far side"));
+        }
+    }
+}
+
+/// Returns the deepest of some cuts.
+fn deepest<'c>(cuts: impl Iterator<Item = &'c Cut<'c>>) -> Option<Cut<'c>> {
+    cuts.max_by(|a, b| a.tip.total_cmp(&b.tip)).copied()
+}
