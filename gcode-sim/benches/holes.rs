@@ -37,7 +37,7 @@ impl Case {
     }
 
     fn simulate(&self) -> Simulation {
-        simulate(&self.request, &mut NoLibrary, self.reference.surface).expect("there is a program")
+        simulate(&self.request, &mut NoLibrary, self.reference.metal(None)).expect("there is a program")
     }
 
     fn passes(&self, simulation: &Simulation) -> bool {

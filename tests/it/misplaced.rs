@@ -42,6 +42,7 @@ fn nominal(r: f64, y: f64, angles: &[f64]) -> Reference {
     Reference::of_list(HoleList {
         unit: Unit::Mm,
         holes: angles.iter().map(hole).collect(),
+        stock: None,
         assumptions: None,
     })
     .unwrap()

@@ -69,15 +69,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
     unused_machine::warn_unused_machine(&arguments.run.of(&arguments.new), &new_request);
     let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
-    let surface = reference.as_ref().and_then(|reference| reference.surface);
+    let metal = |request: &Request| {
+        reference.as_ref().map(|reference| reference.metal(request.machine.stock)).unwrap_or_default()
+    };
     for request in [&mut old_request, &mut new_request] {
         request.process_limits =
             reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
     }
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
-    let old = Revision::observed(&old_request, &mut old_folders, surface, &mut old_trace)?;
-    let new = Revision::observed(&new_request, &mut new_folders, surface, &mut new_trace)?;
+    let old = Revision::observed(&old_request, &mut old_folders, metal(&old_request), &mut old_trace)?;
+    let new = Revision::observed(&new_request, &mut new_folders, metal(&new_request), &mut new_trace)?;
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let unexecuted = unexecuted(&old, &new);
     let report = ChangesReport::new(
@@ -112,7 +114,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             let verify = |reference: &Reference| {
                 let tolerances = Tolerances::of(reference, None);
                 let mut verdict = revision.simulation.verify(reference, tolerances, &new_request.machine);
-                revision.simulation.add_assumptions(&mut verdict, request, reference.surface, false);
+                let body = reference.body(request.machine.stock);
+                revision.simulation.add_assumptions(&mut verdict, request, body, false);
                 verdict
             };
             reference.as_ref().map(verify)

@@ -6,8 +6,8 @@ use super::library::Folders;
 use super::{UsageError, input, output};
 use crate::report::page::{Document, ObservedProgram, Page};
 use gcode_inspect::verify::Verdict;
+use gcode_part::Metal;
 use gcode_part::Reference;
-use gcode_part::Surface;
 use gcode_review::Revision;
 use gcode_session::{Request, Trace};
 
@@ -15,10 +15,10 @@ use gcode_session::{Request, Trace};
 pub(super) fn simulate_traced(
     request: &Request,
     folders: &mut Folders,
-    surface: Option<Surface>,
+    metal: impl Into<Metal>,
 ) -> Result<(Revision, Trace), UsageError> {
     let mut trace = Trace::default();
-    let revision = Revision::observed(request, folders, surface, &mut trace)?;
+    let revision = Revision::observed(request, folders, metal, &mut trace)?;
     Ok((revision, trace))
 }
 

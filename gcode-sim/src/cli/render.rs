@@ -92,9 +92,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         }
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
-            let surface = reference.as_ref().and_then(|r| r.surface);
+            let stock = request.machine.stock;
+            let metal = reference.as_ref().map(|r| r.metal(stock)).unwrap_or_default();
             request.process_limits = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
-            let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, surface);
+            let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, metal.clone());
             let simulation = progress::of_run(&mut request, simulate)?;
             let view = arguments.view.unwrap_or(View::Top);
             match &reference {
@@ -102,7 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                     let tolerances = Tolerances::of(reference, tolerance);
                     let mut verdict = simulation.verify(reference, tolerances, &request.machine);
                     let is_denied = arguments.denials.denies_assumptions();
-                    simulation.add_assumptions(&mut verdict, &request, surface, is_denied);
+                    simulation.add_assumptions(&mut verdict, &request, reference.body(stock), is_denied);
                     let drawn =
                         top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
                     Drawn {

@@ -149,10 +149,10 @@ fn holes(
     };
     let add_assumptions = |simulation: &Simulation, verdict: &mut Verdict, request: &Request| {
         let is_denied = arguments.denials.denies_assumptions();
-        simulation.add_assumptions(verdict, request, reference.surface, is_denied);
+        simulation.add_assumptions(verdict, request, reference.body(request.machine.stock), is_denied);
     };
     if let Some(path) = &arguments.page {
-        let traced = page::simulate_traced(request, &mut folders, reference.surface)?;
+        let traced = page::simulate_traced(request, &mut folders, reference.metal(request.machine.stock))?;
         let mut verdict = traced.0.simulation.verify(reference, tolerances, &machine);
         add_assumptions(&traced.0.simulation, &mut verdict, request);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
@@ -161,7 +161,9 @@ fn holes(
         output::written("page", path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, reference.surface);
+    let simulate = |request: &Request| {
+        gcode_session::simulate(request, &mut folders, reference.metal(request.machine.stock))
+    };
     let simulation = progress::of_run(request, simulate)?;
     let mut verdict = simulation.verify(reference, tolerances, &machine);
     add_assumptions(&simulation, &mut verdict, request);

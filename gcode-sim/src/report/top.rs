@@ -145,7 +145,7 @@ pub(super) fn round_up(value: f64) -> f64 {
 pub(super) fn outline(surface: Surface) -> Option<f64> {
     match surface {
         Surface::Ellipsoid { a, .. } => Some(a),
-        Surface::Cylinder { .. } => None,
+        Surface::Cylinder { .. } | Surface::Block { .. } | Surface::Rod(_) => None,
     }
 }
 

@@ -222,7 +222,7 @@ fn changed(value: &Value, name: &str, schemas: &[&Json]) -> Vec<(String, Value)>
 }
 
 /// Words of messages about keys that contradict each other, which a schema cannot state.
-const ACROSS: [&str; 32] = [
+const ACROSS: [&str; 37] = [
     "which is not in [[tool]]",
     "names tools of [[tool]], but there are none",
     "every [[tool]] is larger",
@@ -255,6 +255,11 @@ const ACROSS: [&str; 32] = [
     "an eighth of 'probe.search'",
     "round E and F",
     "too steep for a touch along y",
+    "needs the key 'tool.",
+    "at most the length of the tool",
+    "max above min",
+    "to above from",
+    "does not matter on a straight line",
 ];
 
 #[test]

@@ -15,6 +15,7 @@ gcode_lang::finding_kinds! {
     FEATURE_DEPTH = "feature-depth", Error, "a feature of a hole is too deep or too shallow";
     FEATURE_EXTRA = "feature-extra", Error, "a tool cuts wider than the hole";
     FEATURE_MISSING = "feature-missing", Error, "a feature of a hole is missing";
+    FEED_BESIDE_HOLE = "feed-beside-hole", Error, "a feed cuts beside a hole";
     FEED_NO_HOLE = "feed-no-hole", Error, "a feed that makes no hole";
     FEED_NOT_ALONG_TOOL = "feed-not-along-tool", Error, "the feed doesn't run along the tool";
     FEED_WITHOUT_RETRACT = "feed-without-retract", Error, "a feed without retract";
@@ -68,6 +69,7 @@ gcode_lang::finding_kinds! {
     START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";
     TAP_DRILL = "tap-drill", Error, "a thread is as deep as its drilled hole, or deeper";
     TAP_PITCH = "tap-pitch", Error, "feed and speed do not give the pitch of the thread";
+    TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends with the tool in the metal";
     TOOL_SHORT = "tool-short", Warning, "a tool goes deeper than it is long";
     TOOL_UNKNOWN = "tool-unknown", Warning, "a tool that is missing in the tool table";
     TURNS_CLAMPED = "turns-clamped", Error, "the rotary rotates while clamped";

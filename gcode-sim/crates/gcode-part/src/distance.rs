@@ -1,16 +1,8 @@
 //! Exact distance of a point from the part's surface, and the direction of the nearest point.
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::solid::{NearestPoint, block_nearest};
 use super::surface::{Surface, bisect};
-
-/// Distance from a surface, and the normal at the nearest point of the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NearestPoint {
-    /// Distance in mm; negative inside the body.
-    pub distance: f64,
-    /// Outward normal of the surface at the nearest point.
-    pub normal: Unit<Vector3<f64>>,
-}
 
 impl Surface {
     /// Returns the distance of `p` from the surface and the normal at its nearest point.
@@ -22,6 +14,8 @@ impl Surface {
                 let normal = Unit::try_new(out, f64::MIN_POSITIVE).unwrap_or(Vector3::y_axis());
                 NearestPoint { distance: out.norm() - radius, normal }
             }
+            Self::Block { min, max } => block_nearest(&min, &max, p),
+            Self::Rod(rod) => rod.nearest(p),
         }
     }
 

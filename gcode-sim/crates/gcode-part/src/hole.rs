@@ -7,6 +7,7 @@ use serde_json::json;
 use super::feature::Feature;
 
 use super::assumption::Assumption;
+use super::stock::Stock;
 use super::surface::Surface;
 
 /// Block of a program that made a hole.
@@ -80,6 +81,9 @@ pub struct HoleList {
     pub unit: Unit,
     /// The holes, in the order of the drawing or of the program.
     pub holes: Vec<Hole>,
+    /// Solid material of the part, for a reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stock: Option<Stock>,
     /// Values that the run read and nothing in the program set; absent in a reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assumptions: Option<Vec<Assumption>>,

@@ -49,6 +49,7 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, FileError> {
         position: Some(job.tolerance.position),
         depth: Some(job.tolerance.depth),
         surface: Some(Surface::Cylinder { radius: outer }),
+        stock: None,
         process_limits,
         pattern: Some(pattern),
     })

@@ -24,6 +24,7 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
         position: Some(job.tolerance.position),
         depth: Some(job.tolerance.depth),
         surface: Some(surface),
+        stock: None,
         process_limits,
         pattern: None,
     })

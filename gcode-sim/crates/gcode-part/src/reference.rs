@@ -1,10 +1,12 @@
 //! Nominal holes with their tolerances, and the limits of the process.
 use std::sync::Arc;
 
+use super::entry_planes::{EntryPlanes, Metal};
 use super::hole::{Hole, HoleList, Unit};
 use super::pattern::Pattern;
 use super::read;
 use super::spacing::hole_spacing;
+use super::stock::Stock;
 use super::surface::Surface;
 use crate::job::{Clamp, Rotary};
 use crate::reader::FileError;
@@ -20,6 +22,8 @@ pub struct Reference {
     pub depth: Option<f64>,
     /// Surface of the part; `None` for a hole list.
     pub surface: Option<Surface>,
+    /// Solid material of the part, if it is not that inside the surface.
+    pub stock: Option<Stock>,
     /// Limits of the process that the reference specifies.
     pub process_limits: ProcessLimits,
     /// Nominal relation of neighbouring holes; `None` for parts without a pattern.
@@ -32,6 +36,9 @@ impl Reference {
     /// # Errors
     /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
+        if let Some(fault) = list.stock.and_then(|stock| stock.fault()) {
+            return Err(FileError { line: None, message: format!("stock: {fault}") });
+        }
         let holes = read::check_all(list.holes)?;
         let hole_axes = holes.iter().map(|hole| NominalAxis { entry: hole.entry, axis: hole.axis }).collect();
         let hole_spacing = hole_spacing(&holes);
@@ -40,14 +47,26 @@ impl Reference {
             position: None,
             depth: None,
             surface: None,
+            stock: list.stock,
             process_limits: ProcessLimits { hole_axes, hole_spacing, ..ProcessLimits::default() },
             pattern: None,
         })
     }
 
+    /// Returns what is known to be metal; `of_machine` is the stock of the machine file, which that of the reference
+    /// overrides. Without either the body is the part inside its surface; a hole list has none.
+    pub fn metal(&self, of_machine: Option<Stock>) -> Metal {
+        Metal { body: self.body(of_machine), entries: Some(Arc::new(EntryPlanes::of(&self.holes))) }
+    }
+
+    /// Returns the body of [`Self::metal`].
+    pub fn body(&self, of_machine: Option<Stock>) -> Option<Surface> {
+        self.stock.or(of_machine).unwrap_or(Stock::Surface {}).body(self.surface)
+    }
+
     /// Returns the hole list that `reference` writes.
     pub fn list(&self) -> HoleList {
-        HoleList { unit: Unit::Mm, holes: self.holes.clone(), assumptions: None }
+        HoleList { unit: Unit::Mm, holes: self.holes.clone(), stock: self.stock, assumptions: None }
     }
 }
 

@@ -2,6 +2,8 @@
 //! gradients.
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::solid::{Rod, block_face};
+
 /// A convex body; lengths in mm, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
@@ -17,6 +19,15 @@ pub enum Surface {
         /// Radius of the cylinder.
         radius: f64,
     },
+    /// Box with edges along the axes.
+    Block {
+        /// Corner with the least coordinates.
+        min: Point3<f64>,
+        /// Corner with the greatest coordinates.
+        max: Point3<f64>,
+    },
+    /// Cylinder of limited length.
+    Rod(Rod),
 }
 
 impl Surface {
@@ -28,6 +39,8 @@ impl Surface {
                 x * x + y * y + z * z - 1.0
             }
             Self::Cylinder { radius } => (p.y * p.y + p.z * p.z) / (radius * radius) - 1.0,
+            Self::Block { min, max } => block_face(&min, &max, p).0,
+            Self::Rod(rod) => rod.face(p).0,
         }
     }
 
@@ -38,6 +51,8 @@ impl Surface {
                 Vector3::new(2.0 * p.x / (a * a), 2.0 * p.y / (b * b), 2.0 * p.z / (a * a))
             }
             Self::Cylinder { radius } => Vector3::new(0.0, 2.0 * p.y, 2.0 * p.z) / (radius * radius),
+            Self::Block { min, max } => block_face(&min, &max, p).1,
+            Self::Rod(rod) => rod.face(p).1,
         }
     }
 
@@ -81,12 +96,14 @@ impl Surface {
 
     /// Returns true if rotation about this axis leaves the body unchanged, to rounding.
     pub fn is_round(&self, on: &Point3<f64>, about: &Unit<Vector3<f64>>) -> bool {
-        let (own, all) = match *self {
-            Self::Ellipsoid { a, b } => (Vector3::y_axis(), a == b),
-            Self::Cylinder { .. } => (Vector3::x_axis(), false),
+        let (own, centre, all) = match *self {
+            Self::Ellipsoid { a, b } => (Vector3::y_axis(), Point3::origin(), a == b),
+            Self::Cylinder { .. } => (Vector3::x_axis(), Point3::origin(), false),
+            Self::Block { .. } => return false,
+            Self::Rod(rod) => (rod.axis, rod.base, false),
         };
         let along = all || own.cross(about).norm() < 1e-12;
-        along && on.coords.cross(about).norm() < 1e-9
+        along && (on - centre).cross(about).norm() < 1e-9
     }
 
     /// Returns a lower bound of the distance from a straight travel, mm; negative if the bound is not

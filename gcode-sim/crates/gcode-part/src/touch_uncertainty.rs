@@ -77,6 +77,8 @@ impl TouchPlan {
         match self.surface {
             Surface::Ellipsoid { b, .. } => b,
             Surface::Cylinder { radius } => radius,
+            Surface::Block { min, max } => (max - min).norm() / 2.0,
+            Surface::Rod(rod) => rod.length / 2.0,
         }
     }
 

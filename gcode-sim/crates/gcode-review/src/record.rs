@@ -18,7 +18,7 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Axes, Backtrace, CallChain, MAX_AXES, Position};
 use gcode_lang::program::{Library, Program};
 use gcode_lang::source::{Sources, Span};
-use gcode_part::Surface;
+use gcode_part::Metal;
 use gcode_session::{Request, Run, SessionError, Simulation};
 
 /// Steps, holes and final state of one revision.
@@ -117,27 +117,26 @@ pub struct Revision {
 }
 
 impl Revision {
-    /// Runs a program and records its steps; with the surface of the part, motion inside it is a finding.
+    /// Runs a program and records its steps; motion in known metal is a finding.
     pub fn of(
         request: &Request,
         library: &mut impl Library,
-        surface: Option<Surface>,
+        metal: impl Into<Metal>,
     ) -> Result<Self, SessionError> {
-        Self::observed(request, library, surface, &mut ())
+        Self::observed(request, library, metal, &mut ())
     }
 
     /// Runs a program like [`Revision::of`], with an observer of its blocks.
     pub fn observed(
         request: &Request,
         library: &mut impl Library,
-        surface: Option<Surface>,
+        metal: impl Into<Metal>,
         observer: &mut impl Observer,
     ) -> Result<Self, SessionError> {
         let recorder = RefCell::new(Recorder::default());
         let (mut sink, mut both) =
             (SharedRecorder(&recorder), ObserverPair(SharedRecorder(&recorder), observer));
-        let mut simulation =
-            gcode_session::simulate_observed(request, library, surface, &mut sink, &mut both)?;
+        let mut simulation = gcode_session::simulate_observed(request, library, metal, &mut sink, &mut both)?;
         let recorder = recorder.into_inner();
         if recorder.is_truncated {
             let message = format!("more than {MOST_STEPS} moves: later ones are not compared");

@@ -44,7 +44,7 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, EventSink};
 use gcode_lang::program::{Library, Memory};
 use gcode_lang::source::{Bytes, Span};
-use gcode_part::{Flutes, HoleList, ProcessLimits, Reference, Surface};
+use gcode_part::{Flutes, HoleList, Metal, ProcessLimits, Reference, Surface};
 
 /// A program and the conditions of its run.
 #[derive(Clone, Debug)]
@@ -287,17 +287,17 @@ pub struct Simulation {
     pub extracted: HoleExtraction,
 }
 
-/// Runs a program and extracts its holes. With a surface, motion inside the part is detected too, and a probe of the
-/// machine can touch the part.
+/// Runs a program and extracts its holes. Where metal is known, as that of a reference or inside a surface, motion in it
+/// is detected too; a probe of the machine can touch a surface.
 ///
 /// # Errors
 /// [`SessionError`] if the run cannot begin.
 pub fn simulate(
     request: &Request,
     library: &mut impl Library,
-    surface: Option<Surface>,
+    metal: impl Into<Metal>,
 ) -> Result<Simulation, SessionError> {
-    simulate_observed(request, library, surface, &mut (), &mut ())
+    simulate_observed(request, library, metal, &mut (), &mut ())
 }
 
 /// Runs a program like [`simulate`], with a further event sink and an observer that is called before and after every
@@ -308,11 +308,11 @@ pub fn simulate(
 pub fn simulate_observed<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
-    surface: Option<Surface>,
+    metal: impl Into<Metal>,
     sink: &mut S,
     observer: &mut impl Observer,
 ) -> Result<Simulation, SessionError> {
-    let mut extractor = extractor(request, surface);
+    let mut extractor = extractor(request, metal);
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.findings());
@@ -320,9 +320,11 @@ pub fn simulate_observed<S: EventSink>(
 }
 
 /// Returns the extractor of a run's holes.
-fn extractor(request: &Request, surface: Option<Surface>) -> HoleExtractor<'_> {
+fn extractor(request: &Request, metal: impl Into<Metal>) -> HoleExtractor<'_> {
+    let metal = metal.into();
     HoleExtractor::new(&request.machine)
-        .with_surface(surface.or(request.part))
+        .with_metal(Metal { body: metal.body.or(request.part), ..metal })
+        .with_straight_rapids(request.settings.rapids_are_straight)
         .with_process_limits(&request.process_limits)
 }
 

@@ -11,7 +11,7 @@ use crate::report::test_report::{CaseAnswer, CaseReport, FirstFailure};
 use gcode_control::Limits;
 use gcode_inspect::verify::{self, Tolerances};
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_part::NominalPart;
+use gcode_part::{Metal, NominalPart};
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
 use gcode_session::Run;
 
@@ -90,14 +90,14 @@ impl Case {
         }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
         let nominal = reference.as_deref().map(options::read_nominal).transpose()?;
-        let surface = match &nominal {
+        let metal = match &nominal {
             Some(NominalPart::Holes(reference)) => {
                 request.process_limits = reference.process_limits.clone();
-                reference.surface
+                reference.metal(request.machine.stock)
             }
-            Some(NominalPart::Flutes(_)) | None => None,
+            Some(NominalPart::Flutes(_)) | None => Metal::default(),
         };
-        let revision = Revision::of(&request, &mut folders, surface)?;
+        let revision = Revision::of(&request, &mut folders, metal)?;
         if revision.is_cut_off() {
             return Err(cut_off(&revision));
         }

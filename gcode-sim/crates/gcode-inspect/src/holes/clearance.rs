@@ -4,7 +4,7 @@ use nalgebra::Point3;
 use super::HoleExtractor;
 use super::per_block::PerBlock;
 use crate::machine::{AxisMotion, LinkMotion, Pose};
-use gcode_lang::motion::{Backtrace, Event};
+use gcode_lang::motion::{AxisIndex, Backtrace, Event};
 use gcode_lang::units::Deg;
 use gcode_part::{NearestPoint, Surface};
 
@@ -164,7 +164,7 @@ impl HoleExtractor<'_> {
             CurvePoint { t, pose, nearest: surface.nearest(&pose.tip) }
         };
         // A rotation about the surface's own axis keeps the distance.
-        let steps = match self.is_turn_about_part_axis(surface, travel) {
+        let steps = match self.is_turn_about_part_axis(travel) {
             true => 0,
             false => self.machine.chord_count(travel, &self.setup, CHORD_TOLERANCE),
         };
@@ -192,14 +192,20 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns true if a motion only rotates the part about the axis of its own surface.
-    fn is_turn_about_part_axis(&self, surface: &Surface, travel: &AxisMotion<'_>) -> bool {
-        let [link] = self.machine.table.0.as_slice() else { return false };
-        let LinkMotion::Rotary { about, centre } = &link.motion else { return false };
-        let moved = (0..travel.to.0.len()).filter(|axis| travel.from[*axis] != travel.to[*axis]);
+    fn is_turn_about_part_axis(&self, travel: &AxisMotion<'_>) -> bool {
+        let mut moved = (0..travel.to.0.len()).filter(|axis| travel.from[*axis] != travel.to[*axis]);
+        travel.arc.is_none() && moved.next() == self.axis_about_part() && moved.next().is_none()
+    }
+
+    /// Returns the only axis of the table if it rotates the part about the axis of its own surface.
+    pub(super) fn axis_about_part(&self) -> Option<AxisIndex> {
+        let surface = self.surface?;
+        let [link] = self.machine.table.0.as_slice() else { return None };
+        let LinkMotion::Rotary { about, centre } = &link.motion else { return None };
         let part = self.machine.part.frame();
         let (about, centre) =
             (part.rotation.inverse_transform_unit_vector(about), part.inverse_transform_point(centre));
-        travel.arc.is_none() && moved.eq([link.axis]) && surface.is_round(&centre, &about)
+        surface.is_round(&centre, &about).then_some(link.axis)
     }
 
     /// Returns the distance from the edge of a flat end to the surface, on the side that is inclined towards it; `None`
@@ -261,7 +267,7 @@ mod tests {
     fn machine_for(surface: Surface) -> Machine {
         let about = match surface {
             Surface::Ellipsoid { .. } => Vector3::y_axis(),
-            Surface::Cylinder { .. } => Vector3::x_axis(),
+            _ => Vector3::x_axis(),
         };
         Machine {
             head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0),

@@ -1,8 +1,10 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
 mod arc_run;
+mod axis_box;
 mod clamping;
 mod clearance;
 mod cutting;
+mod entries;
 #[cfg(test)]
 pub(crate) mod event_script;
 mod group;
@@ -12,6 +14,7 @@ mod line_findings;
 mod machine_requests;
 mod milled;
 pub(crate) mod per_block;
+mod rapid_paths;
 mod rapids;
 pub(crate) mod spindle;
 mod strokes;
@@ -27,26 +30,30 @@ pub use group::{DrilledHole, EarlierPass, MilledCut, PassCut, ToolPass};
 pub(crate) use group::{MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
+pub(crate) use rapid_paths::UnsearchedRapids;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
+use self::axis_box::SearchBudget;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
+use self::entries::CutEntries;
 use self::line::{CuttingLine, ToolExit};
 use self::milled::{Engagement, Path};
 use self::per_block::Findings;
 use self::rapids::TOUCH_DEPTH;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, Setup};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
-    Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection, StopKind,
+    Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
+    StopKind,
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
-use gcode_part::{HoleList, ProcessLimits, Surface, Unit};
+use gcode_part::{HoleList, Metal, ProcessLimits, Surface, Unit};
 
 /// Largest number of passes that are kept: an endless loop must not fill the memory.
 const MAX_PASSES: usize = 200_000;
@@ -70,6 +77,10 @@ pub struct HoleExtraction {
     pub(crate) assumed_axes: u8,
     /// Limits with which the motion was compared.
     pub(crate) process_limits: ProcessLimits,
+    /// The stock or the surface is known, and all motion was compared with it.
+    pub(crate) is_metal_known: bool,
+    /// Rapids whose paths are not searched to the end; `None` if there are none.
+    pub(crate) unsearched_rapids: Option<UnsearchedRapids>,
 }
 
 /// Sink for the events of a run that extracts the holes.
@@ -77,6 +88,9 @@ pub struct HoleExtraction {
 pub struct HoleExtractor<'m> {
     machine: &'m Machine,
     surface: Option<Surface>,
+    /// Nominal holes with their cuts, and the metal round them; `None` without a reference.
+    entries: Option<CutEntries>,
+    rapid_path: RapidPath,
     axis_position: Position,
     setup: Setup,
     cutting_state: CuttingState,
@@ -91,6 +105,8 @@ pub struct HoleExtractor<'m> {
     /// True once the tool has been outside the part: its position before that is unknown.
     has_been_outside: bool,
     current_line: Option<Box<CuttingLine>>,
+    /// Block of the last motion, if metal is known.
+    last_block: Option<Backtrace>,
     /// Kind of the last motion, and its block.
     last_motion: Option<(MotionKind, Span)>,
     strokes: Strokes,
@@ -102,6 +118,9 @@ pub struct HoleExtractor<'m> {
     length_mismatches: Vec<LengthMismatch>,
     /// Number of probing moves.
     probe_count: u64,
+    search_budget: SearchBudget,
+    /// Rapids whose paths are not searched to the end; `None` if there are none.
+    unsearched_rapids: Option<UnsearchedRapids>,
 }
 
 /// Kind of a motion.
@@ -121,6 +140,8 @@ impl<'m> HoleExtractor<'m> {
         Self {
             machine,
             surface: None,
+            entries: None,
+            rapid_path: machine.rapid,
             axis_position,
             setup,
             cutting_state: CuttingState::default(),
@@ -131,6 +152,7 @@ impl<'m> HoleExtractor<'m> {
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
             has_been_outside: false,
             current_line: None,
+            last_block: None,
             last_motion: None,
             strokes: Strokes::new(MAX_PASSES),
             engagement: Engagement::default(),
@@ -140,6 +162,8 @@ impl<'m> HoleExtractor<'m> {
             cut_conditions: CutConditionsByBlock::default(),
             length_mismatches: Vec::new(),
             probe_count: 0,
+            search_budget: SearchBudget::default(),
+            unsearched_rapids: None,
         }
     }
 
@@ -147,6 +171,23 @@ impl<'m> HoleExtractor<'m> {
     #[must_use]
     pub fn with_surface(mut self, surface: Option<Surface>) -> Self {
         self.surface = surface;
+        self
+    }
+
+    /// Sets what is known to be metal; motion in it and near it is then checked.
+    #[must_use]
+    pub fn with_metal(mut self, metal: Metal) -> Self {
+        self.surface = metal.body;
+        self.entries = metal.entries.map(CutEntries::new);
+        self
+    }
+
+    /// Takes every rapid as a straight line (LRP).
+    #[must_use]
+    pub fn with_straight_rapids(mut self, are_straight: bool) -> Self {
+        if are_straight {
+            self.rapid_path = RapidPath::Straight;
+        }
         self
     }
 
@@ -160,6 +201,7 @@ impl<'m> HoleExtractor<'m> {
 
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
+        self.end_in_metal();
         self.end_line(false);
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
@@ -184,6 +226,8 @@ impl<'m> HoleExtractor<'m> {
             unknown_rapids: self.positions.finish(self.machine),
             assumed_axes,
             process_limits: self.process_limits,
+            is_metal_known: self.surface.is_some(),
+            unsearched_rapids: self.unsearched_rapids,
         }
     }
 
@@ -197,6 +241,9 @@ impl<'m> HoleExtractor<'m> {
 
     fn motion(&mut self, event: &Event<'_>, kind: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.axis_position;
+        if self.surface.is_some() || self.entries.is_some() {
+            self.last_block = Some(event.backtrace());
+        }
         self.check_idle_axes(event, &from, to);
         self.check_clamp_released(event, &from, to);
         let last_motion = self.last_motion.replace((kind, event.block));
@@ -223,11 +270,15 @@ impl<'m> HoleExtractor<'m> {
         }
         if is_rotating || arc.is_some() {
             self.end_line(kind == MotionKind::Feed);
-            self.check_curved(event, &travel, kind);
-            if kind == MotionKind::Feed {
-                let arc = self.part_arc(&travel, &before.tip);
-                self.engagement.add_unknown_axes(was.union(is));
-                self.engage(event, &before.tip, Path::Curved(arc));
+            match kind {
+                MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
+                MotionKind::Feed => {
+                    self.check_curved(event, &travel, kind);
+                    let arc = self.part_arc(&travel, &before.tip);
+                    self.engagement.add_unknown_axes(was.union(is));
+                    self.engage(event, &before.tip, Path::Curved(arc));
+                }
+                MotionKind::Probe => {}
             }
             self.update_outside();
             return;
@@ -237,8 +288,13 @@ impl<'m> HoleExtractor<'m> {
         }
         let free_from = self.update_line(event, kind, before.tip);
         match (kind, free_from) {
-            (MotionKind::Rapid, Some(start)) => self.check_rapid(event, &start, &self.pose.tip.clone()),
-            (MotionKind::Feed, Some(start)) => self.start_line(event, start, last_motion),
+            (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
+            (MotionKind::Feed, start) => {
+                self.follow_feed_at_holes(event, &[before.tip, self.pose.tip]);
+                if let Some(start) = start {
+                    self.start_line(event, start, last_motion);
+                }
+            }
             _ => {}
         }
         match kind {
@@ -272,6 +328,10 @@ impl<'m> HoleExtractor<'m> {
         }
         match line.exit_after(&from, &tip) {
             ToolExit::OnLine => {
+                // Beyond the start of the feed the tool moves freely.
+                let (before, after) = (line.depth_of(&from), line.depth_of(&tip));
+                let is_beyond = kind == MotionKind::Rapid && after < 0.0 && after < before;
+                let free_from = is_beyond.then_some(if before > 0.0 { line.start } else { from });
                 let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {
@@ -283,7 +343,7 @@ impl<'m> HoleExtractor<'m> {
                         line.is_cycle |= event.block == line.first_block;
                         let (again, uncut) = line.rapid_to(&tip);
                         if uncut {
-                            self.report_rapid_beyond_cut(event, &line);
+                            self.report_rapid_beyond_cut(event, &line, &from);
                         }
                         again
                     }
@@ -292,7 +352,7 @@ impl<'m> HoleExtractor<'m> {
                     self.strokes.push(pass, self.cut_kind(&line, false));
                 }
                 self.current_line = Some(line);
-                None
+                free_from
             }
             exit @ (ToolExit::AlongLine | ToolExit::Sideways { .. }) => {
                 let is_along = exit == ToolExit::AlongLine;
@@ -416,6 +476,6 @@ impl HoleExtraction {
     /// Returns the holes as a list; `locate` returns the program and the line of a block.
     pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
         let holes = self.holes.iter().map(|hole| hole.hole(&locate)).collect();
-        HoleList { unit: Unit::Mm, holes, assumptions: None }
+        HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None }
     }
 }

@@ -1,9 +1,9 @@
 //! Motion that must not cut and motion that makes no hole: rapids through the part or beyond a cut, curved paths.
 use nalgebra::Point3;
 
-use super::line::CuttingLine;
+use super::line::{CuttingLine, ToolExit};
 use super::{HoleExtractor, MotionKind};
-use crate::findings::{FEED_NO_HOLE, RAPID_BEYOND_CUT, RAPID_INTO_PART};
+use crate::findings::{FEED_NO_HOLE, RAPID_BEYOND_CUT, RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
 use crate::machine::AxisMotion;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Event;
@@ -13,13 +13,18 @@ use gcode_part::Surface;
 pub(super) const TOUCH_DEPTH: f64 = 0.01;
 
 /// Cosine of the largest angle of a plunge to the tool's axis: 6°.
-const PLUNGE_COSINE: f64 = 0.995;
+pub(super) const PLUNGE_COSINE: f64 = 0.995;
 
 impl HoleExtractor<'_> {
     /// Reports a rapid that returns along the line deeper than it was cut.
-    pub(super) fn report_rapid_beyond_cut(&mut self, event: &Event<'_>, line: &CuttingLine) {
-        let depth = self.surface.map(|surface| surface.depth(&line.bottom()));
-        if depth.is_some_and(|depth| depth <= TOUCH_DEPTH) {
+    pub(super) fn report_rapid_beyond_cut(
+        &mut self,
+        event: &Event<'_>,
+        line: &CuttingLine,
+        from: &Point3<f64>,
+    ) {
+        let cuts = self.cuts_known_metal(from, &line.bottom());
+        if cuts == Some(false) {
             return;
         }
         self.findings.add(&RAPID_BEYOND_CUT, &event.backtrace(), 0, |kind| {
@@ -28,7 +33,7 @@ impl HoleExtractor<'_> {
                 line.cut_depth()
             );
             Diagnostic::new(kind, message)
-                .with_severity(error_if(depth.is_some()))
+                .with_severity(error_if(cuts.is_some()))
                 .help("end the rapid above the depth already drilled")
         });
     }
@@ -52,18 +57,21 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Checks a rapid that is straight on the part and on no current line.
-    pub(super) fn check_rapid(&mut self, event: &Event<'_>, from: &Point3<f64>, to: &Point3<f64>) {
-        let Some(surface) = self.surface else { return };
+    /// Checks a rapid that is straight on the part and on no current line; returns true if it cuts.
+    pub(super) fn check_rapid(&mut self, event: &Event<'_>, from: &Point3<f64>, to: &Point3<f64>) -> bool {
+        let Some(surface) = self.surface else { return self.check_rapid_at_holes(event, from, to) };
         if !self.has_been_outside {
             self.check_first_rapid(event, &surface, from, to);
-            return;
+            return false;
         }
         let deepest = surface.deepest_between(from, to);
         let depth = surface.depth(&deepest);
         if depth <= TOUCH_DEPTH {
             self.record_close_rapid(event, &surface, from, to);
-            return;
+            return false;
+        }
+        if self.is_in_cut_hole(&surface, (from, to), &deepest) {
+            return false;
         }
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
             let point = format_point(&deepest);
@@ -71,6 +79,7 @@ impl HoleExtractor<'_> {
             Diagnostic::new(kind, message)
                 .help("move round the part at a safe height; only a feed may enter it")
         });
+        true
     }
 
     /// Checks the end of a rapid before the tool has been outside the part. Its start is unknown; axes that have not
@@ -114,16 +123,22 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Checks a motion that is curved on the part: a rapid must stay outside, a feed makes no hole.
-    pub(super) fn check_curved(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, kind: MotionKind) {
-        if kind == MotionKind::Probe {
-            return;
-        }
+    /// Checks a motion that is curved on the part: a rapid must stay outside, a feed makes no hole. Returns true if it is
+    /// in the part.
+    pub(super) fn check_curved(
+        &mut self,
+        event: &Event<'_>,
+        travel: &AxisMotion<'_>,
+        kind: MotionKind,
+    ) -> bool {
         let depth = match self.surface {
             Some(surface) if self.has_been_outside => self.max_depth_along(&surface, travel),
             _ => f64::NEG_INFINITY,
         };
         let is_rapid = kind == MotionKind::Rapid;
+        if self.follow_curve_at_holes(event, travel, is_rapid) {
+            return true;
+        }
         let straight = "drill along a straight line, or mill full circles, with the table stationary";
         let (findings, kind, message, help) = match self.surface {
             _ if depth > 2.0 * TOUCH_DEPTH && is_rapid => (
@@ -140,16 +155,35 @@ impl HoleExtractor<'_> {
                 if self.has_been_outside {
                     self.record_close_turn(event, &surface, travel);
                 }
-                return;
+                return false;
             }
             None => {
                 if !is_rapid {
                     self.engagement.uncounted.add_curved(event.backtrace());
                 }
-                return;
+                return false;
             }
         };
         findings.add(kind, &event.backtrace(), 0, |kind| Diagnostic::new(kind, message).help(help));
+        self.surface.is_some()
+    }
+
+    /// Reports a run that ends with the tool in the metal; the line on which it stands makes its hole.
+    pub(super) fn end_in_metal(&mut self) {
+        let tip = self.pose.tip;
+        let is_known =
+            self.positions.is_known(self.machine) && (self.has_been_outside || self.surface.is_none());
+        let depth = self.known_depth(&tip).filter(|depth| is_known && TOUCH_DEPTH < *depth);
+        let Some((depth, backtrace)) = depth.zip(self.last_block.take()) else { return };
+        let level = self.level_at(&tip);
+        self.findings.add(&TOOL_LEFT_IN_HOLE, &backtrace, 0, |kind| {
+            let point = format_point(&tip);
+            let message = format!("the run ends with the tool {depth:.3} mm below {level}, at {point}");
+            Diagnostic::new(kind, message).help("retract above the surface before the end of the program")
+        });
+        if let Some(line) = self.current_line.take() {
+            self.report_line(line, ToolExit::OnLine, false);
+        }
     }
 
     /// Returns the largest depth of a curved path below the surface, mm; negative outside. Coarse chords come first: most
@@ -181,12 +215,12 @@ impl HoleExtractor<'_> {
 }
 
 /// Returns the severity of a fault that is certain, or only probable.
-fn error_if(is_certain: bool) -> Severity {
+pub(super) fn error_if(is_certain: bool) -> Severity {
     if is_certain { Severity::Error } else { Severity::Warning }
 }
 
 /// Formats a point, rounded; −0 becomes 0.
-fn format_point(p: &Point3<f64>) -> String {
+pub(super) fn format_point(p: &Point3<f64>) -> String {
     let [x, y, z] = [p.x, p.y, p.z].map(|v| (v * 1000.0).round() / 1000.0 + 0.0);
     format!("x {x:.3} y {y:.3} z {z:.3} on the part")
 }

@@ -127,9 +127,10 @@ rapid-into-part
 rapids round the part
 rapid Y150; rapid X150; rapid B90
 
-a rapid ends below the surface before the feed
+a rapid ends below the surface before the feed, and another leads out there
 rapid Y150; rapid Y99.5; feed Y85; rapid Y150
 0 99.5 0, 0 1 0, 14.5
+rapid-into-part
 rapid-into-part
 
 a retract along the hole is no rapid through the part
@@ -183,7 +184,7 @@ fn an_endless_loop_over_one_hole_ends_at_the_limit_of_passes() {
 /// The countersink is larger, but too shallow to make the hole.
 #[test]
 fn the_largest_deep_tool_finishes_the_hole() {
-    let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter), ..Tool::default() };
+    let tool = |number, diameter| Tool { number, diameter: Some(diameter), ..Tool::default() };
     let machine = Machine { tools: vec![tool(1, 6.0), tool(2, 5.9), tool(3, 20.0)], ..Machine::default() };
     let steps =
         "tool 2; rapid Z2; feed Z-15; rapid Z2; tool 1; feed Z-14; rapid Z2; tool 3; feed Z-1; rapid Z2";

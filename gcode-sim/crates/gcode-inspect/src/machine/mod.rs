@@ -10,7 +10,9 @@ mod inverse;
 mod path;
 mod probe;
 mod random;
+mod rapid;
 mod sources;
+mod tool_body;
 mod tool_shape;
 mod touch;
 mod wheel;
@@ -24,7 +26,10 @@ pub use head::{Head, HeadKind, HeadMessage};
 pub use path::AxisMotion;
 pub use probe::Probe;
 pub use random::RandomStream;
+pub use rapid::RapidPath;
+pub(crate) use rapid::arrivals;
 pub use sources::{ErrorSource, Quantity};
+pub(crate) use tool_body::ToolCylinder;
 pub(crate) use tool_shape::PointShape;
 pub use tool_shape::ToolKind;
 pub use wheel::Wheel;
@@ -32,6 +37,7 @@ pub use wheel::Wheel;
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex, Position};
 use gcode_lang::units::Deg;
+use gcode_part::Stock;
 
 /// Rotation and translation of a point; lengths in mm.
 pub type Frame = IsometryMatrix3<f64>;
@@ -65,6 +71,10 @@ pub struct Machine {
     pub part: Placement,
     /// Touch probe.
     pub probe: Option<Probe>,
+    /// Path of a rapid of several axes.
+    pub rapid: RapidPath,
+    /// Solid material of the part; `None` for that of the reference.
+    pub stock: Option<Stock>,
 }
 
 /// A tool of the machine's tool table.
@@ -77,6 +87,14 @@ pub struct Tool {
     pub length: Option<f64>,
     /// Diameter, mm; `None` if unknown.
     pub diameter: Option<f64>,
+    /// Distance from the tip to the shank, mm; `None` without a shank.
+    pub flute_length: Option<f64>,
+    /// Diameter of the shank, mm.
+    pub shank_diameter: Option<f64>,
+    /// Diameter of the holder, mm; `None` if unknown.
+    pub holder_diameter: Option<f64>,
+    /// Length of the holder below the gauge line, mm.
+    pub holder_length: Option<f64>,
     /// Kind; `None` if unknown.
     pub kind: Option<ToolKind>,
     /// Full angle of the point, 180° of a flat end; `None` if unknown.
@@ -144,6 +162,8 @@ impl Default for Machine {
             start: Vec::new(),
             part: Placement::default(),
             probe: None,
+            rapid: RapidPath::default(),
+            stock: None,
         }
     }
 }

@@ -128,7 +128,7 @@ impl Machine {
 
     /// Returns the tip's distance from the farthest centre of the table, or the head's own reach if that is
     /// longer.
-    fn max_lever(&self, at: &Position, setup: &Setup) -> f64 {
+    pub(crate) fn max_lever(&self, at: &Position, setup: &Setup) -> f64 {
         let tip = self.tool_pose(at, setup).tip;
         let arm = |centre: &Point3<f64>| (tip - centre).norm();
         self.table.rotation_centres().map(arm).fold(self.head.pivot + self.tool_length(setup), f64::max)

@@ -84,8 +84,8 @@ pub fn verify(
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
-    if let Some(surface) = &reference.surface {
-        comparison.leave_out_air_feeds(surface);
+    if let Some(body) = reference.body(machine.stock) {
+        comparison.leave_out_air_feeds(&body);
     }
     let rows = pattern.and_then(|pattern| PatternRows::of(&comparison, pattern));
     let mirror_image = MirrorImage::of(&comparison);
@@ -105,6 +105,10 @@ pub fn verify(
     let mut verdict = verdict::verdict(comparison, &rounding, findings.into_list(), locate);
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
+    }
+    if let Some(motion) = not_checked::unchecked_motion(extraction) {
+        verdict.summary.push_str("; not checked: ");
+        verdict.summary.push_str(motion);
     }
     verdict.not_checked = not_checked::lines(&inspection, locate);
     verdict

@@ -10,6 +10,18 @@ use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
 use gcode_part::{Reference, ToolProcess};
 
+/// Motion that no check covers if neither stock nor surface is known, for the first line of a verdict.
+const MOTION: &str = "motion beside the holes (no stock)";
+
+/// Motion whose search was given up, for the first line of a verdict.
+const UNSEARCHED: &str = "rapids whose axes may reach too many positions";
+
+/// Returns the motion that no check covers, for the first line of a verdict.
+pub(super) fn unchecked_motion(extraction: &HoleExtraction) -> Option<&'static str> {
+    let unsearched = extraction.unsearched_rapids.as_ref().map(|_| UNSEARCHED);
+    if extraction.is_metal_known { unsearched } else { Some(MOTION) }
+}
+
 /// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
 pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
     let HoleInspection { comparison, extraction, reference, machine, .. } = inspection;
@@ -27,12 +39,21 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
             machine.axes.names(extraction.assumed_axes)
         ));
     }
-    if reference.surface.is_none() {
-        all.push(
-            "rapid motion through the part: the reference has no surface; a job file has one".to_owned(),
-        );
+    if !extraction.is_metal_known {
+        all.push(format!(
+            "{MOTION}: give [stock] in the reference or the machine file; the metal is known only round the \
+             nominal holes, to 1 mm from their walls"
+        ));
     } else if let Some(unknown) = &extraction.unknown_rapids {
         all.push(unknown.describe(locate(unknown.backtrace.block)));
+    }
+    if let Some(unsearched) = &extraction.unsearched_rapids {
+        let (program, line) = locate(unsearched.backtrace.block);
+        let count = unsearched.count;
+        let plural = if count == 1 { "" } else { "s" };
+        all.push(format!(
+            "{UNSEARCHED} ({count} rapid{plural}, first {program} line {line}): give [rapid] in the machine file"
+        ));
     }
     all
 }

@@ -230,6 +230,8 @@ with_defaults! {
         pub main_program_cycles: Option<u32> = None,
         /// Codes and addresses that call programs.
         pub code_calls: CodeCalls = Default::default(),
+        /// 1401#1: a rapid is a straight line; otherwise each axis moves at its own rate.
+        pub rapids_are_straight: bool = false,
         /// 1420: rapid rate of the linear axes.
         pub rapid: MmPerMin = MmPerMin(24_000.0),
         /// 1420: rapid rate of the rotary axes, degrees per minute.

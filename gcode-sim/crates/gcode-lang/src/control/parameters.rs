@@ -78,7 +78,7 @@ const ROWS: &[ParameterRow] = &[
     length_row(1243, ParameterAccess::PerAxis(|s, axis| s.reference_positions[2][axis], Some(|s, axis, v| { s.reference_positions[2][axis] = v; Some(()) }))),
     length_row(1320, ParameterAccess::PerAxis(|s, axis| s.stroke_limits.and_then(|l| l.max[axis]).unwrap_or(NO_STROKE_LIMIT), Some(|s, axis, v| { s.stroke_limits.get_or_insert_default().max[axis] = Some(v); Some(()) }))),
     length_row(1321, ParameterAccess::PerAxis(|s, axis| s.stroke_limits.and_then(|l| l.min[axis]).unwrap_or(-NO_STROKE_LIMIT), Some(|s, axis, v| { s.stroke_limits.get_or_insert_default().min[axis] = Some(v); Some(()) }))),
-    bit_row(1401, 1, ParameterAccess::Fixed(|_| 1.0)),
+    bit_row(1401, 1, ParameterAccess::Fixed(|s| f64::from(s.rapids_are_straight))),
     number_row(1420, ParameterAccess::PerAxis(|s, axis| if s.axes.is_rotary(axis) { s.rapid_rotary } else { s.rapid.0 }, None)),
     bit_row(3401, 0, ParameterAccess::Key("DPI", |s| f64::from(s.uses_calculator_input))),
     bit_row(3403, 6, ParameterAccess::Key("AD2", |s| f64::from(s.alarms_on_repeated_address))),

@@ -196,6 +196,7 @@ const DOCUMENTED: &[SettingRow] = &[
     number!("SKIP", "the skip signal comes after this fraction of a G31 path", 0.0, 1.0, "0 to 1", |s, v| s.skip_signal = Some(v)),
     switch!("SKIP-ALARM", "a G31 that ends without its signal raises an alarm", missed_skip_alarms),
     whole!("CYCLES", "the main program's M99 of this number ends the run", 0, 999_999_999, |s, v| s.main_program_cycles = u32::try_from(v).ok()),
+    switch!("LRP", "1401#1: a rapid is a straight line; without it `verify` takes every path that the axes can take", rapids_are_straight),
     number!("RAPID", "1420: rapid rate of linear axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
     number!("RAPID-ROTARY", "1420: rapid rate of rotary axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
     number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),

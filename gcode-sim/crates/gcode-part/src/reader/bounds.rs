@@ -284,6 +284,7 @@ ranges! {
     StylusLength: Any f64, 0.0, 1000.0, "mm";
     ProbeDelay: Any f64, 0.0, 10.0, "seconds";
     PivotLength: Any f64, 0.0, 100_000.0, "mm";
+    RapidRate: Any f64, 0.01, 1_000_000.0, "(mm/min and degrees/min)";
     WorkOffsetValue: Any f64, -100_000.0, 100_000.0, "(mm and degrees)";
     LengthError: Any f64, -100.0, 100.0, "mm";
     LengthSpread: Any f64, 0.0, 100.0, "mm";

@@ -8,6 +8,7 @@ mod link;
 mod offsets;
 mod part;
 mod probe;
+mod rapid;
 mod sections;
 mod spread;
 mod start;
@@ -23,6 +24,7 @@ use nalgebra::Vector3;
 use offsets::{FileOffsets, work_offsets};
 use part::FilePart;
 use probe::FileProbe;
+use rapid::FileRapid;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use start::{FileStart, start_positions};
@@ -32,6 +34,7 @@ use wheel::FileWheel;
 use super::{Chain, Head, HeadKind, Machine, Tool};
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex};
+use gcode_part::Stock;
 use gcode_part::reader::bounds::{Bounded, KeyRange};
 use gcode_part::reader::{FileError, FileKey, FixedArray, Items, Located, Optional, Reader, Section, names};
 
@@ -67,6 +70,12 @@ pub struct File {
     /// A touch probe.
     #[serde(default, with = "Optional::<Section<FileProbe>>")]
     probe: Option<FileProbe>,
+    /// The path of a rapid of several axes; without it any axis may arrive first.
+    #[serde(default, with = "Optional::<Section<FileRapid>>")]
+    rapid: Option<FileRapid>,
+    /// The solid material of the part, for a reference without it.
+    #[serde(default, with = "Optional::<Section<Stock>>")]
+    stock: Option<Stock>,
     /// The errors of the machine.
     #[serde(default, with = "Optional::<Section<FileErrors>>")]
     errors: Option<FileErrors>,
@@ -128,7 +137,12 @@ impl Machine {
             }
             tools.push(checked);
         }
+        if let Some(fault) = file.stock.and_then(|stock| stock.fault()) {
+            return Err(reader.error_at("stock", format!("key 'stock': {fault}")));
+        }
         let mut machine = Self {
+            rapid: file.rapid.unwrap_or_default().check(&reader, &axes)?,
+            stock: file.stock,
             dialect: match &control.dialect {
                 Some(dialect) => reader.choice("control.dialect", dialect, &Dialect::ALL)?,
                 None => Dialect::default(),
@@ -270,7 +284,7 @@ tilt = [0.0, 0.0, 1.0]
     fn an_unusable_key_is_named_with_its_line() {
         let cases = r#"
 tables = []
-=> line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, start, part, probe, errors
+=> line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, start, part, probe, rapid, stock, errors
 
 [[table]]
 letter = "B"

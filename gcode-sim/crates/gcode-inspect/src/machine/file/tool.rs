@@ -1,4 +1,4 @@
-//! `[[tool]]`: a tool's number, length and diameter.
+//! `[[tool]]`: a tool's number, length and body.
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -22,6 +22,14 @@ pub(super) struct FileTool {
     kind: Option<ToolKind>,
     /// Full angle of its point, 180 of a flat end, degrees [default: 90 of a spot-drill or countersink].
     point_angle: Option<Bounded<PointAngle>>,
+    /// From the tip to the shank, mm; needs `shank_diameter`.
+    flute_length: Option<Bounded<GaugeLength>>,
+    /// Diameter of the shank, above the flutes, mm; needs `flute_length`.
+    shank_diameter: Option<Bounded<ToolDiameter>>,
+    /// Diameter of the holder, mm; needs `holder_length`.
+    holder_diameter: Option<Bounded<ToolDiameter>>,
+    /// Length of the holder below the gauge line, mm; needs `holder_diameter`.
+    holder_length: Option<Bounded<GaugeLength>>,
 }
 
 /// Names of the kinds of tools.
@@ -42,12 +50,47 @@ impl FileTool {
                            with its kind, or remove the length";
             return Err(reader.error(length, message));
         }
+        let Self { length, diameter, flute_length, shank_diameter, holder_diameter, holder_length, .. } =
+            self;
+        self.check_pair(
+            reader,
+            [("flute_length", flute_length.is_some()), ("shank_diameter", shank_diameter.is_some())],
+        )?;
+        self.check_pair(
+            reader,
+            [("holder_diameter", holder_diameter.is_some()), ("holder_length", holder_length.is_some())],
+        )?;
+        if let (Some(holder), Some(length)) = (holder_length, length)
+            && length.get() < holder.get()
+        {
+            let message = format!(
+                "key 'tool.holder_length' is {}: at most the length of the tool, {} mm",
+                holder.get(),
+                length.get()
+            );
+            return Err(reader.error(holder, message));
+        }
         Ok(Tool {
             number: self.number.get() as u32,
-            length: self.length.as_ref().map(Bounded::get),
-            diameter: self.diameter.as_ref().map(Bounded::get),
+            length: length.as_ref().map(Bounded::get),
+            diameter: diameter.as_ref().map(Bounded::get),
+            flute_length: flute_length.as_ref().map(Bounded::get),
+            shank_diameter: shank_diameter.as_ref().map(Bounded::get),
+            holder_diameter: holder_diameter.as_ref().map(Bounded::get),
+            holder_length: holder_length.as_ref().map(Bounded::get),
             kind: self.kind,
             point_angle: self.point_angle.as_ref().map(Bounded::get).map(Deg),
         })
+    }
+
+    /// Refuses one key of a pair without the other.
+    fn check_pair(&self, reader: &Reader<'_>, pair: [(&str, bool); 2]) -> Result<(), FileError> {
+        match pair {
+            [(given, true), (missing, false)] | [(missing, false), (given, true)] => {
+                let message = format!("key 'tool.{given}' needs the key 'tool.{missing}'");
+                Err(reader.error(&self.number, message))
+            }
+            _ => Ok(()),
+        }
     }
 }

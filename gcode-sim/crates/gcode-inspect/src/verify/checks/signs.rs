@@ -17,6 +17,8 @@ fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
     let about = match reference.surface? {
         Surface::Ellipsoid { .. } => Vector3::y_axis(),
         Surface::Cylinder { .. } => Vector3::x_axis(),
+        Surface::Rod(rod) => rod.axis,
+        Surface::Block { .. } => return None,
     };
     let (letter, job) = (rotary.letter, f64::from(rotary.sign));
     let sign = sign_about(machine, letter, &about).filter(|sign| *sign != job)?;

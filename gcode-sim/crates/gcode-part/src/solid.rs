@@ -1,0 +1,152 @@
+//! Convex bodies with flat faces: the distance of their farthest face, and the exact distance.
+use nalgebra::{Point3, Unit, Vector3};
+
+/// Distance from a surface, and the normal at the nearest point of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestPoint {
+    /// Distance in mm; negative inside the body.
+    pub distance: f64,
+    /// Outward normal of the surface at the nearest point.
+    pub normal: Unit<Vector3<f64>>,
+}
+
+/// Returns the largest distance of `p` from the faces of a box, and the outward normal of that face.
+pub(super) fn block_face(min: &Point3<f64>, max: &Point3<f64>, p: &Point3<f64>) -> (f64, Vector3<f64>) {
+    let faces = (0..3).flat_map(|i| [(p[i] - max[i], i, 1.0), (min[i] - p[i], i, -1.0)]);
+    let (value, axis, sign) = faces.fold((f64::NEG_INFINITY, 0, 1.0), |a, b| if a.0 < b.0 { b } else { a });
+    let mut normal = Vector3::zeros();
+    normal[axis] = sign;
+    (value, normal)
+}
+
+/// Returns the distance of `p` from a box.
+pub(super) fn block_nearest(min: &Point3<f64>, max: &Point3<f64>, p: &Point3<f64>) -> NearestPoint {
+    let beyond = p - p.sup(min).inf(max);
+    nearest(beyond, || block_face(min, max, p))
+}
+
+/// Cylinder of limited length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rod {
+    /// Centre of the end face from which the axis points into the body.
+    pub base: Point3<f64>,
+    /// Direction of its axis.
+    pub axis: Unit<Vector3<f64>>,
+    /// Length along the axis, mm.
+    pub length: f64,
+    /// Radius, mm.
+    pub radius: f64,
+}
+
+impl Rod {
+    /// Returns the height above the base, the direction away from the axis and the distance from it.
+    fn cylindrical(&self, p: &Point3<f64>) -> (f64, Vector3<f64>, f64) {
+        let from_base = p - self.base;
+        let height = from_base.dot(&self.axis);
+        let away = from_base - self.axis.into_inner() * height;
+        match Unit::try_new_and_get(away, f64::MIN_POSITIVE) {
+            Some((away, distance)) => (height, away.into_inner(), distance),
+            None => (height, self.perpendicular(), 0.0),
+        }
+    }
+
+    fn perpendicular(&self) -> Vector3<f64> {
+        let least = self.axis.iamin();
+        let mut beside = Vector3::zeros();
+        beside[least] = 1.0;
+        self.axis.cross(&beside).normalize()
+    }
+
+    /// Returns the largest distance of `p` from mantle and end faces, and the outward normal there.
+    pub(super) fn face(&self, p: &Point3<f64>) -> (f64, Vector3<f64>) {
+        let (height, away, distance) = self.cylindrical(p);
+        let axis = self.axis.into_inner();
+        let end = if 2.0 * height < self.length { (-height, -axis) } else { (height - self.length, axis) };
+        if end.0 < distance - self.radius { (distance - self.radius, away) } else { end }
+    }
+
+    /// Returns the distance of `p` from the cylinder.
+    pub fn nearest(&self, p: &Point3<f64>) -> NearestPoint {
+        let (height, away, distance) = self.cylindrical(p);
+        let axis = self.axis.into_inner();
+        let beyond =
+            axis * (height - height.clamp(0.0, self.length)) + away * (distance - self.radius).max(0.0);
+        nearest(beyond, || self.face(p))
+    }
+}
+
+/// Returns the distance along `beyond`, the way out of the body to a point; inside it is that of the nearest face.
+fn nearest(beyond: Vector3<f64>, face: impl Fn() -> (f64, Vector3<f64>)) -> NearestPoint {
+    match Unit::try_new_and_get(beyond, f64::MIN_POSITIVE) {
+        Some((normal, distance)) => NearestPoint { distance, normal },
+        None => {
+            let (distance, normal) = face();
+            NearestPoint { distance, normal: Unit::new_unchecked(normal) }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::Surface;
+
+    fn bodies() -> [Surface; 2] {
+        let block =
+            Surface::Block { min: Point3::new(-10.0, -20.0, -5.0), max: Point3::new(30.0, 20.0, 0.0) };
+        let axis = Unit::new_normalize(Vector3::new(0.0, 0.6, 0.8));
+        let rod = Rod { base: Point3::new(1.0, 2.0, 3.0), axis, length: 20.0, radius: 5.0 };
+        [block, Surface::Rod(rod)]
+    }
+
+    #[test]
+    fn faces_edges_and_corners_are_at_the_distances_worked_out_by_hand() {
+        let [block, _] = bodies();
+        let rod = Rod { base: Point3::origin(), axis: Vector3::z_axis(), length: 20.0, radius: 5.0 };
+        for (body, p, distance) in [
+            (block, [0.0, 0.0, 7.0], 7.0),
+            (block, [33.0, 24.0, -1.0], 5.0),
+            (block, [32.0, 23.0, 6.0], 7.0),
+            (block, [0.0, 0.0, -1.0], -1.0),
+            (block, [29.5, 0.0, -1.0], -0.5),
+            (Surface::Rod(rod), [8.0, 0.0, 24.0], 5.0),
+            (Surface::Rod(rod), [0.0, 9.0, 10.0], 4.0),
+            (Surface::Rod(rod), [0.0, 0.0, 10.0], -5.0),
+            (Surface::Rod(rod), [1.0, 0.0, 1.0], -1.0),
+        ] {
+            let found = body.nearest(&Point3::from(p));
+            assert!((found.distance - distance).abs() < 1e-12, "{p:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_rapid_through_a_block_is_deepest_half_way_in() {
+        let [block, _] = bodies();
+        let (from, to) = (Point3::new(-30.0, 0.0, -2.0), Point3::new(50.0, 0.0, -2.0));
+        assert!((block.depth(&block.deepest_between(&from, &to)) - 2.0).abs() < 1e-9);
+        let above = |z| block.deepest_between(&Point3::new(-30.0, 0.0, z), &Point3::new(50.0, 0.0, z));
+        assert!((block.depth(&above(3.0)) + 3.0).abs() < 1e-9);
+        let exit = block.exit(&Point3::new(5.0, 5.0, -4.0), &Vector3::z_axis()).unwrap();
+        assert!((exit - Point3::new(5.0, 5.0, 0.0)).norm() < 1e-12, "{exit}");
+    }
+
+    proptest! {
+        /// The distance is convex: it is nowhere below its tangent, and the foot of the perpendicular is on the surface.
+        #[test]
+        fn the_distance_lies_above_its_tangents(
+            p in prop::array::uniform3(-60.0..60.0f64),
+            q in prop::array::uniform3(-60.0..60.0f64),
+        ) {
+            let (p, q) = (Point3::from(p), Point3::from(q));
+            for body in bodies() {
+                let (at, other) = (body.nearest(&p), body.nearest(&q));
+                prop_assert!(at.distance + at.normal.dot(&(q - p)) <= other.distance + 1e-9);
+                let foot = p - at.normal.into_inner() * at.distance;
+                prop_assert!(body.nearest(&foot).distance.abs() < 1e-9);
+                prop_assert_eq!(body.value(&p) < 0.0, at.distance < 0.0);
+            }
+        }
+    }
+}
