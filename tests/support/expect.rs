@@ -167,7 +167,7 @@ impl Ran {
                 kinds.collect::<Vec<_>>().join(",")
             }
             "passed_on" => {
-                let codes = self.control.auxiliary_codes().keys().map(|code| format!("M{code}"));
+                let codes = self.control.builder_m_codes().keys().map(|code| format!("M{code}"));
                 codes.collect::<Vec<_>>().join(",")
             }
             "printed" => {

@@ -90,7 +90,7 @@ pub(super) fn record(job: &Job, package: &Package) -> Result<Record, CheckError>
         record.stops.extend(
             stops.map(|(stop, place)| OperatorStop { locations: block_locations(&run, &place), ..stop }),
         );
-        record.auxiliary_codes.extend(run.control.auxiliary_codes().keys());
+        record.auxiliary_codes.extend(run.control.builder_m_codes().keys());
         if record.program_starts.iter().all(|earlier| earlier.main != main) {
             record.program_starts.push(begin);
         }

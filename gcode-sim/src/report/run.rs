@@ -218,7 +218,7 @@ impl RunReport {
                 .collect(),
             output: control.output().iter().map(|line| printable(line)).collect(),
             auxiliary_codes: control
-                .auxiliary_codes()
+                .builder_m_codes()
                 .iter()
                 .map(|(code, span)| {
                     let (program, line) = run.locate(*span);

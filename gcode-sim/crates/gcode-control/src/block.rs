@@ -46,60 +46,61 @@ impl Control {
             return executor.end_of_program(memory);
         };
         let index = match executor.run_statements(program, loop_detector, sink) {
-            Statements::End => return executor.end_of_program(memory),
-            Statements::Done(result) => return result,
-            Statements::Block(index) => index,
+            StatementsEnd::ProgramEnd => return executor.end_of_program(memory),
+            StatementsEnd::Paused(result) => return result,
+            StatementsEnd::ReachedBlock(index) => index,
         };
         let Some((program, op)) = program.lower_block(index) else {
             return executor.end_of_program(memory);
         };
-        let Some(kind) = executor.unguard(op)? else { return Ok(()) };
-        let is_parameter = executor.registers.state.is_in_parameter_input;
+        let Some(kind) = executor.operation_to_execute(op)? else { return Ok(()) };
+        let is_in_parameter_input = executor.registers.state.is_in_parameter_input;
         match kind {
-            OpKind::AssignFree(assign) => return executor.assign_out_of_line(assign),
+            OpKind::AssignDirect(assign) => return executor.execute_assignment_out_of_line(assign),
             OpKind::Statement(statement) => {
-                return executor.any_statement(program, statement, loop_detector, sink);
+                return executor.execute_statement_out_of_line(program, statement, loop_detector, sink);
             }
-            OpKind::Empty if is_parameter && op.number.is_some() => {
+            OpKind::Empty if is_in_parameter_input && op.number.is_some() => {
                 let alarm = Alarm::ParameterFormat { what: "R is missing".into() };
                 return Err(alarm.located_at(executor.flow.block));
             }
             OpKind::Empty if op.number.is_some() => {
-                executor.advance_lookahead(sink, Lookahead::count_number)?
+                executor.advance_lookahead(sink, Lookahead::count_sequence_number)?
             }
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
             OpKind::Words(words) => {
-                if !is_parameter && executor.call_by_block(words, op.number)? {
-                    executor.registers.state.codes.o = memory.get(executor.flow.frame.program).shown_number();
+                if !is_in_parameter_input && executor.call_for_every_block(words, op.number)? {
+                    executor.registers.state.modal_words.o =
+                        memory.get(executor.flow.frame.program).number_or_zero();
                     return Ok(());
                 }
                 plan.reset(&executor.registers.state);
-                if is_parameter {
+                if is_in_parameter_input {
                     executor.registers.evaluate_words(words, None, block_words)?;
                     executor.planner(words, block_words).plan_parameter(op.number, plan)?;
                 } else {
                     executor.plan_words(words, block_words, plan)?;
-                    plan.state.codes.n = op.number.unwrap_or(plan.state.codes.n);
+                    plan.state.modal_words.n = op.number.unwrap_or(plan.state.modal_words.n);
                 }
                 return self.execute_plan(library, sink);
             }
         }
         if let Some(number) = op.number {
-            executor.registers.state.codes.n = number;
+            executor.registers.state.modal_words.n = number;
         }
         Ok(())
     }
 }
 
 /// End of a row of statements.
-enum Statements {
+enum StatementsEnd {
     /// The program has no further block.
-    End,
+    ProgramEnd,
     /// The run pauses, or a plain move has been executed.
-    Done(ExecResult<()>),
+    Paused(ExecResult<()>),
     /// A block that is neither a statement nor a plain move; it counts as begun.
-    Block(OpIndex),
+    ReachedBlock(OpIndex),
 }
 
 impl Executor {
@@ -110,43 +111,43 @@ impl Executor {
         program: &mut Program,
         loop_detector: &mut LoopDetector,
         sink: &mut S,
-    ) -> Statements {
+    ) -> StatementsEnd {
         loop {
             let index = self.flow.frame.next;
-            let Some((program, op)) = program.lower_block(index) else { return Statements::End };
+            let Some((program, op)) = program.lower_block(index) else { return StatementsEnd::ProgramEnd };
             self.log.blocks += 1;
             self.flow.frame.next = index + 1;
             let result = match op.body() {
-                OpBody::Plain(OpKind::AssignFree(assign)) => self.assign(assign),
+                OpBody::Plain(OpKind::AssignDirect(assign)) => self.execute_assignment(assign),
                 OpBody::Plain(OpKind::Statement(statement)) => {
                     self.flow.block = op.span;
-                    self.statement(program, statement, loop_detector, sink)
+                    self.execute_statement(program, statement, loop_detector, sink)
                 }
                 OpBody::Plain(OpKind::Words(words)) => {
                     self.flow.block = op.span;
                     if self.plain_move(op, words, sink).is_some() {
-                        return Statements::Done(Ok(()));
+                        return StatementsEnd::Paused(Ok(()));
                     }
-                    return Statements::Block(index);
+                    return StatementsEnd::ReachedBlock(index);
                 }
                 OpBody::Plain(OpKind::Empty | OpKind::If { .. } | OpKind::Alarm(_)) | OpBody::Guarded(_) => {
                     self.flow.block = op.span;
-                    return Statements::Block(index);
+                    return StatementsEnd::ReachedBlock(index);
                 }
             };
             // The span of an assignment is read only after an alarm or an effect.
             if result.is_err() || self.registers.block_effects.is_pause(self.log.blocks) {
                 self.flow.block = op.span;
-                return Statements::Done(result);
+                return StatementsEnd::Paused(result);
             }
         }
     }
 
     /// Checks the guards and the condition of a block; returns what it executes, `None` if it is skipped.
-    fn unguard<'p>(&mut self, op: &'p Op) -> ExecResult<Option<&'p OpKind>> {
+    fn operation_to_execute<'p>(&mut self, op: &'p Op) -> ExecResult<Option<&'p OpKind>> {
         let kind = match op.body() {
             OpBody::Plain(kind) => kind,
-            OpBody::Guarded(guarded) if self.check_guards(guarded)? => return Ok(None),
+            OpBody::Guarded(guarded) if self.is_skipped_or_refused(guarded)? => return Ok(None),
             OpBody::Guarded(guarded) => &guarded.kind,
         };
         match kind {
@@ -162,19 +163,19 @@ impl Executor {
         block_words: &mut BlockWords,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
-        if let Some((switch, _)) = words.skipped_form() {
+        if let Some((switch, _)) = words.form_if_skipped() {
             let is_on = self.registers.data.is_skip_on(*switch);
             let note = Note::BlockSkip { switch: (*switch).max(1), is_on };
             self.registers.block_effects.record_note(note);
         }
-        let (words, _) = self.registers.data.unskipped(words);
+        let (words, _) = self.registers.data.words_not_skipped(words);
         let mut calling_word = None;
         if !self.registers.data.settings.code_calls.is_empty() {
             let planner = self.planner(words, block_words);
-            if planner.plan_macro_by_code(plan)? {
+            if planner.plan_macro_call_by_code(plan)? {
                 return Ok(());
             }
-            calling_word = planner.subprogram_by_code()?;
+            calling_word = planner.find_subprogram_call_by_code()?;
         }
         self.registers.evaluate_words(words, calling_word.as_ref(), block_words)?;
         self.planner(words, block_words).plan_block(calling_word, plan)
@@ -185,40 +186,40 @@ impl Planner<'_> {
     /// Makes the plan of a block whose words are evaluated.
     fn plan_block(&self, calling_word: Option<CallingWord>, plan: &mut BlockPlan) -> ExecResult<()> {
         self.check_words_with_return()?;
-        let axis_use = self.apply_modal_codes(plan)?;
+        let axis_word_use = self.apply_modal_codes(plan)?;
         // A block with nothing but axis words and codes of group 01 has no other codes.
         if self.words.has_letters(!self.data.settings.axes.letter_bits())
             || self.words.has_other_g_codes
             || !self.words.m_codes.is_empty()
             || plan.state.modal.cutter != CutterSide::Off
         {
-            self.plan_coded_words(plan)?;
+            self.plan_modal_words(plan)?;
             self.plan_m_codes(plan)?;
         }
-        let has_new_length = self.plan_length(plan)?;
-        match axis_use {
+        let changes_length_offset = self.plan_length(plan)?;
+        match axis_word_use {
             Some(axis_use) => {
-                if has_new_length {
+                if changes_length_offset {
                     self.data.recompute_position(&mut plan.state);
                 }
-                self.execute_axis_use(axis_use, plan)?;
+                self.plan_axis_word_use(axis_use, plan)?;
             }
-            None => self.plan_motion(plan, has_new_length)?,
+            None => self.plan_motion(plan, changes_length_offset)?,
         }
-        if let Some(call) = self.lowered.call() {
+        if let Some(call) = self.lowered_words.call() {
             self.plan_call(call, plan)?;
         }
         if let Some(calling) = calling_word {
             self.plan_calling_word(&calling, plan)?;
         }
         if plan.commands_axes {
-            plan.state.last_end_point = None;
-            self.check_flow_after_move(&plan.flow)?;
+            plan.state.end_before_transform = None;
+            self.check_flow_of_triggering_block(&plan.flow)?;
         }
         if self.needs_lookahead(&plan.state) {
-            self.plan_lookahead(axis_use, plan)?;
+            self.plan_lookahead(axis_word_use, plan)?;
         }
-        if let Some(unread) = self.words.first_unread() {
+        if let Some(unread) = self.words.first_unused_word() {
             self.pass_to_machine_builder(unread, plan)?;
         }
         self.check_stroke(plan)
@@ -228,7 +229,7 @@ impl Planner<'_> {
     /// logic, otherwise it raises an alarm.
     #[inline(never)]
     fn pass_to_machine_builder(&self, (letter, span): (char, Span), plan: &mut BlockPlan) -> ExecResult<()> {
-        match plan.auxiliary_codes.last() {
+        match plan.builder_m_codes.last() {
             Some(code) if !self.names_axis() => {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });
                 Ok(())
@@ -239,11 +240,11 @@ impl Planner<'_> {
 
     /// Raises the alarm of words other than N, P and L beside M99 while G66 is active.
     fn check_words_with_return(&self) -> ExecResult<()> {
-        let returns = self.lowered.call().is_some_and(|call| call.kind == CallCode::Return);
+        let returns = self.lowered_words.call().is_some_and(|call| call.kind == CallCode::Return);
         if !returns || self.flow.modal_calls.is_empty() {
             return Ok(());
         }
-        match self.lowered.list.iter().find(|word| word.letter != b'L') {
+        match self.lowered_words.list.iter().find(|word| word.letter != b'L') {
             Some(word) => {
                 Err(Alarm::WordsWithReturn { letter: char::from(word.letter) }.located_at(word.span))
             }
@@ -290,7 +291,7 @@ impl Executor {
 
     /// Checks block skip and syntax that some controls refuse; returns true if the block is skipped.
     #[inline(never)]
-    fn check_guards(&mut self, guarded: &GuardedOp) -> ExecResult<bool> {
+    fn is_skipped_or_refused(&mut self, guarded: &GuardedOp) -> ExecResult<bool> {
         if let Some(switch) = guarded.skip {
             let is_on = self.registers.data.is_skip_on(switch);
             self.log.note(Note::BlockSkip { switch: switch.max(1), is_on }, self.flow.block);
@@ -329,7 +330,7 @@ impl Control {
             }
             BlockFlow::Next | BlockFlow::CancelModal | BlockFlow::End => {}
         }
-        let skip_alarm = self.executor.registers.resolve_skip_signal(&mut self.plan, sink);
+        let skip_alarm = self.executor.registers.resolve_probe_skip(&mut self.plan, sink);
         self.executor.commit(&mut self.plan, sink);
         if let Some(alarm) = skip_alarm {
             return Err(alarm);
@@ -339,13 +340,13 @@ impl Control {
             BlockFlow::Next => {}
             BlockFlow::Call(call) => {
                 self.executor.make_call(&call);
-                self.show_program_number();
+                self.update_program_number();
             }
             BlockFlow::Return { number, target } => {
                 if let Some(end) = self.return_to(number.zip(target)) {
                     self.executor.registers.block_effects.end_run(end);
                 }
-                self.show_program_number();
+                self.update_program_number();
                 if !self.executor.registers.block_effects.is_run_ended() {
                     self.loop_detector.record_jump(&mut self.executor);
                 }
@@ -360,8 +361,8 @@ impl Control {
     }
 
     /// Sets #4115 to the number of the current program.
-    fn show_program_number(&mut self) {
+    fn update_program_number(&mut self) {
         let program = self.executor.flow.frame.program;
-        self.executor.registers.state.codes.o = self.memory.get(program).shown_number();
+        self.executor.registers.state.modal_words.o = self.memory.get(program).number_or_zero();
     }
 }

@@ -48,7 +48,7 @@ impl Planner<'_> {
     /// Applies the G codes in their order; returns the use of the axis words, and true if a cycle stays active that was
     /// active before.
     fn apply_each_code(&self, state: &mut State) -> ExecResult<(Option<AxisWordUse>, bool)> {
-        let mut axis_use = None;
+        let mut axis_word_use = None;
         let mut is_cycle_active = state.modal.cycle.is_some();
         for row in self.words.g_codes() {
             if let Effect::Motion(motion) = row.effect {
@@ -64,17 +64,17 @@ impl Planner<'_> {
                 return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.description)));
             }
             let new = state.modal.apply(row.effect);
-            if new.is_some() && axis_use.is_some() && new != axis_use {
+            if new.is_some() && axis_word_use.is_some() && new != axis_word_use {
                 return Err(self
                     .not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68) in one block"));
             }
-            axis_use = new.or(axis_use);
+            axis_word_use = new.or(axis_word_use);
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
                 is_cycle_active = false;
             }
         }
-        Ok((axis_use, is_cycle_active))
+        Ok((axis_word_use, is_cycle_active))
     }
 
     /// Raises the alarm of modes that exclude one another or the codes of the block.
@@ -112,7 +112,7 @@ impl Planner<'_> {
             state.polar = PolarPoint::default();
         }
         if modal.work != before.work {
-            state.last_end_point = None;
+            state.end_before_transform = None;
             self.data.recompute_position(state);
         } else if state.transform != self.registers.state.transform {
             self.data.apply_transform_change(state);
@@ -123,23 +123,23 @@ impl Planner<'_> {
     fn begin_cycle(&self, state: &mut State) -> ExecResult<()> {
         let axis = self.locate(self.drilling_axis(state))?;
         state.cycle.axis = Some(axis);
-        state.cycle.initial = state.programmed[axis];
+        state.cycle.initial = state.programmed_position[axis];
         state.cycle.initial_unknown = state.unknown;
         Ok(())
     }
 
     /// 1. Applies F S T D H, and the radius of D.
-    pub(super) fn plan_coded_words(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+    pub(super) fn plan_modal_words(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         if let Some(f) = self.feed_word(&plan.state)? {
-            plan.state.codes.f = f;
+            plan.state.modal_words.f = f;
         }
         if let Some(s) = self.words.count(b'S')? {
-            plan.state.codes.s = f64::from(s);
+            plan.state.modal_words.s = f64::from(s);
         }
         if let Some(t) = self.words.count(b'T')? {
-            plan.state.codes.t = t;
+            plan.state.modal_words.t = t;
         }
-        let codes = &mut plan.state.codes;
+        let codes = &mut plan.state.modal_words;
         for (letter, code) in [(b'D', &mut codes.d), (b'H', &mut codes.h)] {
             let Some(number) = self.words.count(letter)? else { continue };
             if number as usize > self.data.settings.tool_offsets {
@@ -151,7 +151,7 @@ impl Planner<'_> {
         self.check_misplaced_words(plan)?;
         let starts_compensation =
             |row: &&GCodeRow| matches!(row.effect, Effect::Cutter(CutterSide::Left | CutterSide::Right));
-        if plan.state.codes.d == 0
+        if plan.state.modal_words.d == 0
             && let Some(row) = self.words.g_codes().find(starts_compensation)
         {
             plan.notes.push(Note::CutterRadiusZero(row.code));
@@ -161,7 +161,7 @@ impl Planner<'_> {
         if self.words.has(b'D')
             || is_compensating && (self.data.settings.applies_radius_at_once || selects_side())
         {
-            plan.state.cutter_radius = self.data.offset_radius(plan.state.codes.d).unwrap_or(0.0);
+            plan.state.cutter_radius = self.data.offset_radius(plan.state.modal_words.d).unwrap_or(0.0);
         }
         Ok(())
     }
@@ -206,10 +206,10 @@ impl Planner<'_> {
     pub(super) fn plan_m_codes(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         plan.notes.extend(self.words.replaced_m_codes.iter().map(|code| Note::MCodeLost(*code)));
         for (code, span) in self.words.m_codes.iter().copied() {
-            plan.state.codes.m = code;
-            let speed = Rpm(plan.state.codes.s);
+            plan.state.modal_words.m = code;
+            let speed = Rpm(plan.state.modal_words.s);
             let Some(effect) = m_codes::find(code, self.data.settings.codes) else {
-                plan.auxiliary_codes.push(code);
+                plan.builder_m_codes.push(code);
                 plan.push_event(EventKind::Auxiliary { code });
                 if code > 9999 {
                     plan.notes.push(Note::LongMCode(code));
@@ -240,8 +240,8 @@ impl Planner<'_> {
                     if stops_spindle && plan.state.spindle != SpindleDirection::Off {
                         self.set_spindle(plan, SpindleDirection::Off, speed);
                     }
-                    plan.state.tool = plan.state.codes.t;
-                    plan.push_event(EventKind::ToolChange { number: plan.state.codes.t });
+                    plan.state.tool = plan.state.modal_words.t;
+                    plan.push_event(EventKind::ToolChange { number: plan.state.modal_words.t });
                 }
                 MCodeEffect::CoolantOn => {
                     plan.state.is_coolant_on = true;
@@ -264,7 +264,7 @@ impl Planner<'_> {
         let changes_spindle =
             || plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
         if self.words.has(b'S') && plan.state.spindle != SpindleDirection::Off && !changes_spindle() {
-            self.set_spindle(plan, plan.state.spindle, Rpm(plan.state.codes.s));
+            self.set_spindle(plan, plan.state.spindle, Rpm(plan.state.modal_words.s));
         }
         Ok(())
     }

@@ -164,7 +164,7 @@ impl Executor {
     /// Calls the macro of G66.1, if it is active, instead of executing a block of words; returns true if it has. The words,
     /// G L N P included, are the arguments; M99 and G67 are executed.
     #[inline]
-    pub(super) fn call_by_block(&mut self, words: &Words, number: Option<u32>) -> ExecResult<bool> {
+    pub(super) fn call_for_every_block(&mut self, words: &Words, number: Option<u32>) -> ExecResult<bool> {
         if !self.flow.triggered_call().is_some_and(|index| self.flow.modal_calls[index].is_every_block) {
             return Ok(false);
         }

@@ -50,7 +50,8 @@ impl Planner<'_> {
         let repeats = self.count_of(call.repeats.as_ref())?;
         let (target, repeats) = self.call_target(call, kind, start, repeats)?;
         let is_every_block = kind == CallKind::EveryBlock;
-        let locals = self.registers.evaluate_arguments(self.lowered, &call.arguments, is_every_block)?;
+        let locals =
+            self.registers.evaluate_arguments(self.lowered_words, &call.arguments, is_every_block)?;
         let has_own_arguments =
             self.data.settings.undocumented.every_block_calls_itself && !call.arguments.is_empty();
         plan.flow = BlockFlow::Call(Box::new(CallPlan {
@@ -68,7 +69,7 @@ impl Planner<'_> {
     }
 
     fn count_of(&self, word: Option<&LoweredWord>) -> ExecResult<Option<u32>> {
-        self.registers.count_of_word(self.lowered, word)
+        self.registers.count_of_word(self.lowered_words, word)
     }
 
     /// Returns the kind of a call; an alarm for one that this control lacks or the simulator does not execute.
@@ -133,7 +134,7 @@ impl Planner<'_> {
 
     /// Raises the alarm of a block that triggers a modal call by a move and does something else with the program flow.
     #[inline(always)]
-    pub(super) fn check_flow_after_move(&self, flow: &BlockFlow) -> ExecResult<()> {
+    pub(super) fn check_flow_of_triggering_block(&self, flow: &BlockFlow) -> ExecResult<()> {
         let what = match flow {
             _ if self.flow.triggered_call().is_none() => return Ok(()),
             BlockFlow::Next | BlockFlow::Return { .. } => return Ok(()),
@@ -146,17 +147,17 @@ impl Planner<'_> {
 
     /// Plans the call of a macro by a code, which stands first in the block; the other words are the arguments. Returns
     /// true if there is one.
-    pub(super) fn plan_macro_by_code(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
-        for (index, word) in self.lowered.list.iter().enumerate() {
+    pub(super) fn plan_macro_call_by_code(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
+        for (index, word) in self.lowered_words.list.iter().enumerate() {
             let Some(called) = self.program_called_by(word)? else { continue };
             if called.kind == CodeCallKind::Subprogram {
                 continue;
             }
             if index > 0 {
                 let what = "words before a code that calls a macro".into();
-                return Err(Alarm::MacroFormat { what }.located_at(self.lowered.list[0].span));
+                return Err(Alarm::MacroFormat { what }.located_at(self.lowered_words.list[0].span));
             }
-            if let Some(second) = self.lowered.call() {
+            if let Some(second) = self.lowered_words.call() {
                 return Err(Alarm::TwoMacroCalls.located_at(second.span));
             }
             let call = self.macro_call(called, word)?;
@@ -167,7 +168,7 @@ impl Planner<'_> {
     }
 
     fn macro_call(&self, called: CalledProgram, code: &LoweredWord) -> ExecResult<CallPlan> {
-        let arguments = &self.lowered.list[1..];
+        let arguments = &self.lowered_words.list[1..];
         let is_every_block =
             called.kind == CodeCallKind::Modal && self.data.settings.code_calls.modal_is_every_block;
         for word in arguments.iter().filter(|_| !is_every_block) {
@@ -191,9 +192,9 @@ impl Planner<'_> {
                 CodeCallKind::Macro | CodeCallKind::Subprogram => CallKind::Macro,
             },
             target: ProgramRef::Number(called.program),
-            repeats: self.registers.count_of_word(self.lowered, repeats)?.unwrap_or(1),
+            repeats: self.registers.count_of_word(self.lowered_words, repeats)?.unwrap_or(1),
             start: None,
-            locals: self.registers.evaluate_arguments(self.lowered, arguments, is_every_block)?,
+            locals: self.registers.evaluate_arguments(self.lowered_words, arguments, is_every_block)?,
             is_immediate: !is_every_block || has_own_arguments,
             origins: call_origins(code.letter),
             is_external: false,
@@ -202,11 +203,11 @@ impl Planner<'_> {
     }
 
     /// Returns the word of a block that calls a subprogram; the other words of the block act first.
-    pub(super) fn subprogram_by_code(&self) -> ExecResult<Option<CallingWord>> {
+    pub(super) fn find_subprogram_call_by_code(&self) -> ExecResult<Option<CallingWord>> {
         let mut found = None;
-        for (index, word) in self.lowered.list.iter().enumerate() {
-            let Some(calling) = self.calling_word(index, word)? else { continue };
-            if found.is_some() || self.lowered.call().is_some() {
+        for (index, word) in self.lowered_words.list.iter().enumerate() {
+            let Some(calling) = self.read_calling_word(index, word)? else { continue };
+            if found.is_some() || self.lowered_words.call().is_some() {
                 return Err(Alarm::TwoSubprogramCalls.located_at(word.span));
             }
             found = Some(calling);
@@ -214,12 +215,12 @@ impl Planner<'_> {
         Ok(found)
     }
 
-    fn calling_word(&self, index: usize, word: &LoweredWord) -> ExecResult<Option<CallingWord>> {
+    fn read_calling_word(&self, index: usize, word: &LoweredWord) -> ExecResult<Option<CallingWord>> {
         if let Some(call) = self.data.settings.code_calls.address_call(word.letter)
             && self.code_may_call(word.letter)
             && self.data.settings.axes.find(word.letter).is_none()
         {
-            let Some(raw) = self.registers.evaluate_word(self.lowered, word)? else { return Ok(None) };
+            let Some(raw) = self.registers.evaluate_word(self.lowered_words, word)? else { return Ok(None) };
             let number = match word.letter {
                 b'B' | b'S' | b'T' => f64::from(locate(count(raw, word.letter), word.span)?),
                 letter => self.registers.argument_value(raw, letter),
@@ -235,15 +236,16 @@ impl Planner<'_> {
 
     /// Plans the subprogram call of a word, with its repetitions.
     pub(super) fn plan_calling_word(&self, calling: &CallingWord, plan: &mut BlockPlan) -> ExecResult<()> {
-        let word = &self.lowered.list[calling.index];
-        let repeats = self.lowered.list.iter().find(|other| calling.takes_repeats && other.letter == b'L');
+        let word = &self.lowered_words.list[calling.index];
+        let repeats =
+            self.lowered_words.list.iter().find(|other| calling.takes_repeats && other.letter == b'L');
         if let Some((number, value)) = calling.value {
             plan.writes.push(TableWrite::Variable { number, value: Value::Number(value) });
         }
         plan.flow = BlockFlow::Call(Box::new(CallPlan {
             kind: CallKind::Subprogram,
             target: ProgramRef::Number(calling.program),
-            repeats: self.registers.count_of_word(self.lowered, repeats)?.unwrap_or(1),
+            repeats: self.registers.count_of_word(self.lowered_words, repeats)?.unwrap_or(1),
             start: None,
             locals: VACANT,
             is_immediate: true,
@@ -259,7 +261,7 @@ impl Planner<'_> {
         if !matches!(word.letter, b'G' | b'M') || !self.code_may_call(word.letter) {
             return Ok(None);
         }
-        let Some(raw) = self.registers.evaluate_word(self.lowered, word)? else { return Ok(None) };
+        let Some(raw) = self.registers.evaluate_word(self.lowered_words, word)? else { return Ok(None) };
         let tenths = match (word.letter, raw) {
             (b'G', WordNumber::Computed(value)) => (value * 10.0).round(),
             (b'G', WordNumber::Literal(number)) => number.value() * 10.0,

@@ -109,7 +109,7 @@ impl Control {
             progress: None,
         };
         if let Some(program) = control.memory.programs().first() {
-            control.executor.registers.state.codes.o = program.shown_number();
+            control.executor.registers.state.modal_words.o = program.number_or_zero();
             control.executor.flow.block = program.span;
         }
         control
@@ -273,7 +273,7 @@ impl Control {
     /// Returns the coordinate of an axis in the active work coordinate system, as #5001….
     pub fn work_position(&self, axis: AxisIndex) -> f64 {
         let state = &self.executor.registers.state;
-        self.executor.registers.data.to_program_unit(state, Some(axis), state.programmed[axis])
+        self.executor.registers.data.to_program_unit(state, Some(axis), state.programmed_position[axis])
     }
 
     /// Returns true if G20 is in force: lengths are programmed in inches.
@@ -283,7 +283,7 @@ impl Control {
 
     /// Returns the tool centre in machine coordinates, mm and degrees.
     pub fn machine_position(&self) -> Position {
-        let mut centre = self.executor.registers.state.machine;
+        let mut centre = self.executor.registers.state.machine_position;
         for axis in 0..self.settings().axes.len() {
             centre[axis] = self.executor.registers.tool_centre(axis);
         }
@@ -316,8 +316,8 @@ impl Control {
     }
 
     /// Returns the M codes for the machine builder's logic, which isn't simulated, each with its first block.
-    pub fn auxiliary_codes(&self) -> &BTreeMap<u32, Span> {
-        &self.executor.log.auxiliary_codes
+    pub fn builder_m_codes(&self) -> &BTreeMap<u32, Span> {
+        &self.executor.log.builder_m_codes
     }
 
     /// Returns the lines of DPRNT and BPRNT without their ends; see [`printable`](super::printable) for BPRNT.

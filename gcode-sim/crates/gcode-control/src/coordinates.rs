@@ -1,6 +1,6 @@
 //! Programmed, work and machine coordinates, and the stored stroke check.
 use super::data::ControlData;
-use super::state::{EndPoint, State};
+use super::state::{EndBeforeTransform, State};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::motion::{AxisIndex, EventKind, MAX_AXES, PlanarArc, Position};
@@ -21,13 +21,13 @@ impl ControlData {
     /// Returns a programmed point that is no end point in machine coordinates, as [`ControlData::to_machine`] without
     /// rounding.
     pub(super) fn to_machine_unrounded(&self, state: &State, point: &Position) -> Position {
-        self.work_to_machine(state, &state.transform.forward(*point))
+        self.work_to_machine(state, &state.transform.work_position(*point))
     }
 
     /// Returns a programmed end point in work coordinates; those that rotation or scaling computes are rounded to the least
     /// input increment.
     pub(super) fn to_work(&self, state: &State, point: &Position) -> Position {
-        let mut work = state.transform.forward(*point);
+        let mut work = state.transform.work_position(*point);
         let computed = state.transform.computed_axes();
         for axis in (0..MAX_AXES).filter(|axis| computed >> axis & 1 == 1) {
             work[axis] = self.round_to_increment(state, axis, work[axis]);
@@ -46,8 +46,9 @@ impl ControlData {
         let mut machine = Position(std::array::from_fn(to_machine));
         for axis in self.settings.rollover_axes() {
             // The shorter rotation from the current position; full rotations stay.
-            let from = state.machine[axis] - self.zero(state, axis) - state.length_offset[axis];
-            machine[axis] = self.remove_residue(state.machine[axis] + shortest_rotation(from, work[axis]));
+            let from = state.machine_position[axis] - self.zero(state, axis) - state.length_offset[axis];
+            machine[axis] =
+                self.remove_residue(state.machine_position[axis] + shortest_rotation(from, work[axis]));
         }
         machine
     }
@@ -62,7 +63,7 @@ impl ControlData {
     fn work_point(&self, state: &State) -> Position {
         let mut work = Position::default();
         for axis in 0..self.settings.axes.len() {
-            let at = state.machine[axis] - self.zero(state, axis) - state.length_offset[axis];
+            let at = state.machine_position[axis] - self.zero(state, axis) - state.length_offset[axis];
             work[axis] = self.wrap_angle(axis, self.remove_residue(at));
         }
         work
@@ -74,12 +75,15 @@ impl ControlData {
         let (programmed, work) = (self.move_end(state), self.work_point(state));
         self.recompute_position(state);
         state.unknown = state.transform.spread(state.stated_unknown);
-        state.last_end_point = (state.programmed != programmed).then_some(EndPoint { programmed, work });
+        state.end_before_transform =
+            (state.programmed_position != programmed).then_some(EndBeforeTransform { programmed, work });
     }
 
     /// Returns the end of the last move as programmed.
     pub(super) fn move_end(&self, state: &State) -> Position {
-        let Some(EndPoint { mut programmed, work }) = state.last_end_point else { return state.programmed };
+        let Some(EndBeforeTransform { mut programmed, work }) = state.end_before_transform else {
+            return state.programmed_position;
+        };
         let now = self.work_point(state);
         for axis in 0..self.settings.axes.len() {
             programmed[axis] = self.remove_residue(programmed[axis] + now[axis] - work[axis]);
@@ -90,10 +94,10 @@ impl ControlData {
     /// Recomputes the programmed position after something other than a move has changed its coordinates.
     pub(super) fn recompute_position(&self, state: &mut State) {
         let work = self.work_point(state);
-        state.programmed = state.transform.backward(work);
-        if !state.transform.is_none() {
+        state.programmed_position = state.transform.programmed_position(work);
+        if !state.transform.is_identity() {
             for axis in 0..MAX_AXES {
-                state.programmed[axis] = self.remove_residue(state.programmed[axis]);
+                state.programmed_position[axis] = self.remove_residue(state.programmed_position[axis]);
             }
         }
     }
@@ -153,7 +157,7 @@ impl ControlData {
             Length::Off => return Ok(offset),
         };
         let axis = self.settings.axes.find(b'Z').ok_or(Alarm::ImproperAddress { letter: 'Z' })?;
-        offset[axis] = sign * self.offsets.length(state.codes.h)?;
+        offset[axis] = sign * self.offsets.length(state.modal_words.h)?;
         Ok(offset)
     }
 
@@ -249,11 +253,11 @@ mod tests {
     #[test]
     fn the_programmed_position_follows_the_offset() {
         let mut data = ControlData::new(Settings::default());
-        let mut state = State { machine: at(30.0, 0.0), ..State::default() };
+        let mut state = State { machine_position: at(30.0, 0.0), ..State::default() };
         data.set_work_offset(1, 0, 10.0);
         data.recompute_position(&mut state);
-        assert_eq!(state.programmed, at(20.0, 0.0));
-        assert_eq!(data.to_machine(&state, &state.programmed), state.machine);
+        assert_eq!(state.programmed_position, at(20.0, 0.0));
+        assert_eq!(data.to_machine(&state, &state.programmed_position), state.machine_position);
     }
 
     #[test]

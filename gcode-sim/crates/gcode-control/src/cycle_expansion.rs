@@ -15,7 +15,7 @@ pub(super) struct CyclePlan {
     /// Holes as programmed, at the initial level.
     pub(super) holes: Vec<Position>,
     pub(super) axis: AxisIndex,
-    pub(super) shift: (AxisIndex, f64),
+    pub(super) bore_shift: (AxisIndex, f64),
     pub(super) rate: MmPerMin,
     /// Dwell, seconds.
     pub(super) dwell: f64,
@@ -29,7 +29,7 @@ impl CyclePlan {
         let state = &self.start_state;
         let mut motion = CycleMotion {
             data,
-            at: state.machine,
+            position: state.machine_position,
             transform: &state.transform,
             unknown: state.unknown,
             stated_unknown: state.stated_unknown,
@@ -41,41 +41,41 @@ impl CyclePlan {
         let cycle = &state.cycle;
         let (r, z) = (cycle.r_level(), cycle.z_level());
         for hole in &self.holes {
-            let level = |value: f64| {
+            let point_at = |value: f64| {
                 let mut point = *hole;
                 point[self.axis] = value;
                 data.to_machine(state, &point)
             };
-            let mut over = level(r);
-            over[self.axis] = motion.at[self.axis];
-            motion.rapid(over);
-            if self.cycle.starts_at_r {
+            let mut above_hole = point_at(r);
+            above_hole[self.axis] = motion.position[self.axis];
+            motion.rapid(above_hole);
+            if self.cycle.rapids_to_r_first {
                 motion.set_unknown(self.axis, cycle.r_unknown(state.unknown_after_absolute(self.axis)));
-                motion.rapid(level(r));
+                motion.rapid(point_at(r));
             }
             for step in self.cycle.steps {
-                self.drill_step(*step, data, &level, (r, z), &mut motion);
+                self.drill_step(*step, data, &point_at, (r, z), &mut motion);
             }
         }
         motion.stated_unknown
     }
 
-    /// Emits one step of the cycle; `level` is the point of the hole at a height.
+    /// Emits one step of the cycle; `point_at` is the point of the hole at a level.
     fn drill_step<T: FnMut(EventKind, f64)>(
         &self,
         step: CycleStep,
         data: &ControlData,
-        level: &impl Fn(f64) -> Position,
+        point_at: &impl Fn(f64) -> Position,
         (r, z): (f64, f64),
         motion: &mut CycleMotion<'_, T>,
     ) {
         let state = &self.start_state;
         let initial = state.cycle.initial;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
-        let spindle = |direction| EventKind::Spindle { direction, speed: Rpm(state.codes.s) };
-        let goes_back = match step {
-            CycleStep::RapidBack | CycleStep::RapidToInitial => to_initial,
-            CycleStep::RapidToInitialAlways => true,
+        let spindle = |direction| EventKind::Spindle { direction, speed: Rpm(state.modal_words.s) };
+        let returns_to_initial = match step {
+            CycleStep::RapidToReturnLevel | CycleStep::RapidToInitialInG98 => to_initial,
+            CycleStep::RapidToInitial => true,
             CycleStep::FeedToBottom
             | CycleStep::Peck
             | CycleStep::HighSpeedPeck
@@ -90,28 +90,28 @@ impl CyclePlan {
             | CycleStep::SpindleReverse
             | CycleStep::ManualRetract => false,
         };
-        if goes_back {
+        if returns_to_initial {
             motion.set_unknown(self.axis, state.cycle.initial_unknown);
         }
         match step {
-            CycleStep::FeedToBottom => motion.feed(level(z)),
-            CycleStep::Peck => self.peck_to_r(level, (r, z), motion),
-            CycleStep::HighSpeedPeck => self.peck_with_retract(level, (r, z), motion),
+            CycleStep::FeedToBottom => motion.feed(point_at(z)),
+            CycleStep::Peck => self.emit_g83_pecks(point_at, (r, z), motion),
+            CycleStep::HighSpeedPeck => self.emit_g73_pecks(point_at, (r, z), motion),
             CycleStep::Dwell => motion.dwell(self.dwell),
             CycleStep::DwellAtR if data.settings.undocumented.tap_dwells_at_r => motion.dwell(self.dwell),
             CycleStep::DwellAtR => {}
-            CycleStep::FeedToR => motion.feed(level(r)),
-            CycleStep::RapidBack => {
-                motion.rapid_along_axis(level(if to_initial { initial } else { r }), self.axis)
+            CycleStep::FeedToR => motion.feed(point_at(r)),
+            CycleStep::RapidToReturnLevel => {
+                motion.rapid_along_axis(point_at(if to_initial { initial } else { r }), self.axis)
             }
-            CycleStep::RapidToInitial if to_initial => motion.rapid(level(initial)),
-            CycleStep::RapidToInitial => {}
-            CycleStep::RapidToInitialAlways => motion.rapid_along_axis(level(initial), self.axis),
-            CycleStep::RapidToR => motion.rapid_along_axis(level(r), self.axis),
+            CycleStep::RapidToInitialInG98 if to_initial => motion.rapid(point_at(initial)),
+            CycleStep::RapidToInitialInG98 => {}
+            CycleStep::RapidToInitial => motion.rapid_along_axis(point_at(initial), self.axis),
+            CycleStep::RapidToR => motion.rapid_along_axis(point_at(r), self.axis),
             CycleStep::Shift | CycleStep::ShiftBack => {
-                let (axis, distance) = self.shift;
+                let (axis, distance) = self.bore_shift;
                 let distance = if step == CycleStep::Shift { distance } else { -distance };
-                let mut to = motion.at;
+                let mut to = motion.position;
                 to[axis] = data.remove_residue(to[axis] + distance);
                 motion.rapid(to);
             }
@@ -121,7 +121,7 @@ impl CyclePlan {
             CycleStep::ManualRetract => {
                 let (text, variables) = ("retract by hand to R".into(), Vec::new());
                 (motion.emit)(EventKind::Stop { kind: StopKind::M00, text, variables }, 0.0);
-                motion.rapid(level(r));
+                motion.rapid(point_at(r));
             }
         }
     }
@@ -129,47 +129,55 @@ impl CyclePlan {
 
 impl CyclePlan {
     /// Emits the pecks of G83, each from the clearance above the last depth and back to R.
-    fn peck_to_r<T: FnMut(EventKind, f64)>(
+    fn emit_g83_pecks<T: FnMut(EventKind, f64)>(
         &self,
-        level: &impl Fn(f64) -> Position,
+        point_at: &impl Fn(f64) -> Position,
         (r, z): (f64, f64),
         motion: &mut CycleMotion<'_, T>,
     ) {
         let settings = &motion.data.settings;
         let clearance = settings.g83_clearance / self.scale_factor;
         let above_r = settings.g83_above_r;
-        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.scale_factor), |from, to, is_last| {
-            if from != r {
-                motion.rapid(level(from + clearance.min((r - from).abs()).copysign(r - z)));
-            }
-            motion.feed(level(to));
-            if !is_last {
-                motion.rapid(level(r + above_r.copysign(r - z)));
-            }
-        });
+        for_each_peck(
+            (r, z),
+            &self.start_state.cycle.with_unscaled_pecks(self.scale_factor),
+            |from, to, is_last| {
+                if from != r {
+                    motion.rapid(point_at(from + clearance.min((r - from).abs()).copysign(r - z)));
+                }
+                motion.feed(point_at(to));
+                if !is_last {
+                    motion.rapid(point_at(r + above_r.copysign(r - z)));
+                }
+            },
+        );
     }
 
     /// Emits the pecks of G73, each with a short retract.
-    fn peck_with_retract<T: FnMut(EventKind, f64)>(
+    fn emit_g73_pecks<T: FnMut(EventKind, f64)>(
         &self,
-        level: &impl Fn(f64) -> Position,
+        point_at: &impl Fn(f64) -> Position,
         (r, z): (f64, f64),
         motion: &mut CycleMotion<'_, T>,
     ) {
         let retract = (motion.data.settings.g73_retract / self.scale_factor).copysign(r - z);
-        for_each_peck((r, z), &self.start_state.cycle.unscaled(self.scale_factor), |_, to, is_last| {
-            motion.feed(level(to));
-            if !is_last {
-                motion.rapid(level(to + retract));
-            }
-        });
+        for_each_peck(
+            (r, z),
+            &self.start_state.cycle.with_unscaled_pecks(self.scale_factor),
+            |_, to, is_last| {
+                motion.feed(point_at(to));
+                if !is_last {
+                    motion.rapid(point_at(to + retract));
+                }
+            },
+        );
     }
 }
 
 /// Motion of the tool through a cycle, in machine coordinates.
 struct CycleMotion<'c, T> {
     data: &'c ControlData,
-    at: Position,
+    position: Position,
     transform: &'c Transform,
     /// Axes of unknown position, in programmed coordinates, and those that the last event has stated.
     unknown: UnknownAxes,
@@ -198,9 +206,9 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
     }
 
     fn rapid(&mut self, to: Position) {
-        if to != self.at {
-            (self.emit)(EventKind::Rapid { to }, self.data.rapid_seconds(&self.at, &to));
-            self.at = to;
+        if to != self.position {
+            (self.emit)(EventKind::Rapid { to }, self.data.rapid_seconds(&self.position, &to));
+            self.position = to;
             self.waits_for_move = false;
         }
         self.repeat_unknown();
@@ -215,16 +223,16 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 
     /// Moves along the drilling axis only; the plane keeps its shift.
     fn rapid_along_axis(&mut self, to: Position, axis: AxisIndex) {
-        let mut point = self.at;
+        let mut point = self.position;
         point[axis] = to[axis];
         self.rapid(point);
     }
 
     fn feed(&mut self, to: Position) {
-        if to != self.at {
-            let travel = self.data.squared_travel(0..self.data.settings.axes.len(), &self.at, &to);
+        if to != self.position {
+            let travel = self.data.squared_travel(0..self.data.settings.axes.len(), &self.position, &to);
             (self.emit)(EventKind::Feed { to, rate: self.rate }, travel.seconds_at(self.rate));
-            self.at = to;
+            self.position = to;
             self.waits_for_move = false;
         }
         self.repeat_unknown();
@@ -241,48 +249,48 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 const MAX_PECKS: u32 = 1_000_000;
 
 /// Visits the pecks from R to Z with their start, end and whether they are the last; the last peck is the remainder.
-pub(super) fn for_each_peck((r, z): (f64, f64), data: &CycleState, mut emit: impl FnMut(f64, f64, bool)) {
-    let pecks = peck_count(r, z, data);
+pub(super) fn for_each_peck((r, z): (f64, f64), cycle: &CycleState, mut emit: impl FnMut(f64, f64, bool)) {
+    let pecks = peck_count(r, z, cycle);
     let mut from = r;
     for count in 1..=pecks {
         let is_last = count == pecks;
-        let to = if is_last { z } else { r + peck_depth(data, f64::from(count)).copysign(z - r) };
+        let to = if is_last { z } else { r + peck_depth(cycle, f64::from(count)).copysign(z - r) };
         emit(from, to, is_last);
         from = to;
     }
 }
 
 /// Returns the depth below R after a number of pecks.
-fn peck_depth(data: &CycleState, count: f64) -> f64 {
-    let Some(PeckSchedule { first, decrement, minimum }) = data.pecks else {
-        return count * data.q.unwrap_or(0.0).abs();
+fn peck_depth(cycle: &CycleState, count: f64) -> f64 {
+    let Some(PeckSchedule { first, decrement, minimum }) = cycle.pecks else {
+        return count * cycle.q.unwrap_or(0.0).abs();
     };
     // Pecks longer than the shortest first, then the shortest ones.
-    let longer_count =
+    let shortening_pecks =
         if decrement > 0.0 { ((first - minimum) / decrement + 1e-9).floor() + 1.0 } else { count };
-    let shrinking = count.min(longer_count);
-    shrinking * first - decrement * shrinking * (shrinking - 1.0) / 2.0 + (count - shrinking) * minimum
+    let shortened = count.min(shortening_pecks);
+    shortened * first - decrement * shortened * (shortened - 1.0) / 2.0 + (count - shortened) * minimum
 }
 
 /// Returns the number of pecks of a hole from R to Z; the largest integer if there are more.
-fn peck_count(r: f64, z: f64, data: &CycleState) -> u32 {
+fn peck_count(r: f64, z: f64, cycle: &CycleState) -> u32 {
     let total_depth = (z - r).abs();
-    if data.pecks.is_none() {
-        return match data.q {
+    if cycle.pecks.is_none() {
+        return match cycle.q {
             Some(q) if q != 0.0 => (total_depth / q.abs() - 1e-9).ceil().max(1.0) as u32,
             _ => 1,
         };
     }
     let mut count = 1;
-    while peck_depth(data, f64::from(count)) < total_depth - 1e-9 && count <= MAX_PECKS {
+    while peck_depth(cycle, f64::from(count)) < total_depth - 1e-9 && count <= MAX_PECKS {
         count += 1;
     }
     count
 }
 
 /// Returns true if a block with a number of holes has more than [`MAX_PECKS`] pecks.
-pub(super) fn has_too_many_pecks(data: &CycleState, holes: u32) -> bool {
-    let pecks = u64::from(peck_count(data.r_level(), data.z_level(), data));
+pub(super) fn has_too_many_pecks(cycle: &CycleState, holes: u32) -> bool {
+    let pecks = u64::from(peck_count(cycle.r_level(), cycle.z_level(), cycle));
     pecks * u64::from(holes.max(1)) > u64::from(MAX_PECKS)
 }
 
@@ -311,14 +319,19 @@ mod tests {
             ..CycleState::default()
         };
         let (programmed, machine) = (at(0.0, 50.0), at(0.0, 50.0));
-        let mut from = State { programmed, machine, cycle: cycle_state, ..State::default() };
+        let mut from = State {
+            programmed_position: programmed,
+            machine_position: machine,
+            cycle: cycle_state,
+            ..State::default()
+        };
         from.modal.return_to = return_to;
         let plan = CyclePlan {
             cycle,
             start_state: from,
             holes: vec![at(10.0, 50.0)],
             axis: 2,
-            shift: (0, 0.0),
+            bore_shift: (0, 0.0),
             rate: MmPerMin(100.0),
             dwell: 0.0,
             scale_factor: 1.0,

@@ -66,7 +66,7 @@ impl Planner<'_> {
         let from = *plan.state;
         // The depth is no move.
         let mut endpoint = self.compute_endpoint(&mut plan.state)?.programmed;
-        endpoint[axis] = from.programmed[axis];
+        endpoint[axis] = from.programmed_position[axis];
         plan.state.unknown = plan.state.unknown.with_axes_of(1 << axis, from.unknown);
         self.read_cycle_words(plan, axis, incremental)?;
         self.note_cycle(plan, axis);
@@ -75,7 +75,7 @@ impl Planner<'_> {
         }
         let (rate, _) = self.locate(self.data.path_time(&plan.state, 1.0, self.words.has(b'F')))?;
         plan.commands_axes = true;
-        if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.unscaled(scale_factor), repeats) {
+        if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.with_unscaled_pecks(scale_factor), repeats) {
             return Err(self.not_simulated("more than a million pecks in one block"));
         }
         if incremental && self.named_axes().any(|axis| self.data.settings.rolls_over[axis]) {
@@ -89,17 +89,19 @@ impl Planner<'_> {
         let first = self.data.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
         let other = self.data.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default();
         let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
-        let start_state = State { machine: from.machine, ..*plan.state };
+        let start_state = State { machine_position: from.machine_position, ..*plan.state };
         let holes = match pattern {
             Some(pattern) => self.pattern_holes(&endpoint, pattern),
-            None => self.repeated_holes(&mut plan.state, &from.programmed, endpoint, repeats.max(1))?,
+            None => {
+                self.repeated_holes(&mut plan.state, &from.programmed_position, endpoint, repeats.max(1))?
+            }
         };
-        plan.state.programmed = holes.last().copied().unwrap_or(endpoint);
+        plan.state.programmed_position = holes.last().copied().unwrap_or(endpoint);
         if repeats == 0 {
             // K0 of some controls: a position only.
-            let mut to = self.data.to_machine(&plan.state, &plan.state.programmed);
-            to[axis] = from.machine[axis];
-            plan.state.machine = from.machine;
+            let mut to = self.data.to_machine(&plan.state, &plan.state.programmed_position);
+            to[axis] = from.machine_position[axis];
+            plan.state.machine_position = from.machine_position;
             self.push_unknown_axes(plan);
             self.push_rapid(plan, &to);
             return Ok(());
@@ -110,7 +112,7 @@ impl Planner<'_> {
             start_state,
             holes,
             axis,
-            shift: (if first == axis { other } else { first }, shift),
+            bore_shift: (if first == axis { other } else { first }, shift),
             rate,
             dwell: plan.state.cycle.p,
             scale_factor,
@@ -134,14 +136,14 @@ impl Planner<'_> {
     /// Sets the position to the R point level or the initial level, where the cycle ends.
     fn move_to_return_level(&self, state: &mut State, cycle: &Cycle, axis: AxisIndex) {
         let data = &state.cycle;
-        let (level, unknown) = if state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
+        let (level, unknown) = if state.modal.return_to == ReturnTo::R && cycle.rapids_to_r_first {
             (data.r_level(), data.r_unknown(state.unknown_after_absolute(axis)))
         } else {
             (data.initial, data.initial_unknown)
         };
         state.unknown = state.unknown.with_axes_of(1 << axis, unknown);
-        state.programmed[axis] = level;
-        state.machine = self.data.to_machine(state, &state.programmed);
+        state.programmed_position[axis] = level;
+        state.machine_position = self.data.to_machine(state, &state.programmed_position);
     }
 
     fn cycle_repeats(&self, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {

@@ -82,7 +82,7 @@ impl ControlData {
     pub(super) fn zero(&self, state: &State, axis: AxisIndex) -> f64 {
         let Offsets { work, .. } = &self.offsets;
         let system = system_index(state.modal.work);
-        work[0][axis] + work[system][axis] + state.local_offset[axis] + state.coordinate_shift[axis]
+        work[0][axis] + work[system][axis] + state.g52_shift[axis] + state.g92_shift[axis]
     }
 
     /// Returns the table that a register number or variable addresses: series 15 offsets swap geometry and wear.
@@ -113,8 +113,8 @@ impl ControlData {
 
     /// Returns the words of a block without those that a block skip inside it excludes, and the switch of that block skip if it
     /// is off.
-    pub(super) fn unskipped<'a>(&self, words: &'a Words) -> (&'a Words, Option<u8>) {
-        match words.skipped_form() {
+    pub(super) fn words_not_skipped<'a>(&self, words: &'a Words) -> (&'a Words, Option<u8>) {
+        match words.form_if_skipped() {
             Some((switch, short)) if self.is_skip_on(*switch) => (short, None),
             Some((switch, _)) => (words, Some(*switch)),
             None => (words, None),

@@ -109,14 +109,14 @@ impl Planner<'_> {
             (None, _) => {}
             (Some(code), None) if code.effect == Effect::OneShot(OneShot::DataInputEnd) => {
                 plan.state.is_in_parameter_input = false;
-                return match self.words.first_unread() {
-                    None if self.lowered.call().is_none() => Ok(()),
+                return match self.words.first_unused_word() {
+                    None if self.lowered_words.call().is_none() => Ok(()),
                     _ => Err(format_alarm("words in a block with G11")),
                 };
             }
             _ => return Err(format_alarm("another G code before G11")),
         }
-        if !self.words.m_codes.is_empty() || self.lowered.call().is_some() {
+        if !self.words.m_codes.is_empty() || self.lowered_words.call().is_some() {
             return Err(format_alarm("an M code before G11"));
         }
         let number = number.and_then(|number| u16::try_from(number).ok());
@@ -127,7 +127,7 @@ impl Planner<'_> {
         let axis = axis.transpose().map_err(|_| format_alarm("P is not an axis"))?;
         let bit = self.words.count(b'Q')?.map(|bit| parameter_bit(f64::from(bit)));
         let bit = bit.map(|bit| bit.ok_or_else(|| format_alarm("Q is not 0 to 7"))).transpose()?;
-        if self.words.first_unread().is_some() {
+        if self.words.first_unused_word().is_some() {
             return Err(format_alarm("other words than N P Q R"));
         }
         let id = ParameterId { number, bit, axis };

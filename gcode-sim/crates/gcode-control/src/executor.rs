@@ -60,7 +60,7 @@ impl Executor {
     #[inline(always)]
     pub(super) fn planner<'a>(&'a self, lowered: &'a Words, words: &'a BlockWords) -> Planner<'a> {
         let Self { registers, flow, log: _ } = self;
-        Planner { registers, data: &registers.data, flow, lowered, words, block: flow.block }
+        Planner { registers, data: &registers.data, flow, lowered_words: lowered, words, block: flow.block }
     }
 
     /// Carries out a plan in the order of its fields.
@@ -106,8 +106,8 @@ impl Executor {
         for note in &plan.notes {
             self.log.note(*note, self.flow.block);
         }
-        for code in &plan.auxiliary_codes {
-            self.log.auxiliary_codes.entry(*code).or_insert(self.flow.block);
+        for code in &plan.builder_m_codes {
+            self.log.builder_m_codes.entry(*code).or_insert(self.flow.block);
         }
         self.registers.update_is_plain();
     }

@@ -101,6 +101,6 @@ pub use self::next_block::{BlockCommands, UnsimulatedCodes, modal_code};
 pub use self::notes::Note;
 pub use self::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress};
 pub use self::residual_state::{ResidualKind, ResidualValue, additional_system_name, mode_name};
-pub use self::state::{Codes, Modal, State};
+pub use self::state::{Modal, ModalWords, State};
 pub use self::statements::printable;
 pub use self::variables::{Value, Vars};

@@ -106,7 +106,7 @@ impl ControlData {
         let programmed = if basis.is_incremental {
             // Keeps the compiler from computing it in G90 too.
             cold_path();
-            self.remove_residue(state.programmed[axis] + value)
+            self.remove_residue(state.programmed_position[axis] + value)
         } else {
             value
         };
@@ -126,9 +126,9 @@ impl ControlData {
         state: &State,
         basis: &CoordinateBasis,
     ) -> (f64, f64) {
-        let from = state.programmed[axis];
+        let from = state.programmed_position[axis];
         let travel = if basis.is_incremental { value } else { shortest_rotation(from, value) };
-        (self.wrap_angle(axis, from + travel), self.remove_residue(state.machine[axis] + travel))
+        (self.wrap_angle(axis, from + travel), self.remove_residue(state.machine_position[axis] + travel))
     }
 
     /// Moves a point to the position of a radius and an angle.
@@ -175,7 +175,7 @@ impl ControlData {
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
         let travel = self.squared_travel(0..self.settings.axes.len(), from, to);
-        self.travel_time(state, state.codes.f, travel, f_in_block)
+        self.travel_time(state, state.modal_words.f, travel, f_in_block)
     }
 
     /// Returns the distance of a move of these axes.
@@ -212,7 +212,7 @@ impl ControlData {
         length: f64,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        self.path_feed_time(state, state.codes.f, (length, || inch_length(length, 0.0)), f_in_block)
+        self.path_feed_time(state, state.modal_words.f, (length, || inch_length(length, 0.0)), f_in_block)
     }
 
     #[inline(always)]
@@ -233,7 +233,7 @@ impl ControlData {
             return Ok((MmPerMin(length * f), 60.0 / f));
         }
         let per_minute = match state.modal.feed_mode {
-            FeedMode::PerRevolution => f * state.codes.s,
+            FeedMode::PerRevolution => f * state.modal_words.s,
             FeedMode::PerMinute | FeedMode::InverseTime => f,
         };
         if per_minute <= 0.0 {

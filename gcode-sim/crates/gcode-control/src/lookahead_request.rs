@@ -23,7 +23,7 @@ impl Planner<'_> {
     /// Passes the events of a plan through the lookahead if compensation or a corner word is active.
     pub(super) fn plan_lookahead(
         &self,
-        axis_use: Option<AxisWordUse>,
+        axis_word_use: Option<AxisWordUse>,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
         if self.words.corner.is_some() && plan.corner.is_none() {
@@ -42,7 +42,7 @@ impl Planner<'_> {
         let motion = plan.state.modal.motion;
         let uses =
             |lookahead: LookaheadUse| self.words.g_codes().find(|row| row.facts.lookahead == lookahead);
-        let threads = axis_use.is_none() && motion == Motion::Thread && plan.commands_axes;
+        let threads = axis_word_use.is_none() && motion == Motion::Thread && plan.commands_axes;
         let thread = threads.then(|| g_codes::name(motion.code()));
         let refused_code = uses(LookaheadUse::Refused).map(|row| g_codes::name(row.code)).or(thread);
         if let Some(code) = refused_code
@@ -69,8 +69,8 @@ impl Planner<'_> {
                 || plan.commands_axes && plan.state.modal.cycle.is_some(),
             blocks_lookahead: !plan.stops.is_empty() || matches!(plan.flow, BlockFlow::End),
             counts_as_block: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
-            has_zero_length: axis_use.is_none() && (self.names(plane.0) || self.names(plane.1)),
-            is_cut: axis_use.is_none()
+            has_zero_length: axis_word_use.is_none() && (self.names(plane.0) || self.names(plane.1)),
+            is_cut: axis_word_use.is_none()
                 && matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise),
             is_dwell: uses(LookaheadUse::Dwell).is_some(),
             blend: plan.corner,
@@ -78,7 +78,7 @@ impl Planner<'_> {
             backtrace: self.flow.backtrace(),
         };
         plan.lookahead.clone_from(&self.registers.lookahead);
-        plan.lookahead.start_at(self.registers.state.machine);
+        plan.lookahead.start_at(self.registers.state.machine_position);
         if plan.cycle_plan.is_none() {
             plan.events.append(&mut plan.events_after_motion);
         }
@@ -86,7 +86,7 @@ impl Planner<'_> {
         plan.events.clear();
         plan.uses_lookahead = true;
         if let Some(drill) = &mut plan.cycle_plan {
-            drill.start_state.machine = plan.lookahead.end_path();
+            drill.start_state.machine_position = plan.lookahead.end_path();
         }
         Ok(())
     }
@@ -98,7 +98,7 @@ impl Planner<'_> {
             CutterSide::Left => 1.0,
             CutterSide::Right => -1.0,
         };
-        if state.codes.d == 0 {
+        if state.modal_words.d == 0 {
             return Ok(None);
         }
         let (mirrored, _) = state.transform.arc_effect(self.data.plane_axes(state.modal.plane)?);
@@ -118,10 +118,11 @@ impl Planner<'_> {
         if first == 0.0 && second == 0.0 {
             return Ok(None);
         }
-        let mut tip = state.programmed;
+        let mut tip = state.programmed_position;
         tip[plane.0] += first;
         tip[plane.1] += second;
-        let (from, to) = (state.transform.forward(state.programmed), state.transform.forward(tip));
+        let (from, to) =
+            (state.transform.work_position(state.programmed_position), state.transform.work_position(tip));
         Ok(Some(Point::new(to[plane.0] - from[plane.0], to[plane.1] - from[plane.1])))
     }
 

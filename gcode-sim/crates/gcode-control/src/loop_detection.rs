@@ -156,7 +156,7 @@ impl Fingerprint {
             program: flow.frame.program,
             next: flow.frame.next,
             callers: flow.callers.len(),
-            machine: registers.state.machine,
+            machine: registers.state.machine_position,
             vars: registers.variables.clone(),
             differing_index: 0,
         }
@@ -165,7 +165,7 @@ impl Fingerprint {
     /// Returns false if one of the values that differ most often differs; a loop counter does in nearly all jumps.
     #[inline]
     fn may_match(&self, executor: &Executor) -> bool {
-        self.machine[0].to_bits() == executor.registers.state.machine[0].to_bits()
+        self.machine[0].to_bits() == executor.registers.state.machine_position[0].to_bits()
             && self.next == executor.flow.frame.next
             && !self.vars.differs_at(self.differing_index, &executor.registers.variables)
     }
@@ -176,7 +176,7 @@ impl Fingerprint {
         if !self.may_match(executor)
             || self.program != flow.frame.program
             || self.callers != flow.callers.len()
-            || self.machine.0.map(f64::to_bits) != registers.state.machine.0.map(f64::to_bits)
+            || self.machine.0.map(f64::to_bits) != registers.state.machine_position.0.map(f64::to_bits)
         {
             return false;
         }

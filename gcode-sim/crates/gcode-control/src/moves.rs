@@ -32,7 +32,7 @@ impl Planner<'_> {
         let is_compensation_on =
             |row: &&GCodeRow| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
         if let Some(row) = self.words.g_codes().find(is_compensation_on)
-            && plan.state.codes.h == 0
+            && plan.state.modal_words.h == 0
             && !self.words.has(b'H')
         {
             plan.notes.push(Note::LengthOffsetZero(row.code));
@@ -96,7 +96,7 @@ impl Planner<'_> {
             Motion::Linear => self.locate(self.push_feed(plan, &endpoint.machine))?,
             Motion::Clockwise | Motion::Counterclockwise => self.plan_arc(plan, &endpoint)?,
         }
-        plan.state.programmed = endpoint.programmed;
+        plan.state.programmed_position = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
     }
@@ -110,7 +110,7 @@ impl Planner<'_> {
             self.data.recompute_position(&mut plan.state);
             return Ok(());
         }
-        let to = self.data.to_machine(&plan.state, &plan.state.programmed);
+        let to = self.data.to_machine(&plan.state, &plan.state.programmed_position);
         if plan.state.modal.motion == Motion::Rapid {
             self.push_rapid(plan, &to);
             return Ok(());
@@ -128,7 +128,7 @@ impl Planner<'_> {
 
     /// Returns the end point as [`Planner::resolve_endpoint`], without the event of the axes that are unknown there.
     pub(super) fn compute_endpoint(&self, state: &mut State) -> ExecResult<Endpoint> {
-        let State { programmed, machine, unknown, .. } = *state;
+        let State { programmed_position: programmed, machine_position: machine, unknown, .. } = *state;
         let mut endpoint = Endpoint { programmed, machine, unknown };
         let basis = self.data.coordinate_basis(state);
         self.resolve_axes(state, &basis, &mut endpoint)?;
@@ -136,7 +136,7 @@ impl Planner<'_> {
         if state.modal.polar == Polar::On {
             self.resolve_polar(state, &mut endpoint.programmed)?;
         }
-        if state.last_end_point.is_some() && state.modal.distance == Distance::Absolute {
+        if state.end_before_transform.is_some() && state.modal.distance == Distance::Absolute {
             self.note_axes_left_out(state);
         }
         let machine = self.data.to_machine(state, &endpoint.programmed);
@@ -156,7 +156,7 @@ impl Planner<'_> {
     #[cold]
     fn note_axes_left_out(&self, state: &State) {
         let end = self.data.move_end(state);
-        let is_left_out = |axis| !self.names(axis) && end[axis] != state.programmed[axis];
+        let is_left_out = |axis| !self.names(axis) && end[axis] != state.programmed_position[axis];
         if (0..self.data.settings.axes.len()).any(is_left_out) {
             self.registers.block_effects.record_note(Note::AxisLeftOut);
         }
@@ -177,7 +177,7 @@ impl Planner<'_> {
 
     /// Emits a rapid to a point in machine coordinates, unless the tool is there.
     pub(super) fn push_rapid(&self, plan: &mut BlockPlan, to: &Position) {
-        let from = &plan.state.machine;
+        let from = &plan.state.machine_position;
         if to != from {
             plan.push_move(EventKind::Rapid { to: *to }, self.data.rapid_seconds(from, to));
         } else {
@@ -187,7 +187,7 @@ impl Planner<'_> {
 
     /// Emits a straight cut; an alarm without a feed, even if the cut has no length.
     pub(super) fn push_feed(&self, plan: &mut BlockPlan, to: &Position) -> Result<(), Alarm> {
-        let from = &plan.state.machine;
+        let from = &plan.state.machine_position;
         let (rate, seconds) = self.data.feed_seconds(&plan.state, from, to, self.words.has(b'F'))?;
         if to != from {
             plan.push_move(EventKind::Feed { to: *to, rate }, seconds);
@@ -206,22 +206,22 @@ impl Planner<'_> {
             let what = "F without a decimal point (its unit differs between controls) in G33".into();
             return Err(Alarm::NotSimulated { what }.located_at(self.words.span(b'F')));
         }
-        let turning = plan.state.spindle != SpindleDirection::Off && plan.state.codes.s > 0.0;
+        let turning = plan.state.spindle != SpindleDirection::Off && plan.state.modal_words.s > 0.0;
         if !turning {
             return Err(self.not_simulated("G33 with the spindle stopped (a control waits for it)"));
         }
-        let lead = plan.state.codes.f * if plan.state.modal.unit == Unit::Inch { 25.4 } else { 1.0 };
+        let lead = plan.state.modal_words.f * if plan.state.modal.unit == Unit::Inch { 25.4 } else { 1.0 };
         if lead <= 0.0 {
             return Err(Alarm::FeedZero.located_at(self.block));
         }
-        let from = plan.state.machine;
+        let from = plan.state.machine_position;
         if to == from {
             return Ok(());
         }
         let distance = |axis: usize| (to[axis] - from[axis]).abs();
         let longest = (0..MAX_AXES).map(distance).fold(0.0, f64::max);
         let length = (0..MAX_AXES).map(|axis| distance(axis) * distance(axis)).sum::<f64>().sqrt();
-        let minutes = longest / (lead * plan.state.codes.s);
+        let minutes = longest / (lead * plan.state.modal_words.s);
         let rate = MmPerMin(length / minutes);
         plan.push_move(EventKind::Feed { to, rate }, minutes * 60.0);
         Ok(())
@@ -238,7 +238,7 @@ impl Planner<'_> {
             Plane::Zx => (b'K', b'I', b'J'),
             Plane::Yz => (b'J', b'K', b'I'),
         };
-        let start = (state.programmed[plane.0], state.programmed[plane.1]);
+        let start = (state.programmed_position[plane.0], state.programmed_position[plane.1]);
         let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
         let centre = if let Some(radius) = self.dimension(b'R', state)? {
@@ -246,7 +246,7 @@ impl Planner<'_> {
             self.words.mark_read(Letters::of(b"IJK"));
             if start == end {
                 // An arc by R that ends at its start has no length.
-                if endpoint.programmed != state.programmed {
+                if endpoint.programmed != state.programmed_position {
                     return Err(
                         self.not_simulated("an arc by R that ends at its start while another axis moves")
                     );
@@ -303,7 +303,7 @@ impl Planner<'_> {
         if state.transform.tilt.is_some() {
             return Err(self.not_simulated("an arc in a tilted plane"));
         }
-        let mut centre_point = state.programmed;
+        let mut centre_point = state.programmed_position;
         (centre_point[plane.0], centre_point[plane.1]) = centre;
         let middle = self.data.to_machine_unrounded(state, &centre_point);
         let centre = (middle[plane.0], middle[plane.1]);
@@ -314,7 +314,7 @@ impl Planner<'_> {
             if self.words.has(b'R') {
                 return Err(self.not_simulated("an arc by R under unequal scaling"));
             }
-            let (start, end) = (&state.machine, &endpoint.machine);
+            let (start, end) = (&state.machine_position, &endpoint.machine);
             let (start, end) = ((start[plane.0], start[plane.1]), (end[plane.0], end[plane.1]));
             self.radius_and_sweep(start, end, centre, (sweep.0 < 0.0) != is_mirrored)?
         };
@@ -387,7 +387,7 @@ impl Planner<'_> {
         let is_allowed = modal.plane == Plane::Xy
             && modal.cycle.is_none()
             && modal.cutter == CutterSide::Off
-            && plan.state.transform.is_none();
+            && plan.state.transform.is_identity();
         if !is_allowed || self.words.has_any(b"XY") {
             return Err(self.not_simulated(format!(
                 "{code} with X, Y, another plane, compensation, rotation or a canned cycle"
@@ -401,9 +401,9 @@ impl Planner<'_> {
         for _ in 0..passes {
             let endpoint = self.resolve_endpoint(plan)?;
             self.locate(self.push_feed(plan, &endpoint.machine))?;
-            plan.state.programmed = endpoint.programmed;
+            plan.state.programmed_position = endpoint.programmed;
             for radius in &radii {
-                let start = plan.state.machine;
+                let start = plan.state.machine_position;
                 let (centre, half_circle_centre) =
                     ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
                 let mut edge = start;
@@ -434,7 +434,7 @@ impl Planner<'_> {
             (Some(_), None) => return Err(missing('Q')),
             (None, Some(_)) => return Err(missing('K')),
         };
-        let number = state.codes.d;
+        let number = state.modal_words.d;
         let unknown = || Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block);
         let tool = self.data.offset_radius(number).ok_or_else(unknown)?;
         let out_of_range = |letter: char, value| {

@@ -74,7 +74,7 @@ impl Control {
                     registers.collect_targets(op, &mut targets);
                     unsimulated.writes = targets.iter().any(|number| *number >= 1000);
                 }
-                OpKind::Empty | OpKind::AssignFree(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
+                OpKind::Empty | OpKind::AssignDirect(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
             }
         })
     }
@@ -90,7 +90,7 @@ impl Control {
             OpKind::Empty
             | OpKind::Words(_)
             | OpKind::Statement(_)
-            | OpKind::AssignFree(_)
+            | OpKind::AssignDirect(_)
             | OpKind::Alarm(_) => None,
         };
         self.executor.registers.without_side_effects(|registers| {
@@ -144,7 +144,7 @@ impl Registers {
 
     fn collect_targets(&self, op: &Op, numbers: &mut Vec<u32>) {
         match self.guarded_operation(op.kind()) {
-            OpKind::AssignFree(Assign { variable, .. }) => numbers.push(u32::from(*variable)),
+            OpKind::AssignDirect(Assign { variable, .. }) => numbers.push(u32::from(*variable)),
             OpKind::Statement(statement) => self.collect_statement_targets(statement, numbers),
             OpKind::Empty | OpKind::Words(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
         }
@@ -152,7 +152,7 @@ impl Registers {
 
     fn collect_statement_targets(&self, statement: &Statement, numbers: &mut Vec<u32>) {
         match statement {
-            Statement::AssignFree(Assign { variable, .. }) => numbers.push(u32::from(*variable)),
+            Statement::AssignDirect(Assign { variable, .. }) => numbers.push(u32::from(*variable)),
             Statement::Assign { target, .. } => {
                 numbers.extend(self.resolve_target(target).map(Slot::number));
             }
@@ -176,7 +176,7 @@ impl Registers {
         if words.call().is_some() {
             return;
         }
-        let words = self.data.unskipped(words).0;
+        let words = self.data.words_not_skipped(words).0;
         let mut distance = self.state.modal.distance;
         let mut axis_words = AxisWords::Move;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
@@ -228,7 +228,7 @@ impl Registers {
 
     fn collect_unsimulated(&self, words: &Words, unsimulated: &mut UnsimulatedCodes) {
         unsimulated.writes |= self.state.is_in_parameter_input;
-        let (words, switch) = self.data.unskipped(words);
+        let (words, switch) = self.data.words_not_skipped(words);
         unsimulated.block_skips.extend(switch.map(skip_text));
         for word in words.list.iter().filter(|word| matches!(word.letter, b'G' | b'M')) {
             let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };

@@ -14,11 +14,15 @@ use gcode_lang::units::Seconds;
 
 impl Planner<'_> {
     /// 4. Plans what a block does instead of moving by its modal codes.
-    pub(super) fn execute_axis_use(&self, axis_use: AxisWordUse, plan: &mut BlockPlan) -> ExecResult<()> {
+    pub(super) fn plan_axis_word_use(
+        &self,
+        axis_word_use: AxisWordUse,
+        plan: &mut BlockPlan,
+    ) -> ExecResult<()> {
         if !self.names_axis() {
             plan.notes.extend(self.words.g_codes().filter_map(|row| self.note_without_axis(row)));
         }
-        match axis_use {
+        match axis_word_use {
             AxisWordUse::OneShot(one) => self.execute_one_shot(one, plan),
             AxisWordUse::AdditionalWork => {
                 let number = self.words.count(b'P')?.unwrap_or(1);
@@ -76,19 +80,19 @@ impl Planner<'_> {
             OneShot::FromReference => self.plan_return_from_reference(plan),
             OneShot::Skip => self.plan_skip(plan),
             OneShot::SetLocalCoordinateSystem => {
-                self.shift_coordinate_system(plan, |state, axis, value| state.local_offset[axis] = value)
+                self.shift_coordinate_system(plan, |state, axis, value| state.g52_shift[axis] = value)
             }
             // The programmed position gets these coordinates, without the length offset; G52 ends on these axes.
             OneShot::SetWorkCoordinateSystem => self.shift_coordinate_system(plan, |state, axis, value| {
-                let work = state.transform.forward(state.programmed)[axis];
-                let shift = state.coordinate_shift[axis] + state.local_offset[axis] + work - value;
-                state.coordinate_shift[axis] = self.data.remove_residue(shift);
-                state.local_offset[axis] = 0.0;
+                let work = state.transform.work_position(state.programmed_position)[axis];
+                let shift = state.g92_shift[axis] + state.g52_shift[axis] + work - value;
+                state.g92_shift[axis] = self.data.remove_residue(shift);
+                state.g52_shift[axis] = 0.0;
                 state.set_shift_origin(axis);
             }),
             OneShot::PresetWorkCoordinateSystem => self.shift_coordinate_system(plan, |state, axis, _| {
-                (state.coordinate_shift[axis], state.local_offset[axis]) = (0.0, 0.0);
-                state.unknown_shift &= !(1 << axis);
+                (state.g92_shift[axis], state.g52_shift[axis]) = (0.0, 0.0);
+                state.unknown_g92_shift &= !(1 << axis);
             }),
             OneShot::SingleDirection if cycle => Err(self.not_simulated("G60 (in a canned cycle)")),
             OneShot::SingleDirection => self.plan_single_direction(plan),
@@ -145,14 +149,14 @@ impl Planner<'_> {
         }
         self.push_rapid(plan, &before);
         self.push_rapid(plan, &endpoint.machine);
-        plan.state.programmed = endpoint.programmed;
+        plan.state.programmed_position = endpoint.programmed;
         plan.commands_axes = self.names_axis();
         Ok(())
     }
 
     /// G53: by rapid to machine coordinates, without the length offset.
     fn plan_machine_move(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        let mut to = plan.state.machine;
+        let mut to = plan.state.machine_position;
         let is_incremental = plan.state.modal.distance == Distance::Incremental;
         if is_incremental && !self.data.settings.undocumented.g53_moves_in_g91 {
             self.words.mark_read(Letters::of(b"ABCUVWXYZ"));
@@ -180,7 +184,7 @@ impl Planner<'_> {
     fn plan_reference_check(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         self.rapid_to_endpoint(plan)?;
         for axis in self.named_axes() {
-            if self.data.wrap_angle(axis, plan.state.machine[axis]) != 0.0 {
+            if self.data.wrap_angle(axis, plan.state.machine_position[axis]) != 0.0 {
                 let letter = self.data.settings.axes.letter(axis);
                 return Err(Alarm::NotAtReference { letter }.located_at(self.block));
             }
@@ -192,7 +196,7 @@ impl Planner<'_> {
     fn rapid_to_endpoint(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let endpoint = self.resolve_endpoint(plan)?;
         self.push_rapid(plan, &endpoint.machine);
-        plan.state.programmed = endpoint.programmed;
+        plan.state.programmed_position = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
     }
@@ -200,12 +204,12 @@ impl Planner<'_> {
     /// G28 and G30: by rapid over the intermediate point to the reference position, the named axes only.
     fn plan_reference_return(&self, plan: &mut BlockPlan, reference: &Position) -> ExecResult<()> {
         self.rapid_to_endpoint(plan)?;
-        let intermediate = plan.state.machine;
+        let intermediate = plan.state.machine_position;
         let (mut home, mut named) = (intermediate, 0);
         for axis in self.named_axes() {
             named |= 1 << axis;
-            plan.state.intermediate[axis] = intermediate[axis] - self.data.zero(&plan.state, axis);
-            plan.state.has_intermediate |= 1 << axis;
+            plan.state.intermediate_point[axis] = intermediate[axis] - self.data.zero(&plan.state, axis);
+            plan.state.intermediate_axes |= 1 << axis;
             let unknown = plan.state.unknown;
             plan.state.unknown_intermediate =
                 plan.state.unknown_intermediate.with_axes_of(1 << axis, unknown);
@@ -224,7 +228,7 @@ impl Planner<'_> {
 
     /// G28 of a Haas without an axis: all axes go straight home, and the length offset is cancelled.
     fn plan_home_all(&self, plan: &mut BlockPlan) {
-        let mut home = plan.state.machine;
+        let mut home = plan.state.machine_position;
         let count = self.data.settings.axes.len();
         for axis in 0..count {
             home[axis] = self.data.rollover_target(axis, home[axis], 0.0);
@@ -238,12 +242,12 @@ impl Planner<'_> {
 
     /// G29: by rapid over the intermediate point of the last G28 to the end point.
     fn plan_return_from_reference(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        let mut intermediate = plan.state.machine;
+        let mut intermediate = plan.state.machine_position;
         for axis in self.named_axes() {
-            if plan.state.has_intermediate >> axis & 1 == 0 {
+            if plan.state.intermediate_axes >> axis & 1 == 0 {
                 return Err(Alarm::NoIntermediatePoint.located_at(self.block));
             }
-            let point = plan.state.intermediate[axis] + self.data.zero(&plan.state, axis);
+            let point = plan.state.intermediate_point[axis] + self.data.zero(&plan.state, axis);
             intermediate[axis] = self.data.remove_residue(point);
             let unknown = plan.state.unknown_intermediate;
             plan.state.unknown = plan.state.unknown.with_axes_of(1 << axis, unknown);

@@ -150,7 +150,7 @@ pub(super) struct RunLog {
     /// Length of the printed lines with their ends.
     pub(super) printed_bytes: usize,
     /// M codes for the machine builder's logic, each with its first block.
-    pub(super) auxiliary_codes: BTreeMap<u32, Span>,
+    pub(super) builder_m_codes: BTreeMap<u32, Span>,
     /// Notes, each with its first block.
     pub(super) notes: BTreeMap<Note, Span>,
     /// Block that selected the active work coordinate system.

@@ -87,17 +87,17 @@ impl Executor {
             // Sums in the order of the axes have the same bits for any order of the words.
             resolved_move.travel = self.registers.data.squared_travel(
                 resolved_move.named.iter(),
-                &state.machine,
+                &state.machine_position,
                 &endpoint.machine,
             );
         }
-        let f = resolved_move.f.unwrap_or(state.codes.f);
+        let f = resolved_move.f.unwrap_or(state.modal_words.f);
         let (rate, seconds) = match resolved_move.motion {
             Motion::Rapid => (
                 MmPerMin::ZERO,
                 self.registers.data.rapid_seconds_of(
                     resolved_move.named.iter(),
-                    &state.machine,
+                    &state.machine_position,
                     &endpoint.machine,
                 ),
             ),
@@ -111,13 +111,13 @@ impl Executor {
 
         let state = &mut *self.registers.state;
         for axis in resolved_move.named.iter() {
-            (state.programmed[axis], state.machine[axis]) =
+            (state.programmed_position[axis], state.machine_position[axis]) =
                 (endpoint.programmed[axis], endpoint.machine[axis]);
         }
-        (state.modal.motion, state.codes.f) = (resolved_move.motion, f);
-        state.codes.n = op.number.unwrap_or(state.codes.n);
+        (state.modal.motion, state.modal_words.f) = (resolved_move.motion, f);
+        state.modal_words.n = op.number.unwrap_or(state.modal_words.n);
         self.record_work_use(self.registers.state.modal.work, true);
-        let to = &self.registers.state.machine;
+        let to = &self.registers.state.machine_position;
         match resolved_move.motion {
             _ if !resolved_move.travel.is_some() => {}
             _ if !sink.is_active() => self.count_move(seconds),
@@ -178,13 +178,15 @@ impl Registers {
             if to.abs() > basis.max_coordinate {
                 return None;
             }
-            resolved_move.travel.add(*to - state.machine[axis], self.data.settings.axes.is_rotary(axis));
+            resolved_move
+                .travel
+                .add(*to - state.machine_position[axis], self.data.settings.axes.is_rotary(axis));
         }
         // A word that makes an axis known has an event.
         (resolved_move.named.axes != 0 && resolved_move.named.axes & basis.learnable_axes == 0).then_some(())
     }
 
-    /// Returns the value of an axis word that is neither a literal nor a free variable; `None` for an alarm.
+    /// Returns the value of an axis word that is neither a literal nor a variable that is stored directly; `None` for an alarm.
     #[inline(never)]
     fn evaluate_axis_value(&self, words: &Words, value: &WordOperand) -> Option<Value> {
         self.evaluate_operand(words, value).ok()
@@ -211,7 +213,7 @@ impl Registers {
             && !self.state.is_in_parameter_input
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
-            && self.state.last_end_point.is_none()
+            && self.state.end_before_transform.is_none()
             && self.lookahead.is_idle()
             && self.data.settings.code_calls.is_empty()
             && self.data.settings.stroke_limits.is_none()
@@ -220,10 +222,10 @@ impl Registers {
 
     /// Returns true if the machine is at the programmed position, so that an axis that isn't named stays there.
     fn is_at_programmed_point(&self) -> bool {
-        self.state.transform.is_none()
+        self.state.transform.is_identity()
             && self.data.settings.rollover_axes().next().is_none()
-            && self.data.to_machine(&self.state, &self.state.programmed).0.map(f64::to_bits)
-                == self.state.machine.0.map(f64::to_bits)
+            && self.data.to_machine(&self.state, &self.state.programmed_position).0.map(f64::to_bits)
+                == self.state.machine_position.0.map(f64::to_bits)
     }
 }
 

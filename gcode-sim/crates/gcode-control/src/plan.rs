@@ -36,7 +36,7 @@ pub(super) struct BlockPlan {
     /// In the order of their M codes.
     pub(super) stops: Vec<StopKind>,
     /// M codes for the machine builder's logic.
-    pub(super) auxiliary_codes: Vec<u32>,
+    pub(super) builder_m_codes: Vec<u32>,
     pub(super) notes: Vec<Note>,
     pub(super) flow: BlockFlow,
 }
@@ -147,7 +147,7 @@ impl BlockPlan {
             lookahead: _,
             commands_axes,
             stops,
-            auxiliary_codes,
+            builder_m_codes,
             notes,
             flow,
         } = self;
@@ -158,7 +158,7 @@ impl BlockPlan {
         events_after_motion.clear();
         writes.clear();
         stops.clear();
-        auxiliary_codes.clear();
+        builder_m_codes.clear();
         notes.clear();
     }
 
@@ -176,7 +176,7 @@ impl BlockPlan {
 
     /// Adds a move; the machine then stands at its end.
     pub(super) fn push_move(&mut self, kind: EventKind, seconds: f64) {
-        self.state.machine = kind.end().copied().unwrap_or(self.state.machine);
+        self.state.machine_position = kind.end().copied().unwrap_or(self.state.machine_position);
         self.events.push((kind, seconds));
     }
 }

@@ -23,7 +23,7 @@ pub(super) struct Planner<'a> {
     pub(super) data: &'a ControlData,
     pub(super) flow: &'a ProgramFlow,
     /// Words as lowered, with the call of the block.
-    pub(super) lowered: &'a Words,
+    pub(super) lowered_words: &'a Words,
     /// Evaluated words.
     pub(super) words: &'a BlockWords,
     /// Span of the block.

@@ -24,14 +24,14 @@ impl Planner<'_> {
             return Err(self.not_simulated("G31 (multi-step and torque limit skip)"));
         }
         let endpoint = self.resolve_endpoint(plan)?;
-        let (from, to) = (plan.state.machine, endpoint.machine);
+        let (from, to) = (plan.state.machine_position, endpoint.machine);
         let (rate, seconds) =
             self.locate(self.data.feed_seconds(&plan.state, &from, &to, self.words.has(b'F')))?;
         plan.skip_plan =
             Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, span: self.block });
         plan.push_move(EventKind::Skip { to, rate, has_signal: false }, seconds);
         plan.state.skip_position = to;
-        plan.state.programmed = endpoint.programmed;
+        plan.state.programmed_position = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
     }
@@ -49,7 +49,7 @@ impl Planner<'_> {
 
 impl Registers {
     /// Ends the planned motion where the skip signal comes; returns the alarm that follows the motion.
-    pub(super) fn resolve_skip_signal<S: EventSink>(
+    pub(super) fn resolve_probe_skip<S: EventSink>(
         &self,
         plan: &mut BlockPlan,
         sink: &mut S,
@@ -88,7 +88,7 @@ impl Registers {
         let end = point_at(stopped);
         plan.events[event] = (EventKind::Skip { to: end, rate, has_signal: true }, stopped * seconds);
         plan.state.skip_position = point_at(latched);
-        plan.state.machine = end;
+        plan.state.machine_position = end;
         if !self.data.settings.undocumented.skip_keeps_end {
             self.data.recompute_position(&mut plan.state);
         }

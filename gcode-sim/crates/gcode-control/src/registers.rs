@@ -192,7 +192,7 @@ mod tests {
         };
         assert!(!differs(|_| {}));
         assert!(differs(|r| r.variables.set(500, Value::Number(0.0))), "vacant is not 0");
-        assert!(differs(|r| r.state.machine[1] = 0.001));
+        assert!(differs(|r| r.state.machine_position[1] = 0.001));
         assert!(differs(|r| r.panel.outputs = 1));
         assert!(differs(|r| r.data.settings.date += 1));
         assert!(differs(|r| r.data.set_work_offset(1, 0, 0.0)), "G54 has been set");

@@ -73,7 +73,7 @@ impl Control {
         };
         let systems =
             data.offsets.work.iter().enumerate().map(|(index, values)| (system_name(index), values));
-        let shifts = [("G52".to_owned(), &state.local_offset), ("G92".to_owned(), &state.coordinate_shift)];
+        let shifts = [("G52".to_owned(), &state.g52_shift), ("G92".to_owned(), &state.g92_shift)];
         for (system, values) in systems.chain(shifts) {
             for (axis, letter) in axes.iter().filter(|(axis, _)| values[*axis] != 0.0) {
                 push(ResidualKind::WorkOffset, format!("{system} {letter}"), values[axis]);

@@ -15,21 +15,21 @@ pub struct State {
     /// Modal codes.
     pub modal: Modal,
     /// Programmed position in the work coordinate system, before mirror, scaling and rotation, without the tool length.
-    pub(super) programmed: Position,
+    pub(super) programmed_position: Position,
     /// Position that #5001… show until the first move after G51.1, G51, G68 or their end.
-    pub(super) last_end_point: Option<EndPoint>,
+    pub(super) end_before_transform: Option<EndBeforeTransform>,
     /// Position in machine coordinates, tool length included.
-    pub(super) machine: Position,
+    pub(super) machine_position: Position,
     /// Shift of G52.
-    pub(super) local_offset: Position,
+    pub(super) g52_shift: Position,
     /// Shift of G92.
-    pub(super) coordinate_shift: Position,
+    pub(super) g92_shift: Position,
     /// Active tool length offset of each axis.
     pub(super) length_offset: Position,
     /// Intermediate point of G28 for G29, from the work zero, tool length included.
-    pub(super) intermediate: Position,
+    pub(super) intermediate_point: Position,
     /// Axes with an intermediate point, as bits.
-    pub(super) has_intermediate: u8,
+    pub(super) intermediate_axes: u8,
     /// Axes that were unknown at the intermediate point.
     pub(super) unknown_intermediate: UnknownAxes,
     /// Axes of unknown position on the part, in programmed coordinates.
@@ -37,7 +37,7 @@ pub struct State {
     /// Axes that the last event has stated as unknown, in machine coordinates.
     pub(super) stated_unknown: UnknownAxes,
     /// Axes whose coordinates count from an unknown position since G92, as bits.
-    pub(super) unknown_shift: u8,
+    pub(super) unknown_g92_shift: u8,
     /// End of the last G31 in machine coordinates, #5061….
     pub(super) skip_position: Position,
     /// Radius of cutter compensation, read by D or G41, G42; negative if it swaps sides.
@@ -45,8 +45,8 @@ pub struct State {
     pub(super) transform: Transform,
     /// Modal data of the canned cycle.
     pub cycle: CycleState,
-    /// Codes with a number.
-    pub codes: Codes,
+    /// Modal words with a number.
+    pub modal_words: ModalWords,
     pub(super) polar: PolarPoint,
     /// Spindle.
     pub spindle: SpindleDirection,
@@ -71,15 +71,15 @@ impl State {
     pub(super) fn length_compensation(&self) -> LengthCompensation {
         match self.modal.length {
             Length::Off => LengthCompensation::Off,
-            Length::Plus => LengthCompensation::Plus(self.codes.h),
-            Length::Minus => LengthCompensation::Minus(self.codes.h),
+            Length::Plus => LengthCompensation::Plus(self.modal_words.h),
+            Length::Minus => LengthCompensation::Minus(self.modal_words.h),
         }
     }
 }
 
 /// Programmed end of the last move, after a change of the transform has changed the programmed position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct EndPoint {
+pub(super) struct EndBeforeTransform {
     pub(super) programmed: Position,
     /// Tool position in the work coordinate system at the change; later changes of an offset move both.
     pub(super) work: Position,
@@ -96,9 +96,9 @@ pub(super) struct PolarPoint {
     pub(super) is_incremental: bool,
 }
 
-/// Codes with a number that stays in effect: #4107…#4130.
+/// Words whose number stays in effect: #4107…#4130.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Codes {
+pub struct ModalWords {
     /// Feed, in the unit and mode in which it was commanded.
     pub f: f64,
     /// Spindle speed.
@@ -156,7 +156,7 @@ pub(super) struct CycleLevel {
 
 impl CycleState {
     /// Returns the cycle with pecks that have their commanded length after the scaling of the levels by `scale_factor`.
-    pub(super) fn unscaled(self, scale_factor: f64) -> Self {
+    pub(super) fn with_unscaled_pecks(self, scale_factor: f64) -> Self {
         let pecks = self.pecks.map(|pecks| PeckSchedule {
             first: pecks.first / scale_factor,
             decrement: pecks.decrement / scale_factor,
@@ -314,7 +314,7 @@ pub(super) struct Transform {
 pub(super) struct Tilt {
     pub(super) axes: [AxisIndex; 3],
     origin: [f64; 3],
-    rows: [[f64; 3]; 3],
+    matrix: [[f64; 3]; 3],
 }
 
 impl Tilt {
@@ -325,21 +325,21 @@ impl Tilt {
             [si * ck + ci * cj * sk, -si * sk + ci * cj * ck, -ci * sj],
             [sj * sk, sj * ck, cj],
         ];
-        Self { axes, origin, rows }
+        Self { axes, origin, matrix: rows }
     }
 
-    fn forward(&self, point: &mut Position) {
+    fn apply(&self, point: &mut Position) {
         let feature = self.axes.map(|axis| point[axis]);
         for (i, axis) in self.axes.into_iter().enumerate() {
-            let rotated: f64 = (0..3).map(|k| self.rows[i][k] * feature[k]).sum();
+            let rotated: f64 = (0..3).map(|k| self.matrix[i][k] * feature[k]).sum();
             point[axis] = self.origin[i] + rotated;
         }
     }
 
-    fn backward(&self, point: &mut Position) {
+    fn revert(&self, point: &mut Position) {
         let from = [0, 1, 2].map(|i| point[self.axes[i]] - self.origin[i]);
         for (i, axis) in self.axes.into_iter().enumerate() {
-            point[axis] = (0..3).map(|k| self.rows[k][i] * from[k]).sum();
+            point[axis] = (0..3).map(|k| self.matrix[k][i] * from[k]).sum();
         }
     }
 }
@@ -387,7 +387,7 @@ impl PlaneRotation {
 
 impl Transform {
     #[inline]
-    pub(super) fn is_none(&self) -> bool {
+    pub(super) fn is_identity(&self) -> bool {
         self.mirrored_axes == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
     }
 
@@ -402,8 +402,8 @@ impl Transform {
         rotated | tilted | scaled
     }
 
-    pub(super) fn forward(&self, mut point: Position) -> Position {
-        if self.is_none() {
+    pub(super) fn work_position(&self, mut point: Position) -> Position {
+        if self.is_identity() {
             return point;
         }
         self.reflect(&mut point);
@@ -416,17 +416,17 @@ impl Transform {
             rotation.apply(&mut point, rotation.sine);
         }
         if let Some(tilt) = &self.tilt {
-            tilt.forward(&mut point);
+            tilt.apply(&mut point);
         }
         point
     }
 
-    pub(super) fn backward(&self, mut point: Position) -> Position {
-        if self.is_none() {
+    pub(super) fn programmed_position(&self, mut point: Position) -> Position {
+        if self.is_identity() {
             return point;
         }
         if let Some(tilt) = &self.tilt {
-            tilt.backward(&mut point);
+            tilt.revert(&mut point);
         }
         if let Some(rotation) = &self.rotation {
             rotation.apply(&mut point, -rotation.sine);
@@ -478,8 +478,8 @@ mod tests {
         let transform = Transform { rotation: Some(rotation), ..Transform::default() };
         let mut point = Position::default();
         point[0] = 10.0;
-        let rotated = transform.forward(point);
+        let rotated = transform.work_position(point);
         assert_eq!((rotated[0], rotated[1]), (0.0, 10.0));
-        assert_eq!(transform.backward(rotated), point);
+        assert_eq!(transform.programmed_position(rotated), point);
     }
 }

@@ -20,22 +20,22 @@ const MAX_ALARM_NUMBER: u16 = 4095;
 impl Executor {
     /// Assigns the result of code; inlined into the loop over the blocks.
     #[inline(always)]
-    pub(super) fn assign(&mut self, Assign { variable, code }: &Assign) -> ExecResult<()> {
+    pub(super) fn execute_assignment(&mut self, Assign { variable, code }: &Assign) -> ExecResult<()> {
         let value = self.registers.evaluate(code, RoundingTarget::Increment)?;
-        self.registers.variables.set_free(*variable, value);
+        self.registers.variables.set_direct(*variable, value);
         Ok(())
     }
 
-    /// Assigns as [`Executor::assign`], out of line.
+    /// Assigns as [`Executor::execute_assignment`], out of line.
     #[inline(never)]
-    pub(super) fn assign_out_of_line(&mut self, assign: &Assign) -> ExecResult<()> {
-        self.assign(assign)
+    pub(super) fn execute_assignment_out_of_line(&mut self, assign: &Assign) -> ExecResult<()> {
+        self.execute_assignment(assign)
     }
 
     /// Executes one statement. The frame already points to the next block; jumps change that. The statements of most loops
     /// are inlined into the loop over the blocks.
     #[inline(always)]
-    pub(super) fn statement<S: EventSink>(
+    pub(super) fn execute_statement<S: EventSink>(
         &mut self,
         program: &Program,
         statement: &Statement,
@@ -51,14 +51,14 @@ impl Executor {
                 self.end_iteration(*number, *start)?;
                 loop_detector.record_jump(self);
             }
-            _ => return self.any_statement(program, statement, loop_detector, sink),
+            _ => return self.execute_statement_out_of_line(program, statement, loop_detector, sink),
         }
         Ok(())
     }
 
-    /// Executes a statement as [`Executor::statement`], out of line.
+    /// Executes a statement as [`Executor::execute_statement`], out of line.
     #[inline(never)]
-    pub(super) fn any_statement<S: EventSink>(
+    pub(super) fn execute_statement_out_of_line<S: EventSink>(
         &mut self,
         program: &Program,
         statement: &Statement,
@@ -67,7 +67,7 @@ impl Executor {
     ) -> ExecResult<()> {
         let next = self.flow.frame.next;
         match statement {
-            Statement::AssignFree(assign) => self.assign_out_of_line(assign)?,
+            Statement::AssignDirect(assign) => self.execute_assignment_out_of_line(assign)?,
             Statement::Assign { target, target_span, value, text } => {
                 let slot = locate(self.registers.resolve_target(target), *target_span)?;
                 let value = self.registers.operand(value)?;
@@ -85,7 +85,7 @@ impl Executor {
             Statement::IfThen { condition, then } => {
                 if self.registers.evaluate_condition(condition)? {
                     // An assignment or a GOTO: lowering accepts nothing else.
-                    return self.any_statement(program, then, loop_detector, sink);
+                    return self.execute_statement_out_of_line(program, then, loop_detector, sink);
                 }
             }
             Statement::While { condition, number, end } => {
@@ -119,7 +119,7 @@ impl Executor {
         let before = self.registers.clone();
         let stops = self.log.stops.len();
         let mut deferred = DeferredEvents::default();
-        let mut assign = |one| self.any_statement(program, one, loop_detector, &mut deferred);
+        let mut assign = |one| self.execute_statement_out_of_line(program, one, loop_detector, &mut deferred);
         let result = assignments.iter().try_for_each(&mut assign);
         if result.is_err() {
             let block_effects = std::mem::take(&mut self.registers.block_effects);
@@ -207,7 +207,7 @@ impl Executor {
         sink: &mut S,
     ) -> ExecResult<()> {
         match slot {
-            Slot::Free(index) => self.registers.variables.set_free(index, value.into()),
+            Slot::Free(index) => self.registers.variables.set_direct(index, value.into()),
             Slot::Other(number) => self.write_other(number, value, text, span, sink)?,
         }
         Ok(())

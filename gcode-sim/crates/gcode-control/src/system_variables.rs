@@ -112,7 +112,7 @@ const HAAS: &[VariableRow] = &[
     row(2401, 2600, Some(|r, n| Ok(2.0 * r.tool_offset(Register::DGeometry, n)?)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v / 2.0))),
     row(2601, 2800, Some(|r, n| Ok(2.0 * r.tool_offset(Register::DWear, n)?)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v / 2.0))),
     vacant(3100),
-    row(5201, 5220, Some(|r, n| r.position(n, |r, axis| r.state.local_offset[axis])), Some(|r, n, v| r.set_local(n, v))),
+    row(5201, 5220, Some(|r, n| r.position(n, |r, axis| r.state.g52_shift[axis])), Some(|r, n, v| r.set_local(n, v))),
 ];
 
 /// Ranges that a Haas has and the simulator lacks; on a Fanuc they have another meaning or none.
@@ -206,7 +206,7 @@ impl Registers {
 
     /// Returns #4001… and #4201… by their last three digits.
     fn modal_information(&self, item: u32) -> Result<f64, Alarm> {
-        let codes = &self.state.codes;
+        let codes = &self.state.modal_words;
         Ok(match item {
             102 => codes.b,
             107 => f64::from(codes.d),
@@ -237,9 +237,9 @@ impl Registers {
     /// Returns the end of the last block: as programmed, or after mirror, scaling and rotation.
     fn end_point(&self) -> Position {
         match self.data.settings.undocumented.shows_transformed {
-            true => self.data.to_work(&self.state, &self.state.programmed),
+            true => self.data.to_work(&self.state, &self.state.programmed_position),
             false => {
-                if self.state.last_end_point.is_some() {
+                if self.state.end_before_transform.is_some() {
                     self.block_effects.record_note(Note::EndPointBeforeTransform);
                 }
                 self.data.move_end(&self.state)
@@ -261,7 +261,7 @@ impl Registers {
     /// Sets the offset of G52.
     fn set_local(&mut self, axis: u32, value: f64) -> Result<(), Alarm> {
         let axis = self.data.check_axis(axis)?;
-        self.state.local_offset[axis] =
+        self.state.g52_shift[axis] =
             self.data.check_offset_range(self.data.to_stored(&self.state, Some(axis), value))?;
         self.update_after_offset_change();
         Ok(())
@@ -303,7 +303,7 @@ impl Registers {
     /// Returns the tool centre in machine coordinates; a move that waits for the next one counts as executed, as if nothing
     /// followed.
     pub(super) fn tool_centre(&self, axis: AxisIndex) -> f64 {
-        self.state.machine[axis] + self.lookahead.offset[axis]
+        self.state.machine_position[axis] + self.lookahead.offset[axis]
     }
 }
 

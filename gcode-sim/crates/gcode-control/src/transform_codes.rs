@@ -15,17 +15,17 @@ impl Planner<'_> {
     pub(super) fn plan_rotation(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &mut plan.state;
         let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
-        let first = self.axis_dimension(plane.0, state)?.unwrap_or(state.programmed[plane.0]);
-        let second = self.axis_dimension(plane.1, state)?.unwrap_or(state.programmed[plane.1]);
+        let first = self.axis_dimension(plane.0, state)?.unwrap_or(state.programmed_position[plane.0]);
+        let second = self.axis_dimension(plane.1, state)?.unwrap_or(state.programmed_position[plane.1]);
         let angle = self.angle(b'R')?;
         if angle.is_none() {
             plan.notes.push(Note::NoAngle);
         }
         let angle = angle.unwrap_or(0.0);
         // Mirror and scaling act before the rotation, on its centre too; a mirror image rotates in the other direction.
-        let mut centre = state.programmed;
+        let mut centre = state.programmed_position;
         (centre[plane.0], centre[plane.1]) = (first, second);
-        let centre = Transform { rotation: None, tilt: None, ..state.transform }.forward(centre);
+        let centre = Transform { rotation: None, tilt: None, ..state.transform }.work_position(centre);
         let (mirrored, _) = state.transform.arc_effect(plane);
         let angle = if mirrored { -angle } else { angle };
         let axes = [plane.0, plane.1].into_iter().filter(|axis| !self.names(*axis));
@@ -57,7 +57,7 @@ impl Planner<'_> {
     /// G51: by P, or by I J K for X Y Z, in 0.001 or 0.00001.
     pub(super) fn plan_scaling(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let unit = if self.data.settings.has_coarse_scaling { 1000.0 } else { 100_000.0 };
-        let mut scale = Scale { centre: plan.state.programmed, factor: Position([1.0; MAX_AXES]) };
+        let mut scale = Scale { centre: plan.state.programmed_position, factor: Position([1.0; MAX_AXES]) };
         for (axis, letter) in self.data.settings.axes.iter() {
             match self.axis_dimension(axis, &plan.state)? {
                 Some(value) => scale.centre[axis] = value,

@@ -9,14 +9,14 @@ use gcode_lang::motion::{AxisIndex, EventKind, EventSink, UnknownAxes};
 impl State {
     /// Returns what remains unknown of an axis after an absolute command.
     pub(super) fn unknown_after_absolute(&self, axis: AxisIndex) -> UnknownAxes {
-        let shifted = (self.unknown_shift | self.transform.unknown_centre) & 1 << axis;
+        let shifted = (self.unknown_g92_shift | self.transform.unknown_centre) & 1 << axis;
         UnknownAxes { shifted, ..UnknownAxes::default() }
     }
 
     /// Returns the axes, as bits, of which an absolute command changes what is unknown.
     pub(super) fn learnable_axes(&self) -> u8 {
         let UnknownAxes { uncommanded, at_machine_position, shifted } = self.unknown;
-        let remains = self.unknown_shift | self.transform.unknown_centre;
+        let remains = self.unknown_g92_shift | self.transform.unknown_centre;
         uncommanded | at_machine_position | shifted & !remains
     }
 
@@ -27,7 +27,7 @@ impl State {
 
     /// Records whether the coordinates of an axis count from an unknown position, after G92 has set them there.
     pub(super) fn set_shift_origin(&mut self, axis: AxisIndex) {
-        self.unknown_shift = self.unknown_shift & !(1 << axis) | self.unknown.all() & 1 << axis;
+        self.unknown_g92_shift = self.unknown_g92_shift & !(1 << axis) | self.unknown.all() & 1 << axis;
     }
 
     /// Returns the axes that are unknown on the machine.
@@ -73,7 +73,7 @@ impl Control {
     pub fn set_start(&mut self, axis: AxisIndex, position: f64) {
         let registers = &mut self.executor.registers;
         let (data, state) = (&registers.data, &mut registers.state);
-        state.machine[axis] = data.on_machine(position, data.zero(state, axis), 0.0);
+        state.machine_position[axis] = data.on_machine(position, data.zero(state, axis), 0.0);
         data.recompute_position(state);
         state.unknown = state.unknown.without(1 << axis);
     }

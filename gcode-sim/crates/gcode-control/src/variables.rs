@@ -226,7 +226,7 @@ impl Vars {
     }
 
     #[inline(always)]
-    pub(super) fn set_free(&mut self, number: u16, value: Accumulator) {
+    pub(super) fn set_direct(&mut self, number: u16, value: Accumulator) {
         let stored = &mut self.direct_values[usize::from(number) % SLOTS];
         (stored.number, stored.is_vacant, stored.decimals) = (value.number, value.is_vacant, 0);
     }

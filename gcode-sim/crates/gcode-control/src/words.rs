@@ -44,7 +44,7 @@ pub(super) const MAX_G_CODES: usize = 12;
 pub(super) struct BlockWords {
     pub(super) present_letters: u32,
     /// Letters whose value has been read.
-    read_letters: Cell<u32>,
+    used_letters: Cell<u32>,
     pub(super) values: [(WordNumber, Span); 26],
     g_rows: Vec<&'static GCodeRow>,
     /// Last code of group 01.
@@ -63,7 +63,7 @@ pub(super) struct BlockWords {
 impl BlockWords {
     pub(super) fn clear(&mut self) {
         self.present_letters = 0;
-        self.read_letters.set(0);
+        self.used_letters.set(0);
         self.g_rows.clear();
         self.m_codes.clear();
         self.replaced_m_codes.clear();
@@ -132,13 +132,13 @@ impl BlockWords {
 
     /// Returns the value of a word and marks it as read.
     pub(super) fn get(&self, letter: u8) -> Option<(WordNumber, Span)> {
-        self.read_letters.set(self.read_letters.get() | 1 << (letter - b'A'));
+        self.used_letters.set(self.used_letters.get() | 1 << (letter - b'A'));
         self.has(letter).then(|| self.values[usize::from(letter - b'A')])
     }
 
     /// Marks words without effect as read.
     pub(super) fn mark_read(&self, letters: Letters) {
-        self.read_letters.set(self.read_letters.get() | letters.bits());
+        self.used_letters.set(self.used_letters.get() | letters.bits());
     }
 
     /// Returns the letters that only the codes of the block allow, as bits.
@@ -150,8 +150,8 @@ impl BlockWords {
     }
 
     /// Returns the first word, by its letter, that has not been read.
-    pub(super) fn first_unread(&self) -> Option<(char, Span)> {
-        let letter = self.first_present(!self.read_letters.get())?;
+    pub(super) fn first_unused_word(&self) -> Option<(char, Span)> {
+        let letter = self.first_present(!self.used_letters.get())?;
         Some((char::from(letter), self.span(letter)))
     }
 

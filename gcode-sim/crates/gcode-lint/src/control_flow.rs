@@ -71,10 +71,10 @@ impl ControlFlowGraph {
     fn block_successors_of(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Successors {
         match kind {
             // An alarm stops the control; the blocks after it are checked as if it were corrected.
-            OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => Successors::next_or(Vec::new()),
+            OpKind::Empty | OpKind::AssignDirect(_) | OpKind::Alarm(_) => Successors::next_or(Vec::new()),
             OpKind::Words(words) => {
                 let successors = self.word_successors(program, block, words);
-                match words.skipped_form() {
+                match words.form_if_skipped() {
                     Some((_, short)) => successors.or(self.word_successors(program, block, short)),
                     None => successors,
                 }
@@ -125,7 +125,7 @@ impl ControlFlowGraph {
             Statement::End { start, .. } => Successors { jumps: vec![*start], ..Successors::default() },
             statement if is_raise(statement) => Successors::exit(),
             Statement::Assign { .. }
-            | Statement::AssignFree(_)
+            | Statement::AssignDirect(_)
             | Statement::Assignments(_)
             | Statement::Do { .. }
             | Statement::SetNames { .. }

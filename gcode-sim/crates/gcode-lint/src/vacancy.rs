@@ -100,7 +100,7 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             }
             to_all(after)
         }
-        (OpKind::Statement(_) | OpKind::AssignFree(_), Some(Statement::Assign { target, value })) => {
+        (OpKind::Statement(_) | OpKind::AssignDirect(_), Some(Statement::Assign { target, value })) => {
             assign(target, value, &mut after);
             to_all(after)
         }

@@ -199,7 +199,7 @@ mod tests {
     use super::*;
 
     fn hole(entry: [f64; 3], axis: [f64; 3], diameter: Option<f64>) -> Hole {
-        Hole { id: None, entry, axis, depth: 15.0, diameter, ..Hole::default() }
+        Hole { entry, axis, depth: 15.0, diameter, ..Hole::default() }
     }
 
     fn piece(hole: &Hole, from: [f64; 3], to: [f64; 3]) -> Option<[[f64; 3]; 2]> {

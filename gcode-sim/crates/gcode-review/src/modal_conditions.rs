@@ -51,8 +51,8 @@ impl ModalAspect {
             (Self::System, WorkSystem::Additional(number), _) => {
                 additional_system_name(dialect, usize::from(number))
             }
-            (Self::Length, ..) if code != 490 => format!("{group} H{}", state.codes.h),
-            (Self::Cutter, ..) if code != 400 => format!("{group} D{}", state.codes.d),
+            (Self::Length, ..) if code != 490 => format!("{group} H{}", state.modal_words.h),
+            (Self::Cutter, ..) if code != 400 => format!("{group} D{}", state.modal_words.d),
             (Self::Level | Self::Cycle, _, None) => String::new(),
             (Self::Cycle, _, Some(cycle)) if cycle.uses_q() => match state.cycle.q {
                 Some(q) => format!("{group} Q{q}"),

@@ -177,7 +177,7 @@ impl Recorder {
     /// Inserts T and S words that no M06, M03 or M04 has used yet before the other steps of their block.
     fn note_called(&mut self, control: &Control, backtrace: &Backtrace, (at, length): (Position, Position)) {
         let state = control.state();
-        let (tool, speed) = (state.codes.t, state.codes.s);
+        let (tool, speed) = (state.modal_words.t, state.modal_words.s);
         let before = std::mem::replace(&mut self.called, (tool, speed));
         let is_called = before.0 != tool && tool != state.tool;
         let is_speed = before.1 != speed && state.spindle == SpindleDirection::Off;
@@ -231,7 +231,7 @@ impl Recorder {
     /// Gives the steps of an executed block the conditions that it leaves.
     fn resolve_conditions(&mut self, control: &Control) {
         let state = control.state();
-        let now = (state.modal, state.codes.h, state.codes.d, state.cycle.q);
+        let now = (state.modal, state.modal_words.h, state.modal_words.d, state.cycle.q);
         if self.seen != Some(now) {
             let block_number = self.number(control.backtrace());
             let before = self.seen.map_or_else(Modal::default, |(modal, ..)| modal);

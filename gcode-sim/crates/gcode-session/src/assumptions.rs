@@ -86,7 +86,7 @@ impl Dependences {
 fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let control = &run.control;
     let stated = stated_values(request);
-    let is_code_unknown = || control.auxiliary_codes().keys().any(|code| !stated.codes.contains(code));
+    let is_code_unknown = || control.builder_m_codes().keys().any(|code| !stated.codes.contains(code));
     !request.variables.is_empty()
         || request.settings.skip_signal.is_some()
         || has_holes && (!control.unset_work_systems().is_empty() || is_code_unknown())

@@ -195,7 +195,7 @@ impl Lookahead {
     }
 
     /// Counts a block that has only a sequence number.
-    pub(super) fn count_number(&mut self, data: &ControlData, block: Span) -> ExecResult<()> {
+    pub(super) fn count_sequence_number(&mut self, data: &ControlData, block: Span) -> ExecResult<()> {
         self.check_no_corner(block)?;
         self.count_block(data, false)
     }

@@ -166,7 +166,7 @@ fn stays_inside(
     jump_stays: &impl Fn(&Operand) -> bool,
 ) -> bool {
     match kind {
-        OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => true,
+        OpKind::Empty | OpKind::AssignDirect(_) | OpKind::Alarm(_) => true,
         OpKind::Words(_) => !leaves_block(kind),
         OpKind::If { then, .. } => stays_inside(then, stays, jump_stays),
         OpKind::Statement(statement) => statement_stays(statement, stays, jump_stays),
@@ -185,7 +185,7 @@ fn statement_stays(
         Statement::While { end, .. } | Statement::Do { end, .. } => stays(*end),
         Statement::End { start, .. } => stays(*start),
         Statement::Assign { .. }
-        | Statement::AssignFree(_)
+        | Statement::AssignDirect(_)
         | Statement::Alarm(_)
         | Statement::SetNames { .. }
         | Statement::Print { .. }
@@ -202,7 +202,7 @@ pub(super) fn jumps(statement: &Statement) -> bool {
 /// Returns true if an operation can continue elsewhere than behind its block, or end the run; a called program returns.
 pub(super) fn leaves_block(kind: &OpKind) -> bool {
     match kind {
-        OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => false,
+        OpKind::Empty | OpKind::AssignDirect(_) | OpKind::Alarm(_) => false,
         OpKind::Statement(statement) => jumps(statement),
         OpKind::If { then, .. } => leaves_block(then),
         OpKind::Words(words) => leaves_words(words),

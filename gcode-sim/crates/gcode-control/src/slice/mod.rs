@@ -167,7 +167,7 @@ impl Slice {
     fn follow_kind(&mut self, block: &Block<'_>, kind: &OpKind) {
         match kind {
             OpKind::Empty | OpKind::Alarm(_) => {}
-            OpKind::AssignFree(assign) => self.assign_free(block, assign),
+            OpKind::AssignDirect(assign) => self.assign_free(block, assign),
             OpKind::Statement(statement) => self.follow_statement(block, statement),
             OpKind::Words(words) => self.follow_words(block, words),
             OpKind::If { condition, then } => {
@@ -194,7 +194,7 @@ impl Slice {
 
     fn follow_statement(&mut self, block: &Block<'_>, statement: &Statement) {
         match statement {
-            Statement::AssignFree(assign) => self.assign_free(block, assign),
+            Statement::AssignDirect(assign) => self.assign_free(block, assign),
             Statement::Assign { target, value, .. } => {
                 let marks = self.operand_marks(block, value) | self.branches.marks();
                 self.assign(block, target, marks);

@@ -114,12 +114,12 @@ impl Slice {
             && modal.distance == Distance::Absolute
             && modal.polar == Polar::Off
             && modal.work == WorkSystem::default()
-            && state.transform.is_none()
+            && state.transform.is_identity()
             && !state.is_in_parameter_input
             && data.settings.code_calls.is_empty();
         if !is_plain_mode
             || words.call().is_some()
-            || words.skipped_form().is_some()
+            || words.form_if_skipped().is_some()
             || !words.list.iter().all(is_plain)
         {
             return false;
@@ -195,7 +195,7 @@ impl Slice {
                 self.machine.axes[axis] |= self.machine.cycle;
             }
         }
-        let mixes = !registers.state.transform.is_none()
+        let mixes = !registers.state.transform.is_identity()
             || registers.state.modal.polar == Polar::On
             || !self.machine.transform.is_none();
         if mixes {

@@ -19,7 +19,7 @@ impl Slice {
         marks: Marks,
     ) {
         match statement {
-            Statement::AssignFree(assign) => self.variables.add(usize::from(assign.variable), marks),
+            Statement::AssignDirect(assign) => self.variables.add(usize::from(assign.variable), marks),
             Statement::Assign { target: AssignmentTarget::Slot(Slot::Free(place)), .. } => {
                 self.variables.add(usize::from(*place), marks);
             }
@@ -42,7 +42,7 @@ impl Slice {
     pub(super) fn add_possible_effects(&mut self, registers: &Registers, kind: &OpKind, marks: Marks) {
         match kind {
             OpKind::Empty | OpKind::Alarm(_) => {}
-            OpKind::AssignFree(assign) => self.variables.add(usize::from(assign.variable), marks),
+            OpKind::AssignDirect(assign) => self.variables.add(usize::from(assign.variable), marks),
             OpKind::Statement(statement) => self.add_possible_assignment(registers, statement, marks),
             OpKind::Words(words) => self.add_possible_words(registers, words, marks),
             OpKind::If { then, .. } => self.add_possible_effects(registers, then, marks),

@@ -43,16 +43,16 @@ impl Slice {
         }
         let data = &block.registers.data;
         let mut guard = Marks::NONE;
-        if let Some((switch, _)) = words.skipped_form() {
+        if let Some((switch, _)) = words.form_if_skipped() {
             let switch = (*switch).max(1);
             let value = Some(f64::from(u8::from(data.is_skip_on(switch))));
             guard = self.outside(OutsideValue::BlockSkip(switch), value, block.flow, block.op);
             self.add_possible_words(block.registers, words, guard);
         }
-        if block.registers.state.transform.is_none() {
+        if block.registers.state.transform.is_identity() {
             self.machine.transform = Marks::NONE;
         }
-        let words = data.unskipped(words).0;
+        let words = data.words_not_skipped(words).0;
         let mut list: Vec<MarkedWord> = Vec::with_capacity(words.list.len());
         for word in &words.list {
             let marked = self.marked_word(block, words, word, guard);
@@ -198,7 +198,7 @@ impl Slice {
             let word = list.iter().find(|word| word.letter == letter);
             word.and_then(|word| word.value).map_or(modal, |value| value as u32)
         };
-        let h = number_of(b'H', registers.state.codes.h);
+        let h = number_of(b'H', registers.state.modal_words.h);
         match modes.length {
             Length::Off => self.machine.length = control | self.machine.group(8),
             _ if registers.state.modal.length != modes.length
@@ -213,7 +213,7 @@ impl Slice {
             }
             _ => {}
         }
-        let d = number_of(b'D', registers.state.codes.d);
+        let d = number_of(b'D', registers.state.modal_words.d);
         let begins =
             registers.state.modal.cutter != modes.cutter || list.iter().any(|word| word.letter == b'D');
         match modes.cutter {

@@ -175,7 +175,7 @@ mod tests {
         for index in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
             let op = memory.lower_block(id, index).unwrap();
             let span = op.span;
-            if let OpKind::AssignFree(Assign { code, .. }) = op.kind() {
+            if let OpKind::AssignDirect(Assign { code, .. }) = op.kind() {
                 let expected = Operation::Add([OperandSource::Number(index as f64), OperandSource::Free(2)]);
                 assert_eq!(code[0].operation, expected);
             } else {

@@ -16,11 +16,11 @@ pub enum CycleStep {
     /// Feed back to R.
     FeedToR,
     /// Rapid to the R point level, or to the initial level in G98.
-    RapidBack,
+    RapidToReturnLevel,
     /// After [`CycleStep::FeedToR`]: rapid on to the initial level in G98.
-    RapidToInitial,
+    RapidToInitialInG98,
     /// Rapid to the initial level in both G98 and G99.
-    RapidToInitialAlways,
+    RapidToInitial,
     /// Rapid by Q in the plane, away from the wall.
     Shift,
     /// Rapid back to the axis of the hole.
@@ -43,7 +43,7 @@ pub struct Cycle {
     /// G code × 10.
     pub code: u32,
     /// False for G87, which reaches R from below after its shift; all others rapid to R first.
-    pub starts_at_r: bool,
+    pub rapids_to_r_first: bool,
     /// True for G73 and G83, which require Q.
     pub needs_q: bool,
     /// Steps in order.
@@ -60,44 +60,47 @@ impl Cycle {
 }
 
 use CycleStep::{
-    Dwell, DwellAtR, FeedToBottom, FeedToR, HighSpeedPeck, ManualRetract, Peck, RapidBack, RapidToInitial,
-    RapidToInitialAlways, RapidToR, Shift, ShiftBack, SpindleForward, SpindleReverse, SpindleStop,
+    Dwell, DwellAtR, FeedToBottom, FeedToR, HighSpeedPeck, ManualRetract, Peck, RapidToInitial,
+    RapidToInitialInG98, RapidToR, RapidToReturnLevel, Shift, ShiftBack, SpindleForward, SpindleReverse,
+    SpindleStop,
 };
 
 const fn row(code: u32, steps: &'static [CycleStep], description: &'static str) -> Cycle {
-    Cycle { code, starts_at_r: true, needs_q: false, steps, description }
+    Cycle { code, rapids_to_r_first: true, needs_q: false, steps, description }
 }
 
 /// G73: high-speed peck drilling cycle.
-pub const HIGH_SPEED_PECK_DRILLING: Cycle =
-    Cycle { needs_q: true, ..row(730, &[HighSpeedPeck, RapidBack], "high-speed peck drilling cycle") };
+pub const HIGH_SPEED_PECK_DRILLING: Cycle = Cycle {
+    needs_q: true,
+    ..row(730, &[HighSpeedPeck, RapidToReturnLevel], "high-speed peck drilling cycle")
+};
 #[rustfmt::skip]
-pub(super) const LEFT_HANDED_TAPPING: Cycle = row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitial], "left-handed tapping cycle");
+pub(super) const LEFT_HANDED_TAPPING: Cycle = row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitialInG98], "left-handed tapping cycle");
 #[rustfmt::skip]
-pub(super) const FINE_BORING: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidBack, ShiftBack, SpindleForward], "fine boring cycle");
+pub(super) const FINE_BORING: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidToReturnLevel, ShiftBack, SpindleForward], "fine boring cycle");
 /// G81: drilling cycle.
-pub const DRILLING: Cycle = row(810, &[FeedToBottom, RapidBack], "drilling cycle, spot drilling");
+pub const DRILLING: Cycle = row(810, &[FeedToBottom, RapidToReturnLevel], "drilling cycle, spot drilling");
 pub(super) const COUNTER_BORING: Cycle =
-    row(820, &[FeedToBottom, Dwell, RapidBack], "drilling cycle, counter boring");
+    row(820, &[FeedToBottom, Dwell, RapidToReturnLevel], "drilling cycle, counter boring");
 /// G83: peck drilling cycle.
 pub const PECK_DRILLING: Cycle =
-    Cycle { needs_q: true, ..row(830, &[Peck, RapidBack], "peck drilling cycle") };
+    Cycle { needs_q: true, ..row(830, &[Peck, RapidToReturnLevel], "peck drilling cycle") };
 /// G84: tapping cycle.
 #[rustfmt::skip]
-pub const TAPPING: Cycle = row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitial], "tapping cycle");
+pub const TAPPING: Cycle = row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitialInG98], "tapping cycle");
 pub(super) const BORING_FEED_RETRACT: Cycle =
-    row(850, &[FeedToBottom, FeedToR, RapidToInitial], "boring cycle, retract by feed");
+    row(850, &[FeedToBottom, FeedToR, RapidToInitialInG98], "boring cycle, retract by feed");
 pub(super) const BORING_SPINDLE_STOP: Cycle = row(
     860,
-    &[FeedToBottom, SpindleStop, RapidBack, SpindleForward],
+    &[FeedToBottom, SpindleStop, RapidToReturnLevel, SpindleForward],
     "boring cycle, retract with the spindle stopped",
 );
 #[rustfmt::skip]
-pub(super) const BACK_BORING: Cycle = Cycle { starts_at_r: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitialAlways, ShiftBack, SpindleForward], "back boring cycle") };
+pub(super) const BACK_BORING: Cycle = Cycle { rapids_to_r_first: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitial, ShiftBack, SpindleForward], "back boring cycle") };
 pub(super) const BORING_MANUAL_RETRACT: Cycle = row(
     880,
-    &[FeedToBottom, Dwell, SpindleStop, ManualRetract, RapidToInitial, SpindleForward],
+    &[FeedToBottom, Dwell, SpindleStop, ManualRetract, RapidToInitialInG98, SpindleForward],
     "boring cycle, manual retract",
 );
 pub(super) const BORING_DWELL: Cycle =
-    row(890, &[FeedToBottom, Dwell, FeedToR, RapidToInitial], "boring cycle, dwell, retract by feed");
+    row(890, &[FeedToBottom, Dwell, FeedToR, RapidToInitialInG98], "boring cycle, dwell, retract by feed");

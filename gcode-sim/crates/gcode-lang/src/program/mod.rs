@@ -138,11 +138,11 @@ pub enum OpKind {
     Empty,
     /// Words: codes, moves, calls.
     Words(Words),
-    /// Macro statement, except a single [`Statement::AssignFree`].
+    /// Macro statement, except a single [`Statement::AssignDirect`].
     Statement(Statement),
-    /// A block that is one [`Statement::AssignFree`]. Code that matches statements must match this variant
+    /// A block that is one [`Statement::AssignDirect`]. Code that matches statements must match this variant
     /// too.
-    AssignFree(Assign),
+    AssignDirect(Assign),
     /// `IF[…]`, with or without THEN, before words or an assignment.
     If {
         /// Condition.
@@ -158,7 +158,7 @@ pub enum OpKind {
 #[derive(Debug)]
 #[repr(u8)]
 pub enum Statement {
-    /// Assignment that is not an [`Statement::AssignFree`].
+    /// Assignment that is not an [`Statement::AssignDirect`].
     Assign {
         /// Assigned variable.
         target: AssignmentTarget,
@@ -230,8 +230,8 @@ pub enum Statement {
     CloseOutput,
     /// Invalid statement after `IF[…]THEN`; raises its alarm if the condition is true.
     Alarm(LocatedAlarm),
-    /// Assignment of computed code to a free variable.
-    AssignFree(Assign),
+    /// Assignment of computed code to a local or common variable that is stored directly.
+    AssignDirect(Assign),
 }
 
 /// Assignment of computed code to a variable of [`Slot::Free`], the most common kind.
@@ -273,7 +273,7 @@ impl Program {
 
     /// Returns the number that #4115 reads: the O number, the first N of a program without O, 0 for a named
     /// program.
-    pub fn shown_number(&self) -> u32 {
+    pub fn number_or_zero(&self) -> u32 {
         self.number().unwrap_or(0)
     }
 

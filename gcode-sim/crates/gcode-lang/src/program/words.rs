@@ -34,7 +34,7 @@ pub struct Words {
 struct UncommonWords {
     call: Option<CallOp>,
     /// Switch of `/n` inside the block, and the words left while it is on.
-    skipped_form: Option<(u8, Words)>,
+    form_if_skipped: Option<(u8, Words)>,
     punched_value: Option<u64>,
     /// Code of the words, indexed by [`WordOperand::Code`].
     codes: Vec<Bytecode>,
@@ -161,7 +161,7 @@ impl Words {
     pub fn is_plain(&self) -> bool {
         self.uncommon
             .as_ref()
-            .is_none_or(|uncommon| uncommon.call.is_none() && uncommon.skipped_form.is_none())
+            .is_none_or(|uncommon| uncommon.call.is_none() && uncommon.form_if_skipped.is_none())
     }
 
     /// Iterates over the G codes written as numbers, each with its meaning on each control.
@@ -181,8 +181,8 @@ impl Words {
     }
 
     /// Returns the switch of `/n` inside the block, and the words left while it is on.
-    pub fn skipped_form(&self) -> Option<&(u8, Self)> {
-        self.uncommon.as_ref()?.skipped_form.as_ref()
+    pub fn form_if_skipped(&self) -> Option<&(u8, Self)> {
+        self.uncommon.as_ref()?.form_if_skipped.as_ref()
     }
 
     /// Returns the value of the sixteen hexadecimal digits in the comment: the data of a punched `G10 L85
@@ -209,16 +209,16 @@ impl Lowering {
         items: &[Item],
         skips: &[(u8, usize)],
     ) -> Result<Words, LocatedAlarm> {
-        let mut skipped_form = None;
+        let mut form_if_skipped = None;
         if let Some(((switch, index), before)) = skips.split_last() {
-            skipped_form = Some((*switch, self.lower_words(&items[..*index], before)?));
+            form_if_skipped = Some((*switch, self.lower_words(&items[..*index], before)?));
         }
         (self.codes, self.axes) = (Vec::new(), Vec::new());
         let mut words = self.lower_list(items)?;
         let (codes, axes) = (std::mem::take(&mut self.codes), std::mem::take(&mut self.axes));
-        if skipped_form.is_some() || !codes.is_empty() || !axes.is_empty() {
+        if form_if_skipped.is_some() || !codes.is_empty() || !axes.is_empty() {
             let uncommon = words.uncommon_mut();
-            (uncommon.skipped_form, uncommon.codes, uncommon.axes) = (skipped_form, codes, axes);
+            (uncommon.form_if_skipped, uncommon.codes, uncommon.axes) = (form_if_skipped, codes, axes);
         }
         Ok(words)
     }

@@ -110,7 +110,7 @@ fn modes_after(
     let after = match op.kind() {
         OpKind::Words(words) => {
             let mut after = after_words(context, words, before);
-            if let Some((_, short)) = words.skipped_form() {
+            if let Some((_, short)) = words.form_if_skipped() {
                 after = after.join(after_words(context, short, before));
             }
             after.is_unreported &= missing_feed_alarm(context, unit, block, words, before).is_none();
@@ -118,7 +118,7 @@ fn modes_after(
         }
         // The conditional part may have F.
         OpKind::If { .. } => PossibleModes::ANYTHING,
-        OpKind::Empty | OpKind::Statement(_) | OpKind::AssignFree(_) | OpKind::Alarm(_) => *before,
+        OpKind::Empty | OpKind::Statement(_) | OpKind::AssignDirect(_) | OpKind::Alarm(_) => *before,
     };
     if op.skip().is_some() { after.join(*before) } else { after }
 }
@@ -161,7 +161,7 @@ fn after_call(
                 after.has_feed |= has_feed_word(words);
             }
             OpKind::If { .. } => return PossibleModes::ANYTHING,
-            OpKind::Empty | OpKind::Statement(_) | OpKind::AssignFree(_) | OpKind::Alarm(_) => {}
+            OpKind::Empty | OpKind::Statement(_) | OpKind::AssignDirect(_) | OpKind::Alarm(_) => {}
         }
     }
     after

@@ -380,7 +380,7 @@ mod tests {
         let mut memory = Memory::default();
         memory.load("O1.nc", format!("O1\n{text}\n").into_bytes());
         let program = memory.ids().next().unwrap();
-        let OpKind::AssignFree(assign) = memory.lower_block(program, 0).unwrap().kind() else {
+        let OpKind::AssignDirect(assign) = memory.lower_block(program, 0).unwrap().kind() else {
             panic!("{text}")
         };
         assign.code.iter().map(|instruction| instruction.operation.clone()).collect()

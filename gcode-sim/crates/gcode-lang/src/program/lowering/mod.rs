@@ -67,7 +67,7 @@ impl Lowering {
             let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
             let then = match self.lower_kind(&rest)? {
                 then @ (OpKind::Words(_)
-                | OpKind::AssignFree(_)
+                | OpKind::AssignDirect(_)
                 | OpKind::Statement(Statement::Assign { .. })) => Box::new(then),
                 _ => return Err(Alarm::IfFormat.located_at(first.span)),
             };
@@ -100,7 +100,7 @@ impl Lowering {
             // The effect of /n after a statement on a control is unknown, so it must not be ignored.
             (Some(_), true) if !skips.is_empty() => Err(Alarm::MixedStatements.located_at(block.span)),
             (Some(found), true) => match self.lower_statement(&found.node, found.span, block)? {
-                Statement::AssignFree(assign) => Ok(OpKind::AssignFree(assign)),
+                Statement::AssignDirect(assign) => Ok(OpKind::AssignDirect(assign)),
                 statement => Ok(OpKind::Statement(statement)),
             },
             (None, true) => Ok(OpKind::Empty),
@@ -186,7 +186,7 @@ impl Lowering {
         let (to, value) = (self.compile_target(target)?, self.operand(value, ExprContext::MACRO)?);
         Ok(match (to, value) {
             (AssignmentTarget::Slot(Slot::Free(variable)), Operand::Code(code)) => {
-                Statement::AssignFree(Assign { variable, code })
+                Statement::AssignDirect(Assign { variable, code })
             }
             (to, value) => {
                 let text = block.comments.iter().find(|c| c.span.start >= span.start);
