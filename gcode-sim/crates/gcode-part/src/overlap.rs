@@ -25,28 +25,48 @@ impl Overlap {
     }
 }
 
+/// A hole with a known diameter, and the box that it fills.
+struct SizedHole {
+    index: usize,
+    radius: f64,
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl SizedHole {
+    fn new(index: usize, hole: &Hole) -> Option<Self> {
+        let radius = hole.widest_diameter()? / 2.0;
+        let ends = [0, 1, 2].map(|axis| [hole.entry[axis], hole.entry[axis] - hole.axis[axis] * hole.depth]);
+        Some(Self {
+            index,
+            radius,
+            low: ends.map(|[a, b]| a.min(b) - radius),
+            high: ends.map(|[a, b]| a.max(b) + radius),
+        })
+    }
+
+    fn box_meets(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] < other.high[axis] && other.low[axis] < self.high[axis])
+    }
+}
+
 /// Returns all pairs of overlapping holes with known diameters, in the order of the list. A hole with features counts as wide
 /// as the widest of them.
 pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
-    let mut sized: Vec<_> = holes
-        .iter()
-        .enumerate()
-        .filter_map(|(index, hole)| {
-            let radius = hole.widest_diameter()? / 2.0;
-            let ends = [hole.entry[0], hole.entry[0] - hole.axis[0] * hole.depth];
-            let reach = [ends[0].min(ends[1]) - radius, ends[0].max(ends[1]) + radius];
-            Some((index, radius, reach))
-        })
-        .collect();
+    let mut sized: Vec<_> =
+        holes.iter().enumerate().filter_map(|(index, hole)| SizedHole::new(index, hole)).collect();
     // Sorted along x: only holes that overlap in x are compared.
-    sized.sort_by(|a, b| a.2[0].total_cmp(&b.2[0]));
+    sized.sort_by(|a, b| a.low[0].total_cmp(&b.low[0]));
     let mut found = Vec::new();
-    for (place, &(one, radius, reach)) in sized.iter().enumerate() {
-        for &(other, other_radius, _) in sized[place + 1..].iter().take_while(|next| next.2[0] < reach[1]) {
-            let (distance, radii) = (axis_distance(&holes[one], &holes[other]), radius + other_radius);
+    for (place, one) in sized.iter().enumerate() {
+        let rest = sized[place + 1..].iter().take_while(|next| next.low[0] < one.high[0]);
+        for other in rest.filter(|other| one.box_meets(other)) {
+            let distance = axis_distance(&holes[one.index], &holes[other.index]);
+            let radius_sum = one.radius + other.radius;
             // Tangent holes share a single line without material between them; rounding must not report them.
-            if distance < radii - 1e-9 {
-                found.push(Overlap { holes: [one.min(other), one.max(other)], distance, radius_sum: radii });
+            if distance < radius_sum - 1e-9 {
+                let holes = [one.index.min(other.index), one.index.max(other.index)];
+                found.push(Overlap { holes, distance, radius_sum });
             }
         }
     }
