@@ -11,6 +11,9 @@ use gcode_part::{Hole, Pattern, PointTree, Surface, exceeds};
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
 const MAX_LINE_DISTANCE: f64 = 5.0;
 
+/// Least distance within which holes are matched first, mm.
+const FIRST_DISTANCE: f64 = 0.01;
+
 /// Cosine of the largest angle between the directions of a matching pair: 30°.
 const MIN_DIRECTION_COSINE: f64 = 0.866_025_403_784_438_6;
 
@@ -63,12 +66,13 @@ impl<'a> Comparison<'a> {
         let through: Vec<usize> = (0..nominal.len()).filter(|index| nominal[*index].through).collect();
         let far_ends = through.iter().map(|index| bottom(&nominal[*index]));
         let tree = PointTree::new(nominal.iter().map(|hole| Point3::from(hole.entry)).chain(far_ends));
-        let mut candidates = Vec::with_capacity(actual.len());
-        for (index, hole) in actual.iter().enumerate() {
-            let margin = Vector3::repeat(reach);
+        let candidates_within = |index: usize, distance: f64, candidates: &mut Vec<HolePair>| {
+            let hole = &actual[index];
             let deepest = hole.bottom();
-            let low = hole.entry.inf(&deepest) - margin;
-            let high = hole.entry.sup(&deepest) + margin;
+            let (margin, along) =
+                (Vector3::repeat(distance), hole.axis.into_inner() * (2.0 * (reach - distance)));
+            let ends = [hole.entry + along, deepest - along];
+            let (low, high) = (ends[0].inf(&ends[1]) - margin, ends[0].sup(&ends[1]) + margin);
             let before = candidates.len();
             tree.in_box(&low, &high, &mut |point| {
                 let other = point.checked_sub(nominal.len()).map_or(point, |far_end| through[far_end]);
@@ -79,20 +83,33 @@ impl<'a> Comparison<'a> {
                     return;
                 }
                 if let Some(deviation) = Deviation::new(&nominal[other], &deepest, &hole.axis)
-                    && deviation.zone_diameter() <= 2.0 * reach
+                    && deviation.zone_diameter() <= 2.0 * distance
                 {
-                    candidates.push(HolePair {
-                        nominal: other,
-                        actual: index,
-                        deviation,
-                        from_far_side: None,
-                    });
+                    let pair = HolePair { nominal: other, actual: index, deviation, from_far_side: None };
+                    candidates.push(pair);
                 }
             });
             candidates[before..].sort_unstable_by_key(|pair| pair.nominal);
+        };
+        let mut pair_of = vec![None; nominal.len()];
+        let mut is_taken = vec![false; actual.len()];
+        let mut candidates = Vec::new();
+        // Most holes are near their nominal ones: those are matched first, in the same order as all at once. From the far
+        // side of a through hole a match waits for all others.
+        let mut distance =
+            if through.is_empty() { reach.min(FIRST_DISTANCE.max(2.0 * tolerances.position)) } else { reach };
+        loop {
+            candidates.clear();
+            for index in (0..actual.len()).filter(|index| !is_taken[*index]) {
+                candidates_within(index, distance, &mut candidates);
+            }
+            assign_nearest(&candidates, (nominal, actual), &mut pair_of, &mut is_taken);
+            if reach <= distance {
+                break;
+            }
+            distance = reach.min(4.0 * distance);
         }
-        let (pair_of, mut is_taken) = assign_nearest(&candidates, nominal, actual);
-        let mut pairs: Vec<HolePair> = pair_of.iter().flatten().map(|index| candidates[*index]).collect();
+        let mut pairs: Vec<HolePair> = pair_of.iter().flatten().copied().collect();
         if !through.is_empty() {
             join_far_sides(nominal, actual, &candidates, &mut pairs, &mut is_taken);
         }
@@ -165,28 +182,27 @@ impl<'a> Comparison<'a> {
     }
 }
 
-/// Returns the candidate of each nominal hole, and whether each drilled hole is taken: the nearest pairs first, of
-/// equally near ones the first in the list; those from the far side of a through hole after all others.
+/// Matches the nominal and drilled holes that are left: the nearest pairs first, of equally near ones the first in the list;
+/// those from the far side of a through hole after all others.
 fn assign_nearest(
     candidates: &[HolePair],
-    nominal: &[Hole],
-    actual: &[DrilledHole],
-) -> (Vec<Option<usize>>, Vec<bool>) {
+    (nominal, actual): (&[Hole], &[DrilledHole]),
+    pair_of: &mut [Option<HolePair>],
+    is_taken: &mut [bool],
+) {
     // Non-negative numbers and their bits have the same order.
     let nearness = |(index, pair): (usize, &HolePair)| {
         (is_from_far_side(pair, nominal, actual), pair.deviation.zone_diameter().to_bits(), index)
     };
     let mut order: Vec<(bool, u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
     order.sort_unstable();
-    let (mut pair_of, mut is_taken) = (vec![None; nominal.len()], vec![false; actual.len()]);
     for (.., index) in order {
-        let pair = &candidates[index];
+        let pair = candidates[index];
         if pair_of[pair.nominal].is_none() && !is_taken[pair.actual] {
-            pair_of[pair.nominal] = Some(index);
+            pair_of[pair.nominal] = Some(pair);
             is_taken[pair.actual] = true;
         }
     }
-    (pair_of, is_taken)
 }
 
 /// Returns true if a hole is drilled from the far side of a through hole.
