@@ -114,7 +114,8 @@ fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
             }
             letter @ (b'H' | b'D') => match number_behind(text, at) {
                 Some(number) => number != 0 && (letter == b'D' || !stated.lengths.contains(&number)),
-                None => matches!(text[at + 1..].trim_ascii_start().first(), Some(b'#' | b'[')),
+                // DO1, DPRNT: the beginning of a word.
+                None => !text[at + 1..].trim_ascii_start().first().is_some_and(u8::is_ascii_alphabetic),
             },
             _ => !is_division(line_before(text, at)),
         };
@@ -142,10 +143,21 @@ fn is_in_comment(before: &[u8]) -> bool {
     before.iter().rposition(|byte| *byte == b'(') > before.iter().rposition(|byte| *byte == b')')
 }
 
-/// Returns true if a slash behind this part of its line divides: behind `=` or inside brackets.
+/// Returns true if a slash behind this part of its line divides: behind `=` or inside brackets, comments left out.
 fn is_division(before: &[u8]) -> bool {
-    let count = |bracket: u8| before.iter().filter(|byte| **byte == bracket).count();
-    before.contains(&b'=') || count(b']') < count(b'[')
+    let (mut is_in_comment, mut has_assignment, mut open_brackets) = (false, false, 0);
+    for byte in before {
+        match byte {
+            b'(' => is_in_comment = true,
+            b')' => is_in_comment = false,
+            _ if is_in_comment => {}
+            b'=' => has_assignment = true,
+            b'[' => open_brackets += 1,
+            b']' => open_brackets -= 1,
+            _ => {}
+        }
+    }
+    has_assignment || 0 < open_brackets
 }
 
 /// Returns what the machine file and the reference state.

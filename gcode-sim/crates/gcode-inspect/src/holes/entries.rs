@@ -7,7 +7,7 @@ use super::HoleExtractor;
 use super::axis_box::Bodies;
 use super::rapids::{TOUCH_DEPTH, format_point};
 use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
-use crate::machine::{AxisMotion, Pose};
+use crate::machine::{AxisMotion, Pose, ToolKind};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, SpindleDirection};
 use gcode_part::{EntryPlanes, NearestPoint, Surface};
@@ -80,7 +80,7 @@ impl CutEntries {
         })
     }
 
-    /// Returns depth and height to which a tool of this radius finds the hole cut; an unknown radius fits every hole.
+    /// Returns depth and height to which the hole is cut to a radius; an unknown radius fits every hole.
     fn cut_for(&self, hole: usize, radius: Option<f64>) -> (f64, f64) {
         let fits = |cut: &&Cut| radius.is_none_or(|radius| radius <= cut.radius + FIT);
         let cuts = self.cuts[hole].iter().filter(fits);
@@ -90,10 +90,11 @@ impl CutEntries {
     /// Returns true if the points and all between them lie where a tool of this radius finds the hole cut, or above it.
     pub(super) fn are_in_cut(&self, hole: usize, radius: Option<f64>, points: &[Point3<f64>]) -> bool {
         let collar = self.planes.collar(hole);
-        let (depth, height) = self.cut_for(hole, radius);
+        let aside = points.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
+        let (depth, height) = self.cut_for(hole, radius.map(|radius| radius + aside));
         let is_above = |p: &Point3<f64>| collar.depth(p) <= depth + TOUCH_DEPTH;
         let is_below = |p: &Point3<f64>| collar.rod.length - collar.depth(p) <= height + TOUCH_DEPTH;
-        points.iter().all(|p| collar.from_axis(p) <= collar.hole_radius + ROUNDING)
+        aside <= collar.hole_radius + ROUNDING
             && (0.0 < depth && points.iter().all(is_above) || 0.0 < height && points.iter().all(is_below))
     }
 
@@ -116,8 +117,7 @@ impl CutEntries {
                 let aside = points.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
                 let depth = points.iter().map(|p| collar.depth(p)).fold(f64::NEG_INFINITY, f64::max);
                 for cut in self.cuts[hole].iter().filter(|cut| depth <= cut.depth + TOUCH_DEPTH) {
-                    let radius = if cut.radius.is_finite() { cut.radius } else { 0.0 };
-                    let free = collar.hole_radius.max(radius) - aside;
+                    let free = if cut.radius.is_finite() { cut.radius } else { collar.hole_radius } - aside;
                     room = Some(room.map_or(free, |room| room.max(free)));
                 }
             });
@@ -299,12 +299,18 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the radius of the tool; `None` if it is unknown, and for a boring bar with the spindle stopped, which is
-    /// shifted off the wall.
+    /// shifted off the wall. A tool of unknown kind that has turned may be one.
     pub(super) fn tool_radius(&self) -> Option<f64> {
-        if self.cutting_state.spindle_direction == SpindleDirection::Off {
+        let tool = self.machine.find_tool(self.setup.tool?)?;
+        let may_be_shifted = match tool.kind {
+            Some(ToolKind::BoringBar) => true,
+            None => self.has_tool_turned,
+            Some(_) => false,
+        };
+        if may_be_shifted && self.cutting_state.spindle_direction == SpindleDirection::Off {
             return None;
         }
-        self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
+        tool.diameter.map(|diameter| diameter / 2.0)
     }
 
     /// Reports a straight rapid through metal round a hole; returns true if there is any.

@@ -104,6 +104,8 @@ pub struct HoleExtractor<'m> {
     pose: Pose,
     /// True once the tool has been outside the part: its position before that is unknown.
     has_been_outside: bool,
+    /// The spindle has turned with the tool in it.
+    has_tool_turned: bool,
     current_line: Option<Box<CuttingLine>>,
     /// Block of the last motion, if metal is known.
     last_block: Option<Backtrace>,
@@ -151,6 +153,7 @@ impl<'m> HoleExtractor<'m> {
             frame,
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
             has_been_outside: false,
+            has_tool_turned: false,
             current_line: None,
             last_block: None,
             last_motion: None,
@@ -439,6 +442,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::ToolChange { number } => {
                 self.check_tool_known(event, *number);
                 self.update_setup(|setup| setup.tool = Some(*number));
+                self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
             }
             EventKind::ToolLength { offset, compensation } => {
                 self.update_setup(|setup| setup.offset = *offset);
@@ -454,6 +458,7 @@ impl EventSink for HoleExtractor<'_> {
                 self.cutting_state.spindle_direction =
                     if *speed == Rpm(0.0) { SpindleDirection::Off } else { *direction };
                 self.cutting_state.speed = *speed;
+                self.has_tool_turned |= self.cutting_state.spindle_direction != SpindleDirection::Off;
                 self.update_spindle_in_hole(before);
                 self.builder_code = None;
             }
