@@ -167,6 +167,19 @@ fn a_machine_file_states_tool_lengths_and_work_offsets() {
     assert_eq!(stated["assumptions"], json!([]));
 }
 
+/// A comment does not hide a block skip, and a sign does not hide a computed H.
+#[test]
+fn comments_and_signs_do_not_hide_an_outside_value() {
+    for (block, expected) in
+        [("(R=5) /X30. Y20.", "/"), ("(A[3) /X30. Y20.", "/"), ("G43 H-#1 X30. Y20.", "H3")]
+    {
+        let program = PROGRAM.replace("X30. Y#510", block).replace("S1000", "#1=-3\nS1000");
+        let place = folder(&program);
+        let (holes, _) = run_json("gcode-sim holes O1.nc --format json", place.path());
+        assert_eq!(holes["assumptions"][0]["what"], expected, "{block}: {holes}");
+    }
+}
+
 /// With another value the run drills a hole that this run does not.
 #[test]
 fn a_value_that_keeps_the_run_from_a_hole_is_listed() {
