@@ -89,7 +89,7 @@ pub fn verify(
     }
     let rows = pattern.and_then(|pattern| PatternRows::of(&comparison, pattern));
     let mirror_image = MirrorImage::of(&comparison);
-    let features = judge_all(&comparison, reference.surface, machine);
+    let features = judge_all(&comparison, reference.body(machine.stock), machine);
     let inspection =
         HoleInspection { comparison, rows, mirror_image, features, extraction, reference, machine };
     let mut findings = HoleFindings::default();

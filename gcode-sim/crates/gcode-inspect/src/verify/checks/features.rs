@@ -350,7 +350,8 @@ impl Judgement<'_> {
         };
         let sides = [reach(&self.near), reach(&self.far)];
         self.gaps.extend(gaps);
-        let depth = surface.map_or(self.nominal.depth, |surface| through::thickness(&surface, self.nominal));
+        let thickness = surface.map_or(0.0, |surface| through::thickness(&surface, self.nominal));
+        let depth = thickness.max(self.nominal.depth);
         let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
         let Some((_, place)) = sides.into_iter().flatten().next() else {
             feature.into_iter().for_each(|feature| self.report_missing(feature));
