@@ -134,6 +134,21 @@ fn an_alarm_is_in_every_output() {
     compare_holes(&program("S1000 M03", "X10.", "#1=1/0"), MANY, &expected);
 }
 
+/// Without a reference nothing is judged, but the list and the picture state that the run has not reached its end.
+#[test]
+fn an_alarm_is_in_a_list_and_in_a_picture_without_reference() {
+    let sentence = "alarm PS0112 in O0001 line 7: division by zero; holes may be missing";
+    let text = program("S1000 M03", "X10.", "#1=1/0");
+    let place = tempfile::tempdir().unwrap();
+    std::fs::write(place.path().join("O1.nc"), &text).unwrap();
+    let (list, exit) = run("gcode-sim holes O1.nc", place.path());
+    assert!(list.contains(&format!("1 holes, mm, in the part's frame\n{sentence}\n")) && exit == 3, "{list}");
+    let machine = Machine::default();
+    let request = Request::new("O1.nc", text.as_bytes(), machine.clone());
+    let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
+    assert_eq!(top::of_holes("O1.nc", &simulation, &machine, &[]).lines, [sentence]);
+}
+
 /// An alarm behind the last hole leaves all holes in place.
 #[test]
 fn an_alarm_behind_the_last_hole_fails_everywhere() {

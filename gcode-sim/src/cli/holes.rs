@@ -60,6 +60,9 @@ fn print_result(
     let denied = arguments.denials.errors(&assumed, list.holes.len());
     list.assumptions = Some(assumed.into_iter().map(|(assumption, _)| assumption).collect());
     print(&list, origin, arguments.format)?;
+    if let Some(sentence) = simulation.run.stop_sentence().filter(|_| arguments.format == ListFormat::Text) {
+        output::print(&format!("{sentence}\n"))?;
+    }
     let of_run = super::findings(&simulation.extracted.findings, &simulation.run);
     Ok(of_run.max(super::findings(&denied, &simulation.run)))
 }

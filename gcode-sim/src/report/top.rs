@@ -37,7 +37,12 @@ pub fn of_holes(
     TopView {
         name: name.to_owned(),
         side,
-        lines: assumption_lines(assumptions, holes.len()).collect(),
+        lines: simulation
+            .run
+            .stop_sentence()
+            .into_iter()
+            .chain(assumption_lines(assumptions, holes.len()))
+            .collect(),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,

@@ -36,7 +36,7 @@ use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
-use gcode_inspect::verify::{Answer, Tolerances, Verdict, verify};
+use gcode_inspect::verify::{Answer, Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::{Alarm, remedy};
 use gcode_lang::control::Settings;
@@ -423,6 +423,12 @@ impl Run {
             }
             Outcome::Limit => Some(self.limit_finding()),
         }
+    }
+
+    /// Returns the sentence on an alarm or limit that ended the run before its end, for a list or picture of its holes.
+    pub fn stop_sentence(&self) -> Option<String> {
+        let sentence = stop_sentence(self.stop_finding().iter(), &|span| self.locate(span));
+        sentence.map(|sentence| format!("{sentence}; holes may be missing"))
     }
 
     fn limit_finding(&self) -> Diagnostic {

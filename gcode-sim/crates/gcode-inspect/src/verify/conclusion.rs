@@ -75,7 +75,7 @@ impl Conclusion<'_> {
 }
 
 /// Returns the sentence on an alarm or a limit that ended the run; `None` if it reached its end.
-pub(super) fn stop_sentence<'f>(
+pub fn stop_sentence<'f>(
     mut findings: impl Iterator<Item = &'f Diagnostic>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Option<String> {

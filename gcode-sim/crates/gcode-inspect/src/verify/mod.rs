@@ -19,7 +19,7 @@ mod tests;
 mod verdict;
 
 pub use assumption::denied_assumptions;
-pub use conclusion::{Answer, Conclusion, Ending};
+pub use conclusion::{Answer, Conclusion, Ending, stop_sentence};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
