@@ -67,8 +67,13 @@ impl<'a> Comparison<'a> {
         for (index, hole) in actual.iter().enumerate() {
             let margin = Vector3::repeat(reach);
             let deepest = hole.bottom();
-            let low = hole.entry.inf(&deepest) - margin;
-            let high = hole.entry.sup(&deepest) + margin;
+            // The finishing tool may begin inside the cut of another one.
+            let starts = hole.passes().map(|pass| pass.cut.start);
+            let (low, high) = starts
+                .fold((hole.entry.inf(&deepest), hole.entry.sup(&deepest)), |(low, high), start| {
+                    (low.inf(&start), high.sup(&start))
+                });
+            let (low, high) = (low - margin, high + margin);
             let before = candidates.len();
             tree.in_box(&low, &high, &mut |point| {
                 let other = point.checked_sub(nominal.len()).map_or(point, |far_end| through[far_end]);
