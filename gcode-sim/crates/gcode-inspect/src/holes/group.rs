@@ -45,6 +45,8 @@ pub struct PassCut {
 /// Figures of a circle that a mill cuts, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MilledCut {
+    /// Radius of the path.
+    pub radius: f64,
     /// Largest minus least distance of the path from the axis.
     pub roundness: f64,
     /// Diameter of the metal that the mill leaves on the axis; `None` without any.
@@ -116,7 +118,7 @@ impl DrillPass {
 /// A hole that the program drills, in the part's frame; lengths in mm.
 #[derive(Clone, Debug)]
 pub struct DrilledHole {
-    /// Point of the axis at which the cutting feed of the finishing tool begins.
+    /// Point of the axis at which the cutting feed of the finishing tool begins; of a milled hole, the highest feed of any tool.
     pub entry: Point3<f64>,
     /// Direction out of the part.
     pub axis: Unit<Vector3<f64>>,
@@ -309,7 +311,11 @@ fn push_holes<'p>(
         })
     };
     let cut = |pass: &DrillPass| {
-        let milled = pass.circle.map(|circle| MilledCut { roundness: circle.roundness, core: core(pass) });
+        let milled = pass.circle.map(|circle| MilledCut {
+            radius: circle.radius,
+            roundness: circle.roundness,
+            core: core(pass),
+        });
         PassCut { milled, ..pass.cut }
     };
     let earlier = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(|pass| EarlierPass {
@@ -340,8 +346,8 @@ fn push_holes<'p>(
             first_on_line,
         }
     };
-    let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
-    let start = finishing.map(|pass| height(&pass.cut.start)).fold(f64::NEG_INFINITY, f64::max);
+    let starting = cutting.iter().filter(|pass| finish.circle.is_some() || pass.tool == finish.tool);
+    let start = starting.map(|pass| height(&pass.cut.start)).fold(f64::NEG_INFINITY, f64::max);
     let mut finished = hole(finish, start, lowest, earlier.collect());
     finished.unknown_axes =
         cutting.iter().fold(UnknownAxes::default(), |axes, pass| axes.union(pass.unknown_axes));

@@ -69,10 +69,13 @@ impl<'a> Comparison<'a> {
         let candidates_within = |index: usize, distance: f64, candidates: &mut Vec<HolePair>| {
             let hole = &actual[index];
             let deepest = hole.bottom();
-            let (margin, along) =
-                (Vector3::repeat(distance), hole.axis.into_inner() * (2.0 * (reach - distance)));
-            let ends = [hole.entry + along, deepest - along];
-            let (low, high) = (ends[0].inf(&ends[1]) - margin, ends[0].sup(&ends[1]) + margin);
+            // The finishing tool may begin inside the cut of another one.
+            let starts = hole.passes().map(|pass| pass.cut.start);
+            let ends = (hole.entry.inf(&deepest), hole.entry.sup(&deepest));
+            let (low, high) = starts.fold(ends, |(low, high), start| (low.inf(&start), high.sup(&start)));
+            let along = hole.axis.into_inner().abs() * (2.0 * (reach - distance));
+            let margin = along + Vector3::repeat(distance);
+            let (low, high) = (low - margin, high + margin);
             let before = candidates.len();
             tree.in_box(&low, &high, &mut |point| {
                 let other = point.checked_sub(nominal.len()).map_or(point, |far_end| through[far_end]);

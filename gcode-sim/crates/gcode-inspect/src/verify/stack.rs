@@ -12,6 +12,9 @@ use gcode_part::{DepthTo, Feature, FeatureKind, Hole, exceeds};
 /// Largest difference between the angles of a countersink and its tool, degrees.
 const ANGLE_TOLERANCE: f64 = 0.5;
 
+/// Length of a drill's point of 118° in diameters: a finishing tool need not reach below the drill's full diameter.
+pub(super) const POINT_LENGTH: f64 = 0.300_430;
+
 /// A pass of a tool on the axis of a nominal hole. Depths count from the nominal entry, mm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut<'a> {
@@ -55,6 +58,11 @@ impl<'a> Cut<'a> {
     /// Returns true if a pass has the same tool and diameter: a mill cuts several diameters.
     pub(super) fn is_same_size(&self, other: &ToolPass<'_>) -> bool {
         (self.pass.tool, self.pass.diameter) == (other.tool, other.diameter)
+    }
+
+    /// Returns true if a mill goes round the axis; false for a stroke.
+    pub(super) fn is_circle(&self) -> bool {
+        self.pass.cut.milled.is_some()
     }
 
     pub(super) fn is_tap(&self) -> bool {
@@ -147,4 +155,56 @@ pub(super) fn assign(features: &[Feature], cuts: &[Cut<'_>], tolerances: Toleran
         }
     }
     made_by
+}
+
+/// Returns the deepest circle of a mill that has the diameter of a feature and makes no other one; the cut that makes the
+/// feature, `made`, if that is no circle.
+pub(super) fn deepest_circle<'a>(
+    feature: &Feature,
+    made: usize,
+    cuts: &[Cut<'a>],
+    made_by: &[Option<usize>],
+    tolerances: Tolerances,
+) -> Cut<'a> {
+    let is_other = |cut: &Cut<'_>| made_by.iter().flatten().any(|made| cut.is_same_size(&cuts[*made].pass));
+    let is_sized = |cut: &&Cut<'_>| {
+        cut.is_circle()
+            && cut.pass.diameter.is_some()
+            && !is_other(cut)
+            && cut.mismatch(feature, tolerances).is_some()
+    };
+    let circles = cuts.iter().filter(|_| cuts[made].is_circle()).filter(is_sized);
+    circles.fold(cuts[made], |deepest, cut| if deepest.tip < cut.tip { *cut } else { deepest })
+}
+
+/// Returns the depth that a hole of one diameter needs at that diameter: the bottom of all cuts, without the cones of drills.
+/// A cut that ends within `tolerance` of the nominal depth counts as that deep.
+pub(super) fn cylinder_depth(cuts: &[Cut<'_>], nominal: f64, tolerance: f64) -> f64 {
+    let is_mill = |tool: Option<u32>| cuts.iter().any(|cut| cut.is_circle() && cut.pass.tool == tool);
+    let bottoms = cuts.iter().map(|cut| {
+        let tip = if exceeds(nominal - cut.tip, tolerance) { cut.tip } else { nominal };
+        let diameter = cut.pass.diameter.unwrap_or(0.0);
+        match cut.point {
+            PointShape::Unknown if is_mill(cut.pass.tool) => tip,
+            PointShape::Unknown => tip - POINT_LENGTH * diameter,
+            point => tip - point.length(diameter).unwrap_or(0.0),
+        }
+    });
+    bottoms.fold(0.0, f64::max)
+}
+
+/// Returns the deepest of the widest circles of a mill of unknown diameter; `None` if another tool cuts deeper: its cut may
+/// be as wide.
+pub(super) fn widest_circle<'a>(cuts: &[Cut<'a>], tolerances: Tolerances) -> Option<Cut<'a>> {
+    let circles = || {
+        let unsized_cuts = cuts.iter().filter(|cut| cut.pass.diameter.is_none());
+        unsized_cuts.filter_map(|cut| Some((cut.pass.cut.milled?.radius, cut)))
+    };
+    let (radius, widest) = circles().max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    let is_as_wide = |(own, cut): &(f64, &Cut<'_>)| {
+        cut.pass.tool == widest.pass.tool && !exceeds(2.0 * (radius - own), tolerances.diameter)
+    };
+    let (_, deepest) = circles().filter(is_as_wide).max_by(|(_, a), (_, b)| a.tip.total_cmp(&b.tip))?;
+    let is_known = cuts.iter().all(|cut| cut.pass.tool == deepest.pass.tool || cut.tip <= deepest.tip);
+    is_known.then_some(*deepest)
 }

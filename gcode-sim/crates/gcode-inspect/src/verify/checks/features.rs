@@ -3,11 +3,8 @@ use super::*;
 use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::machine::{PointShape, ToolKind};
 use crate::verify::outline::{CutShape, Outline};
-use crate::verify::stack::{Cut, assign};
+use crate::verify::stack::{Cut, POINT_LENGTH, assign, cylinder_depth, deepest_circle, widest_circle};
 use gcode_part::{Feature, FeatureKind};
-
-/// Length of a drill's point of 118° in diameters: a finishing tool need not reach below the drill's full diameter.
-const POINT_LENGTH: f64 = 0.300_430;
 
 /// Ends taken for a drill, and for a tool of unknown kind, whose angle the machine file lacks.
 const DRILL_POINT: PointShape = PointShape::Pointed(Deg(118.0));
@@ -109,10 +106,11 @@ impl Judgement<'_> {
             if self.goes_through(feature) {
                 self.judge_through(Some(feature), surface);
             } else {
-                match cut.map(|cut| self.near[cut]) {
+                match *cut {
                     Some(cut) => {
-                        self.judge_depth(feature, &cut);
-                        self.judge_milling(feature, &cut);
+                        let deepest = deepest_circle(feature, cut, &self.near, &made_by, tolerances);
+                        self.judge_depth(feature, &deepest);
+                        self.judge_milling(feature, &self.near[cut].clone());
                     }
                     None => self.report_missing(feature),
                 }
@@ -310,7 +308,14 @@ impl Judgement<'_> {
             if !is_known {
                 return;
             }
-            (sized, depth - POINT_LENGTH * diameter.unwrap_or(0.0) - sized.tip)
+            let full = match sized.is_circle() {
+                true => cylinder_depth(&self.near, depth, tolerances.depth),
+                false => depth - POINT_LENGTH * diameter.unwrap_or(0.0),
+            };
+            (sized, full - sized.tip)
+        } else if let Some(widest) = widest_circle(&self.near, tolerances).filter(|_| diameter.is_some()) {
+            let full = cylinder_depth(&self.near, depth, tolerances.depth);
+            (widest, full - widest.tip)
         } else {
             return;
         };
