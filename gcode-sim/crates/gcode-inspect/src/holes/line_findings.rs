@@ -28,12 +28,14 @@ impl HoleExtractor<'_> {
             surface.is_some_and(|s| s.gradient(&line.start).dot(&(line.bottom() - line.start)) >= 0.0);
         let is_backward = tilt.is_some_and(|tilt| tilt.0 > 90.0);
         if is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH) {
+            self.check_body_in_plunge(&line);
             return;
         }
         match exit {
             ToolExit::Sideways { back } if back <= TOUCH_DEPTH => {
                 let inside = inside();
                 if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
+                    self.check_body_in_plunge(&line);
                     return;
                 }
                 self.report_no_retract(&line, inside);
