@@ -14,21 +14,21 @@ const MAX_PROJECTIONS: u32 = 400;
 const PROJECTIONS_ON_ROD: u32 = 4;
 
 impl Surface {
-    /// Returns a point of the body that a cylinder touches while it moves by `along`; `None` if it touches none.
+    /// Returns true if a cylinder touches the body while it moves by `along`.
     ///
     /// Body and swept cylinder are convex: alternating projections onto them converge to their nearest points (von
     /// Neumann). A plane between them proves that they do not meet.
-    pub fn contact(&self, rod: &Rod, along: &Vector3<f64>) -> Option<Point3<f64>> {
+    pub fn touches(&self, rod: &Rod, along: &Vector3<f64>) -> bool {
         let (mut p, mut t) = (rod.base, 0.0);
         for _ in 0..MAX_PROJECTIONS {
             let nearest = self.nearest(&p);
             if nearest.distance <= CONTACT {
-                return Some(p);
+                return true;
             }
             let foot = p - nearest.normal.into_inner() * nearest.distance;
             let least = rod.least_along(&nearest.normal) + along.dot(&nearest.normal).min(0.0);
             if foot.coords.dot(&nearest.normal) + CONTACT < least {
-                return None;
+                return false;
             }
             for _ in 0..PROJECTIONS_ON_ROD {
                 let on_rod = rod.project(&(foot - along * t));
@@ -37,7 +37,7 @@ impl Surface {
                 p = on_rod + along * t;
             }
         }
-        None
+        false
     }
 }
 
@@ -78,7 +78,7 @@ mod tests {
             (upright(82.0, 82.0, -5.0, 2.829), true),
             (upright(82.0, 82.0, -5.0, 2.828), false),
         ] {
-            assert_eq!(block.contact(&rod, &still).is_some(), is_contact, "{rod:?}");
+            assert_eq!(block.touches(&rod, &still), is_contact, "{rod:?}");
         }
     }
 
@@ -87,9 +87,9 @@ mod tests {
     fn a_body_narrower_than_the_cylinder_is_found() {
         let pin = Surface::Rod(Rod { length: 20.0, ..upright(4.0, 0.0, -20.0, 1.0) });
         let still = Vector3::zeros();
-        assert!(pin.contact(&upright(0.0, 0.0, -5.0, 10.0), &still).is_some());
-        assert!(pin.contact(&upright(-7.01, 0.0, -5.0, 10.0), &still).is_none());
-        assert!(pin.contact(&upright(-6.99, 0.0, -5.0, 10.0), &still).is_some());
+        assert!(pin.touches(&upright(0.0, 0.0, -5.0, 10.0), &still));
+        assert!(!pin.touches(&upright(-7.01, 0.0, -5.0, 10.0), &still));
+        assert!(pin.touches(&upright(-6.99, 0.0, -5.0, 10.0), &still));
     }
 
     /// Along y the cylinder passes the face at x 80; its ends are 30 mm and more from the block.
@@ -97,12 +97,12 @@ mod tests {
     fn a_swept_cylinder_touches_between_its_ends() {
         let block = Surface::Block { min: Point3::new(0.0, 0.0, -25.0), max: Point3::new(80.0, 80.0, 0.0) };
         let along = Vector3::new(0.0, 160.0, 0.0);
-        assert!(block.contact(&upright(82.999, -40.0, -5.0, 3.0), &along).is_some());
-        assert!(block.contact(&upright(83.001, -40.0, -5.0, 3.0), &along).is_none());
+        assert!(block.touches(&upright(82.999, -40.0, -5.0, 3.0), &along));
+        assert!(!block.touches(&upright(83.001, -40.0, -5.0, 3.0), &along));
         // Towards x the travel ends 3.001 mm before the face.
         let across = |end: f64| Vector3::new(end - 120.0, 0.0, 0.0);
-        assert!(block.contact(&upright(120.0, 40.0, -5.0, 3.0), &across(83.001)).is_none());
-        assert!(block.contact(&upright(120.0, 40.0, -5.0, 3.0), &across(82.999)).is_some());
+        assert!(!block.touches(&upright(120.0, 40.0, -5.0, 3.0), &across(83.001)));
+        assert!(block.touches(&upright(120.0, 40.0, -5.0, 3.0), &across(82.999)));
     }
 
     /// A cylinder of 6 over an ellipsoid of 20 by 10 touches its flank with its rim: at y 3 the flank has the radius
@@ -116,7 +116,7 @@ mod tests {
             length: 10.0,
             radius: 3.0,
         };
-        assert!(body.contact(&over(22.078), &Vector3::zeros()).is_some());
-        assert!(body.contact(&over(22.080), &Vector3::zeros()).is_none());
+        assert!(body.touches(&over(22.078), &Vector3::zeros()));
+        assert!(!body.touches(&over(22.080), &Vector3::zeros()));
     }
 }

@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::line::CuttingLine;
-use super::rapids::{PLUNGE_COSINE, TOUCH_DEPTH, format_point};
+use super::rapids::{PLUNGE_COSINE, TOUCH_DEPTH};
 use crate::findings::FEED_BESIDE_HOLE;
 use crate::machine::AxisMotion;
 use gcode_lang::diag::Diagnostic;
@@ -16,8 +16,8 @@ impl HoleExtractor<'_> {
         let Some(axis) = self.pose.axis else { return };
         let is_along = |along: &Vector3<f64>| PLUNGE_COSINE * along.norm() <= along.dot(&axis).abs();
         let mut chords = path.windows(2).filter(|chord| !is_along(&(chord[1] - chord[0])));
-        let found = chords.find_map(|chord| self.body_contact((&chord[0], &chord[1]), &axis));
-        self.report_body_contact(backtrace, found);
+        let is_cut = chords.any(|chord| self.body_cuts((&chord[0], &chord[1]), &axis));
+        self.report_body_cut(backtrace, is_cut);
     }
 
     /// Checks a feed on an arc as one of chords.
@@ -30,37 +30,38 @@ impl HoleExtractor<'_> {
         self.check_body_in_feed(&event.backtrace(), &path);
     }
 
-    /// Checks a feed inwards that makes no hole because its tip stays in the air.
-    pub(super) fn check_body_in_plunge(&mut self, line: &CuttingLine) {
-        let Some(axis) = line.tool_axis.filter(|axis| 0.0 < axis.dot(&line.out)) else { return };
-        if line.cutting_state.tool == self.setup.tool && line.unknown_axes.is_none() {
-            let found = self.body_contact((&line.start, &line.bottom()), &axis);
-            self.report_body_contact(line.backtrace(), found);
-        }
+    /// Returns true if the body of the tool cuts the part in a feed inwards with its tip in the air.
+    pub(super) fn cuts_in_plunge(&self, line: &CuttingLine) -> bool {
+        let Some(axis) = line.tool_axis.filter(|axis| 0.0 < axis.dot(&line.out)) else { return false };
+        line.cutting_state.tool == self.setup.tool
+            && line.unknown_axes.is_none()
+            && self.body_cuts((&line.start, &line.bottom()), &axis)
     }
 
-    fn report_body_contact(&mut self, backtrace: &Backtrace, found: Option<Point3<f64>>) {
-        let Some(point) = found else { return };
+    /// Reports a feed in which the body of the tool cuts the part.
+    pub(super) fn report_body_cut(&mut self, backtrace: &Backtrace, is_cut: bool) {
+        if !is_cut {
+            return;
+        }
         self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| {
-            let point = format_point(&point);
-            Diagnostic::new(kind, format!("the side of the tool cuts the part in a feed, at {point}"))
-                .help("keep the tool's radius away from the part, or state in [stock] the material that the program leaves")
+            Diagnostic::new(kind, "the side of the tool cuts the part beside its holes in a feed").help(
+                "keep the tool's radius away from the part, or state in [stock] the material that the program leaves",
+            )
         });
     }
 
-    /// Returns a point at which a part of the tool cuts the body between two tips in the air.
-    fn body_contact(
-        &self,
-        (from, to): (&Point3<f64>, &Point3<f64>),
-        axis: &Unit<Vector3<f64>>,
-    ) -> Option<Point3<f64>> {
-        let surface = self.surface.filter(|_| self.has_been_outside && self.entries.is_some())?;
+    /// Returns true if a part of the tool cuts the body between two tips in the air.
+    fn body_cuts(&self, (from, to): (&Point3<f64>, &Point3<f64>), axis: &Unit<Vector3<f64>>) -> bool {
+        let Some(surface) = self.surface.filter(|_| self.has_been_outside && self.entries.is_some()) else {
+            return false;
+        };
         if TOUCH_DEPTH < surface.depth(&surface.deepest_between(from, to)) {
-            return None;
+            return false;
         }
         let parts = self.machine.tool_body(&self.setup);
-        let mut cutting =
-            parts.iter().filter(|part| !self.is_within_nominal_hole(&[*from, *to], axis, part.radius));
-        cutting.find_map(|part| part.contact(&surface, (from, axis), &(to - from)))
+        parts.iter().any(|part| {
+            !self.is_within_nominal_hole(&[*from, *to], axis, part.radius)
+                && part.cuts(&surface, (from, axis), &(to - from))
+        })
     }
 }

@@ -26,18 +26,18 @@ pub(crate) struct ToolCylinder {
 }
 
 impl ToolCylinder {
-    /// Returns a point of the body that this part cuts while the tip moves from `tip` by `along`. Cuts of up to
+    /// Returns true if this part cuts the body while the tip moves from `tip` by `along`. Cuts of up to
     /// [`TOUCH_DEPTH`] don't count.
-    pub(crate) fn contact(
+    pub(crate) fn cuts(
         &self,
         body: &Surface,
         (tip, axis): (&Point3<f64>, &Unit<Vector3<f64>>),
         along: &Vector3<f64>,
-    ) -> Option<Point3<f64>> {
+    ) -> bool {
         let length = (self.to - self.from - TOUCH_DEPTH).max(0.0);
         let base = tip + axis.into_inner() * (self.from + TOUCH_DEPTH);
         let radius = self.radius - TOUCH_DEPTH;
-        (0.0 < radius).then(|| body.contact(&Rod { base, axis: *axis, length, radius }, along)).flatten()
+        0.0 < radius && body.touches(&Rod { base, axis: *axis, length, radius }, along)
     }
 }
 

@@ -178,7 +178,7 @@ fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine) -> bool 
     // A circle cuts wider than its tool.
     let wider = |part: ToolCylinder| ToolCylinder { radius: part.radius + (cut - own) / 2.0, ..part };
     let mut parts = machine.tool_end(pass.tool).into_iter().map(wider);
-    !parts.any(|part| part.contact(surface, (&bottom, &pass.axis), &(start - bottom)).is_some())
+    !parts.any(|part| part.cuts(surface, (&bottom, &pass.axis), &(start - bottom)))
 }
 
 /// Returns the candidate of each nominal hole, and whether each drilled hole is taken: the nearest pairs first, of
