@@ -35,6 +35,7 @@
 
 mod assumption;
 mod clusters;
+mod contact;
 mod distance;
 mod entry_planes;
 mod feature;

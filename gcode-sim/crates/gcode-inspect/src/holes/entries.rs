@@ -298,6 +298,27 @@ impl HoleExtractor<'_> {
         is_over
     }
 
+    /// Returns true if a cylinder of this radius about two tips stays within a nominal hole. One without a diameter may be
+    /// as wide as a tool that covers its axis.
+    pub(super) fn is_within_nominal_hole(
+        &self,
+        tips: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+    ) -> bool {
+        let Some(entries) = &self.entries else { return false };
+        let margin = Vector3::repeat(MAX_HEIGHT);
+        let (low, high) = (tips[0].inf(&tips[1]) - margin, tips[0].sup(&tips[1]) + margin);
+        let mut is_within = false;
+        entries.planes.around(&low, &high, &mut |hole| {
+            let collar = entries.planes.collar(hole);
+            let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
+            let room = if collar.has_diameter { collar.hole_radius + MAX_OVERSIZE - radius } else { radius };
+            is_within |= collar.is_parallel(axis) && aside <= room;
+        });
+        is_within
+    }
+
     /// Returns the radius of the tool; `None` if it is unknown, and for a boring bar with the spindle stopped, which is
     /// shifted off the wall. A tool of unknown kind that has turned may be one.
     pub(super) fn tool_radius(&self) -> Option<f64> {

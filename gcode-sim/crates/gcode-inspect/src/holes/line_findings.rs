@@ -14,6 +14,9 @@ use gcode_lang::units::Deg;
 /// Largest angle between feed and tool, besides rounding.
 const MAX_FEED_TILT: Deg = Deg(0.05);
 
+/// Cosine of the largest angle between a surface's normal and a feed parallel to the surface, from rounding.
+const MAX_PARALLEL_COSINE: f64 = 1e-9;
+
 impl HoleExtractor<'_> {
     /// Reports a line that the tool has left, and keeps its passes if it makes a hole.
     pub(super) fn report_line(&mut self, line: Box<CuttingLine>, exit: ToolExit, is_feeding: bool) {
@@ -24,8 +27,13 @@ impl HoleExtractor<'_> {
         let inside = || surface.map(|s| s.depth(&s.deepest_between(&line.start, &line.bottom())));
         // A feed outwards, as of a tool left in its hole, makes no hole. Its start decides: a hole in a steep flank may end
         // outside the part.
-        let is_outward =
-            surface.is_some_and(|s| s.gradient(&line.start).dot(&(line.bottom() - line.start)) >= 0.0);
+        // Parallel to the surface beside it the side of the tool decides.
+        let is_outward = surface.is_some_and(|s| {
+            let (gradient, along) = (s.gradient(&line.start), line.bottom() - line.start);
+            let slope = gradient.dot(&along);
+            let is_parallel = slope <= MAX_PARALLEL_COSINE * gradient.norm() * along.norm();
+            0.0 <= slope && !(is_parallel && self.cuts_in_plunge(&line))
+        });
         let is_backward = tilt.is_some_and(|tilt| tilt.0 > 90.0);
         if is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH) {
             return;
@@ -34,6 +42,8 @@ impl HoleExtractor<'_> {
             ToolExit::Sideways { back } if back <= TOUCH_DEPTH => {
                 let inside = inside();
                 if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
+                    let is_cut = self.cuts_in_plunge(&line);
+                    self.report_body_cut(line.backtrace(), is_cut);
                     return;
                 }
                 self.report_no_retract(&line, inside);

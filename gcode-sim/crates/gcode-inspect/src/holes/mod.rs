@@ -7,6 +7,7 @@ mod cutting;
 mod entries;
 #[cfg(test)]
 pub(crate) mod event_script;
+mod feed_body;
 mod group;
 mod length_mismatch;
 mod line;
@@ -31,6 +32,7 @@ pub(crate) use group::{MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
+pub(crate) use rapids::TOUCH_DEPTH;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
 use self::axis_box::SearchBudget;
@@ -41,7 +43,6 @@ use self::entries::CutEntries;
 use self::line::{CuttingLine, ToolExit};
 use self::milled::{Engagement, Path};
 use self::per_block::Findings;
-use self::rapids::TOUCH_DEPTH;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
@@ -277,6 +278,9 @@ impl<'m> HoleExtractor<'m> {
                 MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
                 MotionKind::Feed => {
                     self.check_curved(event, &travel, kind);
+                    if !is_rotating && was.union(is).is_none() {
+                        self.check_body_on_arc(event, &travel);
+                    }
                     let arc = self.part_arc(&travel, &before.tip);
                     self.engagement.add_unknown_axes(was.union(is));
                     self.engage(event, &before.tip, Path::Curved(arc));
@@ -294,6 +298,9 @@ impl<'m> HoleExtractor<'m> {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
                 self.follow_feed_at_holes(event, &[before.tip, self.pose.tip]);
+                if was.union(is).is_none() {
+                    self.check_body_in_feed(&event.backtrace(), &[before.tip, self.pose.tip]);
+                }
                 if let Some(start) = start {
                     self.start_line(event, start, last_motion);
                 }

@@ -154,9 +154,9 @@ impl HoleExtractor<'_> {
         let room = start.filter(|_| is_straight).map_or(0.0, |start| self.room_in_hole(&[start, pose.tip]));
         let mut budget = std::mem::take(&mut self.search_budget);
         let mut found = None;
-        for (index, part) in parts.into_iter().enumerate().filter(|(_, part)| room < part.radius) {
+        for part in parts.into_iter().filter(|part| room < part.radius) {
             // A boring bar with the spindle stopped is shifted off the wall.
-            let is_cutter = index == 0;
+            let is_cutter = part.is_cutter;
             if is_cutter && 0.0 < room && self.tool_radius().is_none() {
                 continue;
             }

@@ -10,7 +10,7 @@ use gcode_lang::motion::Event;
 use gcode_part::Surface;
 
 /// Largest depth below the surface that is not reported, mm.
-pub(super) const TOUCH_DEPTH: f64 = 0.01;
+pub(crate) const TOUCH_DEPTH: f64 = 0.01;
 
 /// Cosine of the largest angle of a plunge to the tool's axis: 6°.
 pub(super) const PLUNGE_COSINE: f64 = 0.995;

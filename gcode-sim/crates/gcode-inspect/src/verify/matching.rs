@@ -5,7 +5,8 @@ use nalgebra::{Point3, Vector3};
 
 use super::position::Deviation;
 use super::{Tolerances, bottom};
-use crate::holes::DrilledHole;
+use crate::holes::{DrilledHole, PassCut, ToolPass};
+use crate::machine::{Machine, ToolCylinder};
 use gcode_part::{Hole, Pattern, PointTree, Surface, exceeds};
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
@@ -129,9 +130,9 @@ impl<'a> Comparison<'a> {
         Self { nominal, actual, tolerances, pattern, pairs, missing, extra, nominal_by_line }
     }
 
-    /// Leaves out of the extra holes the feeds that end in the air. Those near a missing hole stay: they explain it, as
-    /// the rows of a pattern do that lacks holes.
-    pub(super) fn leave_out_air_feeds(&mut self, surface: &Surface) {
+    /// Leaves out of the extra holes the feeds whose tool stays in the air; without its diameter only its tip counts.
+    /// Those near a missing hole stay: they explain it, as the rows of a pattern do that lacks holes.
+    pub(super) fn leave_out_air_feeds(&mut self, surface: &Surface, machine: &Machine) {
         if self.pattern.is_some() && !self.missing.is_empty() {
             return;
         }
@@ -143,9 +144,7 @@ impl<'a> Comparison<'a> {
                 (entry - end).cross(&actual[*index].axis).norm() <= MAX_LINE_DISTANCE
             };
             // A feed across the tool has no depth: its ends count.
-            let is_in_air = actual[*index]
-                .passes()
-                .all(|pass| surface.value(&surface.deepest_between(&pass.cut.start, &pass.cut.bottom)) > 0.0);
+            let is_in_air = actual[*index].passes().all(|pass| is_in_air(&pass, surface, machine));
             !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
         });
     }
@@ -183,6 +182,23 @@ impl<'a> Comparison<'a> {
     pub fn id(&self, nominal: usize) -> &str {
         self.nominal[nominal].id.as_deref().unwrap_or("?")
     }
+}
+
+/// Returns true if a pass cuts nothing of the body. A circle that leaves a core goes round the metal: its tip alone counts.
+fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine) -> bool {
+    let PassCut { start, bottom, milled, .. } = pass.cut;
+    if surface.value(&surface.deepest_between(&start, &bottom)) <= 0.0 {
+        return false;
+    }
+    let own = machine.diameter_of(pass.tool);
+    let Some((own, cut)) = own.zip(pass.diameter).filter(|_| milled.is_none_or(|cut| cut.core.is_none()))
+    else {
+        return true;
+    };
+    // A circle cuts wider than its tool.
+    let wider = |part: ToolCylinder| ToolCylinder { radius: part.radius + (cut - own) / 2.0, ..part };
+    let mut parts = machine.tool_end(pass.tool).into_iter().map(wider);
+    !parts.any(|part| part.cuts(surface, (&bottom, &pass.axis), &(start - bottom)))
 }
 
 /// Matches the nominal and drilled holes that are left: the nearest pairs first, of equally near ones the first in the list;

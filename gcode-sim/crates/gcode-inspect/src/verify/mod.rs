@@ -85,7 +85,7 @@ pub fn verify(
     let pattern = reference.pattern.as_ref();
     let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
     if let Some(body) = reference.body(machine.stock) {
-        comparison.leave_out_air_feeds(&body);
+        comparison.leave_out_air_feeds(&body, machine);
     }
     let rows = pattern.and_then(|pattern| PatternRows::of(&comparison, pattern));
     let mirror_image = MirrorImage::of(&comparison);

@@ -199,7 +199,7 @@ impl<'m> AxisBox<'m> {
         let motion = self.groups.len();
         root.middle[..motion].fill(0.5);
         root.half[..motion].fill(0.5);
-        if let Some(ToolCylinder { from, to, radius }) = self.tool {
+        if let Some(ToolCylinder { from, to, radius, .. }) = self.tool {
             root.middle[motion] = (from + to) / 2.0;
             root.half[motion..motion + 3].copy_from_slice(&[(to - from) / 2.0, radius, radius]);
         }
