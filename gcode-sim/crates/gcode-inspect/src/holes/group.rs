@@ -118,7 +118,8 @@ impl DrillPass {
 /// A hole that the program drills, in the part's frame; lengths in mm.
 #[derive(Clone, Debug)]
 pub struct DrilledHole {
-    /// Point of the axis at which the cutting feed of the finishing tool begins; of a milled hole, the highest feed of any tool.
+    /// Point of the axis at which the cutting feed of the finishing tool begins; of a milled hole, the highest feed of any
+    /// tool.
     pub entry: Point3<f64>,
     /// Direction out of the part.
     pub axis: Unit<Vector3<f64>>,

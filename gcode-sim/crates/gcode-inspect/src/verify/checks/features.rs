@@ -108,9 +108,13 @@ impl Judgement<'_> {
             } else {
                 match *cut {
                     Some(cut) => {
+                        let made = self.near[cut];
                         let deepest = deepest_circle(feature, cut, &self.near, &made_by, tolerances);
                         self.judge_depth(feature, &deepest);
-                        self.judge_milling(feature, &self.near[cut].clone());
+                        self.judge_milling(feature, &made);
+                        if made.tip < deepest.tip {
+                            self.judge_milling(feature, &deepest);
+                        }
                     }
                     None => self.report_missing(feature),
                 }
