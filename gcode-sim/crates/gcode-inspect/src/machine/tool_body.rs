@@ -57,13 +57,15 @@ impl Machine {
             radius: diameter / 2.0,
             is_cutter: false,
         };
-        let shank = tool.shank_diameter.zip(tool.flute_length);
-        let end_of_flutes = shank.map_or(length, |(_, flutes)| flutes.min(length)).max(point);
+        // Where the length is unknown or shorter, shank and holder are nowhere.
+        let shank = tool.shank_diameter.zip(tool.flute_length).filter(|(_, flutes)| *flutes < length);
+        let end_of_flutes = shank.map_or(length, |(_, flutes)| flutes).max(point);
         // The full diameter comes first: it is the part that cuts most.
         let mut body = vec![ToolCylinder { is_cutter: true, ..cylinder(point, end_of_flutes, diameter) }];
         body.extend(steps_of_point(point, diameter));
         body.extend(shank.map(|(shank, _)| cylinder(end_of_flutes, length, shank)));
-        body.extend(holder(tool).map(|(holder, height)| cylinder(length - height, length, holder)));
+        let holder = holder(tool).filter(|(_, height)| *height <= length);
+        body.extend(holder.map(|(holder, height)| cylinder(length - height, length, holder)));
         body.retain(|part| part.from <= part.to);
         body
     }
