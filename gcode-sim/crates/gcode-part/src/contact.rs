@@ -10,16 +10,13 @@ const CONTACT: f64 = 1e-6;
 /// Largest number of projections onto the body.
 const MAX_PROJECTIONS: u32 = 400;
 
-/// Number of projections onto the cylinder for one onto the body.
-const PROJECTIONS_ON_ROD: u32 = 4;
-
 impl Surface {
     /// Returns true if a cylinder touches the body while it moves by `along`.
     ///
     /// Body and swept cylinder are convex: alternating projections onto them converge to their nearest points (von
     /// Neumann). A plane between them proves that they do not meet.
     pub fn touches(&self, rod: &Rod, along: &Vector3<f64>) -> bool {
-        let (mut p, mut t) = (rod.base, 0.0);
+        let mut p = rod.base;
         for _ in 0..MAX_PROJECTIONS {
             let nearest = self.nearest(&p);
             if nearest.distance <= CONTACT {
@@ -30,12 +27,8 @@ impl Surface {
             if foot.coords.dot(&nearest.normal) + CONTACT < least {
                 return false;
             }
-            for _ in 0..PROJECTIONS_ON_ROD {
-                let on_rod = rod.project(&(foot - along * t));
-                let length = along.norm_squared();
-                t = if length == 0.0 { 0.0 } else { ((foot - on_rod).dot(along) / length).clamp(0.0, 1.0) };
-                p = on_rod + along * t;
-            }
+            let t = Self::Rod(*rod).nearest_between(&foot, &(foot - along));
+            p = rod.project(&(foot - along * t)) + along * t;
         }
         false
     }
