@@ -52,7 +52,7 @@ impl HoleExtractor<'_> {
 
     /// Returns true if a part of the tool cuts the body between two tips in the air.
     fn body_cuts(&self, (from, to): (&Point3<f64>, &Point3<f64>), axis: &Unit<Vector3<f64>>) -> bool {
-        let Some(surface) = self.surface.filter(|_| self.has_been_outside && self.entries.is_some()) else {
+        let Some(surface) = self.surface.filter(|_| self.has_left_start && self.entries.is_some()) else {
             return false;
         };
         if TOUCH_DEPTH < surface.depth(&surface.deepest_between(from, to)) {

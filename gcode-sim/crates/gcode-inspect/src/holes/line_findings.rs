@@ -70,6 +70,7 @@ impl HoleExtractor<'_> {
         }
         // A stroke in a hole that was cut before, as of a mill that goes on sideways, has no retract either.
         let has_retract = !matches!(exit, ToolExit::Sideways { .. });
+        self.cut_axes |= !line.unknown_axes.all();
         let (pass, repeated) = line.finish();
         let repeated = repeated.filter(|_| has_retract);
         for pass in std::iter::once(pass).chain(repeated) {

@@ -103,10 +103,13 @@ pub struct HoleExtractor<'m> {
     frame: Frame,
     /// Pose of the tool on the part.
     pose: Pose,
-    /// True once the tool has been outside the part: its position before that is unknown.
-    has_been_outside: bool,
     /// The spindle has turned with the tool in it.
     has_tool_turned: bool,
+    /// True once a block has ended at a known position, or the tool has been outside the part; before that the tool may
+    /// stand inside.
+    has_left_start: bool,
+    /// Axes whose positions were known in a cut, as bits.
+    cut_axes: u8,
     current_line: Option<Box<CuttingLine>>,
     /// Block of the last motion, if metal is known.
     last_block: Option<Backtrace>,
@@ -153,8 +156,9 @@ impl<'m> HoleExtractor<'m> {
             clamp_state: ClampState::default(),
             frame,
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
-            has_been_outside: false,
             has_tool_turned: false,
+            has_left_start: false,
+            cut_axes: 0,
             current_line: None,
             last_block: None,
             last_motion: None,
@@ -287,7 +291,7 @@ impl<'m> HoleExtractor<'m> {
                 }
                 MotionKind::Probe => {}
             }
-            self.update_outside();
+            self.update_start();
             return;
         }
         if (self.pose.tip - before.tip).norm() < 1e-9 {
@@ -314,7 +318,7 @@ impl<'m> HoleExtractor<'m> {
         if self.strokes.has_across() {
             self.check_upright(&from);
         }
-        self.update_outside();
+        self.update_start();
     }
 
     /// Follows a straight motion from `from` along the current line. Returns the point from which the tool moved freely;
@@ -407,12 +411,15 @@ impl<'m> HoleExtractor<'m> {
         }
     }
 
+    /// Applies a known end of a motion.
+    fn update_start(&mut self) {
+        self.has_left_start |= self.positions.is_known(self.machine);
+    }
+
+    /// Applies a known position outside the part before the first motion.
     fn update_outside(&mut self) {
-        if let (false, true, Some(surface)) =
-            (self.has_been_outside, self.positions.is_known(self.machine), &self.surface)
-        {
-            self.has_been_outside = surface.value(&self.pose.tip) > 0.0;
-        }
+        let is_outside = self.surface.is_some_and(|surface| surface.value(&self.pose.tip) > 0.0);
+        self.has_left_start |= is_outside && self.positions.is_known(self.machine);
     }
 
     /// Applies a change of the tool, its offset or the head, which moves the tip.

@@ -46,7 +46,7 @@ impl HoleExtractor<'_> {
             positions = std::iter::once(*from).chain(path).collect();
         } else if !is_line {
             let is_reported = self.check_path(event, (from, to), start);
-            if !is_reported && (self.has_been_outside || self.surface.is_none()) {
+            if !is_reported && (self.has_left_start || self.surface.is_none()) {
                 let is_reported = self.check_box(event, &all, from);
                 if !is_reported {
                     self.check_tool_body(event, &all, (from, to), start);
@@ -135,7 +135,7 @@ impl HoleExtractor<'_> {
         (from, to): (&Position, &Position),
         start: Option<Point3<f64>>,
     ) {
-        let Some(surface) = self.surface.filter(|_| self.has_been_outside) else { return };
+        let Some(surface) = self.surface.filter(|_| self.has_left_start) else { return };
         let is_straight = self.machine.is_straight(&AxisMotion { from, to, arc: None });
         let pose = self.machine.forward(to, &self.setup);
         let Some(axis) = pose.axis else { return };

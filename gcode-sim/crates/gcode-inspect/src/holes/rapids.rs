@@ -60,8 +60,8 @@ impl HoleExtractor<'_> {
     /// Checks a rapid that is straight on the part and on no current line; returns true if it cuts.
     pub(super) fn check_rapid(&mut self, event: &Event<'_>, from: &Point3<f64>, to: &Point3<f64>) -> bool {
         let Some(surface) = self.surface else { return self.check_rapid_at_holes(event, from, to) };
-        if !self.has_been_outside {
-            self.check_first_rapid(event, &surface, from, to);
+        if !self.has_left_start {
+            self.check_known_end(event, to);
             return false;
         }
         let deepest = surface.deepest_between(from, to);
@@ -82,8 +82,21 @@ impl HoleExtractor<'_> {
         true
     }
 
-    /// Checks the end of a rapid before the tool has been outside the part. Its start is unknown; axes that have not
-    /// moved are taken to be at machine zero, and the height over the part has moved.
+    /// Checks the known end of a rapid whose start is unknown.
+    pub(super) fn check_known_end(&mut self, event: &Event<'_>, to: &Point3<f64>) {
+        match self.surface {
+            Some(surface) if self.is_in_cut_hole(&surface, (to, to), to) => {}
+            Some(surface) => {
+                let note = "the start of this rapid is unknown";
+                self.check_rapid_end(event, &surface, to, Severity::Error, note);
+            }
+            None => {
+                self.check_rapid_at_holes(event, to, to);
+            }
+        }
+    }
+
+    /// Checks the end of a first rapid along the tool while other axes are unknown: these are taken to be at machine zero.
     pub(super) fn check_first_rapid(
         &mut self,
         event: &Event<'_>,
@@ -132,7 +145,7 @@ impl HoleExtractor<'_> {
         kind: MotionKind,
     ) -> bool {
         let depth = match self.surface {
-            Some(surface) if self.has_been_outside => self.max_depth_along(&surface, travel),
+            Some(surface) if self.has_left_start => self.max_depth_along(&surface, travel),
             _ => f64::NEG_INFINITY,
         };
         let is_rapid = kind == MotionKind::Rapid;
@@ -152,7 +165,7 @@ impl HoleExtractor<'_> {
                 (&mut self.engagement.errors, &FEED_NO_HOLE, message, straight)
             }
             Some(surface) => {
-                if self.has_been_outside {
+                if self.has_left_start {
                     self.record_close_turn(event, &surface, travel);
                 }
                 return false;
@@ -172,7 +185,7 @@ impl HoleExtractor<'_> {
     pub(super) fn end_in_metal(&mut self) {
         let tip = self.pose.tip;
         let is_known =
-            self.positions.is_known(self.machine) && (self.has_been_outside || self.surface.is_none());
+            self.positions.is_known(self.machine) && (self.has_left_start || self.surface.is_none());
         let depth = self.known_depth(&tip).filter(|depth| is_known && TOUCH_DEPTH < *depth);
         let Some((depth, backtrace)) = depth.zip(self.last_block.take()) else { return };
         let level = self.level_at(&tip);

@@ -7,11 +7,14 @@ use super::line::{CuttingLine, ToolExit};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::START_UNKNOWN;
 use crate::machine::{AxisMotion, Machine};
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Axes, AxisIndex, Backtrace, Event, UnknownAxes};
 
 /// Sine of the largest angle at which an axis moves along a hole.
 const MAX_SINE: f64 = 1e-3;
+
+/// Detail of the finding about a rapid; above those of holes, which are axes as bits.
+const RAPID_DETAIL: u32 = 1 << 8;
 
 /// Largest displacement of a hole by an axis that has no effect on it, mm.
 const MAX_DISPLACEMENT: f64 = 1e-6;
@@ -132,15 +135,55 @@ impl HoleExtractor<'_> {
             self.report_line(line, exit, false);
         }
         self.positions.note_rapid(event, was.union(is));
-        let Some(surface) = self.surface else { return };
         let to = self.pose.tip;
-        if is.is_none() && self.has_been_outside {
-            let note = "the start of this rapid is unknown";
-            self.check_rapid_end(event, &surface, &to, Severity::Error, note);
-        } else if is.at_machine_position | is.shifted == 0 && !self.has_been_outside {
+        // The angle about the axis of a round part does not matter.
+        let round = self.axis_about_part().map_or(0, |axis| 1 << axis);
+        if kind == MotionKind::Rapid && is.without(round).is_none() {
+            self.check_known_end(event, &to);
+        } else if let Some(surface) = self.surface
+            && is.at_machine_position | is.shifted == 0
+            && !self.has_left_start
+        {
             self.check_first_rapid(event, &surface, from, &to);
         }
-        self.update_outside();
+        if kind == MotionKind::Rapid {
+            self.report_rapid_at_unknown_level(event, travel, (was, is));
+        }
+        self.update_start();
+    }
+
+    /// Reports a rapid across an axis that was known in a cut and is where the start of the run left it, as after G98.
+    fn report_rapid_at_unknown_level(
+        &mut self,
+        event: &Event<'_>,
+        travel: &AxisMotion<'_>,
+        (was, is): (UnknownAxes, UnknownAxes),
+    ) {
+        // G28, G30 and G53 lead away from the part.
+        let axes = was.uncommanded & self.cut_axes & !is.at_machine_position;
+        let is_across = |axis: AxisIndex| {
+            let mut to = *travel.to;
+            to[axis] = travel.from[axis];
+            let rest = self.machine.forward(&to, &self.setup).tip
+                - self.machine.forward(travel.from, &self.setup).tip;
+            MAX_DISPLACEMENT < rest.norm()
+        };
+        let crossed = self.machine.axes.iter().map(|(axis, _)| axis);
+        let crossed = crossed.filter(|axis| axes >> axis & 1 == 1 && !self.machine.axes.is_rotary(*axis));
+        let crossed = crossed.filter(|axis| is_across(*axis)).fold(0, |mask, axis| mask | 1_u8 << axis);
+        if crossed == 0 {
+            return;
+        }
+        let letters = self.machine.axes.names(crossed);
+        self.findings.add_in_program(&START_UNKNOWN, &event.backtrace(), RAPID_DETAIL, 1, |kind| {
+            let message = format!(
+                "a rapid leads across after a hole with {letters} at an unknown position: no earlier block commands \
+                 {letters} in G90"
+            );
+            Diagnostic::new(kind, message)
+                .note("G98 returns to the level at which the cycle began")
+                .help(format!("command {letters} in G90 before the first hole"))
+        });
     }
 
     /// Returns true if all these axes move the tool along the line: out of the hole, since machine zero is outside the

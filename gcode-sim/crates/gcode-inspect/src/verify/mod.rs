@@ -31,8 +31,9 @@ use self::hole_finding::{HoleFindings, Subject};
 use self::rounding::RoundingDeviation;
 use self::rows::PatternRows;
 use crate::findings::START_UNKNOWN;
-use crate::holes::HoleExtraction;
+use crate::holes::{DrilledHole, HoleExtraction};
 use crate::machine::Machine;
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::source::Span;
 use gcode_part::{Hole, Reference};
 use nalgebra::{Point3, Vector3};
@@ -94,7 +95,13 @@ pub fn verify(
         HoleInspection { comparison, rows, mirror_image, features, extraction, reference, machine };
     let mut findings = HoleFindings::default();
     // A check of its own names the holes of unknown positions.
-    for finding in extraction.findings.iter().filter(|finding| finding.kind != &START_UNKNOWN) {
+    let is_of_hole = |finding: &Diagnostic| {
+        let is_at = |hole: &DrilledHole| {
+            !hole.unknown_axes.is_none() && finding.backtrace.as_ref() == Some(&hole.backtrace)
+        };
+        finding.kind == &START_UNKNOWN && extraction.holes.iter().any(is_at)
+    };
+    for finding in extraction.findings.iter().filter(|finding| !is_of_hole(finding)) {
         findings.add(Subject::Motion, finding.clone());
     }
     for check in checks::ALL {
