@@ -5,9 +5,9 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::axis_box::Bodies;
-use super::rapids::{TOUCH_DEPTH, format_point};
+use super::rapids::format_point;
 use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
-use crate::machine::{AxisMotion, Pose, ToolKind};
+use crate::machine::{AxisMotion, Pose, TOUCH_DEPTH, ToolKind};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, SpindleDirection};
 use gcode_part::{EntryPlanes, NearestPoint, Surface};

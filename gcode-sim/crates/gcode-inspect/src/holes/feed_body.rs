@@ -3,9 +3,9 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::line::CuttingLine;
-use super::rapids::{PLUNGE_COSINE, TOUCH_DEPTH};
+use super::rapids::PLUNGE_COSINE;
 use crate::findings::FEED_BESIDE_HOLE;
-use crate::machine::AxisMotion;
+use crate::machine::{AxisMotion, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event};
 

@@ -1,12 +1,11 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
 use super::HoleExtractor;
 use super::line::{CuttingLine, ToolExit};
-use super::rapids::TOUCH_DEPTH;
 use super::strokes::CutKind;
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
 };
-use crate::machine::HeadKind;
+use crate::machine::{HeadKind, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::SpindleDirection;
 use gcode_lang::units::Deg;

@@ -32,7 +32,6 @@ pub(crate) use group::{MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
-pub(crate) use rapids::TOUCH_DEPTH;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
 use self::axis_box::SearchBudget;
@@ -45,7 +44,7 @@ use self::milled::{Engagement, Path};
 use self::per_block::Findings;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, TOUCH_DEPTH};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{

@@ -3,10 +3,10 @@ use nalgebra::{Point3, Vector3};
 
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
 use super::entries::CutEntries;
-use super::rapids::{PLUNGE_COSINE, TOUCH_DEPTH, error_if, format_point};
+use super::rapids::{PLUNGE_COSINE, error_if, format_point};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
-use crate::machine::{AxisMotion, Pose, RapidPath, arrivals};
+use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, arrivals};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};

@@ -4,13 +4,10 @@ use nalgebra::Point3;
 use super::line::{CuttingLine, ToolExit};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{FEED_NO_HOLE, RAPID_BEYOND_CUT, RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
-use crate::machine::AxisMotion;
+use crate::machine::{AxisMotion, TOUCH_DEPTH};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Event;
 use gcode_part::Surface;
-
-/// Largest depth below the surface that is not reported, mm.
-pub(crate) const TOUCH_DEPTH: f64 = 0.01;
 
 /// Cosine of the largest angle of a plunge to the tool's axis: 6°.
 pub(super) const PLUNGE_COSINE: f64 = 0.995;

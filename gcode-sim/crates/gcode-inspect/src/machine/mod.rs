@@ -29,7 +29,7 @@ pub use random::RandomStream;
 pub use rapid::RapidPath;
 pub(crate) use rapid::arrivals;
 pub use sources::{ErrorSource, Quantity};
-pub(crate) use tool_body::ToolCylinder;
+pub(crate) use tool_body::{TOUCH_DEPTH, ToolCylinder};
 pub(crate) use tool_shape::PointShape;
 pub use tool_shape::ToolKind;
 pub use wheel::Wheel;

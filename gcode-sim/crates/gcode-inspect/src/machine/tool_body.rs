@@ -2,9 +2,11 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::{Machine, PointShape, Setup, Tool, ToolKind};
-use crate::holes::TOUCH_DEPTH;
 use gcode_lang::units::Deg;
 use gcode_part::{Rod, Surface};
+
+/// Largest depth below the surface that is not reported, mm.
+pub(crate) const TOUCH_DEPTH: f64 = 0.01;
 
 /// Full angle of the point of a drill for which the machine file has none.
 const POINT_ANGLE: Deg = Deg(118.0);
