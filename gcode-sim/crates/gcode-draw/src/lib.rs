@@ -6,7 +6,7 @@
 //!
 //! A [`Sheet`] has every symbol and text at its position on the paper. [`Sheet::to_scale`] draws a scene as it
 //! is; [`lay_out`] chooses scale and detail of a [`Picture`], a scene with title block and legend, so that no
-//! label covers another. Sheets are written by [`paint`] and [`png`], or by [`svg`]; a new file format is a new
+//! label covers another. Sheets are written by [`paint`] and [`png()`], or by [`svg`]; a new file format is a new
 //! writer of sheets.
 //!
 //! ```
