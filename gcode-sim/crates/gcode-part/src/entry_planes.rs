@@ -13,7 +13,7 @@ use super::surface::Surface;
 const WALL: f64 = 1.0;
 
 /// Cosine of the largest angle between axes that count as parallel: 5°.
-const PARALLEL_COSINE: f64 = 0.996_194_698_091_745_5;
+pub const PARALLEL_COSINE: f64 = 0.996_194_698_091_745_5;
 
 /// What is known to be metal before a program runs.
 #[derive(Clone, Debug, Default)]

@@ -63,15 +63,9 @@ pub struct Feature {
 const CONE_TOLERANCE: f64 = 0.1;
 
 impl FeatureKind {
-    /// Kinds with their names in files.
-    pub const NAMES: [(&'static str, Self); 6] = [
-        ("drill", Self::Drill),
-        ("ream", Self::Ream),
-        ("bore", Self::Bore),
-        ("counterbore", Self::Counterbore),
-        ("countersink", Self::Countersink),
-        ("tap", Self::Tap),
-    ];
+    /// All kinds.
+    const ALL: [Self; 6] =
+        [Self::Drill, Self::Ream, Self::Bore, Self::Counterbore, Self::Countersink, Self::Tap];
 
     /// Returns the name in files and messages.
     pub fn name(self) -> &'static str {
@@ -115,9 +109,10 @@ impl Feature {
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let mut words = text.split_whitespace();
         let name = words.next().unwrap_or_default();
-        let kind = FeatureKind::NAMES.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind);
-        let names = FeatureKind::NAMES.map(|(name, _)| name).join(", ");
-        let kind = kind.ok_or_else(|| format!("'{name}' is no kind of feature: one of {names}"))?;
+        let kind = FeatureKind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
+            let names = FeatureKind::ALL.map(FeatureKind::name).join(", ");
+            format!("'{name}' is no kind of feature: one of {names}")
+        })?;
         let number = |word: &str| word.parse::<f64>().map_err(|_| format!("'{word}' is not a number"));
         let diameter = number(words.next().ok_or("a feature needs its diameter behind its kind")?)?;
         let mut feature = Self { kind, diameter, depth: None, to: DepthTo::Point, angle: None, pitch: None };

@@ -4,9 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::feature::Feature;
-
 use super::assumption::Assumption;
+use super::feature::Feature;
 use super::stock::Stock;
 use super::surface::Surface;
 

@@ -1,6 +1,7 @@
 //! Least distance between the axes of two nominal holes: nearer passes belong to one hole.
 use nalgebra::{Point3, Vector3};
 
+use super::entry_planes::PARALLEL_COSINE;
 use super::hole::Hole;
 use super::point_tree::PointTree;
 
@@ -10,16 +11,13 @@ const MAX_SPACING: f64 = 1.0;
 /// Distance below which two holes have one axis, mm.
 const SAME_AXIS: f64 = 1e-6;
 
-/// Cosine of the largest angle between the directions of holes that are compared: 5°.
-const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
-
 /// Returns the least distance of an entry from the axis of another hole of the same direction, mm; `None` above 1 mm.
 pub(super) fn hole_spacing(holes: &[Hole]) -> Option<f64> {
     let tree = PointTree::new(holes.iter().map(|hole| Point3::from(hole.entry)));
     let mut least = f64::INFINITY;
     tree.pairs(MAX_SPACING, &mut |one, other| {
         let axis = Vector3::from(holes[one].axis);
-        if axis.dot(&Vector3::from(holes[other].axis)) < MIN_DIRECTION_COSINE {
+        if axis.dot(&Vector3::from(holes[other].axis)) < PARALLEL_COSINE {
             return;
         }
         let between = Point3::from(holes[other].entry) - Point3::from(holes[one].entry);

@@ -7,7 +7,7 @@ use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::{Deg, MmPerMin, Rpm};
-use gcode_part::{Clusters, Hole, Origin, PointTree};
+use gcode_part::{Clusters, Hole, Origin, PARALLEL_COSINE, PointTree};
 
 /// Largest distance between the lines of two passes of one hole, mm.
 pub(crate) const MAX_LINE_OFFSET: f64 = 0.5;
@@ -15,9 +15,6 @@ pub(crate) const MAX_LINE_OFFSET: f64 = 0.5;
 /// Largest distance between the lines of two passes of one tool in one hole, mm: the rounding of a rotary axis to 0.01°, at
 /// 1 m from its centre.
 const MAX_REPEAT_OFFSET: f64 = 0.1;
-
-/// Cosine of the largest angle between the directions of passes of one hole: 5°.
-pub(crate) const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
 
 /// Least additional depth at which a pass of the same tool cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
@@ -49,7 +46,7 @@ pub struct MilledCut {
     pub radius: f64,
     /// Largest minus least distance of the path from the axis.
     pub roundness: f64,
-    /// Diameter of the metal that the mill leaves on the axis; `None` without any.
+    /// Diameter of the metal that the mill leaves on the axis; `None` without any, or if it is unknown.
     pub core: Option<f64>,
 }
 
@@ -81,26 +78,13 @@ pub(super) struct DrillPass {
     pub axis_position: Position,
     /// Axes of unknown position on the part.
     pub unknown_axes: UnknownAxes,
-    /// Circle of a mill; `None` for a stroke.
-    pub circle: Option<MilledCircle>,
-}
-
-/// Path of a mill round a hole, lengths in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MilledCircle {
-    /// Radius of the path.
-    pub radius: f64,
-    /// Largest minus least distance of the path from the axis.
-    pub roundness: f64,
-    /// Diameter of the core that the circles of the tool leave; `None` if they leave none, or if it is unknown.
-    pub core: Option<f64>,
 }
 
 impl DrillPass {
     /// Returns the diameter that the pass cuts; `None` if the tool table lacks the tool.
     fn diameter(&self, machine: &Machine) -> Option<f64> {
         let cutter = machine.diameter_of(self.tool)?;
-        let Some(circle) = self.circle else { return Some(cutter) };
+        let Some(circle) = self.cut.milled else { return Some(cutter) };
         // Without the noise of the arithmetic, which would be printed.
         Some(((cutter + 2.0 * circle.radius) * 1e9).round() / 1e9)
     }
@@ -108,7 +92,7 @@ impl DrillPass {
     /// Returns true if the pass cuts at least as wide as another one. Of a tool of unknown diameter only the path counts; of
     /// two such tools the later one does.
     fn is_as_wide(&self, other: &Self, machine: &Machine) -> bool {
-        let path = |pass: &Self| 2.0 * pass.circle.map_or(0.0, |circle| circle.radius);
+        let path = |pass: &Self| 2.0 * pass.cut.milled.map_or(0.0, |circle| circle.radius);
         let diameter = |pass: &Self| pass.diameter(machine);
         let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();
         !is_comparable || diameter(other).unwrap_or(path(other)) <= diameter(self).unwrap_or(path(self))
@@ -243,7 +227,7 @@ fn first_on_same_line(passes: &[DrillPass], machine: &Machine, spacing: Option<f
         let high = pass.cut.start.sup(&pass.cut.bottom) + margin;
         groups.join(index, &low, &high, &|other| {
             let other = &passes[other];
-            pass.axis.dot(&other.axis) >= MIN_DIRECTION_COSINE
+            pass.axis.dot(&other.axis) >= PARALLEL_COSINE
                 && pass.offset_of(other) <= limit.min(max_offset(pass, other, machine))
         });
     }
@@ -288,7 +272,7 @@ fn push_holes<'p>(
     let first_on_line = holes.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
     // A mill cuts the same depth with each radius.
-    let radius = |pass: &DrillPass| pass.circle.map(|circle| (circle.radius * 1000.0).round() as u64);
+    let radius = |pass: &DrillPass| pass.cut.milled.map(|circle| (circle.radius * 1000.0).round() as u64);
     let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
     let (cutting, repeated): (Vec<&DrillPass>, Vec<&DrillPass>) = passes.partition(|pass| {
         let lowest = lowest_by_tool.entry((pass.tool, radius(pass))).or_insert(f64::INFINITY);
@@ -303,20 +287,16 @@ fn push_holes<'p>(
     let finishing_index = cutting.iter().take_while(|pass| !std::ptr::eq(**pass, finish)).count();
     // A core that another tool removes, or may remove, is none.
     let core = |milled: &DrillPass| {
-        milled.circle.and_then(|circle| circle.core).filter(|core| {
+        milled.cut.milled.and_then(|circle| circle.core).filter(|core| {
             !cutting.iter().any(|pass| {
-                let is_core_tool = pass.circle.is_some_and(|circle| circle.core.is_some());
+                let is_core_tool = pass.cut.milled.is_some_and(|circle| circle.core.is_some());
                 let is_as_deep = height(&pass.cut.bottom) <= height(&milled.cut.bottom) + MAX_CORE_HEIGHT;
                 !is_core_tool && is_as_deep && pass.diameter(machine).is_none_or(|diameter| *core <= diameter)
             })
         })
     };
     let cut = |pass: &DrillPass| {
-        let milled = pass.circle.map(|circle| MilledCut {
-            radius: circle.radius,
-            roundness: circle.roundness,
-            core: core(pass),
-        });
+        let milled = pass.cut.milled.map(|circle| MilledCut { core: core(pass), ..circle });
         PassCut { milled, ..pass.cut }
     };
     let earlier = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(|pass| EarlierPass {
@@ -347,7 +327,7 @@ fn push_holes<'p>(
             first_on_line,
         }
     };
-    let starting = cutting.iter().filter(|pass| finish.circle.is_some() || pass.tool == finish.tool);
+    let starting = cutting.iter().filter(|pass| finish.cut.milled.is_some() || pass.tool == finish.tool);
     let start = starting.map(|pass| height(&pass.cut.start)).fold(f64::NEG_INFINITY, f64::max);
     let mut finished = hole(finish, start, lowest, earlier.collect());
     finished.unknown_axes =
@@ -355,7 +335,7 @@ fn push_holes<'p>(
     holes.push(finished);
     let again = |pass: &&DrillPass| hole(pass, height(&pass.cut.start), height(&pass.cut.bottom), Vec::new());
     // A mill goes round more than once to finish.
-    holes.extend(repeated.iter().filter(|pass| pass.circle.is_none()).map(again));
+    holes.extend(repeated.iter().filter(|pass| pass.cut.milled.is_none()).map(again));
 }
 
 /// Returns the finishing pass: the last pass of the largest tool that reaches half the depth of the hole, without

@@ -334,7 +334,6 @@ impl CuttingLine {
             backtrace: end.backtrace.clone(),
             axis_position: end.axis_position,
             unknown_axes: self.unknown_axes,
-            circle: None,
         }
     }
 }

@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
-use super::group::{DrillPass, MilledCircle, PassCut};
+use super::group::{DrillPass, MilledCut, PassCut};
 use super::per_block::Findings;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
 use gcode_lang::motion::{Event, SpindleDirection, UnknownAxes};
@@ -248,12 +248,13 @@ impl HoleExtractor<'_> {
             // A tool that comes down in rapid begins its feed at the depth of the circle.
             let begin = if begin > ring.level() + LEVEL_TOLERANCE { begin } else { approach_level };
             let length = (begin - ring.level()).max(LEVEL_TOLERANCE);
+            let milled = MilledCut { radius: ring.radius, roundness: ring.roundness, core };
+            let cut = PassCut::new(ring.centre + out.into_inner() * length, ring.centre);
             DrillPass {
-                cut: PassCut::new(ring.centre + out.into_inner() * length, ring.centre),
+                cut: PassCut { milled: Some(milled), ..cut },
                 axis: out,
                 feed_direction: out,
                 tool,
-                circle: Some(MilledCircle { radius: ring.radius, roundness: ring.roundness, core }),
                 backtrace: ring.backtrace,
                 axis_position: ring.axis_position,
                 unknown_axes,

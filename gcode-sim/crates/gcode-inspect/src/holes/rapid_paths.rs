@@ -38,13 +38,13 @@ impl HoleExtractor<'_> {
         if let Some(axis) = round {
             all.leave_out(axis);
         }
-        let is_line = all.len() < 2 || self.rapid_path == RapidPath::Straight;
-        let mut positions = vec![*from, *to];
-        if let (false, RapidPath::Rates(rates)) = (is_line, self.rapid_path)
-            && let Some(path) = arrivals(&rates, from, to)
-        {
-            positions = std::iter::once(*from).chain(path).collect();
-        } else if !is_line {
+        let legs = match self.rapid_path {
+            _ if all.len() < 2 => Some(vec![*to]),
+            RapidPath::Straight => Some(vec![*to]),
+            RapidPath::Rates(rates) => arrivals(&rates, from, to),
+            RapidPath::Any => None,
+        };
+        let Some(legs) = legs else {
             let is_reported = self.check_path(event, (from, to), start);
             if !is_reported && (self.has_left_start || self.surface.is_none()) {
                 let is_reported = self.check_box(event, &all, from);
@@ -53,9 +53,9 @@ impl HoleExtractor<'_> {
                 }
             }
             return;
-        }
-        for (leg, ends) in positions.windows(2).enumerate() {
-            let (from, to) = (&ends[0], &ends[1]);
+        };
+        let mut from = from;
+        for (leg, to) in legs.iter().enumerate() {
             let begin = if leg == 0 { start } else { Some(machine.forward(from, &setup).tip) };
             if !self.check_path(event, (from, to), begin) {
                 let mut line = AxisBox::line(machine, &setup, from, to);
@@ -64,6 +64,7 @@ impl HoleExtractor<'_> {
                 }
                 self.check_tool_body(event, &line, (from, to), begin);
             }
+            from = to;
         }
     }
 

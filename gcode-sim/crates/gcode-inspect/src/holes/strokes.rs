@@ -11,7 +11,7 @@ use super::per_block::with_count_note;
 use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, Position};
-use gcode_part::{NominalAxis, PointTree};
+use gcode_part::{NominalAxis, PARALLEL_COSINE, PointTree};
 
 /// Differences of height that come from rounding, mm.
 pub(super) const LEVEL_TOLERANCE: f64 = 0.003;
@@ -27,9 +27,6 @@ const MIN_TOOL_COSINE: f64 = 0.866_025_403_784_438_6;
 
 /// Largest distance of a stroke of a mill from the nominal axis on which it drills, mm.
 const MAX_AXIS_DISTANCE: f64 = 1.0;
-
-/// Cosine of the largest angle to that axis: 5°.
-const MIN_AXIS_COSINE: f64 = 0.996_194_698_091_745_5;
 
 /// Origin of a pass.
 #[derive(Clone, Copy, Debug)]
@@ -128,7 +125,7 @@ impl NominalAxes {
             let to = Point3::from(nominal.entry) - pass.cut.bottom;
             let aside = (to - pass.axis.into_inner() * to.dot(&pass.axis)).norm();
             found |=
-                aside <= MAX_AXIS_DISTANCE && pass.axis.dot(&Vector3::from(nominal.axis)) >= MIN_AXIS_COSINE;
+                aside <= MAX_AXIS_DISTANCE && pass.axis.dot(&Vector3::from(nominal.axis)) >= PARALLEL_COSINE;
         });
         found
     }

@@ -44,8 +44,7 @@ pub(crate) struct PositionTracker {
 impl PositionTracker {
     /// Applies the event before a move: the axes of unknown position at its end.
     pub(crate) fn apply_event(&mut self, machine: &Machine, axes: UnknownAxes) {
-        let used = machine.axes.iter().filter(|(axis, _)| machine.is_axis_used(*axis));
-        let axes = axes.only(used.fold(0, |mask, (axis, _)| mask | 1 << axis));
+        let axes = axes.only(machine.used_axes());
         // A move without travel has no event of its own.
         self.current = if self.has_started { self.upcoming } else { axes };
         self.upcoming = axes;

@@ -244,8 +244,13 @@ impl Machine {
 
     /// Returns those of some axes, as bits, that move something on this machine, without an assumed rotary.
     pub fn needed_axes(&self, axes: u8) -> u8 {
+        self.used_axes() & axes & !self.assumed_rotary_axes()
+    }
+
+    /// Returns the axes that move the tool, the part, the head or the wheel, as bits.
+    pub(crate) fn used_axes(&self) -> u8 {
         let used = self.axes.iter().filter(|(axis, _)| self.is_axis_used(*axis));
-        used.fold(0, |all, (axis, _)| all | 1 << axis) & axes & !self.assumed_rotary_axes()
+        used.fold(0, |all, (axis, _)| all | 1 << axis)
     }
 
     /// Returns true if the axis moves the tool, the part, the head or the wheel.

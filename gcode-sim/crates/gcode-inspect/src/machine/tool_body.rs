@@ -2,14 +2,10 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::{Machine, PointShape, Setup, Tool, ToolKind};
-use gcode_lang::units::Deg;
 use gcode_part::{Rod, Surface};
 
 /// Largest depth below the surface that is not reported, mm.
 pub(crate) const TOUCH_DEPTH: f64 = 0.01;
-
-/// Full angle of the point of a drill for which the machine file has none.
-const POINT_ANGLE: Deg = Deg(118.0);
 
 /// Number of steps in the cone of a point, that of the full diameter included.
 const POINT_STEPS: u8 = 4;
@@ -88,7 +84,7 @@ impl Tool {
     /// kind a flat end.
     fn point_length(&self, diameter: f64) -> f64 {
         let point = match (self.point(), self.kind) {
-            (PointShape::Unknown, Some(ToolKind::Drill)) => PointShape::Pointed(POINT_ANGLE),
+            (PointShape::Unknown, Some(ToolKind::Drill)) => PointShape::DRILL,
             (point, _) => point,
         };
         point.length(diameter).unwrap_or(0.0)

@@ -69,7 +69,7 @@ impl Tool {
         match (self.point_angle, self.kind) {
             (Some(angle), _) if angle.0 < 180.0 => PointShape::Pointed(angle),
             (Some(_), _) => PointShape::Flat,
-            (None, Some(ToolKind::SpotDrill | ToolKind::Countersink)) => PointShape::Pointed(Deg(90.0)),
+            (None, Some(ToolKind::SpotDrill | ToolKind::Countersink)) => PointShape::SPOT_DRILL,
             (None, Some(ToolKind::Drill) | None) => PointShape::Unknown,
             (None, Some(_)) => PointShape::Flat,
         }
@@ -77,6 +77,12 @@ impl Tool {
 }
 
 impl PointShape {
+    /// End of a drill for which the machine file has no angle: 118°.
+    pub(crate) const DRILL: Self = Self::Pointed(Deg(118.0));
+
+    /// End of a spot drill or countersink for which it has none: 90°.
+    pub(crate) const SPOT_DRILL: Self = Self::Pointed(Deg(90.0));
+
     /// Returns the length of the end below the full diameter, mm; `None` if unknown.
     pub(crate) fn length(self, diameter: f64) -> Option<f64> {
         match self {

@@ -25,15 +25,18 @@ pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
 pub use verdict::{ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
+use std::collections::BTreeMap;
+
 use self::checks::features::{FeatureFindings, judge_all};
 use self::checks::mirrored::MirrorImage;
 use self::hole_finding::{HoleFindings, Subject};
 use self::rounding::RoundingDeviation;
 use self::rows::PatternRows;
 use crate::findings::START_UNKNOWN;
-use crate::holes::{DrilledHole, HoleExtraction};
+use crate::holes::HoleExtraction;
 use crate::machine::Machine;
 use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
 use gcode_part::{Hole, Reference};
 use nalgebra::{Point3, Vector3};
@@ -85,21 +88,26 @@ pub fn verify(
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
-    if let Some(body) = reference.body(machine.stock) {
-        comparison.leave_out_air_feeds(&body, machine);
+    let body = reference.body(machine.stock);
+    if let Some(body) = &body {
+        comparison.leave_out_air_feeds(body, machine);
     }
     let rows = pattern.and_then(|pattern| PatternRows::of(&comparison, pattern));
     let mirror_image = MirrorImage::of(&comparison);
-    let features = judge_all(&comparison, reference.body(machine.stock), machine);
+    let features = judge_all(&comparison, body, machine);
     let inspection =
         HoleInspection { comparison, rows, mirror_image, features, extraction, reference, machine };
     let mut findings = HoleFindings::default();
     // A check of its own names the holes of unknown positions.
+    let block = |backtrace: &Backtrace| (backtrace.block.source, backtrace.block.start);
+    let mut unknown_by_block: BTreeMap<_, Vec<&Backtrace>> = BTreeMap::new();
+    for hole in extraction.holes.iter().filter(|hole| !hole.unknown_axes.is_none()) {
+        unknown_by_block.entry(block(&hole.backtrace)).or_default().push(&hole.backtrace);
+    }
     let is_of_hole = |finding: &Diagnostic| {
-        let is_at = |hole: &DrilledHole| {
-            !hole.unknown_axes.is_none() && finding.backtrace.as_ref() == Some(&hole.backtrace)
-        };
-        finding.kind == &START_UNKNOWN && extraction.holes.iter().any(is_at)
+        let backtrace = finding.backtrace.as_ref().filter(|_| finding.kind == &START_UNKNOWN);
+        backtrace
+            .is_some_and(|own| unknown_by_block.get(&block(own)).is_some_and(|holes| holes.contains(&own)))
     };
     for finding in extraction.findings.iter().filter(|finding| !is_of_hole(finding)) {
         findings.add(Subject::Motion, finding.clone());

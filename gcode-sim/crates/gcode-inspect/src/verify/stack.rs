@@ -1,7 +1,7 @@
 //! Cuts of the tools on the axis of a nominal hole, and the feature that each of them makes.
 use std::collections::BTreeMap;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::Tolerances;
 use super::outline::CutShape;
@@ -31,11 +31,7 @@ impl<'a> Cut<'a> {
     /// Returns the passes of a drilled hole in the order of the program. For one from the far side of a through hole, depths
     /// count from there.
     pub(super) fn all(nominal: &Hole, drilled: &'a DrilledHole, machine: &Machine) -> Vec<Self> {
-        let (mut entry, mut out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
-        if drilled.axis.dot(&out) < 0.0 {
-            entry -= out * nominal.depth;
-            out = -out;
-        }
+        let (entry, out) = side(nominal, &drilled.axis);
         let depth = |point: &Point3<f64>| (entry - point).dot(&out);
         let cut = |pass: ToolPass<'a>| {
             let tool = pass.tool.and_then(|number| machine.find_tool(number));
@@ -129,6 +125,12 @@ impl<'a> Cut<'a> {
             _ => Some(self.tip),
         }
     }
+}
+
+/// Returns the entry and the direction out of the part on the side from which a pass along `axis` cuts a hole.
+pub(super) fn side(nominal: &Hole, axis: &Unit<Vector3<f64>>) -> (Point3<f64>, Vector3<f64>) {
+    let (entry, out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
+    if axis.dot(&out) < 0.0 { (entry - out * nominal.depth, -out) } else { (entry, out) }
 }
 
 /// Returns the cut that makes each feature of a hole, by index: the best pairs first, of each tool its deepest cut.

@@ -2,7 +2,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::offsets::AxisLetter;
+use super::offsets::{AxisLetter, axis_of};
 use crate::machine::RapidPath;
 use gcode_lang::motion::{Axes, MAX_AXES};
 use gcode_part::reader::bounds::RapidRate;
@@ -32,11 +32,7 @@ impl FileRapid {
         }
         let mut by_axis = [None; MAX_AXES];
         for (letter, rate) in rates {
-            let key = format!("rapid.rates.{letter}");
-            let axis = axes.find(*letter as u8).ok_or_else(|| {
-                reader.error_at(&key, format!("key '{key}': the control has no axis {letter}"))
-            })?;
-            by_axis[axis] = Some(*rate);
+            by_axis[axis_of(reader, axes, "rapid.rates", *letter)?] = Some(*rate);
         }
         Ok(RapidPath::Rates(by_axis))
     }

@@ -1,5 +1,5 @@
 //! `[start]`: positions of the axes at the start of the run.
-use super::offsets::AxisLetter;
+use super::offsets::{AxisLetter, axis_of};
 use gcode_lang::motion::{Axes, AxisIndex};
 use gcode_part::reader::bounds::WorkOffsetValue;
 use gcode_part::reader::{FileError, FileKey, Reader, TableOf};
@@ -13,10 +13,5 @@ pub(super) fn start_positions(
     axes: &Axes,
     start: <FileStart as FileKey>::Value,
 ) -> Result<Vec<(AxisIndex, f64)>, FileError> {
-    let position = |(letter, value): (char, f64)| {
-        let key = format!("start.{letter}");
-        let missing = || reader.error_at(&key, format!("key '{key}': the control has no axis {letter}"));
-        Ok((axes.find(letter as u8).ok_or_else(missing)?, value))
-    };
-    start.into_iter().map(position).collect()
+    start.into_iter().map(|(letter, value)| Ok((axis_of(reader, axes, "start", letter)?, value))).collect()
 }

@@ -2,7 +2,7 @@
 use super::*;
 use crate::findings::HOLE_CUT_ASIDE;
 use crate::verify::outline::Outline;
-use crate::verify::stack::Cut;
+use crate::verify::stack::{Cut, side};
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let HoleInspection { comparison, machine, .. } = inspection;
@@ -52,11 +52,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
 /// Returns the largest distance of a pass from the nominal axis over its own depth, mm; `None` for a pass across it.
 fn offset(nominal: &Hole, cut: &Cut<'_>) -> Option<f64> {
     let depth = cut.tip.clamp(f64::MIN_POSITIVE, nominal.depth);
-    let (mut entry, mut out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
-    if cut.pass.axis.dot(&out) < 0.0 {
-        entry -= out * nominal.depth;
-        out = -out;
-    }
+    let (entry, out) = side(nominal, &cut.pass.axis);
     let own = Hole { entry: entry.into(), axis: out.into(), depth, ..Hole::default() };
     let deviation = Deviation::new(&own, &cut.pass.cut.bottom, &cut.pass.axis)?;
     Some(deviation.zone_diameter() / 2.0)

@@ -6,10 +6,6 @@ use crate::verify::outline::{CutShape, Outline};
 use crate::verify::stack::{Cut, POINT_LENGTH, assign, cylinder_depth, deepest_circle, widest_circle};
 use gcode_part::{Feature, FeatureKind};
 
-/// Ends taken for a drill, and for a tool of unknown kind, whose angle the machine file lacks.
-const DRILL_POINT: PointShape = PointShape::Pointed(Deg(118.0));
-const SPOT_DRILL_POINT: PointShape = PointShape::Pointed(Deg(90.0));
-
 /// Largest width by which a spot drill may break the edge of a hole, mm in diameter.
 const MAX_EDGE_BREAK: f64 = 1.0;
 
@@ -250,7 +246,9 @@ impl Judgement<'_> {
         if !exceeds(excess, tolerances.diameter) {
             return;
         }
-        let point = if cut.kind == Some(ToolKind::Drill) { DRILL_POINT } else { SPOT_DRILL_POINT };
+        // Without its angle a tool of unknown kind counts as a spot drill.
+        let point =
+            if cut.kind == Some(ToolKind::Drill) { PointShape::DRILL } else { PointShape::SPOT_DRILL };
         let as_spot = -2.0 * outline.margin(&CutShape { point, ..shape });
         let is_first = before <= cut.tip;
         if cut.point == PointShape::Unknown && is_first && !exceeds(as_spot, tolerances.diameter) {

@@ -4,14 +4,7 @@ use crate::findings::HOLE_CORE;
 use crate::holes::MilledCut;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
-    let comparison = &inspection.comparison;
-    // The check on features covers each of them.
-    for (pair, _, drilled) in comparison.matched().filter(|(_, nominal, _)| nominal.features.is_empty()) {
-        let what = format!("hole {}", comparison.id(pair.nominal));
-        if let Some(finding) = drilled.finishing_cut.milled.and_then(|cut| finding(&what, &cut)) {
-            findings.add(Subject::Nominal(pair.nominal), finding.with_backtrace(drilled.backtrace.clone()));
-        }
-    }
+    roundness::add_for_circles(inspection, findings, finding);
 }
 
 /// Returns the finding on the core that a mill leaves in a hole or feature.

@@ -2,8 +2,9 @@
 use super::cutting::round_thousandth;
 use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING, HOLES_ALIKE, LENGTH_OFFSET};
-use crate::holes::{LengthMismatch, MAX_LINE_OFFSET, MIN_DIRECTION_COSINE};
+use crate::holes::{LengthMismatch, MAX_LINE_OFFSET};
 use gcode_lang::motion::LengthCompensation;
+use gcode_part::PARALLEL_COSINE;
 
 /// Findings about holes of a wrong depth.
 const DEPTH_KINDS: [&FindingKind; 5] = [&HOLE_MISSING, &HOLE_EXTRA, &HOLE_DEPTH, &HOLES_ALIKE, &HOLE_IN_AIR];
@@ -101,6 +102,6 @@ fn depth(comparison: &Comparison<'_>, point: &Point3<f64>, axis: &Unit<Vector3<f
         let from = point - Point3::from(hole.entry);
         let depth = -from.dot(&out);
         let aside = (from + out * depth).norm();
-        (aside <= MAX_LINE_OFFSET && MIN_DIRECTION_COSINE <= out.dot(axis)).then_some((depth, hole.depth))
+        (aside <= MAX_LINE_OFFSET && PARALLEL_COSINE <= out.dot(axis)).then_some((depth, hole.depth))
     })
 }

@@ -4,12 +4,20 @@ use crate::findings::HOLE_ROUNDNESS;
 use crate::holes::MilledCut;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    let limit = inspection.comparison.tolerances.diameter;
+    add_for_circles(inspection, findings, |what, cut| finding(what, cut, limit));
+}
+
+/// Adds the findings on the circle that finishes each milled hole. The check on features covers the holes that have any.
+pub(super) fn add_for_circles(
+    inspection: &HoleInspection<'_>,
+    findings: &mut HoleFindings,
+    finding: impl Fn(&str, &MilledCut) -> Option<Diagnostic>,
+) {
     let comparison = &inspection.comparison;
-    // The check on features covers each of them.
     for (pair, _, drilled) in comparison.matched().filter(|(_, nominal, _)| nominal.features.is_empty()) {
-        let what = format!("hole {}", comparison.id(pair.nominal));
-        let cut = drilled.finishing_cut.milled;
-        if let Some(finding) = cut.and_then(|cut| finding(&what, &cut, comparison.tolerances.diameter)) {
+        let Some(cut) = drilled.finishing_cut.milled else { continue };
+        if let Some(finding) = finding(&format!("hole {}", comparison.id(pair.nominal)), &cut) {
             findings.add(Subject::Nominal(pair.nominal), finding.with_backtrace(drilled.backtrace.clone()));
         }
     }
