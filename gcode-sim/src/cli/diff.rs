@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     unused_machine::warn_unused_machine(&arguments.run.of(&arguments.new), &new_request);
     let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
     let metal = |request: &Request| {
-        reference.as_ref().map(|reference| reference.metal(request.machine.stock)).unwrap_or_default()
+        reference.as_ref().map(|reference| reference.metal(request.machine.stock.as_ref())).unwrap_or_default()
     };
     for request in [&mut old_request, &mut new_request] {
         request.process_limits =
@@ -114,7 +114,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             let verify = |reference: &Reference| {
                 let tolerances = Tolerances::of(reference, None);
                 let mut verdict = revision.simulation.verify(reference, tolerances, &new_request.machine);
-                let body = reference.body(request.machine.stock);
+                let body = reference.body(request.machine.stock.as_ref());
                 revision.simulation.add_assumptions(&mut verdict, request, body, false);
                 verdict
             };

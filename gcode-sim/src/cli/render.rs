@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         }
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
-            let stock = request.machine.stock;
+            let stock = request.machine.stock.as_ref();
             let metal = reference.as_ref().map(|r| r.metal(stock)).unwrap_or_default();
             request.process_limits = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
             let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, metal.clone());

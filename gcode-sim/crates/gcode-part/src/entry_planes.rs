@@ -22,11 +22,13 @@ pub struct Metal {
     pub body: Option<Surface>,
     /// Metal round the nominal holes; `None` without a reference.
     pub entries: Option<Arc<EntryPlanes>>,
+    /// What feeds may remove of the body besides the holes.
+    pub pockets: Vec<Surface>,
 }
 
 impl From<Option<Surface>> for Metal {
     fn from(body: Option<Surface>) -> Self {
-        Self { body, entries: None }
+        Self { body, ..Self::default() }
     }
 }
 
@@ -52,6 +54,8 @@ pub struct Collar {
     pub hole_radius: f64,
     /// The reference states the hole's diameter.
     pub has_diameter: bool,
+    /// The hole breaks out on the far side.
+    pub is_through: bool,
 }
 
 impl EntryPlanes {
@@ -104,6 +108,11 @@ impl EntryPlanes {
         })
     }
 
+    /// Returns the largest distance of a point of the metal round a hole from its middle, mm.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
     /// Returns a lower bound of the distance from the metal round any hole, mm.
     pub fn nearest_metal(&self, p: &Point3<f64>) -> f64 {
         self.middles.nearest(p).map_or(f64::INFINITY, |(_, distance)| distance - self.reach)
@@ -133,6 +142,7 @@ impl Collar {
             rod: Rod { base, axis, length: hole.depth, radius: radius.unwrap_or(0.0) + WALL },
             hole_radius: radius.unwrap_or(WALL),
             has_diameter: radius.is_some(),
+            is_through: hole.through,
         }
     }
 
@@ -158,39 +168,23 @@ impl Collar {
         PARALLEL_COSINE * along.norm() <= along.dot(&self.rod.axis).abs()
     }
 
-    /// Returns the ends of the piece of a straight travel that is in the collar, deeper than `skin` below the entry
+    /// Returns the shares of a straight travel between which it is in the collar, deeper than `skin` below the entry
     /// plane.
-    pub fn piece(&self, from: &Point3<f64>, to: &Point3<f64>, skin: f64) -> Option<[Point3<f64>; 2]> {
-        let along = to - from;
-        let (mut first, mut last) = (0.0_f64, 1.0_f64);
-        // Between the plane at the depth of `skin` and the bottom.
-        let (start, gain) = (self.depth(from), -along.dot(&self.rod.axis));
-        if gain.abs() < 1e-12 {
-            if start <= skin || self.rod.length < start {
-                return None;
-            }
-        } else {
-            let (a, b) = ((skin - start) / gain, (self.rod.length - start) / gain);
-            (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
-        }
-        // Inside the mantle: a·t² + 2·b·t + c ≤ 0.
-        let square = |v: Vector3<f64>| v - self.rod.axis.into_inner() * v.dot(&self.rod.axis);
-        let (away, across) = (square(from - self.rod.base), square(along));
-        let (a, b) = (across.norm_squared(), away.dot(&across));
-        let c = away.norm_squared() - self.rod.radius * self.rod.radius;
-        if a < 1e-18 {
-            if c > 0.0 {
-                return None;
-            }
-        } else {
-            let root = b * b - a * c;
-            if root < 0.0 {
-                return None;
-            }
-            let root = root.sqrt();
-            (first, last) = (first.max((-b - root) / a), last.min((-b + root) / a));
-        }
-        (first < last).then(|| [from + along * first, from + along * last])
+    pub fn piece(&self, from: &Point3<f64>, to: &Point3<f64>, skin: f64) -> Option<[f64; 2]> {
+        self.rod.piece(from, to, (0.0, self.rod.length - skin), self.rod.radius)
+    }
+
+    /// Returns the shares of a straight travel between which it is within `radius` of the axis, above the bottom or at
+    /// most `below` under it; a through hole has no bottom.
+    pub fn piece_in_hole(
+        &self,
+        from: &Point3<f64>,
+        to: &Point3<f64>,
+        radius: f64,
+        below: f64,
+    ) -> Option<[f64; 2]> {
+        let bottom = if self.is_through { f64::NEG_INFINITY } else { -below };
+        self.rod.piece(from, to, (bottom, f64::INFINITY), radius)
     }
 }
 
@@ -203,7 +197,8 @@ mod tests {
     }
 
     fn piece(hole: &Hole, from: [f64; 3], to: [f64; 3]) -> Option<[[f64; 3]; 2]> {
-        let piece = Collar::of(hole).piece(&from.into(), &to.into(), 0.01)?;
+        let (from, to) = (Point3::from(from), Point3::from(to));
+        let piece = Collar::of(hole).piece(&from, &to, 0.01)?.map(|share| from + (to - from) * share);
         Some(piece.map(|p| [p.x, p.y, p.z].map(|v| (v * 1e6).round() / 1e6 + 0.0)))
     }
 

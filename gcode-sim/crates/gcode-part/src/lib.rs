@@ -76,6 +76,6 @@ pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use reference::{NominalAxis, ProcessLimits, Reference, ToolProcess};
 pub use solid::{NearestPoint, Rod};
-pub use stock::{Stock, StockAxis};
+pub use stock::{Pocket, Stock, StockAxis};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};

@@ -36,7 +36,7 @@ impl Reference {
     /// # Errors
     /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
-        if let Some(fault) = list.stock.and_then(|stock| stock.fault()) {
+        if let Some(fault) = list.stock.as_ref().and_then(Stock::fault) {
             return Err(FileError { line: None, message: format!("stock: {fault}") });
         }
         let holes = read::check_all(list.holes)?;
@@ -55,18 +55,23 @@ impl Reference {
 
     /// Returns what is known to be metal; `of_machine` is the stock of the machine file, which that of the reference
     /// overrides. Without either the body is the part inside its surface; a hole list has none.
-    pub fn metal(&self, of_machine: Option<Stock>) -> Metal {
-        Metal { body: self.body(of_machine), entries: Some(Arc::new(EntryPlanes::of(&self.holes))) }
+    pub fn metal(&self, of_machine: Option<&Stock>) -> Metal {
+        let stock = self.stock.as_ref().or(of_machine);
+        Metal {
+            body: self.body(of_machine),
+            entries: Some(Arc::new(EntryPlanes::of(&self.holes))),
+            pockets: stock.map(Stock::pockets).unwrap_or_default(),
+        }
     }
 
     /// Returns the body of [`Self::metal`].
-    pub fn body(&self, of_machine: Option<Stock>) -> Option<Surface> {
-        self.stock.or(of_machine).unwrap_or(Stock::Surface {}).body(self.surface)
+    pub fn body(&self, of_machine: Option<&Stock>) -> Option<Surface> {
+        self.stock.as_ref().or(of_machine).map_or(self.surface, |stock| stock.body(self.surface))
     }
 
     /// Returns the hole list that `reference` writes.
     pub fn list(&self) -> HoleList {
-        HoleList { unit: Unit::Mm, holes: self.holes.clone(), stock: self.stock, assumptions: None }
+        HoleList { unit: Unit::Mm, holes: self.holes.clone(), stock: self.stock.clone(), assumptions: None }
     }
 }
 

@@ -75,6 +75,56 @@ impl Rod {
     }
 }
 
+impl Rod {
+    /// Returns the shares of a straight travel between which it is in a cylinder about this axis, of another radius and
+    /// between two heights above the base.
+    pub fn piece(
+        &self,
+        from: &Point3<f64>,
+        to: &Point3<f64>,
+        heights: (f64, f64),
+        radius: f64,
+    ) -> Option<[f64; 2]> {
+        let (to_start, along) = (from - self.base, to - from);
+        let (start, gain) = (to_start.dot(&self.axis), along.dot(&self.axis));
+        let [low, high] = shares_between([0.0, 1.0], (start, gain), heights)?;
+        let axis = self.axis.into_inner();
+        let [first, last] = shares_in_ball(to_start - axis * start, along - axis * gain, radius)?;
+        let (first, last) = (first.max(low), last.min(high));
+        (first < last).then_some([first, last])
+    }
+}
+
+/// Returns the shares of a travel, within some, between which a coordinate is between two bounds. It begins at a value and
+/// grows by a gain.
+pub(super) fn shares_between(
+    [first, last]: [f64; 2],
+    (start, gain): (f64, f64),
+    (low, high): (f64, f64),
+) -> Option<[f64; 2]> {
+    if gain.abs() < 1e-12 {
+        return (low < start && start < high).then_some([first, last]);
+    }
+    let (a, b) = ((low - start) / gain, (high - start) / gain);
+    let (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+    (first < last).then_some([first, last])
+}
+
+/// Returns the shares of a travel between which it is nearer than `radius` to the origin.
+pub(super) fn shares_in_ball(from: Vector3<f64>, along: Vector3<f64>, radius: f64) -> Option<[f64; 2]> {
+    // a·t² + 2·b·t + c ≤ 0
+    let (a, b, c) = (along.norm_squared(), from.dot(&along), from.norm_squared() - radius * radius);
+    if radius <= 0.0 {
+        return None;
+    }
+    if a < 1e-18 {
+        return (c <= 0.0).then_some([0.0, 1.0]);
+    }
+    let root = b * b - a * c;
+    let (first, last) = (((-b - root.max(0.0).sqrt()) / a).max(0.0), ((-b + root.max(0.0).sqrt()) / a).min(1.0));
+    (0.0 <= root && first < last).then_some([first, last])
+}
+
 /// Returns the distance along `beyond`, the way out of the body to a point; inside it is that of the nearest face.
 fn nearest(beyond: Vector3<f64>, face: impl Fn() -> (f64, Vector3<f64>)) -> NearestPoint {
     match Unit::try_new_and_get(beyond, f64::MIN_POSITIVE) {

@@ -1,4 +1,5 @@
-//! `[stock]`: the solid material of the part before the program runs, as a reference or a machine file describes it.
+//! `[stock]`: the solid material of the part before the program runs and the pockets that feeds may mill in it, as a
+//! reference or a machine file describes them.
 use nalgebra::{Point3, Unit, Vector3};
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::{Deserialize, Serialize};
@@ -10,7 +11,7 @@ use crate::reader::bounds::{Length, MachinePoint};
 use crate::reader::{FileKey, FixedArray};
 
 /// The solid material of the part, in the part's frame, mm.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 #[schemars(transform = describe_kind)]
 pub enum Stock {
@@ -24,6 +25,9 @@ pub enum Stock {
         #[serde(deserialize_with = "<FixedArray<MachinePoint, 3> as FileKey>::deserialize")]
         #[schemars(with = "FixedArray<MachinePoint, 3>")]
         max: [f64; 3],
+        /// What feeds may mill besides the holes.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pocket: Vec<Pocket>,
     },
     /// A cylinder about one of the part's axes.
     Cylinder {
@@ -41,9 +45,55 @@ pub enum Stock {
         #[serde(deserialize_with = "<MachinePoint as FileKey>::deserialize")]
         #[schemars(with = "MachinePoint")]
         to: f64,
+        /// What feeds may mill besides the holes.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pocket: Vec<Pocket>,
     },
     /// The reference's own surface.
-    Surface {},
+    Surface {
+        /// What feeds may mill besides the holes.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pocket: Vec<Pocket>,
+    },
+}
+
+/// Material that feeds may mill besides the holes, in the part's frame, mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+#[schemars(transform = describe_kind)]
+pub enum Pocket {
+    /// A box with edges along the part's axes.
+    Box {
+        /// Its corner with the least coordinates.
+        #[serde(deserialize_with = "<FixedArray<MachinePoint, 3> as FileKey>::deserialize")]
+        #[schemars(with = "FixedArray<MachinePoint, 3>")]
+        min: [f64; 3],
+        /// Its corner with the greatest coordinates.
+        #[serde(deserialize_with = "<FixedArray<MachinePoint, 3> as FileKey>::deserialize")]
+        #[schemars(with = "FixedArray<MachinePoint, 3>")]
+        max: [f64; 3],
+    },
+    /// A cylinder along one of the part's axes.
+    Cylinder {
+        /// The axis.
+        axis: StockAxis,
+        /// A point of its middle line [default: the origin].
+        #[serde(default, deserialize_with = "<FixedArray<MachinePoint, 3> as FileKey>::deserialize")]
+        #[schemars(with = "FixedArray<MachinePoint, 3>")]
+        centre: [f64; 3],
+        /// Its diameter.
+        #[serde(deserialize_with = "<Length as FileKey>::deserialize")]
+        #[schemars(with = "Length")]
+        diameter: f64,
+        /// Coordinate of one end along the axis.
+        #[serde(deserialize_with = "<MachinePoint as FileKey>::deserialize")]
+        #[schemars(with = "MachinePoint")]
+        from: f64,
+        /// Coordinate of the other end.
+        #[serde(deserialize_with = "<MachinePoint as FileKey>::deserialize")]
+        #[schemars(with = "MachinePoint")]
+        to: f64,
+    },
 }
 
 /// Axis of a cylinder.
@@ -73,41 +123,82 @@ fn list_axes(schema: &mut Schema) {
     *schema = json_schema!({ "type": "string", "enum": ["x", "y", "z"] });
 }
 
+impl StockAxis {
+    fn direction(self) -> Unit<Vector3<f64>> {
+        match self {
+            Self::X => Vector3::x_axis(),
+            Self::Y => Vector3::y_axis(),
+            Self::Z => Vector3::z_axis(),
+        }
+    }
+}
+
 impl Stock {
     /// Returns the body; `own` is the surface of the reference.
     pub fn body(&self, own: Option<Surface>) -> Option<Surface> {
         match *self {
-            Self::Box { min, max } => Some(Surface::Block { min: Point3::from(min), max: Point3::from(max) }),
-            Self::Cylinder { axis, diameter, from, to } => {
-                let axis = match axis {
-                    StockAxis::X => Vector3::x_axis(),
-                    StockAxis::Y => Vector3::y_axis(),
-                    StockAxis::Z => Vector3::z_axis(),
-                };
-                Some(Surface::Rod(rod(axis, from, to, diameter / 2.0)))
-            }
-            Self::Surface {} => own,
+            Self::Box { min, max, .. } => Some(block(min, max)),
+            Self::Cylinder { axis, diameter, from, to, .. } => Some(rod(axis, [0.0; 3], diameter, (from, to))),
+            Self::Surface { .. } => own,
+        }
+    }
+
+    /// Returns the bodies that feeds may remove.
+    pub fn pockets(&self) -> Vec<Surface> {
+        self.pocket().iter().map(Pocket::body).collect()
+    }
+
+    fn pocket(&self) -> &[Pocket] {
+        match self {
+            Self::Box { pocket, .. } | Self::Cylinder { pocket, .. } | Self::Surface { pocket } => pocket,
         }
     }
 
     /// Returns the reason why no body can have these numbers; `None` if one can.
     pub fn fault(&self) -> Option<String> {
-        match self {
-            Self::Box { min, max } => {
-                let axis = (0..3).find(|i| max[*i] <= min[*i])?;
-                let letter = ["x", "y", "z"][axis];
-                Some(format!("max is {} in {letter}, and min is {}: max above min", max[axis], min[axis]))
-            }
-            Self::Cylinder { from, to, .. } => {
-                (to <= from).then(|| format!("to is {to}, and from is {from}: to above from"))
-            }
-            Self::Surface {} => None,
+        let own = match *self {
+            Self::Box { min, max, .. } => block_fault(min, max),
+            Self::Cylinder { from, to, .. } => rod_fault(from, to),
+            Self::Surface { .. } => None,
+        };
+        let of_pocket = |(index, pocket): (usize, &Pocket)| {
+            let fault = match *pocket {
+                Pocket::Box { min, max } => block_fault(min, max),
+                Pocket::Cylinder { from, to, .. } => rod_fault(from, to),
+            };
+            fault.map(|fault| format!("pocket {}: {fault}", index + 1))
+        };
+        own.or_else(|| self.pocket().iter().enumerate().find_map(of_pocket))
+    }
+}
+
+impl Pocket {
+    fn body(&self) -> Surface {
+        match *self {
+            Self::Box { min, max } => block(min, max),
+            Self::Cylinder { axis, centre, diameter, from, to } => rod(axis, centre, diameter, (from, to)),
         }
     }
 }
 
-fn rod(axis: Unit<Vector3<f64>>, from: f64, to: f64, radius: f64) -> Rod {
-    Rod { base: Point3::from(axis.into_inner() * from), axis, length: to - from, radius }
+fn block(min: [f64; 3], max: [f64; 3]) -> Surface {
+    Surface::Block { min: Point3::from(min), max: Point3::from(max) }
+}
+
+fn block_fault(min: [f64; 3], max: [f64; 3]) -> Option<String> {
+    let axis = (0..3).find(|i| max[*i] <= min[*i])?;
+    let letter = ["x", "y", "z"][axis];
+    Some(format!("max is {} in {letter}, and min is {}: max above min", max[axis], min[axis]))
+}
+
+fn rod(axis: StockAxis, centre: [f64; 3], diameter: f64, (from, to): (f64, f64)) -> Surface {
+    let (axis, centre) = (axis.direction(), Vector3::from(centre));
+    let base = Point3::from(centre + axis.into_inner() * (from - centre.dot(&axis)));
+    Surface::Rod(Rod { base, axis, length: to - from, radius: diameter / 2.0 })
+}
+
+fn rod_fault(from: f64, to: f64) -> Option<String> {
+    (to <= from).then(|| format!("to is {to}, and from is {from}: to above from"))
 }
 
 #[cfg(test)]
@@ -125,15 +216,27 @@ mod tests {
         assert_eq!(depth(&bar, [10.0, 0.0, 18.0]), 2.0);
         assert_eq!(depth(&bar, [57.0, 0.0, 0.0]), 3.0);
         let sphere = Surface::Ellipsoid { a: 5.0, b: 5.0 };
+        let pocket = r#"{"kind": "cylinder", "axis": "z", "centre": [30, 20, 7], "diameter": 10, "from": -5, "to": 0}"#;
+        let plate = read(&format!(r#"{{"kind": "surface", "pocket": [{pocket}]}}"#));
+        let distance = |p: [f64; 3]| plate.pockets()[0].nearest(&Point3::from(p)).distance;
+        assert_eq!([distance([34.0, 20.0, -2.0]), distance([37.0, 20.0, -2.0])], [-1.0, 2.0]);
+        assert_eq!(distance([30.0, 20.0, -9.0]), 4.0);
         assert_eq!(read(r#"{"kind": "surface"}"#).body(Some(sphere)), Some(sphere));
     }
 
     #[test]
     fn a_body_without_volume_is_refused() {
-        let flat = Stock::Box { min: [0.0, 0.0, 0.0], max: [5.0, 5.0, 0.0] };
+        let flat = Stock::Box { min: [0.0, 0.0, 0.0], max: [5.0, 5.0, 0.0], pocket: Vec::new() };
         assert_eq!(flat.fault().unwrap(), "max is 0 in z, and min is 0: max above min");
-        let upside = Stock::Cylinder { axis: StockAxis::Z, diameter: 5.0, from: 0.0, to: -9.0 };
-        assert_eq!(upside.fault().unwrap(), "to is -9, and from is 0: to above from");
+        let upside = Pocket::Cylinder {
+            axis: StockAxis::Z,
+            centre: [0.0; 3],
+            diameter: 5.0,
+            from: 0.0,
+            to: -9.0,
+        };
+        let stock = Stock::Surface { pocket: vec![upside] };
+        assert_eq!(stock.fault().unwrap(), "pocket 1: to is -9, and from is 0: to above from");
         for text in [
             r#"{"kind": "ball"}"#,
             r#"{"kind": "surface", "min": [0, 0, 0]}"#,

@@ -2,7 +2,7 @@
 //! gradients.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::solid::{Rod, block_face};
+use super::solid::{Rod, block_face, shares_between, shares_in_ball};
 
 /// A convex body; lengths in mm, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,6 +92,40 @@ impl Surface {
         }
         let beyond = grow_until(inside, 1.0, |t| self.value(&at(t)) > 0.0);
         Some(at(find_zero(inside, beyond, |t| self.value(&at(t)))))
+    }
+
+    /// Returns the shares of a straight travel between which it is in the body, deeper than `skin`; a negative skin is
+    /// outside.
+    pub fn piece(&self, from: &Point3<f64>, to: &Point3<f64>, skin: f64) -> Option<[f64; 2]> {
+        let along = to - from;
+        match *self {
+            Self::Ellipsoid { a, b } => {
+                let scale = Vector3::new(a - skin, b - skin, a - skin);
+                shares_in_ball(from.coords.component_div(&scale), along.component_div(&scale), 1.0)
+            }
+            Self::Cylinder { radius } => {
+                let across = |v: Vector3<f64>| Vector3::new(0.0, v.y, v.z);
+                shares_in_ball(across(from.coords), across(along), radius - skin)
+            }
+            Self::Block { min, max } => (0..3).try_fold([0.0, 1.0], |shares, i| {
+                shares_between(shares, (from[i], along[i]), (min[i] + skin, max[i] - skin))
+            }),
+            Self::Rod(rod) => rod.piece(from, to, (skin, rod.length - skin), rod.radius - skin),
+        }
+    }
+
+    /// Returns the corners of a box that holds the body; they may be infinitely far.
+    pub fn bounds(&self) -> [Point3<f64>; 2] {
+        let about_origin = |half: Vector3<f64>| [Point3::from(-half), Point3::from(half)];
+        match *self {
+            Self::Ellipsoid { a, b } => about_origin(Vector3::new(a, b, a)),
+            Self::Cylinder { radius } => about_origin(Vector3::new(f64::INFINITY, radius, radius)),
+            Self::Block { min, max } => [min, max],
+            Self::Rod(rod) => {
+                let (end, margin) = (rod.base + rod.axis.into_inner() * rod.length, Vector3::repeat(rod.radius));
+                [rod.base.inf(&end) - margin, rod.base.sup(&end) + margin]
+            }
+        }
     }
 
     /// Returns true if rotation about this axis leaves the body unchanged, to rounding.

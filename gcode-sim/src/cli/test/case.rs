@@ -93,7 +93,7 @@ impl Case {
         let metal = match &nominal {
             Some(NominalPart::Holes(reference)) => {
                 request.process_limits = reference.process_limits.clone();
-                reference.metal(request.machine.stock)
+                reference.metal(request.machine.stock.as_ref())
             }
             Some(NominalPart::Flutes(_)) | None => Metal::default(),
         };

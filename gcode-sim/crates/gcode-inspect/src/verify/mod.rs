@@ -88,7 +88,7 @@ pub fn verify(
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
-    let body = reference.body(machine.stock);
+    let body = reference.body(machine.stock.as_ref());
     if let Some(body) = &body {
         comparison.leave_out_air_feeds(body, machine);
     }

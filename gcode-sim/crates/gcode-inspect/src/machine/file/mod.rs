@@ -137,7 +137,7 @@ impl Machine {
             }
             tools.push(checked);
         }
-        if let Some(fault) = file.stock.and_then(|stock| stock.fault()) {
+        if let Some(fault) = file.stock.as_ref().and_then(Stock::fault) {
             return Err(reader.error_at("stock", format!("key 'stock': {fault}")));
         }
         let mut machine = Self {
