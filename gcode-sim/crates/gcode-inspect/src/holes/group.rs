@@ -19,9 +19,6 @@ const MAX_REPEAT_OFFSET: f64 = 0.1;
 /// Least additional depth at which a pass of the same tool cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
 
-/// Largest height of a core on the bottom of a hole that counts as removed, mm.
-const MAX_CORE_HEIGHT: f64 = 0.1;
-
 /// Extent of a pass in the part's frame, with its feed and its spindle.
 #[derive(Clone, Copy, Debug)]
 pub struct PassCut {
@@ -285,22 +282,8 @@ fn push_holes<'p>(
     let lowest = cutting.iter().map(|pass| height(&pass.cut.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing_pass(&cutting, lowest, height, machine);
     let finishing_index = cutting.iter().take_while(|pass| !std::ptr::eq(**pass, finish)).count();
-    // A core that another tool removes, or may remove, is none.
-    let core = |milled: &DrillPass| {
-        milled.cut.milled.and_then(|circle| circle.core).filter(|core| {
-            !cutting.iter().any(|pass| {
-                let is_core_tool = pass.cut.milled.is_some_and(|circle| circle.core.is_some());
-                let is_as_deep = height(&pass.cut.bottom) <= height(&milled.cut.bottom) + MAX_CORE_HEIGHT;
-                !is_core_tool && is_as_deep && pass.diameter(machine).is_none_or(|diameter| *core <= diameter)
-            })
-        })
-    };
-    let cut = |pass: &DrillPass| {
-        let milled = pass.cut.milled.map(|circle| MilledCut { core: core(pass), ..circle });
-        PassCut { milled, ..pass.cut }
-    };
     let earlier = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(|pass| EarlierPass {
-        cut: cut(pass),
+        cut: pass.cut,
         axis: pass.axis,
         tool: pass.tool,
         diameter: pass.diameter(machine),
@@ -320,7 +303,7 @@ fn push_holes<'p>(
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
             tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.feed_direction).clamp(-1.0, 1.0)),
-            finishing_cut: cut(pass),
+            finishing_cut: pass.cut,
             finishing_index,
             unknown_axes: pass.unknown_axes,
             earlier_passes,

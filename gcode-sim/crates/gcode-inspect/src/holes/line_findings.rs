@@ -1,7 +1,10 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
+use nalgebra::Point3;
+
 use super::HoleExtractor;
 use super::line::{CuttingLine, ToolExit};
-use super::strokes::CutKind;
+use super::metal::FeedPart;
+use super::strokes::{CutKind, MIN_TOOL_COSINE};
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
 };
@@ -31,7 +34,7 @@ impl HoleExtractor<'_> {
             let (gradient, along) = (s.gradient(&line.start), line.bottom() - line.start);
             let slope = gradient.dot(&along);
             let is_parallel = slope <= MAX_PARALLEL_COSINE * gradient.norm() * along.norm();
-            0.0 <= slope && !(is_parallel && self.cuts_in_plunge(&line))
+            0.0 <= slope && !(is_parallel && self.is_spoilt_by_plunge(&line))
         });
         let is_backward = tilt.is_some_and(|tilt| tilt.0 > 90.0);
         if is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH) {
@@ -41,8 +44,9 @@ impl HoleExtractor<'_> {
             ToolExit::Sideways { back } if back <= TOUCH_DEPTH => {
                 let inside = inside();
                 if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
-                    let is_cut = self.cuts_in_plunge(&line);
-                    self.report_body_cut(line.backtrace(), is_cut);
+                    if self.is_spoilt_by_plunge(&line) {
+                        self.report_plunge(line.backtrace(), &line);
+                    }
                     return;
                 }
                 self.report_no_retract(&line, inside);
@@ -52,7 +56,8 @@ impl HoleExtractor<'_> {
             }
             ToolExit::Sideways { back } => {
                 let left_at = line.bottom() + line.out.into_inner() * back;
-                if let Some(depth) = surface.map(|s| s.depth(&left_at)).filter(|depth| *depth > TOUCH_DEPTH) {
+                let depth = surface.map(|s| s.depth(&left_at)).filter(|depth| *depth > TOUCH_DEPTH);
+                if let Some(depth) = depth.filter(|_| self.is_cut_sideways(&left_at, is_feeding)) {
                     self.findings.add(&LEAVES_HOLE_SIDEWAYS, line.backtrace(), 0, |kind| {
                         let message =
                             format!("the tool leaves the hole sideways, {depth:.3} mm below the surface");
@@ -62,6 +67,11 @@ impl HoleExtractor<'_> {
                 }
             }
             ToolExit::OnLine | ToolExit::AlongLine => {}
+        }
+        // In a known body a feed across the tool is judged by what it removes, and so is one in a pocket.
+        let is_across = line.tool_axis.is_some_and(|axis| axis.dot(&line.out) < MIN_TOOL_COSINE);
+        if surface.is_some() && self.metal.holes.is_some() && (is_across || self.is_pocketing(&line)) {
+            return;
         }
         let kind = self.cut_kind(&line, is_feeding);
         if !matches!(kind, CutKind::Oblique) {
@@ -84,11 +94,26 @@ impl HoleExtractor<'_> {
             self.engagement.uncounted.add_unretracted(line.backtrace(), line.cut_depth());
             return;
         };
-        self.engagement.errors.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
+        let is_judged = self.metal.holes.is_some() && line.tool_axis.is_some();
+        if is_judged && !self.is_spoilt_by_plunge(line) {
+            return;
+        }
+        let findings = if is_judged { &mut self.findings } else { &mut self.engagement.errors };
+        findings.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
             let message =
                 format!("the feed ends {depth:.3} mm inside the part and the tool does not retract along it");
             Diagnostic::new(kind, message).help("retract along the hole before anything else moves")
         });
+    }
+
+    /// Returns true if the tool cuts on its way from a point to where it is now.
+    fn is_cut_sideways(&self, from: &Point3<f64>, is_feeding: bool) -> bool {
+        let travel = [*from, self.pose.tip];
+        let cut = match is_feeding && self.metal.holes.is_some() {
+            true => self.metal.spoilt(&travel, FeedPart::Tip),
+            false => self.metal.uncut(&travel, &|_| false),
+        };
+        cut.is_some()
     }
 
     /// Reports back boring, a feed outwards that ends with the bar shifted and the spindle stopped (G87): the holes of a

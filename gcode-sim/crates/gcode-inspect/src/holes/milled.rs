@@ -107,12 +107,10 @@ impl Engagement {
             nearest = nearest.min(distance);
         }
         let is_inside = nearest <= radius / 2.0;
-        // A helix on the circle leaves a core unless the cutter reaches the axis.
+        // A circle that leaves a core may be a groove.
         let reaches_axis = cutter.is_some_and(|cutter| radius <= cutter / 2.0 + slack);
         let is_helix = cutter.is_none() && self.rings.iter().any(Ring::is_helix);
         let is_certain = is_inside || reaches_axis || is_helix;
-        let least = self.rings.iter().map(|ring| ring.radius).fold(radius, f64::min);
-        let core = cutter.filter(|_| !is_certain).map(|cutter| 2.0 * least - cutter);
         let mut kept: Vec<Ring> = Vec::new();
         let mut order: Vec<&Ring> = self.rings.iter().collect();
         order.sort_by(|a, b| a.level().total_cmp(&b.level()).then(b.radius.total_cmp(&a.radius)));
@@ -121,7 +119,7 @@ impl Engagement {
                 kept.push(ring.clone());
             }
         }
-        Some(Circles { rings: kept, is_certain, core: core.filter(|core| 0.0 < *core) })
+        Some(Circles { rings: kept, is_certain })
     }
 }
 
@@ -130,8 +128,6 @@ struct Circles {
     rings: Vec<Ring>,
     /// False for a circle that may as well be a groove in a face.
     is_certain: bool,
-    /// Diameter of the core that they leave, mm; `None` without one, or of a mill of unknown diameter.
-    core: Option<f64>,
 }
 
 impl HoleExtractor<'_> {
@@ -241,14 +237,14 @@ impl HoleExtractor<'_> {
     fn push_circles(&mut self, circles: Circles) -> bool {
         let start = self.engagement.start.unwrap_or(self.pose.tip);
         let Engagement { approach_level, unknown_axes, .. } = self.engagement;
-        let (tool, core) = (self.setup.tool, circles.core);
+        let tool = self.setup.tool;
         let pass = |ring: Ring| {
             let out = ring.out;
             let begin = start.coords.dot(&out);
             // A tool that comes down in rapid begins its feed at the depth of the circle.
             let begin = if begin > ring.level() + LEVEL_TOLERANCE { begin } else { approach_level };
             let length = (begin - ring.level()).max(LEVEL_TOLERANCE);
-            let milled = MilledCut { radius: ring.radius, roundness: ring.roundness, core };
+            let milled = MilledCut { radius: ring.radius, roundness: ring.roundness, core: None };
             let cut = PassCut::new(ring.centre + out.into_inner() * length, ring.centre);
             DrillPass {
                 cut: PassCut { milled: Some(milled), ..cut },

@@ -3,24 +3,27 @@ mod arc_run;
 mod axis_box;
 mod clamping;
 mod clearance;
+mod core;
 mod cutting;
-mod entries;
 #[cfg(test)]
 pub(crate) mod event_script;
-mod feed_body;
+mod feed_law;
 mod group;
 mod length_mismatch;
 mod line;
 mod line_findings;
 mod machine_requests;
+mod metal;
 mod milled;
 pub(crate) mod per_block;
 mod rapid_paths;
 mod rapids;
+mod removed_metal;
 pub(crate) mod spindle;
 mod strokes;
 #[cfg(test)]
 mod tests;
+mod tool_lines;
 pub(crate) mod unknown_axes;
 
 use nalgebra::Point3;
@@ -38,13 +41,14 @@ use self::axis_box::SearchBudget;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
-use self::entries::CutEntries;
 use self::line::{CuttingLine, ToolExit};
+use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
 use self::per_block::Findings;
+use self::removed_metal::Profile;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, TOUCH_DEPTH};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, TOUCH_DEPTH, ToolCylinder};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
@@ -81,6 +85,10 @@ pub struct HoleExtraction {
     pub(crate) is_metal_known: bool,
     /// Rapids whose paths are not searched to the end; `None` if there are none.
     pub(crate) unsearched_rapids: Option<UnsearchedRapids>,
+    /// Tools of unknown diameter that mill a known body: what they remove is unknown.
+    pub(crate) unsized_mills: Vec<Option<u32>>,
+    /// Feeds were too many for their metal to be followed.
+    pub(crate) is_removal_cut_short: bool,
 }
 
 /// Sink for the events of a run that extracts the holes.
@@ -88,11 +96,16 @@ pub struct HoleExtraction {
 pub struct HoleExtractor<'m> {
     machine: &'m Machine,
     surface: Option<Surface>,
-    /// Nominal holes with their cuts, and the metal round them; `None` without a reference.
-    entries: Option<CutEntries>,
+    metal: KnownMetal,
     rapid_path: RapidPath,
     axis_position: Position,
     setup: Setup,
+    /// Parts of the tool in the spindle; empty if its diameter is unknown.
+    tool_body: Vec<ToolCylinder>,
+    /// What it cuts in a feed; `None` if its diameter is unknown.
+    profile: Option<Profile>,
+    /// Tools of unknown diameter that mill the part.
+    unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
     /// Last M code of the machine builder since M03, M04 or M05: it may have started the spindle.
     builder_code: Option<u32>,
@@ -145,10 +158,13 @@ impl<'m> HoleExtractor<'m> {
         Self {
             machine,
             surface: None,
-            entries: None,
+            metal: KnownMetal::new(Metal::default()),
             rapid_path: machine.rapid,
             axis_position,
             setup,
+            tool_body: Vec::new(),
+            profile: None,
+            unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             builder_code: None,
             process_limits: ProcessLimits::default(),
@@ -178,6 +194,7 @@ impl<'m> HoleExtractor<'m> {
     #[must_use]
     pub fn with_surface(mut self, surface: Option<Surface>) -> Self {
         self.surface = surface;
+        self.metal = KnownMetal::new(Metal::from(surface));
         self
     }
 
@@ -185,7 +202,7 @@ impl<'m> HoleExtractor<'m> {
     #[must_use]
     pub fn with_metal(mut self, metal: Metal) -> Self {
         self.surface = metal.body;
-        self.entries = metal.entries.map(CutEntries::new);
+        self.metal = KnownMetal::new(metal);
         self
     }
 
@@ -213,6 +230,7 @@ impl<'m> HoleExtractor<'m> {
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, self.process_limits.hole_spacing);
+        self.find_cores(&mut holes);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);
@@ -235,6 +253,8 @@ impl<'m> HoleExtractor<'m> {
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
             unsearched_rapids: self.unsearched_rapids,
+            unsized_mills: self.unsized_mills,
+            is_removal_cut_short: self.metal.removed.is_full,
         }
     }
 
@@ -248,7 +268,7 @@ impl<'m> HoleExtractor<'m> {
 
     fn motion(&mut self, event: &Event<'_>, kind: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.axis_position;
-        if self.surface.is_some() || self.entries.is_some() {
+        if self.metal.is_known() {
             self.last_block = Some(event.backtrace());
         }
         self.check_idle_axes(event, &from, to);
@@ -280,10 +300,10 @@ impl<'m> HoleExtractor<'m> {
             match kind {
                 MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
                 MotionKind::Feed => {
-                    self.check_curved(event, &travel, kind);
-                    if !is_rotating && was.union(is).is_none() {
-                        self.check_body_on_arc(event, &travel);
+                    if !is_rotating {
+                        self.remove_by_arc(event, &travel, was.union(is).is_none());
                     }
+                    self.check_curved(event, &travel, kind);
                     let arc = self.part_arc(&travel, &before.tip);
                     self.engagement.add_unknown_axes(was.union(is));
                     self.engage(event, &before.tip, Path::Curved(arc));
@@ -300,10 +320,7 @@ impl<'m> HoleExtractor<'m> {
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
-                self.follow_feed_at_holes(event, &[before.tip, self.pose.tip]);
-                if was.union(is).is_none() {
-                    self.check_body_in_feed(&event.backtrace(), &[before.tip, self.pose.tip]);
-                }
+                self.remove_by_feed(event, &[before.tip, self.pose.tip], was.union(is).is_none());
                 if let Some(start) = start {
                     self.start_line(event, start, last_motion);
                 }
@@ -433,6 +450,7 @@ impl<'m> HoleExtractor<'m> {
         self.end_engagement();
         self.strokes.end_tool();
         self.setup = after;
+        self.update_tool_body();
         self.pose = self.machine.tool_pose(&self.axis_position, &self.setup).relative_to(&self.frame);
     }
 }

@@ -2,14 +2,18 @@
 use nalgebra::{Point3, Vector3};
 
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
-use super::entries::CutEntries;
+use super::metal::{PointInMetal};
 use super::rapids::{PLUNGE_COSINE, error_if, format_point};
+use super::tool_lines::lines;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, arrivals};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};
+
+/// Distance of a tool's side from the wall of the hole over which it stands, mm.
+const MAX_OVERSIZE: f64 = 0.05;
 
 /// Rapids whose paths are too many to be searched.
 #[derive(Clone, Debug)]
@@ -29,7 +33,7 @@ impl HoleExtractor<'_> {
         (from, to): (&Position, &Position),
         start: Option<Point3<f64>>,
     ) {
-        if self.surface.is_none() && self.entries.is_none() {
+        if !self.metal.is_known() {
             return;
         }
         let (machine, setup) = (self.machine, self.setup);
@@ -86,33 +90,20 @@ impl HoleExtractor<'_> {
     /// Reports a rapid that cuts if its axes arrive in another order than along the straight path; returns true if one
     /// does.
     fn check_box(&mut self, event: &Event<'_>, all: &AxisBox<'_>, from: &Position) -> bool {
-        // Between the corners of a straight box there is nothing else.
-        let (corners, radius) = (all.straight_corners(), self.tool_radius());
         let mut budget = std::mem::take(&mut self.search_budget);
-        let deepest = match (&self.surface, &self.entries) {
-            (Some(surface), entries) => {
-                let is_in_cut = |entries: &CutEntries| {
-                    corners.as_ref().is_some_and(|corners| entries.are_in_one_cut(radius, corners))
-                };
-                match all.deepest(&distance_from(surface), TOUCH_DEPTH, &mut budget) {
-                    Deepest::Metal(_) if entries.as_ref().is_some_and(is_in_cut) => Deepest::Clear,
-                    deepest => deepest,
-                }
-            }
-            (None, Some(entries)) => {
-                let is_cut =
-                    |hole| corners.as_ref().is_some_and(|corners| entries.are_in_cut(hole, radius, corners));
-                all.deepest(&entries.bodies(is_cut), TOUCH_DEPTH, &mut budget)
-            }
+        let deepest = match (&self.surface, &self.metal.holes) {
+            (Some(surface), _) => all.deepest(&distance_from(surface), TOUCH_DEPTH, &mut budget),
+            (None, Some(holes)) => all.deepest(&self.metal.bodies(holes), TOUCH_DEPTH, &mut budget),
             (None, None) => Deepest::Clear,
         };
         self.search_budget = budget;
-        let Some(found) = self.found(event, deepest) else { return false };
-        let depth = self.known_depth(&found.point).unwrap_or(found.depth);
-        let level = self.level_at(&found.point);
+        let found = self.found(event, deepest).and_then(|found| self.uncut_in_box(found, all));
+        let Some(found) = found else { return false };
+        let depth = self.metal.depth(&found.point).unwrap_or(found.depth);
+        let level = self.metal.level_at(&found.point);
         let order = self.arrival_order(&found, all);
         let start = self.machine.forward(from, &self.setup).tip;
-        let starts_inside = self.known_depth(&start).is_some_and(|depth| TOUCH_DEPTH < depth);
+        let starts_inside = self.metal.depth(&start).is_some_and(|depth| TOUCH_DEPTH < depth);
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
             let point = format_point(&found.point);
             let message = format!("rapid into the part{order}: {depth:.3} mm below {level} at {point}");
@@ -127,8 +118,19 @@ impl HoleExtractor<'_> {
         true
     }
 
-    /// Reports a rapid during which the flank of the tool, its shank or its holder cuts a known body although the tip
-    /// does not.
+    /// Returns the point found in metal if it is not removed, or else another point of the box that is not.
+    fn uncut_in_box(&self, found: DeepPoint, all: &AxisBox<'_>) -> Option<DeepPoint> {
+        let uncut = |travel: &[Point3<f64>; 2]| self.metal.uncut(travel, &|_| false);
+        if uncut(&[found.point, found.point]).is_some() {
+            return Some(found);
+        }
+        // What is removed is not followed while an axis rotates.
+        let Some(travels) = all.travels() else { return Some(found) };
+        let worst = travels.iter().filter_map(uncut).reduce(PointInMetal::deeper)?;
+        Some(DeepPoint { point: worst.point, depth: worst.depth, arrived: None })
+    }
+
+    /// Reports a rapid during which the flank of the tool, its shank or its holder cuts metal although the tip does not.
     fn check_tool_body(
         &mut self,
         event: &Event<'_>,
@@ -136,57 +138,102 @@ impl HoleExtractor<'_> {
         (from, to): (&Position, &Position),
         start: Option<Point3<f64>>,
     ) {
-        let Some(surface) = self.surface.filter(|_| self.has_left_start) else { return };
+        if self.tool_body.is_empty() || self.surface.is_some() && !self.has_left_start {
+            return;
+        }
         let is_straight = self.machine.is_straight(&AxisMotion { from, to, arc: None });
         let pose = self.machine.forward(to, &self.setup);
-        let Some(axis) = pose.axis else { return };
+        let begin = start.unwrap_or(pose.tip);
+        let Some(axis) = self.axis_in_motion(&begin, &pose.tip) else { return };
         if is_straight {
-            let Some(start) = start else { return };
             // Out along its axis the tool leaves the way that it has come.
-            let along = pose.tip - start;
-            if PLUNGE_COSINE * along.norm() <= along.dot(&axis) {
+            let along = pose.tip - begin;
+            if start.is_none() || PLUNGE_COSINE * along.norm() <= along.dot(&axis) {
                 return;
             }
         }
-        let parts = self.machine.tool_body(&self.setup);
-        if path.is_clear_by_planes(&parts, |p| surface.nearest(p)) {
+        let surface = self.surface;
+        let is_clear = surface.is_some_and(|body| path.is_clear_by_planes(&self.tool_body, |p| body.nearest(p)));
+        if is_clear || surface.is_none() && !is_straight {
             return;
         }
-        let room = start.filter(|_| is_straight).map_or(0.0, |start| self.room_in_hole(&[start, pose.tip]));
+        let travels = match path.len() < 2 {
+            true => Some(vec![[begin, pose.tip]]).filter(|_| is_straight),
+            false => path.travels(),
+        };
         let mut budget = std::mem::take(&mut self.search_budget);
-        let mut found = None;
-        for part in parts.into_iter().filter(|part| room < part.radius) {
+        let mut found: Option<PointInMetal> = None;
+        for part in &self.tool_body {
+            let is_in_metal = || self.metal.cuts(&begin, &pose.tip).is_some_and(|_| self.is_below_surface(&pose.tip));
             // A boring bar with the spindle stopped is shifted off the wall.
-            let is_cutter = part.is_cutter;
-            if is_cutter && 0.0 < room && self.tool_radius().is_none() {
+            if part.is_cutter && self.tool_radius().is_none() && is_in_metal() {
                 continue;
             }
-            let deepest = path.with_tool(part).deepest(&distance_from(&surface), TOUCH_DEPTH, &mut budget);
-            found = self.found(event, deepest);
             // The metal above a nominal hole goes with the hole: in a steep flank the tool meets it on its way to the entry.
-            let is_at_hole = |at: &DeepPoint| {
-                let from = Pose { tip: start.unwrap_or(pose.tip), ..pose };
-                [from, pose].iter().any(|pose| self.is_over_nominal_hole(&at.point, pose))
+            let is_free = |p: &Point3<f64>| {
+                let poses = [Pose { tip: begin, ..pose }, pose];
+                part.is_cutter && is_straight && poses.iter().any(|pose| self.is_over_nominal_hole(p, pose))
             };
-            found = found.filter(|at| !(is_cutter && is_straight && is_at_hole(at)));
+            let lines = travels.iter().flatten().flat_map(|travel| lines(part, &axis, travel));
+            let mut is_met = false;
+            for line in lines {
+                is_met |= surface.is_some_and(|body| body.piece(&line[0], &line[1], TOUCH_DEPTH).is_some());
+                if let Some(cut) = self.metal.uncut(&line, &is_free) {
+                    found = Some(found.map_or(cut, |found| found.deeper(cut)));
+                }
+            }
+            // Between its ends the side of the tool may touch a round body.
+            if let Some(body) = surface.filter(|_| found.is_none() && !is_met) {
+                let deepest = path.with_tool(*part).deepest(&distance_from(&body), TOUCH_DEPTH, &mut budget);
+                found = match deepest {
+                    Deepest::Metal(at) => self.metal.uncut(&[at.point, at.point], &is_free),
+                    Deepest::Clear => None,
+                    Deepest::Unknown => {
+                        count_unsearched(&mut self.unsearched_rapids, event);
+                        None
+                    }
+                };
+            }
             if found.is_some() {
                 break;
             }
         }
         self.search_budget = budget;
-        let Some(found) = found else { return };
+        let Some(PointInMetal { point, depth }) = found else { return };
         // While an axis rotates, the clearance of the job decides; the shape of the tool's end is only assumed.
         let severity = error_if(is_straight || self.process_limits.clearance.is_none());
         let orders = if path.len() < 2 { "" } else { " on some of its paths" };
+        let level = self.metal.level_at(&point);
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
-            let (depth, point) = (found.depth, format_point(&found.point));
+            let point = format_point(&point);
             let message = format!(
-                "the side of the tool cuts the part in a rapid{orders}, {depth:.3} mm below the surface at {point}"
+                "the side of the tool cuts the part in a rapid{orders}, {depth:.3} mm below {level} at {point}"
             );
             Diagnostic::new(kind, message)
                 .with_severity(severity)
                 .help("keep the diameters of the tool and its holder away from the part until the feed")
         });
+    }
+
+    fn is_below_surface(&self, p: &Point3<f64>) -> bool {
+        self.metal.depth(p).is_some_and(|depth| TOUCH_DEPTH < depth)
+    }
+
+    /// Returns true for a point in a nominal hole, or in the metal above it, if the tool stands above the entry in the
+    /// direction of the hole.
+    fn is_over_nominal_hole(&self, p: &Point3<f64>, pose: &Pose) -> bool {
+        let Some(axis) = pose.axis else { return false };
+        let radius = self.machine.diameter_of(self.setup.tool).unwrap_or(0.0) / 2.0;
+        let mut is_over = false;
+        self.metal.around(&[*p, *p], |collar| {
+            let within = collar.hole_radius.max(radius) + MAX_OVERSIZE;
+            is_over |= collar.is_parallel(&axis)
+                && collar.depth(&pose.tip) <= TOUCH_DEPTH
+                && collar.from_axis(&pose.tip) <= within - radius
+                && collar.from_axis(p) <= within
+                && collar.depth(p) <= collar.rod.length;
+        });
+        is_over
     }
 
     /// Returns the point that a search has found; counts a search that was given up.
@@ -195,8 +242,7 @@ impl HoleExtractor<'_> {
             Deepest::Clear => None,
             Deepest::Metal(point) => Some(point),
             Deepest::Unknown => {
-                let first = || UnsearchedRapids { backtrace: event.backtrace(), count: 0 };
-                self.unsearched_rapids.get_or_insert_with(first).count += 1;
+                count_unsearched(&mut self.unsearched_rapids, event);
                 None
             }
         }
@@ -213,6 +259,12 @@ impl HoleExtractor<'_> {
         let verb = if first.len() == 1 { "arrives" } else { "arrive" };
         format!(" if {} {verb} before {}", first.join(" and "), last.join(" and "))
     }
+}
+
+/// Counts a rapid whose search was given up.
+fn count_unsearched(unsearched: &mut Option<UnsearchedRapids>, event: &Event<'_>) {
+    let first = || UnsearchedRapids { backtrace: event.backtrace(), count: 0 };
+    unsearched.get_or_insert_with(first).count += 1;
 }
 
 /// Returns the distance from one body, whatever the reach.

@@ -2,6 +2,7 @@
 use nalgebra::Point3;
 
 use super::line::{CuttingLine, ToolExit};
+use super::metal::PointInMetal;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{FEED_NO_HOLE, RAPID_BEYOND_CUT, RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
 use crate::machine::{AxisMotion, TOUCH_DEPTH};
@@ -20,7 +21,7 @@ impl HoleExtractor<'_> {
         line: &CuttingLine,
         from: &Point3<f64>,
     ) {
-        let cuts = self.cuts_known_metal(from, &line.bottom());
+        let cuts = self.metal.cuts(from, &line.bottom());
         if cuts == Some(false) {
             return;
         }
@@ -67,11 +68,11 @@ impl HoleExtractor<'_> {
             self.record_close_rapid(event, &surface, from, to);
             return false;
         }
-        if self.is_in_cut_hole(&surface, (from, to), &deepest) {
+        let Some(PointInMetal { point, depth }) = self.metal.uncut(&[*from, *to], &|_| false) else {
             return false;
-        }
+        };
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
-            let point = format_point(&deepest);
+            let point = format_point(&point);
             let message = format!("rapid through the part, {depth:.3} mm below the surface at {point}");
             Diagnostic::new(kind, message)
                 .help("move round the part at a safe height; only a feed may enter it")
@@ -82,7 +83,7 @@ impl HoleExtractor<'_> {
     /// Checks the known end of a rapid whose start is unknown.
     pub(super) fn check_known_end(&mut self, event: &Event<'_>, to: &Point3<f64>) {
         match self.surface {
-            Some(surface) if self.is_in_cut_hole(&surface, (to, to), to) => {}
+            Some(_) if self.metal.uncut(&[*to, *to], &|_| false).is_none() => {}
             Some(surface) => {
                 let note = "the start of this rapid is unknown";
                 self.check_rapid_end(event, &surface, to, Severity::Error, note);
@@ -133,6 +134,23 @@ impl HoleExtractor<'_> {
         });
     }
 
+    /// Reports a straight rapid through metal round a hole; returns true if there is any.
+    fn check_rapid_at_holes(&mut self, event: &Event<'_>, from: &Point3<f64>, to: &Point3<f64>) -> bool {
+        let Some(PointInMetal { point, depth }) = self.metal.uncut(&[*from, *to], &|_| false) else {
+            return false;
+        };
+        let id = self.metal.hole_at(&point).unwrap_or_default().to_owned();
+        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+            let point = format_point(&point);
+            let message = format!(
+                "rapid into the metal at hole {id}, {depth:.3} mm below its nominal entry, at {point}"
+            );
+            Diagnostic::new(kind, message)
+                .help("end the rapid above the entry of the hole; only a feed may enter the metal")
+        });
+        true
+    }
+
     /// Checks a motion that is curved on the part: a rapid must stay outside, a feed makes no hole. Returns true if it is
     /// in the part.
     pub(super) fn check_curved(
@@ -141,41 +159,55 @@ impl HoleExtractor<'_> {
         travel: &AxisMotion<'_>,
         kind: MotionKind,
     ) -> bool {
-        let depth = match self.surface {
-            Some(surface) if self.has_left_start => self.max_depth_along(&surface, travel),
-            _ => f64::NEG_INFINITY,
-        };
         let is_rapid = kind == MotionKind::Rapid;
-        if self.follow_curve_at_holes(event, travel, is_rapid) {
-            return true;
-        }
-        let straight = "drill along a straight line, or mill full circles, with the table stationary";
-        let (findings, kind, message, help) = match self.surface {
-            _ if depth > 2.0 * TOUCH_DEPTH && is_rapid => (
-                &mut self.findings,
-                &RAPID_INTO_PART,
-                format!("rapid through the part while an axis rotates, {depth:.3} mm below the surface"),
-                "retract until the tool is outside the part before the table or the head rotates",
-            ),
-            _ if depth > 2.0 * TOUCH_DEPTH => {
-                let message = format!("a curved feed cuts {depth:.3} mm into the part: not a hole");
-                (&mut self.engagement.errors, &FEED_NO_HOLE, message, straight)
+        let Some(surface) = self.surface else {
+            if !is_rapid {
+                self.engagement.uncounted.add_curved(event.backtrace());
+                return false;
             }
-            Some(surface) => {
+            let path = self.chords(travel, TOUCH_DEPTH);
+            return self.metal.is_known()
+                && path.windows(2).any(|chord| self.check_rapid_at_holes(event, &chord[0], &chord[1]));
+        };
+        // Where the holes are known, an arc is judged by what it removes.
+        let is_judged = travel.arc.is_some() && self.metal.holes.is_some() && self.is_stationary(travel);
+        let depth = match self.has_left_start && !is_judged {
+            true => self.max_depth_along(&surface, travel),
+            false => f64::NEG_INFINITY,
+        };
+        let straight = "drill along a straight line, or mill full circles, with the table stationary";
+        let (findings, kind, message, help) = match is_rapid {
+            _ if depth <= 2.0 * TOUCH_DEPTH => {
                 if self.has_left_start {
                     self.record_close_turn(event, &surface, travel);
                 }
                 return false;
             }
-            None => {
-                if !is_rapid {
-                    self.engagement.uncounted.add_curved(event.backtrace());
-                }
-                return false;
+            true => (
+                &mut self.findings,
+                &RAPID_INTO_PART,
+                format!("rapid through the part while an axis rotates, {depth:.3} mm below the surface"),
+                "retract until the tool is outside the part before the table or the head rotates",
+            ),
+            false => {
+                let message = format!("a curved feed cuts {depth:.3} mm into the part: not a hole");
+                (&mut self.engagement.errors, &FEED_NO_HOLE, message, straight)
             }
         };
         findings.add(kind, &event.backtrace(), 0, |kind| Diagnostic::new(kind, message).help(help));
-        self.surface.is_some()
+        true
+    }
+
+    /// Returns true if neither table nor head rotates.
+    fn is_stationary(&self, travel: &AxisMotion<'_>) -> bool {
+        self.machine.is_straight(&AxisMotion { arc: None, ..*travel })
+    }
+
+    /// Returns points of a path on the part; it deviates from their chords by at most `tolerance`.
+    pub(super) fn chords(&self, travel: &AxisMotion<'_>, tolerance: f64) -> Vec<Point3<f64>> {
+        let mut tips = Vec::new();
+        self.machine.for_each_pose(travel, &self.setup, tolerance, |pose| tips.push(pose.tip));
+        tips
     }
 
     /// Reports a run that ends with the tool in the metal; the line on which it stands makes its hole.
@@ -183,9 +215,9 @@ impl HoleExtractor<'_> {
         let tip = self.pose.tip;
         let is_known =
             self.positions.is_known(self.machine) && (self.has_left_start || self.surface.is_none());
-        let depth = self.known_depth(&tip).filter(|depth| is_known && TOUCH_DEPTH < *depth);
+        let depth = self.metal.depth(&tip).filter(|depth| is_known && TOUCH_DEPTH < *depth);
         let Some((depth, backtrace)) = depth.zip(self.last_block.take()) else { return };
-        let level = self.level_at(&tip);
+        let level = self.metal.level_at(&tip);
         self.findings.add(&TOOL_LEFT_IN_HOLE, &backtrace, 0, |kind| {
             let point = format_point(&tip);
             let message = format!("the run ends with the tool {depth:.3} mm below {level}, at {point}");

@@ -23,7 +23,7 @@ const MAX_SQUARE_SINE: f64 = 0.01;
 const MIN_UPRIGHT_COSINE: f64 = 0.999;
 
 /// Cosine of the largest angle between a stroke and a known tool axis: 30°. A larger one is milling.
-const MIN_TOOL_COSINE: f64 = 0.866_025_403_784_438_6;
+pub(super) const MIN_TOOL_COSINE: f64 = 0.866_025_403_784_438_6;
 
 /// Largest distance of a stroke of a mill from the nominal axis on which it drills, mm.
 const MAX_AXIS_DISTANCE: f64 = 1.0;

@@ -14,7 +14,7 @@ use std::collections::BinaryHeap;
 
 use nalgebra::{Point3, Vector3};
 
-use self::tool::directions_across;
+pub(super) use self::tool::directions_across;
 use crate::machine::{Machine, Pose, Setup, ToolCylinder};
 use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
 use gcode_lang::units::Deg;
@@ -33,6 +33,11 @@ const MAX_REFINEMENTS: usize = 1000;
 /// Number of cells in all boxes of a run after which each has but [`FEW_CELLS`].
 const ALL_CELLS: usize = 1_000_000;
 const FEW_CELLS: usize = 200;
+
+/// Distance of the travels that fill a box, mm, and their largest number along one of its sides.
+const TRAVEL_DISTANCE: f64 = 0.5;
+const MAX_TRAVELS: u32 = 64;
+const FEW_TRAVELS: u32 = 8;
 
 /// Largest number of parameters of a cell: the axes, and three of the tool.
 const MAX_PARAMETERS: usize = MAX_AXES + 3;
@@ -166,6 +171,27 @@ impl<'m> AxisBox<'m> {
         }
         let tip = |corner: u32| self.machine.forward(&self.corner(corner).0, self.setup).tip;
         Some((0..1_u32 << self.groups.len()).map(tip).collect())
+    }
+
+    /// Returns travels of the tip along the longest side of the box, close together; `None` if an axis rotates.
+    pub(super) fn travels(&self) -> Option<Vec<[Point3<f64>; 2]>> {
+        let corners = self.straight_corners()?;
+        let first = *corners.first()?;
+        let mut sides: Vec<Vector3<f64>> =
+            (0..self.groups.len()).map(|side| corners[1 << side] - first).collect();
+        sides.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        let (along, across) = sides.split_first()?;
+        let most = if across.len() < 2 { MAX_TRAVELS } else { FEW_TRAVELS };
+        let mut starts = vec![first];
+        for side in across {
+            let steps = ((side.norm() / TRAVEL_DISTANCE).ceil() as u32).clamp(1, most);
+            let share = |step: u32| f64::from(step) / f64::from(steps);
+            starts = starts
+                .iter()
+                .flat_map(|start| (0..=steps).map(move |step| start + side * share(step)))
+                .collect();
+        }
+        Some(starts.into_iter().map(|start| [start, start + along]).collect())
     }
 
     /// Returns a corner, and the axes that have arrived there, as bits; bit n of `corner` is the n-th group of axes.

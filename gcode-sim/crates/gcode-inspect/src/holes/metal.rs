@@ -1,0 +1,315 @@
+//! Metal of the part: what is solid as far as known, what feeds have removed of it, and what they may remove.
+use std::sync::Arc;
+
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::axis_box::Bodies;
+use super::removed_metal::{RemovedMetal, Rest};
+use crate::machine::TOUCH_DEPTH;
+use gcode_part::{EntryPlanes, Metal, NearestPoint, Rod, Surface};
+
+/// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
+const MAX_OFFSET: f64 = 0.5;
+
+/// Rounding of a point on a hole's wall, mm.
+const ROUNDING: f64 = 1e-6;
+
+/// Excess of a tool's side over a nominal hole, and of a feed over its depth, that other checks judge, mm.
+const SIDE_SLACK: f64 = 0.1;
+const DEPTH_SLACK: f64 = 0.5;
+
+/// Height above a hole up to which the metal goes with it, mm.
+pub(super) const MAX_HEIGHT: f64 = 50.0;
+
+/// Half diagonal up to which the holes in a box are few, mm.
+const SMALL_BOX: f64 = 20.0;
+
+/// Least length of a piece in metal, mm; a shorter one is rounding.
+const MIN_PIECE: f64 = 1e-3;
+
+/// Metal of the part.
+#[derive(Debug)]
+pub(super) struct KnownMetal {
+    /// Stock or the part's surface; `None` if the metal is known only round the holes.
+    body: Option<Surface>,
+    /// Nominal holes with the metal round them; `None` without a reference.
+    pub holes: Option<Arc<EntryPlanes>>,
+    /// What feeds may remove besides the holes.
+    pockets: Vec<Surface>,
+    pub removed: RemovedMetal,
+}
+
+/// A point in metal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PointInMetal {
+    pub point: Point3<f64>,
+    /// Depth below the surface, or else below the nominal entry of the hole, mm.
+    pub depth: f64,
+}
+
+impl PointInMetal {
+    /// Returns the deeper of two points.
+    pub(super) fn deeper(self, other: Self) -> Self {
+        if self.depth < other.depth { other } else { self }
+    }
+}
+
+/// Part of the tool whose feed is judged.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum FeedPart {
+    Tip,
+    /// A cylinder about the tool's axis of this radius.
+    Side(f64),
+}
+
+impl KnownMetal {
+    pub(super) fn new(metal: Metal) -> Self {
+        let bounds = match (&metal.body, &metal.entries) {
+            (Some(body), _) => body.bounds(),
+            (None, _) => [Point3::from(Vector3::repeat(f64::NEG_INFINITY)), Point3::from(Vector3::repeat(f64::INFINITY))],
+        };
+        let height = metal.entries.as_ref().filter(|_| metal.body.is_none()).map(|holes| 2.0 * holes.reach());
+        Self {
+            body: metal.body,
+            holes: metal.entries,
+            pockets: metal.pockets,
+            removed: RemovedMetal::new(bounds, height.unwrap_or(f64::INFINITY)),
+        }
+    }
+
+    /// Returns false if nothing is known.
+    pub(super) fn is_known(&self) -> bool {
+        self.body.is_some() || self.holes.is_some()
+    }
+
+    /// Returns the metal round the holes as convex bodies, cut or not.
+    pub(super) fn bodies<'c>(&'c self, holes: &'c EntryPlanes) -> Box<Bodies<'c>> {
+        Box::new(move |p, reach, each: &mut dyn FnMut(NearestPoint)| {
+            let (low, high) = (p - reach, p + reach);
+            if holes.is_above_all(&low, &high) || holes.nearest_metal(p) > reach.norm() {
+                return true;
+            }
+            let is_small = reach.norm() <= SMALL_BOX;
+            if is_small {
+                holes.near(&low, &high, &mut |hole| each(holes.collar(hole).rod.nearest(p)));
+            }
+            is_small
+        })
+    }
+
+    /// Returns true if a cylinder about the tool's axis may touch metal while its lower end moves between two points.
+    pub(super) fn is_touched(
+        &self,
+        from: &Point3<f64>,
+        to: &Point3<f64>,
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+    ) -> bool {
+        if let Some(body) = &self.body {
+            let rod = Rod { base: *from, axis: *axis, length: self.removed.height_of_metal(from, axis), radius };
+            return body.touches(&rod, &(to - from));
+        }
+        let Some(holes) = &self.holes else { return false };
+        let margin = Vector3::repeat(radius);
+        let mut is_touched = false;
+        holes.near(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |_| is_touched = true);
+        is_touched
+    }
+
+    /// Returns the parts of a travel in solid metal, cut or not.
+    fn solid(&self, [from, to]: &[Point3<f64>; 2], is_counted: impl Fn(usize) -> bool) -> Rest {
+        let mut rest = Rest::default();
+        match (&self.body, &self.holes) {
+            (Some(body), _) => {
+                if let Some(piece) = body.piece(from, to, TOUCH_DEPTH) {
+                    rest.push(piece);
+                }
+            }
+            (None, Some(holes)) => holes.near(&from.inf(to), &from.sup(to), &mut |hole| {
+                if let Some(piece) = holes.collar(hole).piece(from, to, TOUCH_DEPTH).filter(|_| is_counted(hole)) {
+                    rest.push(piece);
+                }
+            }),
+            (None, None) => {}
+        }
+        rest
+    }
+
+    /// Returns the deepest point of a travel in metal that is not removed; points that are free don't count.
+    pub(super) fn uncut(
+        &self,
+        travel: &[Point3<f64>; 2],
+        is_free: &dyn Fn(&Point3<f64>) -> bool,
+    ) -> Option<PointInMetal> {
+        let mut rest = self.solid(travel, |_| true);
+        if !rest.is_empty() {
+            self.removed.uncover(travel, false, &mut rest);
+        }
+        self.deepest(travel, &rest, is_free)
+    }
+
+    /// Returns true if a travel leads through metal that is known, false if all that is known there is removed, and `None`
+    /// if nothing is known.
+    pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
+        let travel = [*from, *to];
+        let is_in_known = self.body.is_some() || !self.solid(&travel, |_| true).is_empty();
+        is_in_known.then(|| self.uncut(&travel, &|_| false).is_some())
+    }
+
+    /// Returns the deepest point of a travel in which a feed removes what has to stay: neither in a nominal hole nor in a
+    /// pocket, nor removed before.
+    pub(super) fn spoilt(&self, travel: &[Point3<f64>; 2], part: FeedPart) -> Option<PointInMetal> {
+        let holes = self.holes.as_deref()?;
+        // Without a diameter the wall of a hole is unknown.
+        let mut rest = self.solid(travel, |hole| holes.collar(hole).has_diameter);
+        let [from, to] = travel;
+        for pocket in &self.pockets {
+            if rest.is_empty() {
+                return None;
+            }
+            if let Some(piece) = pocket.piece(from, to, -TOUCH_DEPTH) {
+                rest.take_away(piece);
+            }
+        }
+        if rest.is_empty() {
+            return None;
+        }
+        self.removed.uncover(travel, true, &mut rest);
+        if rest.is_empty() {
+            return None;
+        }
+        self.around(travel, |collar| {
+            let radius = match part {
+                FeedPart::Tip => collar.hole_radius.max(MAX_OFFSET) + ROUNDING,
+                FeedPart::Side(_) if collar.has_diameter => collar.hole_radius + SIDE_SLACK,
+                FeedPart::Side(radius) => 2.0 * radius,
+            };
+            if let Some(piece) = collar.piece_in_hole(from, to, radius, DEPTH_SLACK) {
+                rest.take_away(piece);
+            }
+        });
+        self.deepest(travel, &rest, &|_| false)
+    }
+
+    /// Returns true if a cylinder about the tool's axis stays in one nominal hole, or in one pocket, while its lower end
+    /// moves between two points.
+    pub(super) fn is_allowed(
+        &self,
+        tips: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+    ) -> bool {
+        let height = self.removed.height_of_metal(&tips[0], axis).max(self.removed.height_of_metal(&tips[1], axis));
+        let is_in_box = self.pockets.iter().any(|pocket| {
+            let Surface::Block { min, max } = pocket else { return false };
+            let across = axis.map(|part| radius * (1.0 - part * part).max(0.0).sqrt() - TOUCH_DEPTH);
+            let up = axis.into_inner() * height;
+            let (low, high) = (tips[0].inf(&tips[1]) - across, tips[0].sup(&tips[1]) + across);
+            (0..3).all(|i| {
+                let (low, high) = (low[i] + up[i].min(0.0), high[i] + up[i].max(0.0));
+                min[i] <= low && high <= max[i] + if up[i] > 0.0 { TOUCH_DEPTH } else { 0.0 }
+            })
+        });
+        is_in_box || {
+            let mut is_within = false;
+            self.around(tips, |collar| {
+                let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
+                let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
+                let room = if collar.has_diameter { collar.hole_radius + SIDE_SLACK - radius } else { radius };
+                is_within |= collar.is_parallel(axis)
+                    && aside <= room
+                    && (collar.is_through || deepest <= collar.rod.length + DEPTH_SLACK);
+            });
+            is_within
+        }
+    }
+
+    /// Returns true if all that a cylinder of this radius removes along its axis lies in one pocket.
+    pub(super) fn is_in_pocket(&self, tips: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>, radius: f64) -> bool {
+        let rim = super::tool_lines::rim(axis, &(tips[1] - tips[0]), radius);
+        let lines = rim.iter().map(|offset| tips.map(|tip| tip + offset));
+        let mut lines = lines.chain([*tips]);
+        lines.all(|line| {
+            let mut rest = self.solid(&line, |_| true);
+            self.pockets.iter().any(|pocket| {
+                if let Some(piece) = pocket.piece(&line[0], &line[1], -TOUCH_DEPTH) {
+                    rest.take_away(piece);
+                }
+                rest.is_empty()
+            })
+        }) && !self.pockets.is_empty()
+    }
+
+    /// Calls `each` with the nominal holes near a travel, and below or above it.
+    pub(super) fn around(&self, [from, to]: &[Point3<f64>; 2], mut each: impl FnMut(&gcode_part::Collar)) {
+        let Some(holes) = self.holes.as_deref() else { return };
+        let margin = Vector3::repeat(MAX_HEIGHT);
+        holes.around(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |hole| each(holes.collar(hole)));
+    }
+
+    /// Returns the deepest point of what is left of a travel.
+    fn deepest(
+        &self,
+        [from, to]: &[Point3<f64>; 2],
+        rest: &Rest,
+        is_free: &dyn Fn(&Point3<f64>) -> bool,
+    ) -> Option<PointInMetal> {
+        let along = to - from;
+        let length = along.norm();
+        let mut best: Option<PointInMetal> = None;
+        for [first, last] in rest.pieces() {
+            if length * (last - first) < MIN_PIECE && MIN_PIECE < length {
+                continue;
+            }
+            let (first, last) = (from + along * *first, from + along * *last);
+            let innermost = self.body.map(|body| body.deepest_between(&first, &last));
+            for point in [first, last, nalgebra::center(&first, &last)].into_iter().chain(innermost) {
+                let depth = self.depth(&point).unwrap_or(0.0);
+                if best.is_none_or(|best| best.depth < depth) && !is_free(&point) {
+                    best = Some(PointInMetal { point, depth });
+                }
+            }
+        }
+        best
+    }
+
+    /// Returns the depth of a point below the surface or, without one, below the entry of the hole it is at, mm; `None` if
+    /// neither is known there.
+    pub(super) fn depth(&self, p: &Point3<f64>) -> Option<f64> {
+        match &self.body {
+            Some(body) => Some(body.depth(p)),
+            None => Some(self.deepest_hole_at(p)?.1),
+        }
+    }
+
+    /// Returns the level from which [`Self::depth`] counts: `the surface`, or `the nominal entry of hole 1`.
+    pub(super) fn level_at(&self, p: &Point3<f64>) -> String {
+        match (&self.body, &self.holes, self.deepest_hole_at(p)) {
+            (None, Some(holes), Some((hole, _))) => format!("the nominal entry of hole {}", holes.id(hole)),
+            _ => "the surface".to_owned(),
+        }
+    }
+
+    /// Returns the id of the hole at a point.
+    pub(super) fn hole_at(&self, p: &Point3<f64>) -> Option<&str> {
+        Some(self.holes.as_deref()?.id(self.deepest_hole_at(p)?.0))
+    }
+
+    /// Returns the hole in whose metal a point is deepest, and the depth.
+    fn deepest_hole_at(&self, p: &Point3<f64>) -> Option<(usize, f64)> {
+        let holes = self.holes.as_deref()?;
+        let mut best: Option<(usize, f64)> = None;
+        let margin = Vector3::repeat(ROUNDING);
+        holes.near(&(p - margin), &(p + margin), &mut |hole| {
+            let collar = holes.collar(hole);
+            let depth = collar.depth(p);
+            let is_inside = TOUCH_DEPTH - ROUNDING < depth
+                && depth <= collar.rod.length + ROUNDING
+                && collar.from_axis(p) <= collar.rod.radius + ROUNDING;
+            if is_inside && best.is_none_or(|(_, most)| most < depth) {
+                best = Some((hole, depth));
+            }
+        });
+        best
+    }
+}

@@ -1,0 +1,444 @@
+//! Metal that feeds have removed: volumes that the tool sweeps, and the parts of a travel that they cover.
+use std::collections::{BTreeMap, HashMap};
+
+use nalgebra::{Point3, Unit, Vector3};
+
+use crate::machine::{TOUCH_DEPTH, ToolCylinder};
+
+/// Largest number of sweeps that are kept, for the memory.
+const MAX_SWEEPS: usize = 1_000_000;
+
+/// Largest height above the tip at which the metal is looked for, mm.
+const MAX_HEIGHT: f64 = 1000.0;
+
+/// Largest distance of points on one line, mm.
+const ROUNDING: f64 = 1e-6;
+
+/// The tool in a feed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Profile {
+    /// Cylinders that cut; the uppermost of a tool of unknown length has no end.
+    parts: Vec<ToolCylinder>,
+    /// Largest radius.
+    radius: f64,
+    /// False if the radius is the largest that the tool may have.
+    is_certain: bool,
+}
+
+impl Profile {
+    /// Returns the cutting parts of a tool.
+    pub(super) fn of_tool(body: &[ToolCylinder]) -> Self {
+        let mut parts: Vec<ToolCylinder> = body.iter().copied().filter(|part| part.is_cutter).collect();
+        let is_shanked = body.len() > parts.len();
+        if let Some(flutes) = parts.first_mut().filter(|_| !is_shanked) {
+            flutes.to = f64::INFINITY;
+        }
+        // The point leaves a line below its lowest step.
+        let lowest = parts.iter().map(|part| part.from).fold(f64::INFINITY, f64::min);
+        if 0.0 < lowest {
+            parts.push(ToolCylinder { from: 0.0, to: lowest, radius: 0.0, is_cutter: true });
+        }
+        let radius = parts.iter().map(|part| part.radius).fold(0.0, f64::max);
+        Self { parts, radius, is_certain: true }
+    }
+
+    /// Returns a flat tool.
+    pub(super) fn flat(radius: f64, is_certain: bool) -> Self {
+        let part = ToolCylinder { from: 0.0, to: f64::INFINITY, radius, is_cutter: true };
+        Self { parts: vec![part], radius, is_certain }
+    }
+}
+
+/// Straight motion of the tip with a tool.
+#[derive(Clone, Copy, Debug)]
+struct Sweep {
+    from: Point3<f64>,
+    to: Point3<f64>,
+    /// Direction of the tool, out of the part.
+    axis: Unit<Vector3<f64>>,
+    profile: u32,
+    /// Sweep before it in its cell.
+    previous: u32,
+}
+
+/// End of the chain of a cell.
+const NONE: u32 = u32::MAX;
+
+/// Sweeps of one size, by the cell of their middles.
+#[derive(Debug, Default)]
+struct Level {
+    /// Last sweep of each cell.
+    cells: HashMap<[i32; 3], u32>,
+}
+
+/// Volumes that the tool has swept in feeds.
+#[derive(Debug)]
+pub(super) struct RemovedMetal {
+    sweeps: Vec<Sweep>,
+    profiles: Vec<Profile>,
+    /// By the logarithm of the size of their cells.
+    levels: BTreeMap<i32, Level>,
+    /// The last sweep is in no cell: the next feed may lengthen it.
+    is_last_open: bool,
+    /// Corners of a box that holds all metal.
+    bounds: [Point3<f64>; 2],
+    /// Largest height above the tip at which there is metal, mm.
+    max_height: f64,
+    /// True once sweeps are missing.
+    pub is_full: bool,
+}
+
+impl RemovedMetal {
+    /// Returns no removed metal; `bounds` are corners of a box that holds all metal, and above the tip it ends at
+    /// `max_height`.
+    pub(super) fn new(bounds: [Point3<f64>; 2], max_height: f64) -> Self {
+        Self {
+            sweeps: Vec::new(),
+            profiles: Vec::new(),
+            levels: BTreeMap::new(),
+            is_last_open: false,
+            bounds,
+            max_height: max_height.min(MAX_HEIGHT),
+            is_full: false,
+        }
+    }
+
+    /// Adds a straight feed.
+    pub(super) fn add(&mut self, from: Point3<f64>, to: Point3<f64>, axis: Unit<Vector3<f64>>, profile: &Profile) {
+        if self.lengthen_last(&from, &to, &axis, profile) {
+            return;
+        }
+        self.close_last();
+        if self.sweeps.len() == MAX_SWEEPS {
+            self.is_full = true;
+            return;
+        }
+        let known = self.profiles.iter().rposition(|other| other == profile);
+        let profile = known.unwrap_or_else(|| {
+            self.profiles.push(profile.clone());
+            self.profiles.len() - 1
+        });
+        self.sweeps.push(Sweep { from, to, axis, profile: profile as u32, previous: NONE });
+        self.is_last_open = true;
+    }
+
+    /// Lengthens the last sweep by a feed of the same tool along its axis; a feed out of the part adds nothing. Returns
+    /// false for other feeds.
+    fn lengthen_last(
+        &mut self,
+        from: &Point3<f64>,
+        to: &Point3<f64>,
+        axis: &Unit<Vector3<f64>>,
+        profile: &Profile,
+    ) -> bool {
+        let Some(last) = self.sweeps.last_mut().filter(|_| self.is_last_open) else { return false };
+        let aside = |v: Vector3<f64>| (v - axis.into_inner() * v.dot(axis)).norm();
+        let is_on_line = [last.to - last.from, from - last.from, to - last.from].map(aside) < [ROUNDING; 3];
+        let height = |p: &Point3<f64>| (p - last.from).dot(axis);
+        let (reached, begin, end) = (height(&last.to), height(from), height(to));
+        let is_same = is_on_line && last.axis == *axis && self.profiles[last.profile as usize] == *profile;
+        if !is_same || reached > 0.0 || begin > ROUNDING || begin < reached - ROUNDING || end > ROUNDING {
+            return false;
+        }
+        if end < reached {
+            last.to = *to;
+        }
+        true
+    }
+
+    /// Enters the last sweep in its cell.
+    fn close_last(&mut self) {
+        if !std::mem::take(&mut self.is_last_open) {
+            return;
+        }
+        let index = self.sweeps.len() - 1;
+        let sweep = &self.sweeps[index];
+        let profile = &self.profiles[sweep.profile as usize];
+        let (mut low, mut high) = (sweep.from.inf(&sweep.to), sweep.from.sup(&sweep.to));
+        let axis = sweep.axis.into_inner();
+        let top = profile.parts.iter().map(|part| part.to).fold(0.0, f64::max);
+        for p in [sweep.from, sweep.to] {
+            let end = p + axis * top.min(self.height_of_metal(&p, &axis));
+            (low, high) = (low.inf(&end), high.sup(&end));
+        }
+        let margin = Vector3::repeat(profile.radius + TOUCH_DEPTH);
+        let (low, high) = (low - margin, high + margin);
+        let level = level_of((high - low).amax());
+        let cell = cell_of(&nalgebra::center(&low, &high), level);
+        let last = self.levels.entry(level).or_default().cells.insert(cell, index as u32);
+        self.sweeps[index].previous = last.unwrap_or(NONE);
+    }
+
+    /// Returns the height above a point beyond which there is no metal along a direction.
+    pub(super) fn height_of_metal(&self, p: &Point3<f64>, out: &Vector3<f64>) -> f64 {
+        let [low, high] = &self.bounds;
+        let exit = |i: usize| match out[i] {
+            out if 1e-9 < out => (high[i] - p[i]) / out,
+            out if out < -1e-9 => (low[i] - p[i]) / out,
+            _ => f64::INFINITY,
+        };
+        (0..3).map(exit).fold(self.max_height, f64::min).max(0.0)
+    }
+
+    /// Takes away from the rest of a travel what the sweeps cover, [`TOUCH_DEPTH`] beyond them included. `is_certain`
+    /// leaves out tools of unknown diameter.
+    pub(super) fn uncover(&self, travel: &[Point3<f64>; 2], is_certain: bool, rest: &mut Rest) {
+        let by_sweep = |sweep: &Sweep, rest: &mut Rest| {
+            let profile = &self.profiles[sweep.profile as usize];
+            if profile.is_certain || !is_certain {
+                for part in &profile.parts {
+                    if let Some(covered) = sweep.covered(part, travel) {
+                        rest.take_away(covered);
+                    }
+                }
+            }
+            rest.is_empty()
+        };
+        if self.is_last_open && self.sweeps.last().is_some_and(|last| by_sweep(last, rest)) {
+            return;
+        }
+        let Some([first, last]) = rest.extent() else { return };
+        let along = travel[1] - travel[0];
+        let (from, to) = (travel[0] + along * first, travel[0] + along * last);
+        for (level, Level { cells }) in &self.levels {
+            let half = Vector3::repeat(size_of(*level) / 2.0);
+            let (low, high) = (cell_of(&(from.inf(&to) - half), *level), cell_of(&(from.sup(&to) + half), *level));
+            let mut in_cell = |last: u32| {
+                let mut next = last;
+                while let Some(sweep) = self.sweeps.get(next as usize) {
+                    if by_sweep(sweep, rest) {
+                        return true;
+                    }
+                    next = sweep.previous;
+                }
+                false
+            };
+            let count = (0..3).map(|i| (high[i] - low[i] + 1) as f64).product::<f64>();
+            let is_covered = match (cells.len() as f64) < count {
+                true => cells.values().any(|last| in_cell(*last)),
+                false => (low[0]..=high[0]).any(|x| {
+                    (low[1]..=high[1]).any(|y| {
+                        (low[2]..=high[2]).any(|z| cells.get(&[x, y, z]).is_some_and(|last| in_cell(*last)))
+                    })
+                }),
+            };
+            if is_covered {
+                return;
+            }
+        }
+    }
+}
+
+/// Returns the level of a size: the logarithm of the least cell that is as large.
+fn level_of(size: f64) -> i32 {
+    libm::ceil(libm::log2(size.clamp(0.5, 1e6))) as i32
+}
+
+fn size_of(level: i32) -> f64 {
+    libm::ldexp(1.0, level)
+}
+
+fn cell_of(p: &Point3<f64>, level: i32) -> [i32; 3] {
+    let size = size_of(level);
+    [p.x, p.y, p.z].map(|v| libm::floor(v / size) as i32)
+}
+
+impl Sweep {
+    /// Returns the shares of a travel between which it is in the volume that a part of the tool sweeps.
+    ///
+    /// At the share s of the travel and t of the sweep the travel's point is in the cylinder if
+    /// |q + s·u − t·d|² ≤ r² across the axis, and lies between the ends of the cylinder along it. For a given s the t that
+    /// fulfil this are an interval; if it is not empty, it holds 0 or 1, the t at which an end of the cylinder passes the
+    /// point, or the t at which the axis is nearest to it. So the shares are those that fulfil it on one of five lines
+    /// t = a + b·s.
+    fn covered(&self, part: &ToolCylinder, travel: &[Point3<f64>; 2]) -> Option<[f64; 2]> {
+        let radius = part.radius + TOUCH_DEPTH;
+        let axis = self.axis.into_inner();
+        let split = |v: Vector3<f64>| {
+            let height = v.dot(&axis);
+            (v - axis * height, height)
+        };
+        let ((q, from), (u, rise), (d, climb)) =
+            (split(travel[0] - self.from), split(travel[1] - travel[0]), split(self.to - self.from));
+        let (low, high) = (part.from - TOUCH_DEPTH, part.to + TOUCH_DEPTH);
+        let dd = d.norm_squared();
+        let on_line = |a: f64, b: f64| {
+            let shares = between([0.0, 1.0], a, b, (0.0, 1.0))?;
+            let shares = between(shares, from - climb * a, rise - climb * b, (low, high))?;
+            let (q, u) = (q - d * a, u - d * b);
+            in_circle(shares, &q, &u, radius)
+        };
+        let mut all: Option<[f64; 2]> = None;
+        let mut add = |shares: Option<[f64; 2]>| {
+            let Some([first, last]) = shares else { return };
+            all = Some(all.map_or([first, last], |[a, b]| [a.min(first), b.max(last)]));
+        };
+        add(on_line(0.0, 0.0));
+        add(on_line(1.0, 0.0));
+        if 1e-18 < dd {
+            add(on_line(q.dot(&d) / dd, u.dot(&d) / dd));
+        }
+        if 1e-9 < climb.abs() {
+            for end in [low, high].into_iter().filter(|end| end.is_finite()) {
+                add(on_line((from - end) / climb, rise / climb));
+            }
+        }
+        all
+    }
+}
+
+/// Returns the shares of some, s, at which `start` + `gain`·s is between two bounds.
+fn between([first, last]: [f64; 2], start: f64, gain: f64, (low, high): (f64, f64)) -> Option<[f64; 2]> {
+    const NOISE: f64 = 1e-9;
+    if gain.abs() < 1e-12 {
+        return (low - NOISE <= start && start <= high + NOISE).then_some([first, last]);
+    }
+    let (a, b) = ((low - NOISE - start) / gain, (high + NOISE - start) / gain);
+    let (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+    (first <= last).then_some([first, last])
+}
+
+/// Returns the shares of some, s, at which |q + s·u| is at most `radius`.
+fn in_circle([first, last]: [f64; 2], q: &Vector3<f64>, u: &Vector3<f64>, radius: f64) -> Option<[f64; 2]> {
+    let (a, b, c) = (u.norm_squared(), q.dot(u), q.norm_squared() - radius * radius);
+    if a < 1e-18 {
+        return (c <= 0.0).then_some([first, last]);
+    }
+    let root = b * b - a * c;
+    if root < 0.0 {
+        return None;
+    }
+    let root = root.sqrt();
+    let (first, last) = (first.max((-b - root) / a), last.min((-b + root) / a));
+    (first <= last).then_some([first, last])
+}
+
+/// What is left of a travel, as shares of it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rest {
+    pieces: Vec<[f64; 2]>,
+}
+
+impl Rest {
+    /// Adds a piece.
+    pub(super) fn push(&mut self, piece: [f64; 2]) {
+        self.pieces.push(piece);
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    pub(super) fn pieces(&self) -> &[[f64; 2]] {
+        &self.pieces
+    }
+
+    /// Returns the least and the largest share.
+    fn extent(&self) -> Option<[f64; 2]> {
+        self.pieces.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    }
+
+    /// Takes away the shares between two.
+    pub(super) fn take_away(&mut self, [from, to]: [f64; 2]) {
+        let mut index = 0;
+        while let Some([first, last]) = self.pieces.get(index).copied() {
+            if last < from || to < first {
+                index += 1;
+                continue;
+            }
+            self.pieces.swap_remove(index);
+            // What lies before and behind is disjoint from the shares taken away.
+            let before = (first < from).then_some([first, from.next_down()]);
+            let behind = (to < last).then_some([to.next_up(), last]);
+            self.pieces.extend(before.into_iter().chain(behind));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn p(x: f64, y: f64, z: f64) -> Point3<f64> {
+        Point3::new(x, y, z)
+    }
+
+    fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f64; 2]> {
+        let mut rest = Rest::default();
+        rest.push([0.0, 1.0]);
+        removed.uncover(&[from, to], true, &mut rest);
+        let mut pieces: Vec<_> =
+            rest.pieces.iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
+        pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        pieces
+    }
+
+    /// A mill of 10 feeds from x 0 to x 40 at z −5. A travel of 100 along x at y 0 is covered from −5.01 to 45.01; at y 3
+    /// from −SQRT[5.01² − 9] = −4.0125; at z −5.02 it is below.
+    #[test]
+    fn a_slot_covers_its_width_and_all_above_it() {
+        let mut removed = RemovedMetal::new([p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)], 1000.0);
+        removed.add(p(0.0, 0.0, -5.0), p(40.0, 0.0, -5.0), Vector3::z_axis(), &Profile::flat(5.0, true));
+        for is_closed in [false, true] {
+            if is_closed {
+                removed.close_last();
+            }
+            let along = |y, z| rest_of(&removed, p(-50.0, y, z), p(50.0, y, z));
+            assert_eq!(along(0.0, -5.0), [[0.0, 0.4499], [0.9501, 1.0]]);
+            assert_eq!(along(0.0, -0.1), [[0.0, 0.4499], [0.9501, 1.0]]);
+            assert_eq!(along(3.0, -5.0), [[0.0, 0.459875], [0.940125, 1.0]]);
+            assert_eq!(along(0.0, -5.02), [[0.0, 1.0]]);
+            assert_eq!(rest_of(&removed, p(40.0, 4.0, 0.0), p(40.0, 4.0, -10.0)), [[0.501, 1.0]]);
+        }
+    }
+
+    /// Pecks along one line are one sweep, and a feed back adds none.
+    #[test]
+    fn pecks_are_one_sweep() {
+        let mut removed = RemovedMetal::new([p(-9.0, -9.0, -50.0), p(9.0, 9.0, 0.0)], 1000.0);
+        for depth in 1..=1000 {
+            let bottom = f64::from(depth) / -50.0;
+            let profile = Profile::flat(3.0, true);
+            removed.add(p(1.0, 0.0, bottom + 0.1), p(1.0, 0.0, bottom), Vector3::z_axis(), &profile);
+            removed.add(p(1.0, 0.0, bottom), p(1.0, 0.0, 0.0), Vector3::z_axis(), &profile);
+        }
+        assert_eq!(removed.sweeps.len(), 1);
+        assert_eq!(rest_of(&removed, p(3.0, 0.0, 0.0), p(3.0, 0.0, -40.0)), [[0.50025, 1.0]]);
+    }
+
+    proptest! {
+        /// A point is covered if and only if some position of the tool holds it.
+        #[test]
+        fn the_rest_is_what_no_position_of_the_tool_holds(
+            ends in prop::array::uniform6(-10.0..10.0f64),
+            travel in prop::array::uniform6(-15.0..15.0f64),
+            direction in prop::array::uniform3(-1.0..1.0f64),
+            (radius, low, length) in (0.5..5.0f64, 0.0..3.0f64, 0.5..8.0f64),
+        ) {
+            let axis = Unit::try_new(Vector3::from(direction), 0.1);
+            prop_assume!(axis.is_some());
+            let axis = axis.unwrap();
+            let (from, to) = (p(ends[0], ends[1], ends[2]), p(ends[3], ends[4], ends[5]));
+            let part = ToolCylinder { from: low, to: low + length, radius, is_cutter: true };
+            let sweep = Sweep { from, to, axis, profile: 0, previous: NONE };
+            let (a, b) = (p(travel[0], travel[1], travel[2]), p(travel[3], travel[4], travel[5]));
+            let covered = sweep.covered(&part, &[a, b]);
+            for s in 0..=50 {
+                let s = f64::from(s) / 50.0;
+                let q = a + (b - a) * s;
+                let excess = |t: f64| {
+                    let to_q = q - (from + (to - from) * t);
+                    let height = to_q.dot(&axis);
+                    let aside = (to_q - axis.into_inner() * height).norm();
+                    (aside - radius).max(low - height).max(height - low - length)
+                };
+                let least = (0..=2000).map(|t| excess(f64::from(t) / 2000.0)).fold(f64::INFINITY, f64::min);
+                let is_covered = covered.is_some_and(|[first, last]| first <= s && s <= last);
+                prop_assert!(!is_covered || least < TOUCH_DEPTH + 0.02, "{} {}", s, least);
+                prop_assert!(is_covered || least > TOUCH_DEPTH - 1e-6, "{} {}", s, least);
+            }
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Lines along which points of the tool move: together they are as wide as the tool, to 0.01 mm.
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::axis_box::directions_across;
+use crate::machine::{TOUCH_DEPTH, ToolCylinder};
+use gcode_lang::units::Deg;
+
+/// Largest distance between two circles of points inside the tool, mm.
+const RING_WIDTH: f64 = 1.0;
+
+/// Largest number of such circles.
+const MAX_RINGS: u32 = 6;
+
+/// Returns the offsets from the tool's axis to points of its rim; the chords between them are inside by at most
+/// [`TOUCH_DEPTH`]. Two of them are square to the travel.
+pub(super) fn rim(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
+    ring(axis, along, radius, rim_count(radius))
+}
+
+/// Returns the number of points of a rim: a multiple of 4.
+fn rim_count(radius: f64) -> u32 {
+    let half = Deg::acos((1.0 - TOUCH_DEPTH / radius.max(TOUCH_DEPTH)).max(0.0));
+    4 * ((45.0 / half.0).ceil() as u32).clamp(2, 16)
+}
+
+fn ring(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>, radius: f64, count: u32) -> Vec<Vector3<f64>> {
+    let across = (along - axis.into_inner() * along.dot(axis)).try_normalize(1e-9);
+    let [u, v] = match across {
+        Some(across) => [across, axis.cross(&across)],
+        None => directions_across(axis),
+    };
+    let point = |step: u32| {
+        let angle = Deg(360.0 / f64::from(count) * f64::from(step));
+        u * (radius * angle.cos()) + v * (radius * angle.sin())
+    };
+    (0..count).map(point).collect()
+}
+
+/// Returns the lines of the lower end of a part of the tool, those inside its rim included if it moves along itself, and
+/// the lines up its side at both ends of a travel.
+pub(super) fn lines(
+    part: &ToolCylinder,
+    axis: &Unit<Vector3<f64>>,
+    [from, to]: &[Point3<f64>; 2],
+) -> Vec<[Point3<f64>; 2]> {
+    let along = to - from;
+    let out = axis.into_inner();
+    let mut offsets = rim(axis, &along, part.radius);
+    let sides: Vec<_> = offsets
+        .iter()
+        .filter(|_| part.from < part.to)
+        .flat_map(|offset| [from, to].map(|tip| [tip + offset + out * part.from, tip + offset + out * part.to]))
+        .collect();
+    let is_along_itself = (along - out * along.dot(&out)).norm() < TOUCH_DEPTH;
+    if is_along_itself {
+        let count = ((part.radius / RING_WIDTH).ceil() as u32).clamp(1, MAX_RINGS);
+        for inner in 1..count {
+            let radius = part.radius * f64::from(inner) / f64::from(count);
+            offsets.extend(ring(axis, &along, radius, rim_count(radius)));
+        }
+    }
+    offsets.push(Vector3::zeros());
+    let base = out * part.from;
+    let ends = offsets.into_iter().map(|offset| [from + offset + base, to + offset + base]);
+    ends.chain(sides).collect()
+}
