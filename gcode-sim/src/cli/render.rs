@@ -92,8 +92,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         }
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
-            let stock = request.machine.stock.as_ref();
-            let metal = reference.as_ref().map(|r| r.metal(stock)).unwrap_or_default();
+            let stock = request.machine.stock.clone();
+            let metal = reference.as_ref().map(|r| r.metal(stock.as_ref())).unwrap_or_default();
             request.process_limits = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
             let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, metal.clone());
             let simulation = progress::of_run(&mut request, simulate)?;
@@ -103,7 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                     let tolerances = Tolerances::of(reference, tolerance);
                     let mut verdict = simulation.verify(reference, tolerances, &request.machine);
                     let is_denied = arguments.denials.denies_assumptions();
-                    simulation.add_assumptions(&mut verdict, &request, reference.body(stock), is_denied);
+                    simulation.add_assumptions(&mut verdict, &request, reference.body(stock.as_ref()), is_denied);
                     let drawn =
                         top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
                     Drawn {

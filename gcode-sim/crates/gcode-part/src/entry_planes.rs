@@ -45,7 +45,8 @@ pub struct EntryPlanes {
     top: Option<(Unit<Vector3<f64>>, f64)>,
 }
 
-/// Metal round one hole: a cylinder from the plane of the nominal entry to the bottom, with the hole in it.
+/// Metal round one hole: a cylinder from the plane of the nominal entry to the bottom, with the hole in it, and the floor
+/// of a hole that goes through nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Collar {
     /// The cylinder, its base at the bottom of the hole.
@@ -64,7 +65,7 @@ impl EntryPlanes {
         let collars: Vec<Collar> = holes.iter().map(Collar::of).collect();
         let middle =
             |collar: &Collar| collar.rod.base + collar.rod.axis.into_inner() * (collar.rod.length / 2.0);
-        let reach = |collar: &Collar| libm::hypot(collar.rod.length / 2.0, collar.rod.radius);
+        let reach = |collar: &Collar| libm::hypot(collar.rod.length / 2.0 + collar.floor(), collar.rod.radius);
         Self {
             middles: PointTree::new(collars.iter().map(middle)),
             reach: collars.iter().map(reach).fold(0.0, f64::max),
@@ -160,7 +161,7 @@ impl Collar {
     /// Returns true if a point is in the collar, deeper than `skin` below the entry plane.
     pub fn contains(&self, p: &Point3<f64>, skin: f64) -> bool {
         let depth = self.depth(p);
-        skin < depth && depth <= self.rod.length && self.from_axis(p) <= self.rod.radius
+        skin < depth && depth <= self.rod.length + self.floor() && self.from_axis(p) <= self.rod.radius
     }
 
     /// Returns true if a straight travel is parallel to the hole.
@@ -171,7 +172,12 @@ impl Collar {
     /// Returns the shares of a straight travel between which it is in the collar, deeper than `skin` below the entry
     /// plane.
     pub fn piece(&self, from: &Point3<f64>, to: &Point3<f64>, skin: f64) -> Option<[f64; 2]> {
-        self.rod.piece(from, to, (0.0, self.rod.length - skin), self.rod.radius)
+        self.rod.piece(from, to, (-self.floor(), self.rod.length - skin), self.rod.radius)
+    }
+
+    /// Returns the thickness of the metal below the bottom, mm.
+    pub fn floor(&self) -> f64 {
+        if self.is_through { 0.0 } else { WALL }
     }
 
     /// Returns the shares of a straight travel between which it is within `radius` of the axis, above the bottom or at

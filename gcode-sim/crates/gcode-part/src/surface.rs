@@ -114,6 +114,11 @@ impl Surface {
         }
     }
 
+    /// Returns true for a body with flat faces, as stock has it.
+    pub fn has_flat_faces(&self) -> bool {
+        matches!(self, Self::Block { .. } | Self::Rod(_))
+    }
+
     /// Returns the corners of a box that holds the body; they may be infinitely far.
     pub fn bounds(&self) -> [Point3<f64>; 2] {
         let about_origin = |half: Vector3<f64>| [Point3::from(-half), Point3::from(half)];

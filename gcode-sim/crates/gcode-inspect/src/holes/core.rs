@@ -1,49 +1,118 @@
-//! Core of a milled hole: metal inside the circle of the mill that no tool has removed.
+//! Core of a milled hole: metal inside its circle that no tool has removed.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
-use super::group::{DrilledHole, PassCut};
-use super::tool_lines::rim;
+use super::axis_box::directions_across;
+use super::group::{DrilledHole, PassCut, ToolPass};
+use crate::machine::TOUCH_DEPTH;
 
-/// Largest height of a core on the bottom of a hole that counts as removed, mm.
+/// Largest height of metal on the bottom of a hole that counts as removed, mm.
 const MAX_CORE_HEIGHT: f64 = 0.1;
 
-/// Distance of the outermost line from the mill's inner edge, mm.
-const EDGE: f64 = 0.02;
+/// Width at the wall in which the circle itself is judged, mm.
+const WALL_WIDTH: f64 = 0.05;
 
-/// Number of circles of lines inside the mill's inner edge.
-const RINGS: u32 = 6;
+/// Number of lines on the radius of a hole, and their least distance, mm.
+const LINES: f64 = 32.0;
+const MIN_DISTANCE: f64 = 0.25;
+
+/// Ring that a tool of a hole clears.
+struct ClearedRing {
+    inner: f64,
+    outer: f64,
+    /// Lowest height at which it is cleared to its width.
+    level: f64,
+}
 
 impl HoleExtractor<'_> {
     /// Finds the core of each milled circle.
     pub(super) fn find_cores(&self, holes: &mut [DrilledHole]) {
         for hole in holes {
-            let diameter = self.machine.diameter_of(hole.tool);
-            self.find_core(&mut hole.finishing_cut, &hole.axis, diameter);
-            for pass in &mut hole.earlier_passes {
-                let diameter = self.machine.diameter_of(pass.tool);
-                self.find_core(&mut pass.cut, &pass.axis, diameter);
+            let cores: Vec<Option<f64>> = {
+                let passes: Vec<ToolPass<'_>> = hole.passes().collect();
+                if passes.iter().all(|pass| pass.cut.milled.is_none()) {
+                    continue;
+                }
+                passes.iter().map(|pass| self.core_of(pass, &passes)).collect()
+            };
+            let (finishing, mut cores) = (hole.finishing_index.min(hole.earlier_passes.len()), cores);
+            set_core(&mut hole.finishing_cut, cores.remove(finishing));
+            for (pass, core) in hole.earlier_passes.iter_mut().zip(cores) {
+                set_core(&mut pass.cut, core);
             }
         }
     }
 
-    /// Finds the core that a mill of this diameter leaves; one of unknown diameter is taken to leave none.
-    fn find_core(&self, cut: &mut PassCut, axis: &Unit<Vector3<f64>>, diameter: Option<f64>) {
-        let Some((circle, diameter)) = cut.milled.as_mut().zip(diameter) else { return };
-        let inner = circle.radius - diameter / 2.0;
-        if inner <= EDGE {
-            return;
+    /// Returns the diameter up to which metal is left inside the circle of a pass; a mill of unknown diameter is taken to
+    /// leave none.
+    fn core_of(&self, pass: &ToolPass<'_>, passes: &[ToolPass<'_>]) -> Option<f64> {
+        let circle = pass.cut.milled?;
+        let radius = pass.diameter? / 2.0 - WALL_WIDTH - circle.roundness;
+        let level = pass.cut.bottom.coords.dot(&pass.axis) + MAX_CORE_HEIGHT;
+        let gaps = self.gaps(pass, passes, (radius, level));
+        if gaps.is_empty() {
+            return None;
         }
+        let left = self.left_inside(&pass.cut.bottom, &pass.axis, radius)?;
+        let edge = gaps.iter().find(|gap| gap[0] - WALL_WIDTH <= left && left <= gap[1] + WALL_WIDTH);
+        Some(2.0 * edge.map_or(left, |gap| gap[1]))
+    }
+
+    /// Returns the radii up to `radius` that no circle and no drill about the axis of a pass clears down to a level.
+    fn gaps(&self, at: &ToolPass<'_>, passes: &[ToolPass<'_>], (radius, level): (f64, f64)) -> Vec<[f64; 2]> {
+        let rings = passes.iter().filter_map(|pass| self.cleared_ring(pass, at));
+        let mut rings: Vec<ClearedRing> = rings.filter(|ring| ring.level <= level).collect();
+        rings.sort_by(|a, b| a.inner.total_cmp(&b.inner));
+        let (mut gaps, mut cleared) = (Vec::new(), 0.0);
+        for ring in rings {
+            if cleared + TOUCH_DEPTH < ring.inner && cleared < radius {
+                gaps.push([cleared, ring.inner]);
+            }
+            cleared = ring.outer.max(cleared);
+        }
+        if cleared < radius {
+            gaps.push([cleared, radius]);
+        }
+        gaps
+    }
+
+    /// Returns the ring about the axis of another pass that a pass clears.
+    fn cleared_ring(&self, pass: &ToolPass<'_>, at: &ToolPass<'_>) -> Option<ClearedRing> {
+        let diameter = pass.diameter?;
+        let point = self.machine.tool_end(pass.tool).first().map_or(0.0, |full| full.from);
+        let to = pass.cut.bottom - at.cut.bottom;
+        let aside = (to - at.axis.into_inner() * to.dot(&at.axis)).norm();
+        // A circle cleared the metal from its path less the mill's radius on.
+        let inner = pass.cut.milled.map_or(0.0, |circle| 2.0 * circle.radius - diameter / 2.0);
+        Some(ClearedRing {
+            inner: if inner + aside < TOUCH_DEPTH { 0.0 } else { inner + aside },
+            outer: diameter / 2.0 - aside,
+            level: pass.cut.bottom.coords.dot(&at.axis) + point,
+        })
+    }
+
+    /// Returns the distance from the axis of the farthest metal above the bottom of a hole, up to `radius`.
+    fn left_inside(&self, bottom: &Point3<f64>, axis: &Unit<Vector3<f64>>, radius: f64) -> Option<f64> {
         let out = axis.into_inner();
-        let bottom = cut.bottom + out * MAX_CORE_HEIGHT;
-        let top = cut.bottom + out * self.metal.removed.height_of_metal(&cut.bottom, &out);
-        let is_left = |radius: f64| {
-            let lines = rim(axis, &Vector3::zeros(), radius).into_iter();
-            let mut lines = lines.map(|offset| [bottom + offset, top + offset]);
-            lines.any(|line: [Point3<f64>; 2]| self.metal.uncut(&line, &|_| false).is_some())
+        let base = bottom + out * MAX_CORE_HEIGHT;
+        let up = out * self.metal.removed.height_of_metal(bottom, &out);
+        let [u, v] = directions_across(axis);
+        let is_left = |offset: Vector3<f64>| {
+            let line = [base + offset, base + offset + up];
+            self.metal.uncut(&line, &|_| false).is_some()
         };
-        let radius = |ring: u32| (inner - EDGE) * f64::from(ring) / f64::from(RINGS);
-        let left = (1..=RINGS).rev().find(|ring| is_left(radius(*ring)));
-        circle.core = left.map(|ring| 2.0 * if ring == RINGS { inner } else { radius(ring) });
+        let distance = (radius / LINES).max(MIN_DISTANCE);
+        let steps = (radius / distance).floor() as i32;
+        let offsets = (-steps..=steps).flat_map(|i| {
+            (-steps..=steps).map(move |j| u * (f64::from(i) * distance) + v * (f64::from(j) * distance))
+        });
+        let inside = offsets.filter(|offset| offset.norm() <= radius);
+        inside.filter(|offset| is_left(*offset)).map(|offset| offset.norm()).reduce(f64::max)
+    }
+}
+
+fn set_core(cut: &mut PassCut, core: Option<f64>) {
+    if let Some(circle) = &mut cut.milled {
+        circle.core = core;
     }
 }

@@ -8,9 +8,10 @@ use super::rapids::{PLUNGE_COSINE, format_point};
 use super::removed_metal::Profile;
 use super::tool_lines::lines;
 use crate::findings::FEED_BESIDE_HOLE;
-use crate::machine::{AxisMotion, ToolKind};
+use crate::machine::{AxisMotion, ToolCylinder, ToolKind};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
+use gcode_part::Collar;
 
 /// Largest deviation of an arc from the chords by which it removes metal, mm.
 const CHORD_TOLERANCE: f64 = 0.005;
@@ -22,11 +23,18 @@ const COARSE_TOLERANCE: f64 = 5.0;
 const MAX_RADIUS: f64 = 25.0;
 
 /// What a feed removes of the metal that has to stay.
-#[derive(Clone, Copy)]
-struct Spoilt {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spoilt {
     at: PointInMetal,
-    /// False if the tip removes it.
-    is_side: bool,
+    part: SpoiltBy,
+}
+
+/// Part of the tool that removes it.
+#[derive(Clone, Copy, Debug)]
+enum SpoiltBy {
+    Tip,
+    Side,
+    Shank,
 }
 
 impl HoleExtractor<'_> {
@@ -58,6 +66,7 @@ impl HoleExtractor<'_> {
             return;
         }
         let radius = self.tool_radius().unwrap_or(0.0);
+        let is_judged = is_known && self.metal.holes.is_some();
         let mut worst: Option<Spoilt> = None;
         for chord in path.windows(2) {
             let (from, to) = (chord[0], chord[1]);
@@ -65,14 +74,20 @@ impl HoleExtractor<'_> {
             if !self.metal.is_touched(&from, &to, &axis, radius) {
                 continue;
             }
-            if is_known && !is_along(&axis, &(to - from)) {
-                let spoilt = self.spoilt(&[from, to], &axis);
-                worst = match (worst, spoilt) {
-                    (Some(worst), Some(spoilt)) if spoilt.at.depth <= worst.at.depth => Some(worst),
-                    (worst, spoilt) => spoilt.or(worst),
-                };
-            }
+            let is_plunge = is_along(&axis, &(to - from));
+            // The direction of the tool is unknown, and the body is one that is drilled all round.
+            let is_unclear = self.pose.axis.is_none() && self.surface.is_some_and(|body| !body.has_flat_faces());
+            let spoilt = match is_judged && !is_unclear {
+                true => self.spoilt(&[from, to], &axis),
+                false => None,
+            };
+            // A plunge may drill a hole: the motion after it shows that.
+            let all = if is_plunge { &mut self.plunge_spoilt } else { &mut worst };
+            *all = Spoilt::worse(*all, spoilt);
             self.remove(&[from, to], &axis);
+            if is_judged && spoilt.is_none() {
+                worst = Spoilt::worse(worst, self.spoilt_by_shank(&[from, to], &axis));
+            }
         }
         if let Some(spoilt) = worst {
             self.report_spoilt(&event.backtrace(), spoilt);
@@ -123,7 +138,7 @@ impl HoleExtractor<'_> {
         }
         // A tool of unknown diameter cuts a nominal hole to its width.
         let mut room: Option<f64> = None;
-        self.metal.around(travel, |collar| {
+        self.metal.around(travel, 0.0, &mut |collar: &Collar| {
             let aside = travel.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
             if collar.is_parallel(axis) && aside <= collar.hole_radius {
                 room = Some(room.unwrap_or(0.0).max(collar.hole_radius - aside));
@@ -131,7 +146,8 @@ impl HoleExtractor<'_> {
         });
         let profile = match room {
             Some(room) => Profile::flat(room, true),
-            None if is_along(axis, &(to - from)) => Profile::flat(0.0, true),
+            // Without nominal holes the direction of the tool may be that of the feed.
+            None if is_along(axis, &(to - from)) || self.metal.holes.is_none() => Profile::flat(0.0, true),
             None => {
                 if self.surface.is_some() && !self.unsized_mills.contains(&self.setup.tool) {
                     self.unsized_mills.push(self.setup.tool);
@@ -142,40 +158,68 @@ impl HoleExtractor<'_> {
         self.metal.removed.add(from, to, *axis, &profile);
     }
 
-    /// Returns what a feed removes of the metal that has to stay. With a known body the side of the tool counts too.
+    /// Returns what a feed removes of the metal that has to stay.
     fn spoilt(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Spoilt> {
         if self.surface.is_some() && !self.has_left_start {
             return None;
         }
+        let is_plunge = is_along(axis, &(travel[1] - travel[0]));
+        // Round the holes of a list the strokes along them are judged as holes.
+        if is_plunge && (self.surface.is_none() || self.metal.is_allowed(travel, axis, self.tool_radius().unwrap_or(0.0))) {
+            return None;
+        }
         match self.metal.spoilt(travel, FeedPart::Tip) {
-            Some(at) => Some(Spoilt { at, is_side: false }),
-            None => self.spoilt_by_side(travel, axis).map(|at| Spoilt { at, is_side: true }),
+            Some(at) => Some(Spoilt { at, part: SpoiltBy::Tip }),
+            None => self.spoilt_by_side(travel, axis),
         }
     }
 
-    fn spoilt_by_side(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<PointInMetal> {
-        let surface = self.surface.filter(|_| self.pose.axis.is_some())?;
-        let along = travel[1] - travel[0];
-        self.tool_body.iter().find_map(|part| {
-            if !part.cuts(&surface, (&travel[0], axis), &along) {
-                return None;
-            }
+    /// Returns what the cutting parts of the tool remove of the metal that has to stay.
+    fn spoilt_by_side(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Spoilt> {
+        self.pose.axis?;
+        self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
             let base = travel.map(|tip| tip + axis.into_inner() * part.from);
-            if self.metal.is_allowed(&base, axis, part.radius) {
+            if !self.may_cut(part, travel, axis) || self.metal.is_allowed(&base, axis, part.radius) {
                 return None;
             }
-            let lines = lines(part, axis, travel).into_iter();
+            let lines = lines(part, axis, travel, &self.metal).into_iter();
             let points = lines.filter_map(|line| self.metal.spoilt(&line, FeedPart::Side(part.radius)));
-            points.reduce(PointInMetal::deeper)
+            let at = points.reduce(PointInMetal::deeper)?;
+            Some(Spoilt { at, part: SpoiltBy::Side })
         })
     }
 
-    /// Returns true if a feed along the tool removes metal that has to stay; one that makes a hole does not.
+    /// Returns what the shank and the holder touch of the metal that is left.
+    fn spoilt_by_shank(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Spoilt> {
+        if self.pose.axis.is_none() || self.surface.is_some() && !self.has_left_start {
+            return None;
+        }
+        self.tool_body.iter().filter(|part| !part.is_cutter).find_map(|part| {
+            if !self.may_cut(part, travel, axis) {
+                return None;
+            }
+            let lines = lines(part, axis, travel, &self.metal).into_iter();
+            let points = lines.filter_map(|line| self.metal.uncut(&line, &|_| false));
+            let at = points.reduce(PointInMetal::deeper)?;
+            Some(Spoilt { at, part: SpoiltBy::Shank })
+        })
+    }
+
+    /// Returns false if a part of the tool stays outside a known body.
+    fn may_cut(&self, part: &ToolCylinder, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> bool {
+        let along = travel[1] - travel[0];
+        let part = ToolCylinder { to: self.metal.top_of(part, &travel[0], axis), ..*part };
+        self.surface.is_none_or(|body| part.cuts(&body, (&travel[0], axis), &along))
+    }
+
+    /// Starts a line: what its feeds spoil is not known yet.
+    pub(super) fn forget_plunge(&mut self) {
+        self.plunge_spoilt = None;
+    }
+
+    /// Returns true if the current line removes metal that has to stay.
     pub(super) fn is_spoilt_by_plunge(&self, line: &CuttingLine) -> bool {
-        let Some(axis) = line.tool_axis.filter(|axis| 0.0 < axis.dot(&line.out)) else { return false };
-        line.cutting_state.tool == self.setup.tool
-            && line.unknown_axes.is_none()
-            && self.spoilt(&[line.start, line.bottom()], &axis).is_some()
+        line.cutting_state.tool == self.setup.tool && self.plunge_spoilt.is_some()
     }
 
     /// Returns true if all metal in which a line feeds is in a pocket.
@@ -185,36 +229,45 @@ impl HoleExtractor<'_> {
         self.metal.is_in_pocket(&[line.start, line.bottom()], &axis, radius)
     }
 
-    /// Reports a plunge that the side of the tool spoils.
-    pub(super) fn report_plunge(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
-        let travel = [line.start, line.bottom()];
-        let spoilt = line.tool_axis.and_then(|axis| self.spoilt(&travel, &axis));
-        if let Some(spoilt) = spoilt {
+    /// Reports what the current line removes of the metal that has to stay.
+    pub(super) fn report_plunge(&mut self, backtrace: &Backtrace) {
+        if let Some(spoilt) = self.plunge_spoilt.take() {
             self.report_spoilt(backtrace, spoilt);
         }
     }
 
-    fn report_spoilt(&mut self, backtrace: &Backtrace, Spoilt { at, is_side }: Spoilt) {
+    fn report_spoilt(&mut self, backtrace: &Backtrace, Spoilt { at, part }: Spoilt) {
         let (depth, point) = (at.depth, format_point(&at.point));
         let level = self.metal.level_at(&at.point);
-        let hole = self.metal.hole_at(&at.point).filter(|_| self.surface.is_none()).map(str::to_owned);
-        self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| match hole {
-            Some(id) => {
-                let message =
-                    format!("the feed cuts beside hole {id}, {depth:.3} mm below its nominal entry, at {point}");
-                Diagnostic::new(kind, message)
-                    .help("retract above the entry of the hole before a motion beside it")
-            }
-            None => {
-                let what = if is_side { "the side of the tool cuts" } else { "the feed cuts" };
-                let message =
-                    format!("{what} the part beside its holes, {depth:.3} mm below {level} at {point}");
-                Diagnostic::new(kind, message).help(
+        let what = match part {
+            SpoiltBy::Tip => "the feed cuts",
+            SpoiltBy::Side => "the side of the tool cuts",
+            SpoiltBy::Shank => "the shank or the holder of the tool touches",
+        };
+        let hole = self.metal.hole_at(&at.point).filter(|_| self.surface.is_none());
+        let place = hole.map_or("the part beside its holes".to_owned(), |id| format!("beside hole {id}"));
+        let is_stock = self.surface.is_some();
+        self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| {
+            let message = format!("{what} {place}, {depth:.3} mm below {level} at {point}");
+            Diagnostic::new(kind, message).help(match (part, is_stock) {
+                (SpoiltBy::Shank, _) => "the flutes have to be longer than the hole is deep, or the hole wider above",
+                (_, true) => {
                     "keep the tool's radius away from what has to stay, or state in [[stock.pocket]] what the \
-                     program mills besides the holes",
-                )
-            }
+                     program mills besides the holes"
+                }
+                (_, false) => "retract above the entry of the hole before a motion beside it",
+            })
         });
+    }
+}
+
+impl Spoilt {
+    /// Returns the deeper of two.
+    fn worse(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        match (one, other) {
+            (Some(one), Some(other)) if one.at.depth < other.at.depth => Some(other),
+            (one, other) => one.or(other),
+        }
     }
 }
 

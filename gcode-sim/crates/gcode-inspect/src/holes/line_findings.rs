@@ -45,7 +45,7 @@ impl HoleExtractor<'_> {
                 let inside = inside();
                 if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
                     if self.is_spoilt_by_plunge(&line) {
-                        self.report_plunge(line.backtrace(), &line);
+                        self.report_plunge(line.backtrace());
                     }
                     return;
                 }
@@ -95,7 +95,8 @@ impl HoleExtractor<'_> {
             return;
         };
         let is_judged = self.metal.holes.is_some() && line.tool_axis.is_some();
-        if is_judged && !self.is_spoilt_by_plunge(line) {
+        // Where the tool goes next is judged, unless that is unknown.
+        if is_judged && self.positions.is_known(self.machine) && !self.is_spoilt_by_plunge(line) {
             return;
         }
         let findings = if is_judged { &mut self.findings } else { &mut self.engagement.errors };

@@ -5,8 +5,8 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
 use super::removed_metal::{RemovedMetal, Rest};
-use crate::machine::TOUCH_DEPTH;
-use gcode_part::{EntryPlanes, Metal, NearestPoint, Rod, Surface};
+use crate::machine::{TOUCH_DEPTH, ToolCylinder};
+use gcode_part::{Collar, EntryPlanes, Metal, NearestPoint, Rod, Surface};
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
 const MAX_OFFSET: f64 = 0.5;
@@ -178,7 +178,7 @@ impl KnownMetal {
         if rest.is_empty() {
             return None;
         }
-        self.around(travel, |collar| {
+        let mut allow = |collar: &Collar| {
             let radius = match part {
                 FeedPart::Tip => collar.hole_radius.max(MAX_OFFSET) + ROUNDING,
                 FeedPart::Side(_) if collar.has_diameter => collar.hole_radius + SIDE_SLACK,
@@ -187,7 +187,8 @@ impl KnownMetal {
             if let Some(piece) = collar.piece_in_hole(from, to, radius, DEPTH_SLACK) {
                 rest.take_away(piece);
             }
-        });
+        };
+        self.around(travel, MAX_HEIGHT, &mut allow);
         self.deepest(travel, &rest, &|_| false)
     }
 
@@ -212,16 +213,36 @@ impl KnownMetal {
         });
         is_in_box || {
             let mut is_within = false;
-            self.around(tips, |collar| {
+            let mut is_hole = |collar: &Collar| {
                 let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
                 let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
                 let room = if collar.has_diameter { collar.hole_radius + SIDE_SLACK - radius } else { radius };
                 is_within |= collar.is_parallel(axis)
                     && aside <= room
                     && (collar.is_through || deepest <= collar.rod.length + DEPTH_SLACK);
-            });
+            };
+            self.around(tips, 0.0, &mut is_hole);
             is_within
         }
+    }
+
+    /// Returns the upper end of a part of the tool; where its length is unknown, that of the metal.
+    pub(super) fn top_of(&self, part: &ToolCylinder, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> f64 {
+        match part.is_cutter && part.to <= part.from {
+            true => part.from + self.removed.height_of_metal(tip, axis),
+            false => part.to,
+        }
+    }
+
+    /// Returns the heights above the tip between which there may be metal, part of a tool or not.
+    pub(super) fn heights(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<[f64; 2]> {
+        let [low, high] = self.body?.bounds();
+        let along = |corner: &Vector3<f64>, other: &Vector3<f64>| {
+            (0..3).filter(|i| axis[*i] != 0.0).map(|i| (axis[i] * corner[i]).min(axis[i] * other[i])).sum::<f64>()
+        };
+        let (low, high) = (low - tip, high - tip);
+        let heights = [along(&low, &high), -along(&-low, &-high)];
+        heights.iter().all(|height| height.is_finite()).then_some(heights)
     }
 
     /// Returns true if all that a cylinder of this radius removes along its axis lies in one pocket.
@@ -240,10 +261,10 @@ impl KnownMetal {
         }) && !self.pockets.is_empty()
     }
 
-    /// Calls `each` with the nominal holes near a travel, and below or above it.
-    pub(super) fn around(&self, [from, to]: &[Point3<f64>; 2], mut each: impl FnMut(&gcode_part::Collar)) {
+    /// Calls `each` with the nominal holes whose metal may be nearer to a travel than `margin`.
+    pub(super) fn around(&self, [from, to]: &[Point3<f64>; 2], margin: f64, each: &mut impl FnMut(&Collar)) {
         let Some(holes) = self.holes.as_deref() else { return };
-        let margin = Vector3::repeat(MAX_HEIGHT);
+        let margin = Vector3::repeat(margin);
         holes.around(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |hole| each(holes.collar(hole)));
     }
 
@@ -304,7 +325,7 @@ impl KnownMetal {
             let collar = holes.collar(hole);
             let depth = collar.depth(p);
             let is_inside = TOUCH_DEPTH - ROUNDING < depth
-                && depth <= collar.rod.length + ROUNDING
+                && depth <= collar.rod.length + collar.floor() + ROUNDING
                 && collar.from_axis(p) <= collar.rod.radius + ROUNDING;
             if is_inside && best.is_none_or(|(_, most)| most < depth) {
                 best = Some((hole, depth));

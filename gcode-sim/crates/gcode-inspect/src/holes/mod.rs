@@ -41,6 +41,7 @@ use self::axis_box::SearchBudget;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
+use self::feed_law::Spoilt;
 use self::line::{CuttingLine, ToolExit};
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
@@ -104,6 +105,8 @@ pub struct HoleExtractor<'m> {
     tool_body: Vec<ToolCylinder>,
     /// What it cuts in a feed; `None` if its diameter is unknown.
     profile: Option<Profile>,
+    /// What the current line removes of the metal that has to stay.
+    plunge_spoilt: Option<Spoilt>,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -164,6 +167,7 @@ impl<'m> HoleExtractor<'m> {
             setup,
             tool_body: Vec::new(),
             profile: None,
+            plunge_spoilt: None,
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             builder_code: None,
@@ -320,6 +324,9 @@ impl<'m> HoleExtractor<'m> {
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
+                if start.is_some() {
+                    self.forget_plunge();
+                }
                 self.remove_by_feed(event, &[before.tip, self.pose.tip], was.union(is).is_none());
                 if let Some(start) = start {
                     self.start_line(event, start, last_motion);

@@ -2,15 +2,15 @@
 use nalgebra::{Point3, Vector3};
 
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
-use super::metal::{PointInMetal};
+use super::metal::{MAX_HEIGHT, PointInMetal};
 use super::rapids::{PLUNGE_COSINE, error_if, format_point};
 use super::tool_lines::lines;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
-use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, arrivals};
-use gcode_lang::diag::Diagnostic;
+use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolCylinder, arrivals};
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, Event, Position};
-use gcode_part::{NearestPoint, Surface};
+use gcode_part::{Collar, NearestPoint, Surface};
 
 /// Distance of a tool's side from the wall of the hole over which it stands, mm.
 const MAX_OVERSIZE: f64 = 0.05;
@@ -174,7 +174,7 @@ impl HoleExtractor<'_> {
                 let poses = [Pose { tip: begin, ..pose }, pose];
                 part.is_cutter && is_straight && poses.iter().any(|pose| self.is_over_nominal_hole(p, pose))
             };
-            let lines = travels.iter().flatten().flat_map(|travel| lines(part, &axis, travel));
+            let lines = travels.iter().flatten().flat_map(|travel| lines(part, &axis, travel, &self.metal));
             let mut is_met = false;
             for line in lines {
                 is_met |= surface.is_some_and(|body| body.piece(&line[0], &line[1], TOUCH_DEPTH).is_some());
@@ -186,6 +186,10 @@ impl HoleExtractor<'_> {
             if let Some(body) = surface.filter(|_| found.is_none() && !is_met) {
                 let deepest = path.with_tool(*part).deepest(&distance_from(&body), TOUCH_DEPTH, &mut budget);
                 found = match deepest {
+                    // What is removed is not followed while an axis rotates.
+                    Deepest::Metal(DeepPoint { point, depth, .. }) if !is_straight => {
+                        Some(PointInMetal { point, depth })
+                    }
                     Deepest::Metal(at) => self.metal.uncut(&[at.point, at.point], &is_free),
                     Deepest::Clear => None,
                     Deepest::Unknown => {
@@ -199,13 +203,32 @@ impl HoleExtractor<'_> {
             }
         }
         self.search_budget = budget;
-        let Some(PointInMetal { point, depth }) = found else { return };
+        let Some(cut) = found else { return };
         // While an axis rotates, the clearance of the job decides; the shape of the tool's end is only assumed.
         let severity = error_if(is_straight || self.process_limits.clearance.is_none());
         let orders = if path.len() < 2 { "" } else { " on some of its paths" };
-        let level = self.metal.level_at(&point);
+        self.report_side(event, cut, severity, orders);
+    }
+
+    /// Reports a rapid of unknown start at whose end the side of the tool is in metal.
+    pub(super) fn check_body_at(&mut self, event: &Event<'_>, tip: &Point3<f64>) {
+        let Some(axis) = self.pose.axis else { return };
+        let is_left_out = |part: &ToolCylinder| part.is_cutter && self.tool_radius().is_none();
+        let pose = Pose { tip: *tip, ..self.pose };
+        let cut = self.tool_body.iter().filter(|part| !is_left_out(part)).find_map(|part| {
+            let is_free = |p: &Point3<f64>| part.is_cutter && self.is_over_nominal_hole(p, &pose);
+            let lines = lines(part, &axis, &[*tip, *tip], &self.metal).into_iter();
+            lines.filter_map(|line| self.metal.uncut(&line, &is_free)).reduce(PointInMetal::deeper)
+        });
+        if let Some(cut) = cut {
+            self.report_side(event, cut, Severity::Error, "");
+        }
+    }
+
+    fn report_side(&mut self, event: &Event<'_>, cut: PointInMetal, severity: Severity, orders: &str) {
+        let level = self.metal.level_at(&cut.point);
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
-            let point = format_point(&point);
+            let (depth, point) = (cut.depth, format_point(&cut.point));
             let message = format!(
                 "the side of the tool cuts the part in a rapid{orders}, {depth:.3} mm below {level} at {point}"
             );
@@ -219,19 +242,19 @@ impl HoleExtractor<'_> {
         self.metal.depth(p).is_some_and(|depth| TOUCH_DEPTH < depth)
     }
 
-    /// Returns true for a point in a nominal hole, or in the metal above it, if the tool stands above the entry in the
-    /// direction of the hole.
+    /// Returns true for a point in the metal above a nominal hole, if the tool stands above the entry in the direction of
+    /// the hole.
     fn is_over_nominal_hole(&self, p: &Point3<f64>, pose: &Pose) -> bool {
         let Some(axis) = pose.axis else { return false };
         let radius = self.machine.diameter_of(self.setup.tool).unwrap_or(0.0) / 2.0;
         let mut is_over = false;
-        self.metal.around(&[*p, *p], |collar| {
+        self.metal.around(&[*p, *p], MAX_HEIGHT, &mut |collar: &Collar| {
             let within = collar.hole_radius.max(radius) + MAX_OVERSIZE;
             is_over |= collar.is_parallel(&axis)
                 && collar.depth(&pose.tip) <= TOUCH_DEPTH
                 && collar.from_axis(&pose.tip) <= within - radius
                 && collar.from_axis(p) <= within
-                && collar.depth(p) <= collar.rod.length;
+                && collar.depth(p) <= TOUCH_DEPTH;
         });
         is_over
     }

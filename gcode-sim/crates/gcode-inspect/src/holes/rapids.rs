@@ -83,7 +83,7 @@ impl HoleExtractor<'_> {
     /// Checks the known end of a rapid whose start is unknown.
     pub(super) fn check_known_end(&mut self, event: &Event<'_>, to: &Point3<f64>) {
         match self.surface {
-            Some(_) if self.metal.uncut(&[*to, *to], &|_| false).is_none() => {}
+            Some(_) if self.metal.uncut(&[*to, *to], &|_| false).is_none() => self.check_body_at(event, to),
             Some(surface) => {
                 let note = "the start of this rapid is unknown";
                 self.check_rapid_end(event, &surface, to, Severity::Error, note);
@@ -170,7 +170,10 @@ impl HoleExtractor<'_> {
                 && path.windows(2).any(|chord| self.check_rapid_at_holes(event, &chord[0], &chord[1]));
         };
         // Where the holes are known, an arc is judged by what it removes.
-        let is_judged = travel.arc.is_some() && self.metal.holes.is_some() && self.is_stationary(travel);
+        let is_judged = travel.arc.is_some()
+            && self.metal.holes.is_some()
+            && (self.pose.axis.is_some() || surface.has_flat_faces())
+            && self.is_stationary(travel);
         let depth = match self.has_left_start && !is_judged {
             true => self.max_depth_along(&surface, travel),
             false => f64::NEG_INFINITY,

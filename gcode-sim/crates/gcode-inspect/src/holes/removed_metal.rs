@@ -132,8 +132,8 @@ impl RemovedMetal {
         profile: &Profile,
     ) -> bool {
         let Some(last) = self.sweeps.last_mut().filter(|_| self.is_last_open) else { return false };
-        let aside = |v: Vector3<f64>| (v - axis.into_inner() * v.dot(axis)).norm();
-        let is_on_line = [last.to - last.from, from - last.from, to - last.from].map(aside) < [ROUNDING; 3];
+        let is_along = |v: Vector3<f64>| (v - axis.into_inner() * v.dot(axis)).norm() < ROUNDING;
+        let is_on_line = [last.to, *from, *to].into_iter().all(|p| is_along(p - last.from));
         let height = |p: &Point3<f64>| (p - last.from).dot(axis);
         let (reached, begin, end) = (height(&last.to), height(from), height(to));
         let is_same = is_on_line && last.axis == *axis && self.profiles[last.profile as usize] == *profile;

@@ -2,6 +2,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::directions_across;
+use super::metal::KnownMetal;
 use crate::machine::{TOUCH_DEPTH, ToolCylinder};
 use gcode_lang::units::Deg;
 
@@ -36,21 +37,24 @@ fn ring(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>, radius: f64, count: u32
     (0..count).map(point).collect()
 }
 
-/// Returns the lines of the lower end of a part of the tool, those inside its rim included if it moves along itself, and
-/// the lines up its side at both ends of a travel.
+/// Returns the lines of the lower end of a part of the tool, those inside its rim included if it moves along itself, those
+/// of its side where it crosses the metal, and the lines up its side at both ends of a travel.
 pub(super) fn lines(
     part: &ToolCylinder,
     axis: &Unit<Vector3<f64>>,
     [from, to]: &[Point3<f64>; 2],
+    metal: &KnownMetal,
 ) -> Vec<[Point3<f64>; 2]> {
     let along = to - from;
     let out = axis.into_inner();
+    let top = metal.top_of(part, from, axis).max(metal.top_of(part, to, axis));
     let mut offsets = rim(axis, &along, part.radius);
-    let sides: Vec<_> = offsets
-        .iter()
-        .filter(|_| part.from < part.to)
-        .flat_map(|offset| [from, to].map(|tip| [tip + offset + out * part.from, tip + offset + out * part.to]))
-        .collect();
+    let up = |tip: &Point3<f64>, offset: &Vector3<f64>| [tip + offset + out * part.from, tip + offset + out * top];
+    let mut lines = Vec::new();
+    if part.from < top {
+        lines.extend(offsets.iter().flat_map(|offset| [up(from, offset), up(to, offset)]));
+    }
+    let at_height = |height: f64| move |offset: &Vector3<f64>| [from + offset + out * height, to + offset + out * height];
     let is_along_itself = (along - out * along.dot(&out)).norm() < TOUCH_DEPTH;
     if is_along_itself {
         let count = ((part.radius / RING_WIDTH).ceil() as u32).clamp(1, MAX_RINGS);
@@ -58,9 +62,14 @@ pub(super) fn lines(
             let radius = part.radius * f64::from(inner) / f64::from(count);
             offsets.extend(ring(axis, &along, radius, rim_count(radius)));
         }
+    } else if let Some([low, high]) = metal.heights(from, axis) {
+        // The lower end may be below all metal.
+        let (low, high) = (low.max(part.from), high.min(top));
+        if part.from < low && low < high {
+            lines.extend(offsets.iter().map(at_height(f64::midpoint(low, high))));
+        }
     }
     offsets.push(Vector3::zeros());
-    let base = out * part.from;
-    let ends = offsets.into_iter().map(|offset| [from + offset + base, to + offset + base]);
-    ends.chain(sides).collect()
+    lines.extend(offsets.iter().map(at_height(part.from)));
+    lines
 }

@@ -16,10 +16,18 @@ const MOTION: &str = "motion beside the holes (no stock)";
 /// Motion whose search was given up, for the first line of a verdict.
 const UNSEARCHED: &str = "rapids whose axes may reach too many positions";
 
+/// Motion near feeds of unknown width, for the first line of a verdict.
+const UNSIZED: &str = "what mills of unknown diameter remove";
+
+/// Motion near feeds beyond the limit, for the first line of a verdict.
+const CUT_SHORT: &str = "what the feeds after the first million remove";
+
 /// Returns the motion that no check covers, for the first line of a verdict.
 pub(super) fn unchecked_motion(extraction: &HoleExtraction) -> Option<&'static str> {
     let unsearched = extraction.unsearched_rapids.as_ref().map(|_| UNSEARCHED);
-    if extraction.is_metal_known { unsearched } else { Some(MOTION) }
+    let unsized_mills = (!extraction.unsized_mills.is_empty()).then_some(UNSIZED);
+    let cut_short = extraction.is_removal_cut_short.then_some(CUT_SHORT);
+    if extraction.is_metal_known { unsearched.or(unsized_mills).or(cut_short) } else { Some(MOTION) }
 }
 
 /// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
@@ -54,6 +62,13 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
         all.push(format!(
             "{UNSEARCHED} ({count} rapid{plural}, first {program} line {line}): give [rapid] in the machine file"
         ));
+    }
+    for tool in &extraction.unsized_mills {
+        let tool = tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+        all.push(format!("{UNSIZED}: the machine file has no diameter of {tool}; rapids near its feeds pass"));
+    }
+    if extraction.is_removal_cut_short {
+        all.push(format!("{CUT_SHORT}: rapids where they have removed the metal are reported"));
     }
     all
 }
