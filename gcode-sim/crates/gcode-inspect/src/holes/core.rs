@@ -33,7 +33,8 @@ impl HoleExtractor<'_> {
                 if passes.iter().all(|pass| pass.cut.milled.is_none()) {
                     continue;
                 }
-                passes.iter().map(|pass| self.core_of(pass, &passes)).collect()
+                let is_covered = |one: &ToolPass<'_>| passes.iter().any(|other| is_wider_and_deeper(other, one));
+                passes.iter().map(|pass| if is_covered(pass) { None } else { self.core_of(pass, &passes) }).collect()
             };
             let (finishing, mut cores) = (hole.finishing_index.min(hole.earlier_passes.len()), cores);
             set_core(&mut hole.finishing_cut, cores.remove(finishing));
@@ -53,7 +54,7 @@ impl HoleExtractor<'_> {
         if gaps.is_empty() {
             return None;
         }
-        let left = self.left_inside(&pass.cut.bottom, &pass.axis, radius)?;
+        let left = self.left_inside(&pass.cut.bottom, &pass.axis, &gaps)?;
         let edge = gaps.iter().find(|gap| gap[0] - WALL_WIDTH <= left && left <= gap[1] + WALL_WIDTH);
         Some(2.0 * edge.map_or(left, |gap| gap[1]))
     }
@@ -66,7 +67,7 @@ impl HoleExtractor<'_> {
         let (mut gaps, mut cleared) = (Vec::new(), 0.0);
         for ring in rings {
             if cleared + TOUCH_DEPTH < ring.inner && cleared < radius {
-                gaps.push([cleared, ring.inner]);
+                gaps.push([cleared, ring.inner.min(radius)]);
             }
             cleared = ring.outer.max(cleared);
         }
@@ -91,8 +92,8 @@ impl HoleExtractor<'_> {
         })
     }
 
-    /// Returns the distance from the axis of the farthest metal above the bottom of a hole, up to `radius`.
-    fn left_inside(&self, bottom: &Point3<f64>, axis: &Unit<Vector3<f64>>, radius: f64) -> Option<f64> {
+    /// Returns the distance from the axis of the farthest metal above the bottom of a hole, within gaps of the radius.
+    fn left_inside(&self, bottom: &Point3<f64>, axis: &Unit<Vector3<f64>>, gaps: &[[f64; 2]]) -> Option<f64> {
         let out = axis.into_inner();
         let base = bottom + out * MAX_CORE_HEIGHT;
         let up = out * self.metal.removed.height_of_metal(bottom, &out);
@@ -101,14 +102,30 @@ impl HoleExtractor<'_> {
             let line = [base + offset, base + offset + up];
             self.metal.uncut(&line, &|_| false).is_some()
         };
+        let radius = gaps.last()?[1];
         let distance = (radius / LINES).max(MIN_DISTANCE);
         let steps = (radius / distance).floor() as i32;
         let offsets = (-steps..=steps).flat_map(|i| {
             (-steps..=steps).map(move |j| u * (f64::from(i) * distance) + v * (f64::from(j) * distance))
         });
-        let inside = offsets.filter(|offset| offset.norm() <= radius);
-        inside.filter(|offset| is_left(*offset)).map(|offset| offset.norm()).reduce(f64::max)
+        let is_in_gap = |offset: &Vector3<f64>| {
+            let radius = offset.norm();
+            gaps.iter().any(|gap| gap[0] <= radius && radius <= gap[1])
+        };
+        let left = offsets.filter(is_in_gap).filter(|offset| is_left(*offset));
+        left.map(|offset| offset.norm()).reduce(f64::max)
     }
+}
+
+/// Returns true if a circle is wider than another one and as deep, or as wide and deeper.
+fn is_wider_and_deeper(one: &ToolPass<'_>, other: &ToolPass<'_>) -> bool {
+    let (Some(width), Some(other_width)) = (one.diameter, other.diameter) else { return false };
+    let height = |pass: &ToolPass<'_>| pass.cut.bottom.coords.dot(&one.axis);
+    let (level, other_level) = (height(one), height(other));
+    one.cut.milled.is_some()
+        && other_width <= width
+        && level <= other_level
+        && (other_width < width || level < other_level)
 }
 
 fn set_core(cut: &mut PassCut, core: Option<f64>) {

@@ -22,6 +22,12 @@ const COARSE_TOLERANCE: f64 = 5.0;
 /// Radius up to which a mill of unknown diameter may remove metal, mm.
 const MAX_RADIUS: f64 = 25.0;
 
+/// Largest number of chords of an arc by which the shank and the holder are compared.
+const SHANK_CHORDS: usize = 16;
+
+/// Largest distance by which a plunge leads aside, mm.
+const MAX_ASIDE: f64 = 0.2;
+
 /// What a feed removes of the metal that has to stay.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spoilt {
@@ -85,9 +91,11 @@ impl HoleExtractor<'_> {
             let all = if is_plunge { &mut self.plunge_spoilt } else { &mut worst };
             *all = Spoilt::worse(*all, spoilt);
             self.remove(&[from, to], &axis);
-            if is_judged && spoilt.is_none() {
-                worst = Spoilt::worse(worst, self.spoilt_by_shank(&[from, to], &axis));
-            }
+        }
+        if is_judged && worst.is_none() {
+            let few = self.shank_path(path);
+            let chords = few.windows(2).map(|chord| [chord[0], chord[1]]);
+            worst = chords.filter_map(|chord| self.spoilt_by_shank(&chord)).reduce(Spoilt::deeper);
         }
         if let Some(spoilt) = worst {
             self.report_spoilt(&event.backtrace(), spoilt);
@@ -190,8 +198,9 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns what the shank and the holder touch of the metal that is left.
-    fn spoilt_by_shank(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Spoilt> {
-        if self.pose.axis.is_none() || self.surface.is_some() && !self.has_left_start {
+    fn spoilt_by_shank(&self, travel: &[Point3<f64>; 2]) -> Option<Spoilt> {
+        let axis = &self.pose.axis?;
+        if self.surface.is_some() && !self.has_left_start {
             return None;
         }
         self.tool_body.iter().filter(|part| !part.is_cutter).find_map(|part| {
@@ -203,6 +212,16 @@ impl HoleExtractor<'_> {
             let at = points.reduce(PointInMetal::deeper)?;
             Some(Spoilt { at, part: SpoiltBy::Shank })
         })
+    }
+
+    /// Returns as many points of a path as show where a shank goes; none of a tool without one.
+    fn shank_path(&self, path: &[Point3<f64>]) -> Vec<Point3<f64>> {
+        if self.tool_body.iter().all(|part| part.is_cutter) {
+            return Vec::new();
+        }
+        let last = path.len().saturating_sub(1);
+        let step = last.div_ceil(SHANK_CHORDS).max(1);
+        (0..last).step_by(step).chain([last]).filter_map(|index| path.get(index).copied()).collect()
     }
 
     /// Returns false if a part of the tool stays outside a known body.
@@ -262,10 +281,14 @@ impl HoleExtractor<'_> {
 }
 
 impl Spoilt {
+    fn deeper(self, other: Self) -> Self {
+        if self.at.depth < other.at.depth { other } else { self }
+    }
+
     /// Returns the deeper of two.
     fn worse(one: Option<Self>, other: Option<Self>) -> Option<Self> {
         match (one, other) {
-            (Some(one), Some(other)) if one.at.depth < other.at.depth => Some(other),
+            (Some(one), Some(other)) => Some(one.deeper(other)),
             (one, other) => one.or(other),
         }
     }
@@ -273,5 +296,6 @@ impl Spoilt {
 
 /// Returns true if a motion is along the tool.
 fn is_along(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>) -> bool {
-    PLUNGE_COSINE * along.norm() <= along.dot(axis).abs()
+    let height = along.dot(axis);
+    PLUNGE_COSINE * along.norm() <= height.abs() && (along - axis.into_inner() * height).norm() <= MAX_ASIDE
 }

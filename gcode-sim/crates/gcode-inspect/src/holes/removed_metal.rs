@@ -262,6 +262,10 @@ impl Sweep {
             (split(travel[0] - self.from), split(travel[1] - travel[0]), split(self.to - self.from));
         let (low, high) = (part.from - TOUCH_DEPTH, part.to + TOUCH_DEPTH);
         let dd = d.norm_squared();
+        let reach = radius + d.norm() + u.norm();
+        if reach * reach < q.norm_squared() {
+            return None;
+        }
         let on_line = |a: f64, b: f64| {
             let shares = between([0.0, 1.0], a, b, (0.0, 1.0))?;
             let shares = between(shares, from - climb * a, rise - climb * b, (low, high))?;
