@@ -108,8 +108,9 @@ fn check_holes(
     reference: &Reference,
 ) -> Result<CheckedPackage, CheckError> {
     request.process_limits = reference.process_limits.clone();
-    let simulation = simulate(&request, &mut Programs(package), reference.metal(request.machine.stock.as_ref()))
-        .map_err(|e| broken_package("the main program", &e))?;
+    let simulation =
+        simulate(&request, &mut Programs(package), reference.metal(request.machine.stock.as_ref()))
+            .map_err(|e| broken_package("the main program", &e))?;
     let mut verdict = simulation.verify(reference, Tolerances::of(reference, None), &request.machine);
     simulation.add_assumptions(&mut verdict, &request, reference.body(request.machine.stock.as_ref()), false);
     let top = top::of_verdict(&request.name, &simulation, reference, &verdict, &request.machine);

@@ -70,7 +70,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     unused_machine::warn_unused_machine(&arguments.run.of(&arguments.new), &new_request);
     let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
     let metal = |request: &Request| {
-        reference.as_ref().map(|reference| reference.metal(request.machine.stock.as_ref())).unwrap_or_default()
+        reference
+            .as_ref()
+            .map(|reference| reference.metal(request.machine.stock.as_ref()))
+            .unwrap_or_default()
     };
     for request in [&mut old_request, &mut new_request] {
         request.process_limits =

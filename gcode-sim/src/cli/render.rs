@@ -103,7 +103,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                     let tolerances = Tolerances::of(reference, tolerance);
                     let mut verdict = simulation.verify(reference, tolerances, &request.machine);
                     let is_denied = arguments.denials.denies_assumptions();
-                    simulation.add_assumptions(&mut verdict, &request, reference.body(stock.as_ref()), is_denied);
+                    simulation.add_assumptions(
+                        &mut verdict,
+                        &request,
+                        reference.body(stock.as_ref()),
+                        is_denied,
+                    );
                     let drawn =
                         top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
                     Drawn {

@@ -149,10 +149,16 @@ fn holes(
     };
     let add_assumptions = |simulation: &Simulation, verdict: &mut Verdict, request: &Request| {
         let is_denied = arguments.denials.denies_assumptions();
-        simulation.add_assumptions(verdict, request, reference.body(request.machine.stock.as_ref()), is_denied);
+        simulation.add_assumptions(
+            verdict,
+            request,
+            reference.body(request.machine.stock.as_ref()),
+            is_denied,
+        );
     };
     if let Some(path) = &arguments.page {
-        let traced = page::simulate_traced(request, &mut folders, reference.metal(request.machine.stock.as_ref()))?;
+        let traced =
+            page::simulate_traced(request, &mut folders, reference.metal(request.machine.stock.as_ref()))?;
         let mut verdict = traced.0.simulation.verify(reference, tolerances, &machine);
         add_assumptions(&traced.0.simulation, &mut verdict, request);
         let judged = Some((arguments.reference.as_path(), reference, &verdict));

@@ -41,7 +41,8 @@ pub(crate) fn run(case: &Case) {
         Some(nominal) => {
             let reference = nominal.into_holes().unwrap();
             request.process_limits = reference.process_limits.clone();
-            let simulation = simulate(&request, &mut NoLibrary, reference.metal(machine.stock.as_ref())).unwrap();
+            let simulation =
+                simulate(&request, &mut NoLibrary, reference.metal(machine.stock.as_ref())).unwrap();
             let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
             inspect_holes(&verdict, &simulation.run)
         }

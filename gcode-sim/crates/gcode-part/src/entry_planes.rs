@@ -65,7 +65,8 @@ impl EntryPlanes {
         let collars: Vec<Collar> = holes.iter().map(Collar::of).collect();
         let middle =
             |collar: &Collar| collar.rod.base + collar.rod.axis.into_inner() * (collar.rod.length / 2.0);
-        let reach = |collar: &Collar| libm::hypot(collar.rod.length / 2.0 + collar.floor(), collar.rod.radius);
+        let reach =
+            |collar: &Collar| libm::hypot(collar.rod.length / 2.0 + collar.floor(), collar.rod.radius);
         Self {
             middles: PointTree::new(collars.iter().map(middle)),
             reach: collars.iter().map(reach).fold(0.0, f64::max),

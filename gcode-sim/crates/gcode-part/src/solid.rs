@@ -121,7 +121,8 @@ pub(super) fn shares_in_ball(from: Vector3<f64>, along: Vector3<f64>, radius: f6
         return (c <= 0.0).then_some([0.0, 1.0]);
     }
     let root = b * b - a * c;
-    let (first, last) = (((-b - root.max(0.0).sqrt()) / a).max(0.0), ((-b + root.max(0.0).sqrt()) / a).min(1.0));
+    let (first, last) =
+        (((-b - root.max(0.0).sqrt()) / a).max(0.0), ((-b + root.max(0.0).sqrt()) / a).min(1.0));
     (0.0 <= root && first < last).then_some([first, last])
 }
 

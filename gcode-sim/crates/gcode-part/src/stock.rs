@@ -138,7 +138,9 @@ impl Stock {
     pub fn body(&self, own: Option<Surface>) -> Option<Surface> {
         match *self {
             Self::Box { min, max, .. } => Some(block(min, max)),
-            Self::Cylinder { axis, diameter, from, to, .. } => Some(rod(axis, [0.0; 3], diameter, (from, to))),
+            Self::Cylinder { axis, diameter, from, to, .. } => {
+                Some(rod(axis, [0.0; 3], diameter, (from, to)))
+            }
             Self::Surface { .. } => own,
         }
     }
@@ -228,13 +230,8 @@ mod tests {
     fn a_body_without_volume_is_refused() {
         let flat = Stock::Box { min: [0.0, 0.0, 0.0], max: [5.0, 5.0, 0.0], pocket: Vec::new() };
         assert_eq!(flat.fault().unwrap(), "max is 0 in z, and min is 0: max above min");
-        let upside = Pocket::Cylinder {
-            axis: StockAxis::Z,
-            centre: [0.0; 3],
-            diameter: 5.0,
-            from: 0.0,
-            to: -9.0,
-        };
+        let upside =
+            Pocket::Cylinder { axis: StockAxis::Z, centre: [0.0; 3], diameter: 5.0, from: 0.0, to: -9.0 };
         let stock = Stock::Surface { pocket: vec![upside] };
         assert_eq!(stock.fault().unwrap(), "pocket 1: to is -9, and from is 0: to above from");
         for text in [

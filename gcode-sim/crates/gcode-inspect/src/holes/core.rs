@@ -33,8 +33,12 @@ impl HoleExtractor<'_> {
                 if passes.iter().all(|pass| pass.cut.milled.is_none()) {
                     continue;
                 }
-                let is_covered = |one: &ToolPass<'_>| passes.iter().any(|other| is_wider_and_deeper(other, one));
-                passes.iter().map(|pass| if is_covered(pass) { None } else { self.core_of(pass, &passes) }).collect()
+                let is_covered =
+                    |one: &ToolPass<'_>| passes.iter().any(|other| is_wider_and_deeper(other, one));
+                passes
+                    .iter()
+                    .map(|pass| if is_covered(pass) { None } else { self.core_of(pass, &passes) })
+                    .collect()
             };
             let (finishing, mut cores) = (hole.finishing_index.min(hole.earlier_passes.len()), cores);
             set_core(&mut hole.finishing_cut, cores.remove(finishing));

@@ -82,7 +82,8 @@ impl HoleExtractor<'_> {
             }
             let is_plunge = is_along(&axis, &(to - from));
             // The direction of the tool is unknown, and the body is one that is drilled all round.
-            let is_unclear = self.pose.axis.is_none() && self.surface.is_some_and(|body| !body.has_flat_faces());
+            let is_unclear =
+                self.pose.axis.is_none() && self.surface.is_some_and(|body| !body.has_flat_faces());
             let spoilt = match is_judged && !is_unclear {
                 true => self.spoilt(&[from, to], &axis),
                 false => None,
@@ -107,8 +108,9 @@ impl HoleExtractor<'_> {
         // Coarse chords come first: most paths are far away.
         let reach = self.tool_radius().unwrap_or(0.0) + COARSE_TOLERANCE;
         let is_near = self.chords(travel, COARSE_TOLERANCE).windows(2).any(|chord| {
-            let axis = self.axis_in_motion(&chord[0], &chord[1]);
-            axis.is_some_and(|axis| self.metal.is_touched(&chord[0], &chord[1], &axis, reach))
+            let Some(axis) = self.axis_in_motion(&chord[0], &chord[1]) else { return false };
+            let [from, to] = [chord[0], chord[1]].map(|p| p - axis.into_inner() * COARSE_TOLERANCE);
+            self.metal.is_touched(&from, &to, &axis, reach)
         });
         if is_near {
             let path = self.chords(travel, CHORD_TOLERANCE);
@@ -173,7 +175,10 @@ impl HoleExtractor<'_> {
         }
         let is_plunge = is_along(axis, &(travel[1] - travel[0]));
         // Round the holes of a list the strokes along them are judged as holes.
-        if is_plunge && (self.surface.is_none() || self.metal.is_allowed(travel, axis, self.tool_radius().unwrap_or(0.0))) {
+        if is_plunge
+            && (self.surface.is_none()
+                || self.metal.is_allowed(travel, axis, self.tool_radius().unwrap_or(0.0)))
+        {
             return None;
         }
         match self.metal.spoilt(travel, FeedPart::Tip) {

@@ -95,8 +95,10 @@ impl HoleExtractor<'_> {
             return;
         };
         let is_judged = self.metal.holes.is_some() && line.tool_axis.is_some();
-        // Where the tool goes next is judged, unless that is unknown.
-        if is_judged && self.positions.is_known(self.machine) && !self.is_spoilt_by_plunge(line) {
+        // Where the tool goes next is judged, unless that is unknown, or it is changed in the hole.
+        let is_followed =
+            self.positions.is_known(self.machine) && TOUCH_DEPTH < (self.pose.tip - line.bottom()).norm();
+        if is_judged && is_followed && !self.is_spoilt_by_plunge(line) {
             return;
         }
         let findings = if is_judged { &mut self.findings } else { &mut self.engagement.errors };

@@ -66,7 +66,10 @@ impl KnownMetal {
     pub(super) fn new(metal: Metal) -> Self {
         let bounds = match (&metal.body, &metal.entries) {
             (Some(body), _) => body.bounds(),
-            (None, _) => [Point3::from(Vector3::repeat(f64::NEG_INFINITY)), Point3::from(Vector3::repeat(f64::INFINITY))],
+            (None, _) => [
+                Point3::from(Vector3::repeat(f64::NEG_INFINITY)),
+                Point3::from(Vector3::repeat(f64::INFINITY)),
+            ],
         };
         let height = metal.entries.as_ref().filter(|_| metal.body.is_none()).map(|holes| 2.0 * holes.reach());
         Self {
@@ -106,7 +109,8 @@ impl KnownMetal {
         radius: f64,
     ) -> bool {
         if let Some(body) = &self.body {
-            let rod = Rod { base: *from, axis: *axis, length: self.removed.height_of_metal(from, axis), radius };
+            let rod =
+                Rod { base: *from, axis: *axis, length: self.removed.height_of_metal(from, axis), radius };
             return body.touches(&rod, &(to - from));
         }
         let Some(holes) = &self.holes else { return false };
@@ -126,7 +130,9 @@ impl KnownMetal {
                 }
             }
             (None, Some(holes)) => holes.near(&from.inf(to), &from.sup(to), &mut |hole| {
-                if let Some(piece) = holes.collar(hole).piece(from, to, TOUCH_DEPTH).filter(|_| is_counted(hole)) {
+                if let Some(piece) =
+                    holes.collar(hole).piece(from, to, TOUCH_DEPTH).filter(|_| is_counted(hole))
+                {
                     rest.push(piece);
                 }
             }),
@@ -194,13 +200,9 @@ impl KnownMetal {
 
     /// Returns true if a cylinder about the tool's axis stays in one nominal hole, or in one pocket, while its lower end
     /// moves between two points.
-    pub(super) fn is_allowed(
-        &self,
-        tips: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-        radius: f64,
-    ) -> bool {
-        let height = self.removed.height_of_metal(&tips[0], axis).max(self.removed.height_of_metal(&tips[1], axis));
+    pub(super) fn is_allowed(&self, tips: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>, radius: f64) -> bool {
+        let height =
+            self.removed.height_of_metal(&tips[0], axis).max(self.removed.height_of_metal(&tips[1], axis));
         let is_in_box = self.pockets.iter().any(|pocket| {
             let Surface::Block { min, max } = pocket else { return false };
             let across = axis.map(|part| radius * (1.0 - part * part).max(0.0).sqrt() - TOUCH_DEPTH);
@@ -216,7 +218,8 @@ impl KnownMetal {
             let mut is_hole = |collar: &Collar| {
                 let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
                 let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
-                let room = if collar.has_diameter { collar.hole_radius + SIDE_SLACK - radius } else { radius };
+                let room =
+                    if collar.has_diameter { collar.hole_radius + SIDE_SLACK - radius } else { radius };
                 is_within |= collar.is_parallel(axis)
                     && aside <= room
                     && (collar.is_through || deepest <= collar.rod.length + DEPTH_SLACK);
@@ -238,7 +241,10 @@ impl KnownMetal {
     pub(super) fn heights(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<[f64; 2]> {
         let [low, high] = self.body?.bounds();
         let along = |corner: &Vector3<f64>, other: &Vector3<f64>| {
-            (0..3).filter(|i| axis[*i] != 0.0).map(|i| (axis[i] * corner[i]).min(axis[i] * other[i])).sum::<f64>()
+            (0..3)
+                .filter(|i| axis[*i] != 0.0)
+                .map(|i| (axis[i] * corner[i]).min(axis[i] * other[i]))
+                .sum::<f64>()
         };
         let (low, high) = (low - tip, high - tip);
         let heights = [along(&low, &high), -along(&-low, &-high)];
@@ -246,7 +252,12 @@ impl KnownMetal {
     }
 
     /// Returns true if all that a cylinder of this radius removes along its axis lies in one pocket.
-    pub(super) fn is_in_pocket(&self, tips: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>, radius: f64) -> bool {
+    pub(super) fn is_in_pocket(
+        &self,
+        tips: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+    ) -> bool {
         let rim = super::tool_lines::rim(axis, &(tips[1] - tips[0]), radius);
         let lines = rim.iter().map(|offset| tips.map(|tip| tip + offset));
         let mut lines = lines.chain([*tips]);
@@ -265,7 +276,8 @@ impl KnownMetal {
     pub(super) fn around(&self, [from, to]: &[Point3<f64>; 2], margin: f64, each: &mut impl FnMut(&Collar)) {
         let Some(holes) = self.holes.as_deref() else { return };
         let margin = Vector3::repeat(margin);
-        holes.around(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |hole| each(holes.collar(hole)));
+        holes
+            .around(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |hole| each(holes.collar(hole)));
     }
 
     /// Returns the deepest point of what is left of a travel.

@@ -153,8 +153,14 @@ impl HoleExtractor<'_> {
             }
         }
         let surface = self.surface;
-        let is_clear = surface.is_some_and(|body| path.is_clear_by_planes(&self.tool_body, |p| body.nearest(p)));
-        if is_clear || surface.is_none() && !is_straight {
+        let is_clear = match surface {
+            Some(body) => path.is_clear_by_planes(&self.tool_body, |p| body.nearest(p)),
+            None => {
+                let radius = self.tool_body.iter().map(|part| part.radius).fold(0.0, f64::max);
+                !is_straight || !self.metal.is_touched(&begin, &pose.tip, &axis, radius)
+            }
+        };
+        if is_clear {
             return;
         }
         let travels = match path.len() < 2 {
@@ -164,7 +170,8 @@ impl HoleExtractor<'_> {
         let mut budget = std::mem::take(&mut self.search_budget);
         let mut found: Option<PointInMetal> = None;
         for part in &self.tool_body {
-            let is_in_metal = || self.metal.cuts(&begin, &pose.tip).is_some_and(|_| self.is_below_surface(&pose.tip));
+            let is_in_metal =
+                || self.metal.cuts(&begin, &pose.tip).is_some_and(|_| self.is_below_surface(&pose.tip));
             // A boring bar with the spindle stopped is shifted off the wall.
             if part.is_cutter && self.tool_radius().is_none() && is_in_metal() {
                 continue;

@@ -104,7 +104,13 @@ impl RemovedMetal {
     }
 
     /// Adds a straight feed.
-    pub(super) fn add(&mut self, from: Point3<f64>, to: Point3<f64>, axis: Unit<Vector3<f64>>, profile: &Profile) {
+    pub(super) fn add(
+        &mut self,
+        from: Point3<f64>,
+        to: Point3<f64>,
+        axis: Unit<Vector3<f64>>,
+        profile: &Profile,
+    ) {
         if self.lengthen_last(&from, &to, &axis, profile) {
             return;
         }
@@ -202,7 +208,8 @@ impl RemovedMetal {
         let (from, to) = (travel[0] + along * first, travel[0] + along * last);
         for (level, Level { cells }) in &self.levels {
             let half = Vector3::repeat(size_of(*level) / 2.0);
-            let (low, high) = (cell_of(&(from.inf(&to) - half), *level), cell_of(&(from.sup(&to) + half), *level));
+            let (low, high) =
+                (cell_of(&(from.inf(&to) - half), *level), cell_of(&(from.sup(&to) + half), *level));
             let mut in_cell = |last: u32| {
                 let mut next = last;
                 while let Some(sweep) = self.sweeps.get(next as usize) {

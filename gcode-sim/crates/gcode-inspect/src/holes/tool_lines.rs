@@ -49,12 +49,14 @@ pub(super) fn lines(
     let out = axis.into_inner();
     let top = metal.top_of(part, from, axis).max(metal.top_of(part, to, axis));
     let mut offsets = rim(axis, &along, part.radius);
-    let up = |tip: &Point3<f64>, offset: &Vector3<f64>| [tip + offset + out * part.from, tip + offset + out * top];
+    let up =
+        |tip: &Point3<f64>, offset: &Vector3<f64>| [tip + offset + out * part.from, tip + offset + out * top];
     let mut lines = Vec::new();
     if part.from < top {
         lines.extend(offsets.iter().flat_map(|offset| [up(from, offset), up(to, offset)]));
     }
-    let at_height = |height: f64| move |offset: &Vector3<f64>| [from + offset + out * height, to + offset + out * height];
+    let at_height =
+        |height: f64| move |offset: &Vector3<f64>| [from + offset + out * height, to + offset + out * height];
     let is_along_itself = (along - out * along.dot(&out)).norm() < TOUCH_DEPTH;
     if is_along_itself {
         let count = ((part.radius / RING_WIDTH).ceil() as u32).clamp(1, MAX_RINGS);

@@ -65,7 +65,9 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
     }
     for tool in &extraction.unsized_mills {
         let tool = tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
-        all.push(format!("{UNSIZED}: the machine file has no diameter of {tool}; rapids near its feeds pass"));
+        all.push(format!(
+            "{UNSIZED}: the machine file has no diameter of {tool}; rapids near its feeds pass"
+        ));
     }
     if extraction.is_removal_cut_short {
         all.push(format!("{CUT_SHORT}: rapids where they have removed the metal are reported"));
