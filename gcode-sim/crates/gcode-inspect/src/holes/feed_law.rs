@@ -6,7 +6,7 @@ use super::line::CuttingLine;
 use super::metal::{FeedPart, PointInMetal};
 use super::rapids::{PLUNGE_COSINE, format_point};
 use super::removed_metal::Profile;
-use super::tool_lines::lines;
+use super::tool_lines::{lines, rim};
 use crate::findings::FEED_BESIDE_HOLE;
 use crate::machine::{AxisMotion, ToolCylinder, ToolKind};
 use gcode_lang::diag::Diagnostic;
@@ -250,7 +250,10 @@ impl HoleExtractor<'_> {
     pub(super) fn is_pocketing(&self, line: &CuttingLine) -> bool {
         let axis = line.tool_axis.unwrap_or(line.out);
         let radius = self.machine.diameter_of(line.cutting_state.tool).unwrap_or(0.0) / 2.0;
-        self.metal.is_in_pocket(&[line.start, line.bottom()], &axis, radius)
+        let travel = [line.start, line.bottom()];
+        let offsets = rim(&axis, &(travel[1] - travel[0]), radius);
+        let mut lines = offsets.iter().map(|offset| travel.map(|tip| tip + offset)).chain([travel]);
+        lines.all(|line| self.metal.is_in_pocket(&line))
     }
 
     /// Reports what the current line removes of the metal that has to stay.

@@ -251,25 +251,15 @@ impl KnownMetal {
         heights.iter().all(|height| height.is_finite()).then_some(heights)
     }
 
-    /// Returns true if all that a cylinder of this radius removes along its axis lies in one pocket.
-    pub(super) fn is_in_pocket(
-        &self,
-        tips: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-        radius: f64,
-    ) -> bool {
-        let rim = super::tool_lines::rim(axis, &(tips[1] - tips[0]), radius);
-        let lines = rim.iter().map(|offset| tips.map(|tip| tip + offset));
-        let mut lines = lines.chain([*tips]);
-        lines.all(|line| {
-            let mut rest = self.solid(&line, |_| true);
-            self.pockets.iter().any(|pocket| {
-                if let Some(piece) = pocket.piece(&line[0], &line[1], -TOUCH_DEPTH) {
-                    rest.take_away(piece);
-                }
-                rest.is_empty()
-            })
-        }) && !self.pockets.is_empty()
+    /// Returns true if all metal on a line is in one pocket.
+    pub(super) fn is_in_pocket(&self, line: &[Point3<f64>; 2]) -> bool {
+        self.pockets.iter().any(|pocket| {
+            let mut rest = self.solid(line, |_| true);
+            if let Some(piece) = pocket.piece(&line[0], &line[1], -TOUCH_DEPTH) {
+                rest.take_away(piece);
+            }
+            rest.is_empty()
+        })
     }
 
     /// Calls `each` with the nominal holes whose metal may be nearer to a travel than `margin`.

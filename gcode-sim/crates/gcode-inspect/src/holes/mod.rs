@@ -12,6 +12,7 @@ mod group;
 mod length_mismatch;
 mod line;
 mod line_findings;
+mod line_motion;
 mod machine_requests;
 mod metal;
 mod milled;
@@ -342,96 +343,6 @@ impl<'m> HoleExtractor<'m> {
             self.check_upright(&from);
         }
         self.update_start();
-    }
-
-    /// Follows a straight motion from `from` along the current line. Returns the point from which the tool moved freely;
-    /// `None` if it stays on the line.
-    fn update_line(&mut self, event: &Event<'_>, kind: MotionKind, from: Point3<f64>) -> Option<Point3<f64>> {
-        let Some(mut line) = self.current_line.take() else { return Some(from) };
-        let tip = self.pose.tip;
-        if kind == MotionKind::Rapid && line.is_overrun(&tip) {
-            if line.is_bar_shifted() {
-                self.report_back_boring(&line);
-            } else {
-                self.report_overrun(event, &line, &tip);
-            }
-            return Some(from);
-        }
-        let is_spindle_stopped =
-            kind == MotionKind::Rapid && self.cutting_state.spindle_direction == SpindleDirection::Off;
-        if is_spindle_stopped && line.is_inward() && line.try_bar_shift(&tip) {
-            self.current_line = Some(line);
-            return None;
-        }
-        match line.exit_after(&from, &tip) {
-            ToolExit::OnLine => {
-                // Beyond the start of the feed the tool moves freely.
-                let (before, after) = (line.depth_of(&from), line.depth_of(&tip));
-                let is_beyond = kind == MotionKind::Rapid && after < 0.0 && after < before;
-                let free_from = is_beyond.then_some(if before > 0.0 { line.start } else { from });
-                let again = match kind {
-                    MotionKind::Feed => {
-                        if line.depth_of(&from) < line.depth_of(&tip) {
-                            self.record_line_feed(event, &mut line);
-                        }
-                        line.feed_to(&tip, event.backtrace(), &self.axis_position)
-                    }
-                    MotionKind::Rapid | MotionKind::Probe => {
-                        line.is_cycle |= event.block == line.first_block;
-                        let (again, uncut) = line.rapid_to(&tip);
-                        if uncut {
-                            self.report_rapid_beyond_cut(event, &line, &from);
-                        }
-                        again
-                    }
-                };
-                if let Some(pass) = again {
-                    self.strokes.push(pass, self.cut_kind(&line, false));
-                }
-                self.current_line = Some(line);
-                free_from
-            }
-            exit @ (ToolExit::AlongLine | ToolExit::Sideways { .. }) => {
-                let is_along = exit == ToolExit::AlongLine;
-                if is_spindle_stopped && !line.is_inward() && !is_along {
-                    self.report_back_boring(&line);
-                }
-                let free_from = if is_along { line.start_level_crossing(&from, &tip) } else { from };
-                self.report_line(line, exit, kind == MotionKind::Feed);
-                Some(free_from)
-            }
-        }
-    }
-
-    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>, last_motion: Option<(MotionKind, Span)>) {
-        let rounding = self.machine.increment.size() / 2.0;
-        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
-        self.current_line = line.map(|line| {
-            let mut line = Box::new(line);
-            line.tool_axis = self.pose.axis;
-            line.upright = self.tool_direction();
-            // A block of a cycle positions, feeds and retracts.
-            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
-            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
-            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-            line.clamp_state = self.clamp_state;
-            line.unknown_axes = self.positions.unknown_axes();
-            line.length_excess = self.length_excess();
-            line.surface_depth =
-                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
-            self.record_line_feed(event, &mut line);
-            line
-        });
-    }
-
-    /// Records the rate of a feed inwards if it cuts; the approach may be faster.
-    fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
-        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH_DEPTH));
-        if let EventKind::Feed { rate, .. } = event.kind
-            && cuts
-        {
-            line.record_feed(*rate);
-        }
     }
 
     /// Applies a known end of a motion.

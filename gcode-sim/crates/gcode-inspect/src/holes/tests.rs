@@ -127,9 +127,10 @@ rapid-into-part
 rapids round the part
 rapid Y150; rapid X150; rapid B90
 
-a rapid ends below the surface before the feed; another leads out where the tool has been
+a rapid ends below the surface before the feed, and another leads out there
 rapid Y150; rapid Y99.5; feed Y85; rapid Y150
 0 99.5 0, 0 1 0, 14.5
+rapid-into-part
 rapid-into-part
 
 a retract along the hole is no rapid through the part
