@@ -113,6 +113,9 @@ fn print_verdict(
     table: impl Fn() -> String,
     picture: impl Fn() -> Picture,
 ) -> Result<ExitStatus, UsageError> {
+    if let Some(path) = &arguments.picture {
+        render::write(&picture(), "1600x1200", path)?;
+    }
     let sources = run.control.memory().sources();
     match arguments.format {
         FindingFormat::Json => output::json(verdict)?,
@@ -124,7 +127,6 @@ fn print_verdict(
         }
     }
     if let Some(path) = &arguments.picture {
-        render::write(&picture(), "1600x1200", path)?;
         output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
     Ok(super::concluded(conclusion, findings, run))

@@ -67,6 +67,7 @@ gcode_lang::finding_kinds! {
     SPINDLE_REVERSED = "spindle-reversed", Warning, "a hole is drilled with M04";
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
     START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";
+    STOCK_MISMATCH = "stock-mismatch", Error, "the stock does not reach the entry of a hole";
     TAP_DRILL = "tap-drill", Error, "a thread is as deep as its drilled hole, or deeper";
     TAP_PITCH = "tap-pitch", Error, "feed and speed do not give the pitch of the thread";
     TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends with the tool in the metal";

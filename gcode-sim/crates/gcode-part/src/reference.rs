@@ -34,8 +34,11 @@ impl Reference {
     /// Returns the reference of a hole list. Holes without an id get `#` and their number.
     ///
     /// # Errors
-    /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
+    /// A list without holes, values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
+        if list.holes.is_empty() {
+            return Err(FileError { line: None, message: "holes: none; a reference needs one at least".into() });
+        }
         if let Some(fault) = list.stock.and_then(|stock| stock.fault()) {
             return Err(FileError { line: None, message: format!("stock: {fault}") });
         }

@@ -201,7 +201,7 @@ impl Machine {
         let carried = self.slides.frame(at) * Point3::origin();
         match self.head.direction(at, setup) {
             Some(axis) => {
-                let reach = self.head.pivot + self.tool_length(setup);
+                let reach = self.head.pivot + self.tip_distance(setup, &axis);
                 Pose { tip: carried - axis.into_inner() * reach, axis: Some(axis) }
             }
             None => Pose { tip: carried - self.slides.displacement(&setup.offset), axis: None },
@@ -217,6 +217,17 @@ impl Machine {
     pub(crate) fn tool_length(&self, setup: &Setup) -> f64 {
         let known = self.length_of(setup.tool);
         known.unwrap_or_else(|| self.slides.displacement(&setup.offset).norm())
+    }
+
+    /// Returns the distance from the gauge line to the tip against `axis`, the tool's direction out of the part, mm: the
+    /// length of the tool, or else the length offset. A touched-off offset counts from machine zero and is negative.
+    fn tip_distance(&self, setup: &Setup, axis: &Unit<Vector3<f64>>) -> f64 {
+        let offset = self.slides.displacement(&setup.offset);
+        let is_touched_off = offset.dot(axis) < -0.5 * offset.norm();
+        match self.length_of(setup.tool) {
+            None if is_touched_off => -offset.norm(),
+            _ => self.tool_length(setup),
+        }
     }
 
     /// Returns the tool with this number; `None` if the tool table lacks it.

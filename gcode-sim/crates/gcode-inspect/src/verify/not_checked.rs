@@ -81,8 +81,11 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
         match tool {
             None if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
             None => format!("the diameter of {holes} made before the first tool change"),
-            Some(tool) => {
+            Some(tool) if machine.find_tool(tool).is_none() => {
                 format!("the diameter of {holes} made by T{tool}, which is not in the machine file")
+            }
+            Some(tool) => {
+                format!("the diameter of {holes} made by T{tool}: the machine file has no diameter of it")
             }
         }
     };

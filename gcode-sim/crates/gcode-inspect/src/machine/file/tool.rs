@@ -60,15 +60,15 @@ impl FileTool {
             reader,
             [("holder_diameter", holder_diameter.is_some()), ("holder_length", holder_length.is_some())],
         )?;
-        if let (Some(holder), Some(length)) = (holder_length, length)
-            && length.get() < holder.get()
-        {
-            let message = format!(
-                "key 'tool.holder_length' is {}: at most the length of the tool, {} mm",
-                holder.get(),
-                length.get()
-            );
-            return Err(reader.error(holder, message));
+        for (name, part) in [("flute_length", flute_length), ("holder_length", holder_length)] {
+            if let (Some(part), Some(length)) = (part, length)
+                && length.get() < part.get()
+            {
+                let (part_length, length) = (part.get(), length.get());
+                let message =
+                    format!("key 'tool.{name}' is {part_length}: at most the length of the tool, {length} mm");
+                return Err(reader.error(part, message));
+            }
         }
         Ok(Tool {
             number: self.number.get() as u32,

@@ -24,6 +24,7 @@ mod row_seam;
 mod row_short;
 mod signs;
 mod start_unknown;
+mod stock;
 mod stopped;
 mod threads;
 mod through;
@@ -49,6 +50,7 @@ type Check = fn(&HoleInspection<'_>, &mut HoleFindings);
 /// The checks in order, each with the codes of its findings; each sees the findings of those above it.
 pub(super) const ALL: &[Check] = &[
     start_unknown::check, // start-unknown
+    stock::check,         // stock-mismatch
     mirrored::check,      // rotary-sign, mirror-image
     row_group::check,     // row-group
     row_angle::check,     // row-angle
