@@ -236,6 +236,9 @@ impl Planner<'_> {
                         .push((EventKind::Spindle { direction: SpindleDirection::Off, speed }, 0.0));
                 }
                 MCodeEffect::ToolChange => {
+                    if self.data.settings.undocumented.tool_change_homes_z {
+                        self.plan_z_home(plan);
+                    }
                     let stops_spindle = self.data.settings.undocumented.tool_change_stops_spindle;
                     if stops_spindle && plan.state.spindle != SpindleDirection::Off {
                         self.set_spindle(plan, SpindleDirection::Off, speed);
