@@ -19,6 +19,7 @@ mod rapid_paths;
 mod rapids;
 pub(crate) mod spindle;
 mod strokes;
+mod swallowed;
 #[cfg(test)]
 mod tests;
 pub(crate) mod unknown_axes;
@@ -212,7 +213,7 @@ impl<'m> HoleExtractor<'m> {
         self.end_line(false);
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
-        let mut holes = group::group_holes(&passes, self.machine, self.process_limits.hole_spacing);
+        let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);

@@ -133,16 +133,18 @@ fn report_common_shifts(
 fn report_repeated_set(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Option<Diagnostic> {
     let repeated = |extra: &usize| Some((comparison.nominal_on_line_of(*extra)?, *extra));
     let (nominal, actual): (BTreeSet<usize>, Vec<usize>) =
-        comparison.extra.iter().filter_map(repeated).unzip();
+        comparison.extra.iter().chain(&comparison.repeated).filter_map(repeated).unzip();
     if nominal.len() < MIN_GROUP_SIZE {
         return None;
     }
-    let first = &comparison.actual[actual[0]];
+    let first = &comparison.actual[*actual.iter().min()?];
     let nominal = nominal.into_iter().collect();
+    let is_in_place = actual.iter().all(|index| comparison.repeated.binary_search(index).is_ok());
     let (holes, folded) = fold_group(comparison, findings, &[&HOLE_TWICE], nominal, actual);
     let finding = Diagnostic::new(&HOLE_TWICE, format!("{holes}: drilled a second time")).help(
         "remove the second call, or the second iteration of the loop: the same tool drills these holes twice",
     );
+    let finding = if is_in_place { finding.with_severity(Severity::Warning) } else { finding };
     Some(finish_group_finding(finding, folded, &first.backtrace))
 }
 
