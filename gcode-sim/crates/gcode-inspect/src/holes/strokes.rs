@@ -141,10 +141,14 @@ impl Strokes {
         self.nominal.nearest([start, bottom], &pass.axis, MAX_AXIS_DISTANCE).is_some()
     }
 
-    /// Adds a pass.
-    pub(super) fn push(&mut self, pass: DrillPass, kind: CutKind) {
-        let order = self.next;
+    /// Returns the place of a pass that begins now.
+    pub(super) fn begin_pass(&mut self) -> u32 {
         self.next += 1;
+        self.next
+    }
+
+    /// Adds a pass that began at `order`.
+    pub(super) fn push(&mut self, order: u32, pass: DrillPass, kind: CutKind) {
         match kind {
             CutKind::Drilled => self.push_pass(order, pass),
             CutKind::Oblique => self.push_milled(order, pass),

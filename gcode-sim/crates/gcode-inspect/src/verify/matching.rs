@@ -15,6 +15,9 @@ const MAX_LINE_DISTANCE: f64 = 5.0;
 /// Least distance within which holes are matched first, mm.
 const FIRST_DISTANCE: f64 = 0.01;
 
+/// Largest difference of the depths of two passes that are one pass and its repetition, mm.
+const MAX_DEPTH_DIFFERENCE: f64 = 0.01;
+
 /// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
 const TILTED_HOLE_COSINE: f64 = 0.866_025_403_784_438_6;
 
@@ -46,9 +49,9 @@ pub struct Comparison<'a> {
     pub pairs: Vec<HolePair>,
     /// Nominal holes without a drilled one.
     pub missing: Vec<usize>,
-    /// Drilled holes without a nominal one, and repeated ones that cut outside their hole.
+    /// Drilled holes without a nominal one, and repeated ones that are no spring passes.
     pub extra: Vec<usize>,
-    /// Drilled holes that a tool drills again in their place.
+    /// Spring passes in drilled holes.
     pub repeated: Vec<usize>,
     /// The nominal hole matched with a line, by the first drilled hole of the line.
     nominal_by_line: Vec<Option<usize>>,
@@ -128,13 +131,13 @@ impl<'a> Comparison<'a> {
             }
         }
         let missing = (0..nominal.len()).filter(|index| pair_of[*index].is_none()).collect();
-        let is_repeated = |index: &usize| {
+        let is_spring_pass = |index: &usize| {
             let hole = &actual[*index];
             let on_line: Option<usize> = nominal_by_line[hole.first_on_line];
-            on_line.is_some_and(|index| is_repeated_in_place(&nominal[index], hole, tolerances))
+            on_line.is_some_and(|index| is_spring_pass(hole, &nominal[index], actual, tolerances))
         };
         let left_over = (0..actual.len()).filter(|index| !is_taken[*index]);
-        let (repeated, extra) = left_over.partition(is_repeated);
+        let (repeated, extra) = left_over.partition(is_spring_pass);
         Self { nominal, actual, tolerances, pattern, pairs, missing, extra, repeated, nominal_by_line }
     }
 
@@ -152,7 +155,9 @@ impl<'a> Comparison<'a> {
                 (entry - end).cross(&actual[*index].axis).norm() <= MAX_LINE_DISTANCE
             };
             // A feed across the tool has no depth: its ends count.
-            let is_in_air = actual[*index].passes().all(|pass| is_in_air(&pass, surface, machine));
+            let is_known = actual[*index].unknown_axes.is_none();
+            let is_in_air =
+                is_known && actual[*index].passes().all(|pass| is_in_air(&pass, surface, machine));
             !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
         });
     }
@@ -192,12 +197,22 @@ impl<'a> Comparison<'a> {
     }
 }
 
-/// Returns true if a tool goes a second time along a hole that it has drilled as deep before, and cuts nothing. A tap spoils
-/// the thread.
-fn is_repeated_in_place(nominal: &Hole, again: &DrilledHole, tolerances: Tolerances) -> bool {
-    let deviation = Deviation::new(nominal, &again.bottom(), &again.axis);
-    !again.finishing_cut.is_tapping
-        && deviation.is_some_and(|deviation| !exceeds(deviation.zone_diameter(), tolerances.position))
+/// Returns true if a tool goes a second time to the same depth of a hole, within the tolerance of its position: a spring pass,
+/// which cuts nothing. A tap spoils the thread.
+fn is_spring_pass(
+    again: &DrilledHole,
+    nominal: &Hole,
+    actual: &[DrilledHole],
+    tolerances: Tolerances,
+) -> bool {
+    let is_in_place = Deviation::new(nominal, &again.bottom(), &again.axis)
+        .is_some_and(|deviation| !exceeds(deviation.zone_diameter(), tolerances.position));
+    let is_same = |pass: &ToolPass<'_>| {
+        let deeper = (pass.cut.bottom - again.bottom()).dot(&again.axis);
+        pass.tool == again.tool && !pass.cut.is_tapping && deeper.abs() <= MAX_DEPTH_DIFFERENCE
+    };
+    let mut earlier = actual.get(again.first_on_line).into_iter().flat_map(DrilledHole::passes);
+    is_in_place && earlier.any(|pass| is_same(&pass))
 }
 
 /// Returns true if a pass cuts nothing of the body. A circle that leaves a core goes round the metal: its tip alone counts.

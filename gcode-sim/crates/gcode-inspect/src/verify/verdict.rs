@@ -54,7 +54,7 @@ pub struct Verdict {
     pub not_checked: Vec<String>,
     /// Values that the run read and nothing in the program set, and the holes that each can touch.
     pub assumptions: Vec<Assumption>,
-    /// Indices of drilled holes that a tool drills again in their place, with the ids of the nominal ones.
+    /// Indices of the spring passes among the drilled holes, with the ids of their nominal holes.
     #[serde(skip)]
     pub repeated: Vec<(usize, String)>,
     /// The findings with their locations, for the printed report.
