@@ -220,8 +220,10 @@ impl ArcRun {
         for (before, arc) in &self.arcs {
             let from = ((begin - before) / arc.sweep.0.abs()).clamp(0.0, 1.0);
             // The middle of a chord is nearest to the axis.
-            let least = if arc.is_chord { 2.0 } else { 1.0 };
-            let steps = (arc.sweep.0.abs() * (1.0 - from) / MAX_SAMPLE).ceil().max(least) as u32;
+            // Equal chords have as many samples each, besides noise.
+            let steps = arc.sweep.0.abs() * (1.0 - from) / MAX_SAMPLE - 1e-6;
+            let steps = steps.ceil().max(1.0) as u32;
+            let steps = if arc.is_chord { steps.next_multiple_of(2) } else { steps };
             let at = |step: u32| from + (1.0 - from) * f64::from(step) / f64::from(steps);
             samples.extend((0..=steps).map(|step| arc.point(at(step))));
         }

@@ -131,3 +131,65 @@ fn fit(points: &[Point3<f64>], out: &Unit<Vector3<f64>>) -> Option<(Point3<f64>,
     let radius = (centre.norm_squared() + squares / count).sqrt();
     Some((mean + u.into_inner() * centre.x + v * centre.y, radius))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the circle of a path through points on a circle of 7 about (40, 30), with their angles in degrees.
+    fn ring(angles: impl IntoIterator<Item = f64>, round: f64, further: &[Point3<f64>]) -> Option<Ring> {
+        let round = |value: f64| if round > 0.0 { (value / round).round() * round } else { value };
+        let point = |angle: f64| {
+            Point3::new(round(40.0 + 7.0 * Deg(angle).cos()), round(30.0 + 7.0 * Deg(angle).sin()), -5.0)
+        };
+        let points: Vec<_> = angles.into_iter().map(point).chain(further.iter().copied()).collect();
+        let place =
+            || (Backtrace { block: gcode_lang::source::Span::default(), calls: None }, Position::default());
+        let mut run = ChordRun::new(points[0], points[1], Vector3::z_axis());
+        points[2..].iter().for_each(|to| assert!(run.extend(*to, &Vector3::z_axis(), place)));
+        run.finish()
+    }
+
+    fn closed(count: u32) -> impl Iterator<Item = f64> {
+        (0..=count).map(move |index| 360.0 * f64::from(index) / f64::from(count))
+    }
+
+    /// The middle of a chord of 30° is at 7·cos 15° = 6.761 481.
+    #[test]
+    fn twelve_chords_are_a_circle_and_eleven_are_none() {
+        let twelve = ring(closed(12), 0.0, &[]).unwrap();
+        assert!((twelve.centre - Point3::new(40.0, 30.0, -5.0)).norm() < 1e-9);
+        assert!((twelve.roundness - 0.238_519).abs() < 1e-6, "{}", twelve.roundness);
+        assert!(ring(closed(11), 0.0, &[]).is_none());
+        assert!(ring(closed(36).take(36), 0.0, &[]).is_none(), "one chord is missing");
+        assert!(ring(closed(36).map(|angle| -angle), 0.0, &[]).is_some(), "clockwise");
+    }
+
+    /// A thousand chords of 0.044 mm with corners rounded to 0.001 mm turn by up to 2° the wrong way.
+    #[test]
+    fn short_chords_with_rounded_corners_are_a_circle() {
+        let fine = ring(closed(1000), 0.001, &[]).unwrap();
+        assert!(
+            (fine.radius - 7.0).abs() < 1e-4 && fine.roundness < 0.0015,
+            "{} {}",
+            fine.radius,
+            fine.roundness
+        );
+    }
+
+    /// The last chord leads along the circle's tangent at (47, 30), from there 10 mm on.
+    #[test]
+    fn a_tangent_off_the_circle_is_no_part_of_it() {
+        let led_out = ring(closed(36), 0.0, &[Point3::new(47.0, 40.0, -5.0)]).unwrap();
+        assert!((led_out.roundness - 7.0 * (1.0 - Deg(5.0).cos())).abs() < 1e-9);
+        let ellipse = (0..=36)
+            .map(|index| f64::from(index) * 10.0)
+            .map(|angle| Point3::new(40.0 + 7.2 * Deg(angle).cos(), 30.0 + 7.0 * Deg(angle).sin(), -5.0));
+        let points: Vec<_> = ellipse.collect();
+        let mut run = ChordRun::new(points[0], points[1], Vector3::z_axis());
+        let place =
+            || (Backtrace { block: gcode_lang::source::Span::default(), calls: None }, Position::default());
+        points[2..].iter().for_each(|to| assert!(run.extend(*to, &Vector3::z_axis(), place)));
+        assert!(run.finish().is_none(), "0.1 off a circle of 7.1");
+    }
+}
