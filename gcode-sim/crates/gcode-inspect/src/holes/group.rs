@@ -291,7 +291,7 @@ impl DrillPass {
 /// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. True passes lie aside,
 /// in a wider one of the hole. Heights count along `out`, the axis of the first pass.
 fn push_holes<'p>(
-    passes: impl Iterator<Item = (&'p DrillPass, bool)>,
+    passes: impl ExactSizeIterator<Item = (&'p DrillPass, bool)>,
     out: Unit<Vector3<f64>>,
     machine: &Machine,
     holes: &mut Vec<DrilledHole>,
@@ -301,9 +301,10 @@ fn push_holes<'p>(
     // A mill cuts the same depth with each radius.
     let radius = |pass: &DrillPass| pass.cut.milled.map(|circle| (circle.radius * 1000.0).round() as u64);
     let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
+    let is_single = passes.len() == 1;
     let (mut cutting, mut repeated) = (Vec::new(), Vec::new());
     for (pass, is_aside) in passes {
-        if is_aside {
+        if is_aside || is_single {
             cutting.push(pass);
             continue;
         }

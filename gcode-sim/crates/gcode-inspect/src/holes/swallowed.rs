@@ -9,6 +9,7 @@ use nalgebra::{Point3, Vector3};
 const DRILL_POINT: Deg = Deg(118.0);
 
 /// Cylinder with a conical end that a pass cuts.
+#[derive(Clone, Copy, Debug)]
 struct CutEnd {
     radius: f64,
     /// Height of the cone's edge above its tip per mm of radius; 0 of a flat end.
@@ -49,7 +50,17 @@ pub(super) fn swallowing_passes(
     tree: &PointTree,
     machine: &Machine,
 ) -> Vec<Option<usize>> {
-    let ends: Vec<Option<CutEnd>> = passes.iter().map(|pass| CutEnd::of(pass, machine)).collect();
+    // Most passes are cut by the tool of the one before.
+    let mut last: Option<(Option<u32>, Option<CutEnd>)> = None;
+    let end = |pass: &DrillPass| match last {
+        Some((tool, end)) if tool == pass.tool && pass.cut.milled.is_none() => end,
+        _ => {
+            let end = CutEnd::of(pass, machine);
+            last = pass.cut.milled.is_none().then_some((pass.tool, end));
+            end
+        }
+    };
+    let ends: Vec<Option<CutEnd>> = passes.iter().map(end).collect();
     let narrowest = ends.iter().flatten().map(|end| end.radius).fold(f64::INFINITY, f64::min);
     let mut nearest: Vec<Option<(f64, usize)>> = vec![None; passes.len()];
     for (index, (pass, end)) in passes.iter().zip(&ends).enumerate() {
