@@ -1,4 +1,5 @@
 //! `gcode-sim verify`: verifies a program's holes or flutes against a reference.
+use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -72,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
-            holes(arguments, &mut request, folders, &reference, tolerances)
+            holes(arguments, &mut request, folders, &ManuallyDrop::new(reference), tolerances)
         }
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
@@ -169,5 +170,6 @@ fn holes(
     let simulation = progress::of_run(request, simulate)?;
     let mut verdict = simulation.verify(reference, tolerances, &machine);
     add_assumptions(&simulation, &mut verdict, request);
-    print(&simulation, &verdict)
+    // The process ends with the result: the system takes its memory back as a whole.
+    print(&ManuallyDrop::new(simulation), &ManuallyDrop::new(verdict))
 }

@@ -3,11 +3,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::swallowed::swallowing_passes;
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::{Deg, MmPerMin, Rpm};
-use gcode_part::{Clusters, Hole, Origin, PARALLEL_COSINE, PointTree};
+use gcode_part::{Clusters, Hole, NominalAxes, Origin, PARALLEL_COSINE, PointTree};
 
 /// Largest distance between the lines of two passes of one hole, mm.
 pub(crate) const MAX_LINE_OFFSET: f64 = 0.5;
@@ -82,7 +83,7 @@ pub(super) struct DrillPass {
 
 impl DrillPass {
     /// Returns the diameter that the pass cuts; `None` if the tool table lacks the tool.
-    fn diameter(&self, machine: &Machine) -> Option<f64> {
+    pub(super) fn diameter(&self, machine: &Machine) -> Option<f64> {
         let cutter = machine.diameter_of(self.tool)?;
         let Some(circle) = self.cut.milled else { return Some(cutter) };
         // Without the noise of the arithmetic, which would be printed.
@@ -202,30 +203,56 @@ impl DrilledHole {
     }
 }
 
-/// Groups passes to holes, in the order of the first pass of each. `spacing` is the least distance of two nominal axes, mm.
-pub(super) fn group_holes(passes: &[DrillPass], machine: &Machine, spacing: Option<f64>) -> Vec<DrilledHole> {
-    let first = first_on_same_line(passes, machine, spacing);
+/// Groups passes to holes, in the order of the first pass of each.
+pub(super) fn group_holes(
+    passes: &[DrillPass],
+    machine: &Machine,
+    nominal_axes: &NominalAxes,
+) -> Vec<DrilledHole> {
+    let tree = PointTree::new(passes.iter().map(|pass| pass.cut.bottom));
+    let on_line = first_on_same_line(passes, &tree, machine, nominal_axes);
+    // A narrower pass beside the line belongs to the hole that swallows it.
+    let swallowing = swallowing_passes(passes, &tree, machine);
+    let hole_of = |index: usize| {
+        let wider = std::iter::successors(swallowing[index], |wide| swallowing[*wide]);
+        wider.fold(on_line[index], |_, wide| on_line[wide])
+    };
+    let first: Vec<usize> = (0..passes.len()).map(hole_of).collect();
+    let is_aside = |index: usize| first[index] != on_line[index];
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // The sort is stable: passes of one line keep their order.
     order.sort_by_key(|index| first[*index]);
     let mut holes = Vec::with_capacity(passes.len());
     for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
-        push_holes(line.iter().map(|index| &passes[*index]), passes[line[0]].axis, machine, &mut holes);
+        let passes_of_hole = line.iter().map(|index| (&passes[*index], is_aside(*index)));
+        push_holes(passes_of_hole, passes[line[0]].axis, machine, &mut holes);
     }
     holes
 }
 
 /// Returns for each pass the first one on its line.
-fn first_on_same_line(passes: &[DrillPass], machine: &Machine, spacing: Option<f64>) -> Vec<usize> {
-    let tree = PointTree::new(passes.iter().map(|pass| pass.cut.bottom));
-    let mut groups = Clusters::new(&tree);
+fn first_on_same_line(
+    passes: &[DrillPass],
+    tree: &PointTree,
+    machine: &Machine,
+    nominal_axes: &NominalAxes,
+) -> Vec<usize> {
+    let mut groups = Clusters::new(tree);
     // Half way to the next nominal hole a pass belongs to that one.
-    let limit = spacing.map_or(MAX_LINE_OFFSET, |spacing| MAX_LINE_OFFSET.min(spacing / 2.0));
+    let half_way = |pass: &DrillPass| {
+        let PassCut { start, bottom, .. } = &pass.cut;
+        let nearest = nominal_axes.nearest([start, bottom], &pass.axis, MAX_LINE_OFFSET);
+        nearest.map_or(MAX_LINE_OFFSET, |(axis, _)| MAX_LINE_OFFSET.min(axis.spacing / 2.0))
+    };
+    let limits: Option<Vec<f64>> = nominal_axes.has_close().then(|| passes.iter().map(half_way).collect());
+    let limit_of = |index: usize| limits.as_ref().map_or(MAX_LINE_OFFSET, |limits| limits[index]);
     for (index, pass) in passes.iter().enumerate() {
+        let limit = limit_of(index);
         let margin = Vector3::repeat(limit);
         let low = pass.cut.start.inf(&pass.cut.bottom) - margin;
         let high = pass.cut.start.sup(&pass.cut.bottom) + margin;
         groups.join(index, &low, &high, &|other| {
+            let limit = limit.min(limit_of(other));
             let other = &passes[other];
             pass.axis.dot(&other.axis) >= PARALLEL_COSINE
                 && pass.offset_of(other) <= limit.min(max_offset(pass, other, machine))
@@ -261,10 +288,10 @@ impl DrillPass {
     }
 }
 
-/// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. Heights count
-/// along `out`, the axis of the first pass.
+/// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. True passes lie aside,
+/// in a wider one of the hole. Heights count along `out`, the axis of the first pass.
 fn push_holes<'p>(
-    passes: impl Iterator<Item = &'p DrillPass>,
+    passes: impl ExactSizeIterator<Item = (&'p DrillPass, bool)>,
     out: Unit<Vector3<f64>>,
     machine: &Machine,
     holes: &mut Vec<DrilledHole>,
@@ -274,14 +301,20 @@ fn push_holes<'p>(
     // A mill cuts the same depth with each radius.
     let radius = |pass: &DrillPass| pass.cut.milled.map(|circle| (circle.radius * 1000.0).round() as u64);
     let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
-    let (cutting, repeated): (Vec<&DrillPass>, Vec<&DrillPass>) = passes.partition(|pass| {
+    let is_single = passes.len() == 1;
+    let (mut cutting, mut repeated) = (Vec::new(), Vec::new());
+    for (pass, is_aside) in passes {
+        if is_aside || is_single {
+            cutting.push(pass);
+            continue;
+        }
         let lowest = lowest_by_tool.entry((pass.tool, radius(pass))).or_insert(f64::INFINITY);
         let cuts = height(&pass.cut.bottom) < *lowest - MIN_DEPTH_GAIN;
         if cuts {
             *lowest = height(&pass.cut.bottom);
         }
-        cuts
-    });
+        if cuts { cutting.push(pass) } else { repeated.push(pass) }
+    }
     let lowest = cutting.iter().map(|pass| height(&pass.cut.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing_pass(&cutting, lowest, height, machine);
     let finishing_index = cutting.iter().take_while(|pass| !std::ptr::eq(**pass, finish)).count();

@@ -28,6 +28,8 @@ pub(super) enum ToolExit {
 /// The current line. Depths count from `start`, positive into the part, mm.
 #[derive(Debug)]
 pub(super) struct CuttingLine {
+    /// Place of its pass among all.
+    pub order: u32,
     pub start: Point3<f64>,
     pub out: Unit<Vector3<f64>>,
     /// Direction of the tool on the part; `None` if unknown.
@@ -106,6 +108,7 @@ impl CuttingLine {
         let depth = (start - end).norm();
         let end = StrokeEnd { depth, backtrace, axis_position: at };
         Some(Self {
+            order: 0,
             start,
             out,
             tool_axis: None,

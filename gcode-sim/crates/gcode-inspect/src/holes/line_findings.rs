@@ -2,6 +2,7 @@
 use super::HoleExtractor;
 use super::line::{CuttingLine, ToolExit};
 use super::strokes::CutKind;
+use super::unknown_axes::without_assumed;
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
 };
@@ -22,7 +23,9 @@ impl HoleExtractor<'_> {
         self.record_length_mismatch(&line);
         let tilt = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
         // Depth in the part, computed only where it decides.
-        let surface = self.surface;
+        // A feed at an unknown position may be in the part.
+        let is_known = without_assumed(line.unknown_axes, self.machine).is_none();
+        let surface = self.surface.filter(|_| is_known);
         let inside = || surface.map(|s| s.depth(&s.deepest_between(&line.start, &line.bottom())));
         // A feed outwards, as of a tool left in its hole, makes no hole. Its start decides: a hole in a steep flank may end
         // outside the part.
@@ -70,10 +73,12 @@ impl HoleExtractor<'_> {
         // A stroke in a hole that was cut before, as of a mill that goes on sideways, has no retract either.
         let has_retract = !matches!(exit, ToolExit::Sideways { .. });
         self.cut_axes |= !line.unknown_axes.all();
+        let order = line.order;
         let (pass, repeated) = line.finish();
-        let repeated = repeated.filter(|_| has_retract);
-        for pass in std::iter::once(pass).chain(repeated) {
-            self.strokes.push(pass, kind);
+        self.strokes.push(order, pass, kind);
+        if let Some(repeated) = repeated.filter(|_| has_retract) {
+            let order = self.strokes.begin_pass();
+            self.strokes.push(order, repeated, kind);
         }
     }
 

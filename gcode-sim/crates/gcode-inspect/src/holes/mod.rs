@@ -1,6 +1,7 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
 mod arc_run;
 mod axis_box;
+mod chord_run;
 mod clamping;
 mod clearance;
 mod cutting;
@@ -19,6 +20,7 @@ mod rapid_paths;
 mod rapids;
 pub(crate) mod spindle;
 mod strokes;
+mod swallowed;
 #[cfg(test)]
 mod tests;
 pub(crate) mod unknown_axes;
@@ -212,7 +214,7 @@ impl<'m> HoleExtractor<'m> {
         self.end_line(false);
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
-        let mut holes = group::group_holes(&passes, self.machine, self.process_limits.hole_spacing);
+        let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);
@@ -362,7 +364,8 @@ impl<'m> HoleExtractor<'m> {
                     }
                 };
                 if let Some(pass) = again {
-                    self.strokes.push(pass, self.cut_kind(&line, false));
+                    let order = self.strokes.begin_pass();
+                    self.strokes.push(order, pass, self.cut_kind(&line, false));
                 }
                 self.current_line = Some(line);
                 free_from
@@ -382,8 +385,10 @@ impl<'m> HoleExtractor<'m> {
     fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>, last_motion: Option<(MotionKind, Span)>) {
         let rounding = self.machine.increment.size() / 2.0;
         let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
+        let order = self.strokes.begin_pass();
         self.current_line = line.map(|line| {
             let mut line = Box::new(line);
+            line.order = order;
             line.tool_axis = self.pose.axis;
             line.upright = self.tool_direction();
             // A block of a cycle positions, feeds and retracts.

@@ -198,7 +198,7 @@ impl Machine {
     /// the tool length away from it, along the tool. If the direction of the tool is unknown, the tip is the
     /// control's own: the position minus the length offset.
     pub(crate) fn tool_pose(&self, at: &Position, setup: &Setup) -> Pose {
-        let carried = self.slides.frame(at) * Point3::origin();
+        let carried = self.slides.carried_origin(at);
         match self.head.direction(at, setup) {
             Some(axis) => {
                 let reach = self.head.pivot + self.tip_distance(setup, &axis);

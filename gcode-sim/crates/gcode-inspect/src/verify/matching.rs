@@ -15,8 +15,11 @@ const MAX_LINE_DISTANCE: f64 = 5.0;
 /// Least distance within which holes are matched first, mm.
 const FIRST_DISTANCE: f64 = 0.01;
 
-/// Cosine of the largest angle between the directions of a matching pair: 30°.
-const MIN_DIRECTION_COSINE: f64 = 0.866_025_403_784_438_6;
+/// Largest difference of the depths of two passes that are one pass and its repetition, mm.
+const MAX_DEPTH_DIFFERENCE: f64 = 0.01;
+
+/// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
+const TILTED_HOLE_COSINE: f64 = 0.866_025_403_784_438_6;
 
 /// A nominal hole and the drilled one matched with it, by their indices in the lists.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +49,10 @@ pub struct Comparison<'a> {
     pub pairs: Vec<HolePair>,
     /// Nominal holes without a drilled one.
     pub missing: Vec<usize>,
-    /// Drilled holes without a nominal one.
+    /// Drilled holes without a nominal one, and repeated ones that are no spring passes.
     pub extra: Vec<usize>,
+    /// Spring passes in drilled holes.
+    pub repeated: Vec<usize>,
     /// The nominal hole matched with a line, by the first drilled hole of the line.
     nominal_by_line: Vec<Option<usize>>,
 }
@@ -83,7 +88,7 @@ impl<'a> Comparison<'a> {
                 let cosine = hole.axis.dot(&Vector3::from(nominal[other].axis));
                 // The nearer end of a through hole is the one from which it is drilled.
                 let is_far_end = nominal.len() <= point;
-                if cosine.abs() < MIN_DIRECTION_COSINE || is_far_end != (cosine < 0.0) {
+                if cosine.abs() < TILTED_HOLE_COSINE || is_far_end != (cosine < 0.0) {
                     return;
                 }
                 if let Some(deviation) = Deviation::new(&nominal[other], &deepest, &hole.axis)
@@ -126,8 +131,14 @@ impl<'a> Comparison<'a> {
             }
         }
         let missing = (0..nominal.len()).filter(|index| pair_of[*index].is_none()).collect();
-        let extra = (0..actual.len()).filter(|index| !is_taken[*index]).collect();
-        Self { nominal, actual, tolerances, pattern, pairs, missing, extra, nominal_by_line }
+        let is_spring_pass = |index: &usize| {
+            let hole = &actual[*index];
+            let on_line: Option<usize> = nominal_by_line[hole.first_on_line];
+            on_line.is_some_and(|index| is_spring_pass(hole, &nominal[index], actual, tolerances))
+        };
+        let left_over = (0..actual.len()).filter(|index| !is_taken[*index]);
+        let (repeated, extra) = left_over.partition(is_spring_pass);
+        Self { nominal, actual, tolerances, pattern, pairs, missing, extra, repeated, nominal_by_line }
     }
 
     /// Leaves out of the extra holes the feeds whose tool stays in the air; without its diameter only its tip counts.
@@ -144,7 +155,9 @@ impl<'a> Comparison<'a> {
                 (entry - end).cross(&actual[*index].axis).norm() <= MAX_LINE_DISTANCE
             };
             // A feed across the tool has no depth: its ends count.
-            let is_in_air = actual[*index].passes().all(|pass| is_in_air(&pass, surface, machine));
+            let is_known = actual[*index].unknown_axes.is_none();
+            let is_in_air =
+                is_known && actual[*index].passes().all(|pass| is_in_air(&pass, surface, machine));
             !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
         });
     }
@@ -182,6 +195,24 @@ impl<'a> Comparison<'a> {
     pub fn id(&self, nominal: usize) -> &str {
         self.nominal[nominal].id.as_deref().unwrap_or("?")
     }
+}
+
+/// Returns true if a tool goes a second time to the same depth of a hole, within the tolerance of its position: a spring pass,
+/// which cuts nothing. A tap spoils the thread.
+fn is_spring_pass(
+    again: &DrilledHole,
+    nominal: &Hole,
+    actual: &[DrilledHole],
+    tolerances: Tolerances,
+) -> bool {
+    let is_in_place = Deviation::new(nominal, &again.bottom(), &again.axis)
+        .is_some_and(|deviation| !exceeds(deviation.zone_diameter(), tolerances.position));
+    let is_same = |pass: &ToolPass<'_>| {
+        let deeper = (pass.cut.bottom - again.bottom()).dot(&again.axis);
+        pass.tool == again.tool && !pass.cut.is_tapping && deeper.abs() <= MAX_DEPTH_DIFFERENCE
+    };
+    let mut earlier = actual.get(again.first_on_line).into_iter().flat_map(DrilledHole::passes);
+    is_in_place && earlier.any(|pass| is_same(&pass))
 }
 
 /// Returns true if a pass cuts nothing of the body. A circle that leaves a core goes round the metal: its tip alone counts.
