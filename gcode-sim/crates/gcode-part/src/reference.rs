@@ -37,7 +37,10 @@ impl Reference {
     /// A list without holes, values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
         if list.holes.is_empty() {
-            return Err(FileError { line: None, message: "holes: none; a reference needs one at least".into() });
+            return Err(FileError {
+                line: None,
+                message: "holes: none; a reference needs one at least".into(),
+            });
         }
         if let Some(fault) = list.stock.and_then(|stock| stock.fault()) {
             return Err(FileError { line: None, message: format!("stock: {fault}") });

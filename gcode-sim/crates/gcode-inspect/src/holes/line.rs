@@ -4,7 +4,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
 use super::group::{DrillPass, PassCut};
-use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
+use gcode_lang::motion::{Backtrace, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
@@ -42,8 +42,9 @@ pub(super) struct CuttingLine {
     pub is_cycle: bool,
     /// True if the motion before the first feed was a feed too.
     pub is_reached_by_feed: bool,
-    /// Modal state and clamp at the start of the feed.
+    /// Modal state of the last feed that cuts, else that at the start.
     pub cutting_state: CuttingState,
+    /// Clamp at the start of the feed.
     pub clamp_state: ClampState,
     /// Axes of unknown position on the part.
     pub unknown_axes: UnknownAxes,
@@ -57,6 +58,8 @@ pub(super) struct CuttingLine {
     pub surface_depth: Option<f64>,
     /// Finished strokes.
     pecks: PeckExtent,
+    /// True if a feed that cuts finds the spindle stopped.
+    pub is_fed_stopped: bool,
     /// Largest change of the spindle while the tool was in the hole.
     pub spindle: SpindleInHole,
     /// Deepest point of the finished strokes.
@@ -124,6 +127,7 @@ impl CuttingLine {
             last_feed: None,
             surface_depth: None,
             pecks: PeckExtent::default(),
+            is_fed_stopped: false,
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
@@ -133,8 +137,13 @@ impl CuttingLine {
         })
     }
 
-    /// Records the rate of a feed inwards that cuts.
-    pub(super) fn record_feed(&mut self, feed: MmPerMin) {
+    /// Records rate and modal state of a feed inwards that cuts. A reversal before it taps no thread.
+    pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState) {
+        self.is_fed_stopped |= state.spindle_direction == SpindleDirection::Off;
+        self.cutting_state = state;
+        if self.spindle == SpindleInHole::Reversed {
+            self.spindle = SpindleInHole::Unchanged;
+        }
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
         self.last_feed = Some(feed);
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);

@@ -8,7 +8,6 @@ use crate::findings::{
 };
 use crate::machine::{HeadKind, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::SpindleDirection;
 use gcode_lang::units::Deg;
 
 /// Largest angle between feed and tool, besides rounding.
@@ -117,7 +116,7 @@ impl HoleExtractor<'_> {
             self.cut_conditions.add(backtrace, &line.cutting_state, feeds, line.pecks());
         }
         self.check_spindle(backtrace, line);
-        if line.cutting_state.spindle_direction == SpindleDirection::Off {
+        if line.is_fed_stopped {
             self.report_spindle_stopped(line.backtrace());
         }
         let Some(tilt) = tilt else {

@@ -302,12 +302,12 @@ impl<'m> HoleExtractor<'m> {
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
+                if let Some(start) = start {
+                    self.start_line(event, start, last_motion);
+                }
                 self.follow_feed_at_holes(event, &[before.tip, self.pose.tip]);
                 if was.union(is).is_none() {
                     self.check_body_in_feed(&event.backtrace(), &[before.tip, self.pose.tip]);
-                }
-                if let Some(start) = start {
-                    self.start_line(event, start, last_motion);
                 }
             }
             _ => {}
@@ -350,7 +350,7 @@ impl<'m> HoleExtractor<'m> {
                 let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {
-                            self.record_line_feed(event, &mut line);
+                            self.record_line_feed(event, &mut line, &from);
                         }
                         line.feed_to(&tip, event.backtrace(), &self.axis_position)
                     }
@@ -374,6 +374,7 @@ impl<'m> HoleExtractor<'m> {
                 let is_along = exit == ToolExit::AlongLine;
                 if is_spindle_stopped && !line.is_inward() && !is_along {
                     self.report_back_boring(&line);
+                    return Some(from);
                 }
                 let free_from = if is_along { line.start_level_crossing(&from, &tip) } else { from };
                 self.report_line(line, exit, kind == MotionKind::Feed);
@@ -400,19 +401,27 @@ impl<'m> HoleExtractor<'m> {
             line.length_excess = self.length_excess();
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
-            self.record_line_feed(event, &mut line);
+            self.record_line_feed(event, &mut line, &start);
             line
         });
     }
 
-    /// Records the rate of a feed inwards if it cuts; the approach may be faster.
-    fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
-        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH_DEPTH));
-        if let EventKind::Feed { rate, .. } = event.kind
-            && cuts
-        {
-            line.record_feed(*rate);
+    /// Records rate and modal state of a feed inwards from `from` if it cuts; the approach may be faster.
+    fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine, from: &Point3<f64>) {
+        let EventKind::Feed { rate, .. } = event.kind else { return };
+        let tip = self.pose.tip;
+        let is_in_air = match (&self.surface, &self.entries) {
+            (Some(surface), _) => !surface.is_deeper(&tip, TOUCH_DEPTH),
+            (None, Some(entries)) => entries.is_above_all(&tip),
+            (None, None) => false,
+        };
+        let is_stopped = self.cutting_state.spindle_direction == SpindleDirection::Off;
+        // A tool may enter a hole that is cut with the spindle stopped.
+        if is_in_air || is_stopped && self.cuts_known_metal(from, &tip) == Some(false) {
+            return;
         }
+        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+        line.record_feed(*rate, state);
     }
 
     /// Applies a known end of a motion.

@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::checks::features::ShapeGap;
 use super::{Comparison, HoleInspection};
+use crate::findings::BACK_BORED;
 use crate::holes::HoleExtraction;
 use crate::machine::{HeadKind, Machine};
 use gcode_lang::motion::LengthCompensation;
@@ -29,6 +30,9 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
+    if extraction.findings.iter().any(|finding| finding.kind == &BACK_BORED) {
+        all.push("bores made backwards: their depth and diameter".to_owned());
+    }
     let mut drilled = comparison.matched().map(|(.., drilled)| drilled);
     if machine.head.kind == HeadKind::Free && drilled.all(|hole| hole.tool_axis_deviation == Deg::ZERO) {
         all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());

@@ -65,8 +65,9 @@ impl FileTool {
                 && length.get() < part.get()
             {
                 let (part_length, length) = (part.get(), length.get());
-                let message =
-                    format!("key 'tool.{name}' is {part_length}: at most the length of the tool, {length} mm");
+                let message = format!(
+                    "key 'tool.{name}' is {part_length}: at most the length of the tool, {length} mm"
+                );
                 return Err(reader.error(part, message));
             }
         }

@@ -25,7 +25,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     );
     findings.add(
         Subject::Whole,
-        Diagnostic::new(&STOCK_MISMATCH, message)
-            .help("give stock and holes in the same frame, that of the part, and the stock the size of the part"),
+        Diagnostic::new(&STOCK_MISMATCH, message).help(
+            "give stock and holes in the same frame, that of the part, and the stock the size of the part",
+        ),
     );
 }
