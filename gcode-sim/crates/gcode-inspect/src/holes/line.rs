@@ -4,7 +4,9 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
 use super::group::{DrillPass, PassCut};
-use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
+use super::{HoleExtractor, MotionKind};
+use crate::machine::TOUCH_DEPTH;
+use gcode_lang::motion::{Backtrace, Event, EventKind, Position, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
@@ -337,6 +339,47 @@ impl CuttingLine {
             backtrace: end.backtrace.clone(),
             axis_position: end.axis_position,
             unknown_axes: self.unknown_axes,
+        }
+    }
+}
+
+impl HoleExtractor<'_> {
+    /// Starts a line with a feed from `start`.
+    pub(super) fn start_line(
+        &mut self,
+        event: &Event<'_>,
+        start: Point3<f64>,
+        last_motion: Option<(MotionKind, Span)>,
+    ) {
+        let rounding = self.machine.increment.size() / 2.0;
+        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
+        let order = self.strokes.begin_pass();
+        self.current_line = line.map(|line| {
+            let mut line = Box::new(line);
+            line.order = order;
+            line.tool_axis = self.pose.axis;
+            line.upright = self.tool_direction();
+            // A block of a cycle positions, feeds and retracts.
+            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
+            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
+            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+            line.clamp_state = self.clamp_state;
+            line.unknown_axes = self.positions.unknown_axes();
+            line.length_excess = self.length_excess();
+            line.surface_depth =
+                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
+            self.record_line_feed(event, &mut line);
+            line
+        });
+    }
+
+    /// Records the rate of a feed inwards if it cuts; the approach may be faster.
+    pub(super) fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
+        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH_DEPTH));
+        if let EventKind::Feed { rate, .. } = event.kind
+            && cuts
+        {
+            line.record_feed(*rate);
         }
     }
 }

@@ -46,7 +46,7 @@ use self::milled::{Engagement, Path};
 use self::per_block::Findings;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, TOUCH_DEPTH};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
@@ -379,39 +379,6 @@ impl<'m> HoleExtractor<'m> {
                 self.report_line(line, exit, kind == MotionKind::Feed);
                 Some(free_from)
             }
-        }
-    }
-
-    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>, last_motion: Option<(MotionKind, Span)>) {
-        let rounding = self.machine.increment.size() / 2.0;
-        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
-        let order = self.strokes.begin_pass();
-        self.current_line = line.map(|line| {
-            let mut line = Box::new(line);
-            line.order = order;
-            line.tool_axis = self.pose.axis;
-            line.upright = self.tool_direction();
-            // A block of a cycle positions, feeds and retracts.
-            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
-            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
-            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-            line.clamp_state = self.clamp_state;
-            line.unknown_axes = self.positions.unknown_axes();
-            line.length_excess = self.length_excess();
-            line.surface_depth =
-                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
-            self.record_line_feed(event, &mut line);
-            line
-        });
-    }
-
-    /// Records the rate of a feed inwards if it cuts; the approach may be faster.
-    fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
-        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH_DEPTH));
-        if let EventKind::Feed { rate, .. } = event.kind
-            && cuts
-        {
-            line.record_feed(*rate);
         }
     }
 
