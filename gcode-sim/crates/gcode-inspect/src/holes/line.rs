@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
-use super::group::{DrillPass, PassCut};
+use super::drill_pass::{DrillPass, PassCut};
 use super::{HoleExtractor, MotionKind};
 use crate::machine::TOUCH_DEPTH;
 use gcode_lang::motion::{Backtrace, Event, EventKind, Position, UnknownAxes};

@@ -5,6 +5,7 @@ mod chord_run;
 mod clamping;
 mod clearance;
 mod cutting;
+mod drill_pass;
 mod entries;
 #[cfg(test)]
 pub(crate) mod event_script;
@@ -29,8 +30,9 @@ use nalgebra::Point3;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
+pub use drill_pass::{MilledCut, PassCut};
 pub(crate) use group::MAX_LINE_OFFSET;
-pub use group::{DrilledHole, EarlierPass, MilledCut, PassCut, ToolPass};
+pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
