@@ -41,7 +41,7 @@ pub(super) fn has_semicolons(text: &str) -> bool {
 }
 
 pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
     let column = |name: &str| header.iter().position(|h| h == name);
     for name in &COLUMNS[..REQUIRED] {
@@ -60,7 +60,7 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(|e| csv_error(&e))? {
         let line = record.position().map(|p| p.line() as usize);
-        let field = |name: &str| column(name).and_then(|c| record.get(c)).unwrap_or_default();
+        let field = |name: &str| column(name).and_then(|c| record.get(c)).unwrap_or_default().trim();
         let number = |name: &str| {
             let text = field(name);
             text.parse::<f64>().map_err(|_| error(line, format!("column '{name}' is '{text}': a number")))

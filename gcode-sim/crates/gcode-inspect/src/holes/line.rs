@@ -3,8 +3,10 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
-use super::group::{DrillPass, PassCut};
-use gcode_lang::motion::{Backtrace, Position, SpindleDirection, UnknownAxes};
+use super::drill_pass::{DrillPass, PassCut};
+use super::{HoleExtractor, MotionKind};
+use crate::machine::TOUCH_DEPTH;
+use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
@@ -347,5 +349,54 @@ impl CuttingLine {
             axis_position: end.axis_position,
             unknown_axes: self.unknown_axes,
         }
+    }
+}
+
+impl HoleExtractor<'_> {
+    /// Starts a line with a feed from `start`.
+    pub(super) fn start_line(
+        &mut self,
+        event: &Event<'_>,
+        start: Point3<f64>,
+        last_motion: Option<(MotionKind, Span)>,
+    ) {
+        let rounding = self.machine.increment.size() / 2.0;
+        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
+        let order = self.strokes.begin_pass();
+        self.current_line = line.map(|line| {
+            let mut line = Box::new(line);
+            line.order = order;
+            line.tool_axis = self.pose.axis;
+            line.upright = self.tool_direction();
+            // A block of a cycle positions, feeds and retracts.
+            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
+            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
+            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+            line.clamp_state = self.clamp_state;
+            line.unknown_axes = self.positions.unknown_axes();
+            line.length_excess = self.length_excess();
+            line.surface_depth =
+                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
+            self.record_line_feed(event, &mut line, &start);
+            line
+        });
+    }
+
+    /// Records rate and modal state of a feed inwards from `from` if it cuts; the approach may be faster.
+    pub(super) fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine, from: &Point3<f64>) {
+        let EventKind::Feed { rate, .. } = event.kind else { return };
+        let tip = self.pose.tip;
+        let is_in_air = match (&self.surface, &self.entries) {
+            (Some(surface), _) => !surface.is_deeper(&tip, TOUCH_DEPTH),
+            (None, Some(entries)) => entries.is_above_all(&tip),
+            (None, None) => false,
+        };
+        let is_stopped = self.cutting_state.spindle_direction == SpindleDirection::Off;
+        // A tool may enter a hole that is cut with the spindle stopped.
+        if is_in_air || is_stopped && self.cuts_known_metal(from, &tip) == Some(false) {
+            return;
+        }
+        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+        line.record_feed(*rate, state);
     }
 }

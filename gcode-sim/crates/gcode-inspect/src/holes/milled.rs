@@ -4,7 +4,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
 use super::chord_run::ChordRun;
-use super::group::{DrillPass, MilledCut, PassCut};
+use super::drill_pass::{DrillPass, MilledCut, PassCut};
 use super::per_block::Findings;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
 use gcode_lang::motion::{Event, SpindleDirection, UnknownAxes};

@@ -5,6 +5,7 @@ mod chord_run;
 mod clamping;
 mod clearance;
 mod cutting;
+mod drill_pass;
 mod entries;
 #[cfg(test)]
 pub(crate) mod event_script;
@@ -29,8 +30,9 @@ use nalgebra::Point3;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
+pub use drill_pass::{MilledCut, PassCut};
 pub(crate) use group::MAX_LINE_OFFSET;
-pub use group::{DrilledHole, EarlierPass, MilledCut, PassCut, ToolPass};
+pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
@@ -46,7 +48,7 @@ use self::milled::{Engagement, Path};
 use self::per_block::Findings;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, TOUCH_DEPTH};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
@@ -381,47 +383,6 @@ impl<'m> HoleExtractor<'m> {
                 Some(free_from)
             }
         }
-    }
-
-    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>, last_motion: Option<(MotionKind, Span)>) {
-        let rounding = self.machine.increment.size() / 2.0;
-        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
-        let order = self.strokes.begin_pass();
-        self.current_line = line.map(|line| {
-            let mut line = Box::new(line);
-            line.order = order;
-            line.tool_axis = self.pose.axis;
-            line.upright = self.tool_direction();
-            // A block of a cycle positions, feeds and retracts.
-            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
-            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
-            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-            line.clamp_state = self.clamp_state;
-            line.unknown_axes = self.positions.unknown_axes();
-            line.length_excess = self.length_excess();
-            line.surface_depth =
-                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
-            self.record_line_feed(event, &mut line, &start);
-            line
-        });
-    }
-
-    /// Records rate and modal state of a feed inwards from `from` if it cuts; the approach may be faster.
-    fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine, from: &Point3<f64>) {
-        let EventKind::Feed { rate, .. } = event.kind else { return };
-        let tip = self.pose.tip;
-        let is_in_air = match (&self.surface, &self.entries) {
-            (Some(surface), _) => !surface.is_deeper(&tip, TOUCH_DEPTH),
-            (None, Some(entries)) => entries.is_above_all(&tip),
-            (None, None) => false,
-        };
-        let is_stopped = self.cutting_state.spindle_direction == SpindleDirection::Off;
-        // A tool may enter a hole that is cut with the spindle stopped.
-        if is_in_air || is_stopped && self.cuts_known_metal(from, &tip) == Some(false) {
-            return;
-        }
-        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-        line.record_feed(*rate, state);
     }
 
     /// Applies a known end of a motion.

@@ -96,8 +96,10 @@ impl HoleExtractor<'_> {
         if !self.machine.is_straight(&travel) {
             return self.check_curved(event, &travel, MotionKind::Rapid);
         }
-        let tip = self.machine.forward(to, &self.setup).tip;
-        start.is_some_and(|start| self.check_rapid(event, &start, &tip))
+        let Some(start) = start else { return false };
+        let is_end = *to == self.axis_position;
+        let tip = if is_end { self.pose.tip } else { self.machine.forward(to, &self.setup).tip };
+        self.check_rapid(event, &start, &tip)
     }
 
     /// Reports a rapid that cuts if its axes arrive in another order than along the straight path; returns true if one

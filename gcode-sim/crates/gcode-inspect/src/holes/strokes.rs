@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Point3;
 
 use super::HoleExtractor;
-use super::group::{DrillPass, PassCut};
+use super::drill_pass::{DrillPass, PassCut};
 use super::line::CuttingLine;
 use super::per_block::with_count_note;
 use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};

@@ -1,5 +1,5 @@
 //! Passes that a wider tool swallows: all that they cut lies in what it cuts, wherever their axes are.
-use super::group::DrillPass;
+use super::drill_pass::DrillPass;
 use crate::machine::{Machine, PointShape, Tool};
 use gcode_lang::units::Deg;
 use gcode_part::{NOISE, PARALLEL_COSINE, PointTree};
