@@ -68,9 +68,11 @@ gcode_lang::finding_kinds! {
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
     START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";
     TAP_DRILL = "tap-drill", Error, "a thread is as deep as its drilled hole, or deeper";
+    TAP_HAND = "tap-hand", Error, "the spindle turns against the hand of the thread";
     TAP_PITCH = "tap-pitch", Error, "feed and speed do not give the pitch of the thread";
     TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends with the tool in the metal";
-    TOOL_SHORT = "tool-short", Warning, "a tool goes deeper than it is long";
+    TOOL_NOT_CHANGED = "tool-not-changed", Error, "the tool that is selected is not in the spindle";
+    TOOL_SHORT = "tool-short", Error, "the shank, the holder or the spindle goes into the part";
     TOOL_UNKNOWN = "tool-unknown", Warning, "a tool that is missing in the tool table";
     TURNS_CLAMPED = "turns-clamped", Error, "the rotary rotates while clamped";
     TURNS_NEAR_PART = "turns-near-part", Error, "an axis rotates while the tool is close to the part";

@@ -38,6 +38,8 @@ pub(crate) struct CutConditions {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CuttingState {
     pub tool: Option<u32>,
+    /// Tool of the last T.
+    pub selected_tool: Option<u32>,
     pub compensation: LengthCompensation,
     pub spindle_direction: SpindleDirection,
     pub speed: Rpm,
@@ -55,7 +57,7 @@ impl CutConditionsByBlock {
         feed_range: [MmPerMin; 2],
         pecks: PeckExtent,
     ) {
-        let CuttingState { tool, compensation, spindle_direction, speed } = *state;
+        let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;
         let length = match compensation {
             LengthCompensation::Off => 0,
             LengthCompensation::Plus(h) => 1 << 32 | u64::from(h),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Unit, Vector3};
 
 use crate::machine::Machine;
-use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
+use gcode_lang::motion::{Backtrace, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::{Deg, MmPerMin, Rpm};
 use gcode_part::{Clusters, Hole, Origin, PARALLEL_COSINE, PointTree};
@@ -33,6 +33,8 @@ pub struct PassCut {
     pub feed: Option<MmPerMin>,
     /// Speed of the spindle at the start.
     pub speed: Rpm,
+    /// Direction of the spindle at the start.
+    pub direction: SpindleDirection,
     /// True if the spindle reverses in the hole, as it does for a tap.
     pub is_tapping: bool,
     /// Figures of a mill's circle; `None` for a stroke.
@@ -152,7 +154,8 @@ pub struct EarlierPass {
 impl PassCut {
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
-        Self { start, bottom, feed: None, speed: Rpm(0.0), is_tapping: false, milled: None }
+        let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
+        Self { start, bottom, feed: None, speed, direction, is_tapping: false, milled: None }
     }
 }
 

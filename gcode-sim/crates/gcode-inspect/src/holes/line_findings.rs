@@ -1,13 +1,15 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
 use super::HoleExtractor;
+use super::cutting::CuttingState;
 use super::line::{CuttingLine, ToolExit};
 use super::strokes::CutKind;
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
+    TOOL_NOT_CHANGED,
 };
 use crate::machine::{HeadKind, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::SpindleDirection;
+use gcode_lang::motion::{Backtrace, LengthCompensation, SpindleDirection};
 use gcode_lang::units::Deg;
 
 /// Largest angle between feed and tool, besides rounding.
@@ -104,6 +106,27 @@ impl HoleExtractor<'_> {
         });
     }
 
+    /// Reports a cut with a tool that the program has selected and not changed.
+    ///
+    /// A tool that is prepared for the next change has another offset than the one in effect.
+    fn check_tool_changed(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
+        let CuttingState { tool, selected_tool, compensation, .. } = line.cutting_state;
+        let Some(selected) = selected_tool.filter(|number| *number != 0 && tool != Some(*number)) else {
+            return;
+        };
+        let is_meant = match compensation {
+            LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0 => h == selected,
+            _ => tool.is_none(),
+        };
+        if is_meant {
+            let spindle = tool.map_or("the tool of the last job".to_owned(), |number| format!("T{number}"));
+            self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, selected, 1, |kind| {
+                let message = format!("T{selected} is selected, but {spindle} is in the spindle and cuts");
+                Diagnostic::new(kind, message).help(format!("command T{selected} M06 before the cut"))
+            });
+        }
+    }
+
     /// Reports the clamp, the spindle, the head and the direction of a feed.
     fn report_feed(&mut self, line: &CuttingLine, tilt: Option<Deg>) {
         let backtrace = line.backtrace();
@@ -112,6 +135,7 @@ impl HoleExtractor<'_> {
             self.cut_conditions.add(backtrace, &line.cutting_state, feeds, line.pecks());
         }
         self.check_spindle(backtrace, line);
+        self.check_tool_changed(backtrace, line);
         if line.cutting_state.spindle_direction == SpindleDirection::Off {
             self.report_spindle_stopped(line.backtrace());
         }

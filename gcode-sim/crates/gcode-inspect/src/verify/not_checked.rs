@@ -28,6 +28,7 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
     let mut all = diameters(comparison, machine);
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
+    all.extend(holders(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
     let mut drilled = comparison.matched().map(|(.., drilled)| drilled);
     if machine.head.kind == HeadKind::Free && drilled.all(|hole| hole.tool_axis_deviation == Deg::ZERO) {
@@ -146,6 +147,19 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<String> {
         format!("{whose}: not in the machine file, which takes {taken}")
     };
     tools.into_iter().map(sentence).collect()
+}
+
+/// Returns the tools whose holder is described, but not where it is.
+fn holders(extraction: &HoleExtraction, machine: &Machine) -> Option<String> {
+    let tools: BTreeSet<u32> = extraction.cut_conditions.iter().filter_map(|cut| cut.tool).collect();
+    let is_nowhere = |number: &&u32| {
+        machine
+            .find_tool(**number)
+            .is_some_and(|tool| tool.holder_diameter.is_some() && tool.length.is_none())
+    };
+    let names: Vec<_> = tools.iter().filter(is_nowhere).map(|number| format!("T{number}")).collect();
+    (!names.is_empty())
+        .then(|| format!("the holder of {} in the holes: the machine file has no length", names.join(", ")))
 }
 
 /// Returns the limits of the process that the reference does not specify.

@@ -10,11 +10,15 @@ const ROUNDING_ALLOWANCE: f64 = 0.005;
 /// Relative deviation above which S or F is an error: tables of cutting data leave this range open.
 const ERROR_RATIO: f64 = 0.25;
 
+/// Pecks up to this length, mm, and up to this share of the drill's diameter are none: the drill only rubs.
+const LEAST_PECK: f64 = 0.01;
+const LEAST_PECK_SHARE: f64 = 0.005;
+
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let (conditions, limits) = (&inspection.extraction.cut_conditions, &inspection.reference.process_limits);
     let mut reported: Vec<(Diagnostic, u64)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
-    for check in [reversed, speed, feed, peck, length, tool] {
+    for check in [reversed, speed, feed, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
             let index = *known.entry(finding.message.clone()).or_insert(reported.len());
@@ -82,6 +86,19 @@ fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     let finding = Diagnostic::new(&DRILL_PECK, message).with_severity(Severity::Warning);
     let finding = finding.note("this costs time, and chips are cut twice");
     Some(finding.help("correct Q, or drill.peck in the job; check Q for a missing decimal point"))
+}
+
+/// Reports pecks too short for any drill: Q without its decimal point.
+fn fine_peck(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+    if limits.tool_process(cut.tool).and_then(|tool| tool.peck).is_some() {
+        return None;
+    }
+    let share = machine.diameter_of(cut.tool).map_or(0.0, |diameter| diameter * LEAST_PECK_SHARE);
+    let peck = cut.min_peck.filter(|peck| *peck <= LEAST_PECK.max(share))?;
+    let message = format!("{} drills in pecks of {} mm", name(cut), round_thousandth(peck));
+    Some(Diagnostic::new(&DRILL_PECK, message).help(
+        "correct Q: without a decimal point it counts the control's increment, and Q5 is 0.005 mm, not 5 mm",
+    ))
 }
 
 /// Reports a tool that the job does not have, or none.
