@@ -64,12 +64,13 @@ gcode_lang::finding_kinds! {
     ROW_SEAM = "row-seam", Error, "the last row does not meet the first";
     ROW_SHORT = "row-short", Error, "all rows of a honeycomb end too early";
     SPINDLE_IN_HOLE = "spindle-in-hole", Error, "the spindle stops or reverses while a drill is in the hole";
-    SPINDLE_REVERSED = "spindle-reversed", Warning, "a hole is drilled with M04";
+    SPINDLE_REVERSED = "spindle-reversed", Error, "a hole is drilled with M04";
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
     START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";
     TAP_DRILL = "tap-drill", Error, "a thread is as deep as its drilled hole, or deeper";
     TAP_HAND = "tap-hand", Error, "the spindle turns against the hand of the thread";
     TAP_PITCH = "tap-pitch", Error, "feed and speed do not give the pitch of the thread";
+    TOOL_KIND = "tool-kind", Error, "a tool makes a cut that its kind can't make";
     TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends with the tool in the metal";
     TOOL_NOT_CHANGED = "tool-not-changed", Error, "the tool that is selected is not in the spindle";
     TOOL_SHORT = "tool-short", Error, "the shank, the holder or the spindle goes into the part";

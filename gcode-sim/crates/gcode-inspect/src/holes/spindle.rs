@@ -60,7 +60,7 @@ impl HoleExtractor<'_> {
             ),
         };
         let tool = line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
-        self.findings.add(&SPINDLE_IN_HOLE, backtrace, 0, |kind| {
+        self.findings.add(&SPINDLE_IN_HOLE, backtrace, line.spindle as u32, |kind| {
             Diagnostic::new(kind, format!("the spindle {verb} while {tool} is in the hole"))
                 .with_severity(severity)
                 .note(note)

@@ -121,9 +121,10 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    if let Some(motion) = not_checked::unchecked_motion(extraction) {
+    let unchecked = not_checked::first_line(&inspection);
+    if !unchecked.is_empty() {
         verdict.summary.push_str("; not checked: ");
-        verdict.summary.push_str(motion);
+        verdict.summary.push_str(&unchecked.join(", "));
     }
     verdict.not_checked = not_checked::lines(&inspection, locate);
     verdict

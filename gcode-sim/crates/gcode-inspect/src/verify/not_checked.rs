@@ -16,10 +16,29 @@ const MOTION: &str = "motion beside the holes (no stock)";
 /// Motion whose search was given up, for the first line of a verdict.
 const UNSEARCHED: &str = "rapids whose axes may reach too many positions";
 
-/// Returns the motion that no check covers, for the first line of a verdict.
-pub(super) fn unchecked_motion(extraction: &HoleExtraction) -> Option<&'static str> {
-    let unsearched = extraction.unsearched_rapids.as_ref().map(|_| UNSEARCHED);
-    if extraction.is_metal_known { unsearched } else { Some(MOTION) }
+/// Returns what no check covers and what decides holes or the safety of the motion, for the first line of a verdict.
+pub(super) fn first_line(inspection: &HoleInspection<'_>) -> Vec<&'static str> {
+    let HoleInspection { extraction, machine, features, .. } = inspection;
+    let unsearched = extraction.unsearched_rapids.is_some().then_some(UNSEARCHED);
+    let motion = if extraction.is_metal_known { unsearched } else { Some(MOTION) };
+    let has_gap = |is_kind: fn(&ShapeGap) -> bool| features.iter().any(|hole| hole.gaps.iter().any(is_kind));
+    let is_tool_unknown =
+        !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none());
+    let others = [
+        (is_tool_unknown, "the tool in the spindle at the start"),
+        (
+            has_gap(|gap| matches!(gap, ShapeGap::Undrilled(_))),
+            "holes that the program finishes and does not drill",
+        ),
+        (
+            has_gap(|gap| matches!(gap, ShapeGap::FullThrough(_))),
+            "the full diameter on the far side of through holes",
+        ),
+    ];
+    motion
+        .into_iter()
+        .chain(others.into_iter().filter(|(is_open, _)| *is_open).map(|(_, name)| name))
+        .collect()
 }
 
 /// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
@@ -83,7 +102,7 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
             None if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
             None => format!("the diameter of {holes} made before the first tool change"),
             Some(tool) => {
-                format!("the diameter of {holes} made by T{tool}, which is not in the machine file")
+                format!("the diameter of {holes} made by T{tool}, which has none in the machine file")
             }
         }
     };
@@ -112,6 +131,15 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
             ShapeGap::SpotDrill(tool) => {
                 format!(
                     "the end of {}, taken for a spot drill in {holes}: the machine file has no kind or point_angle",
+                    name(tool)
+                )
+            }
+            ShapeGap::Undrilled(tool) => {
+                format!("the hole in which {} cuts: the program does not drill {holes}", name(tool))
+            }
+            ShapeGap::FullThrough(tool) => {
+                format!(
+                    "the full diameter of {holes} on the far side: the machine file has no point_angle of {}",
                     name(tool)
                 )
             }

@@ -16,7 +16,10 @@ pub(super) struct Outline {
 /// Outline of what one pass of a tool removes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CutShape {
+    /// Radius of the tool.
     pub radius: f64,
+    /// Radius of the circle that its axis describes, mm; 0 of a stroke.
+    pub path: f64,
     /// Depth at which the feed starts; negative above the entry.
     pub start: f64,
     /// Depth of the tip.
@@ -104,12 +107,13 @@ impl CutShape {
 
     /// Returns the radius at a depth above the tip.
     fn radius_at(&self, depth: f64) -> f64 {
-        match self.point {
+        let own = match self.point {
             PointShape::Pointed(angle) => {
                 ((self.tip - depth) * Deg(angle.0 / 2.0).tan()).clamp(0.0, self.radius)
             }
             PointShape::Flat | PointShape::Unknown => self.radius,
-        }
+        };
+        self.path + own
     }
 }
 
@@ -124,7 +128,7 @@ mod tests {
     }
 
     fn cut(diameter: f64, tip: f64, point: PointShape) -> CutShape {
-        CutShape { radius: diameter / 2.0, start: -2.0, tip, point }
+        CutShape { radius: diameter / 2.0, path: 0.0, start: -2.0, tip, point }
     }
 
     /// Φ10×5 over Φ6×15. A flat Φ10 to 5 fits with 0; to 7 it is 2 mm wider than Φ6. A 90° point of Φ10 with its tip at 4

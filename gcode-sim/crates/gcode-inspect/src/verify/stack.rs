@@ -41,10 +41,9 @@ impl<'a> Cut<'a> {
                 start: depth(&pass.cut.start),
                 tip: depth(&pass.cut.bottom),
                 kind: tool.and_then(|tool| tool.kind).or(is_milled.then_some(ToolKind::EndMill)),
-                point: if is_milled {
-                    PointShape::Flat
-                } else {
-                    tool.map_or(PointShape::Unknown, Tool::point)
+                point: match tool.map_or(PointShape::Unknown, Tool::point) {
+                    PointShape::Unknown if is_milled => PointShape::Flat,
+                    point => point,
                 },
             }
         };
@@ -73,13 +72,20 @@ impl<'a> Cut<'a> {
 
     /// Returns the outline; `None` if the diameter is unknown.
     pub(super) fn shape(&self) -> Option<CutShape> {
-        let radius = self.pass.diameter? / 2.0;
-        Some(CutShape { radius, start: self.start, tip: self.tip, point: self.point })
+        let path = self.path_radius();
+        let radius = self.pass.diameter? / 2.0 - path;
+        Some(CutShape { radius, path, start: self.start, tip: self.tip, point: self.point })
     }
 
     /// Returns the depth of the full diameter; `None` if the tool's end is unknown.
     pub(super) fn full_depth(&self, diameter: f64) -> Option<f64> {
-        Some(self.tip - self.point.length(self.pass.diameter.unwrap_or(diameter))?)
+        let own = self.pass.diameter.unwrap_or(diameter) - 2.0 * self.path_radius();
+        Some(self.tip - self.point.length(own)?)
+    }
+
+    /// Returns the radius of a mill's circle; 0 of a stroke.
+    fn path_radius(&self) -> f64 {
+        self.pass.cut.milled.map_or(0.0, |circle| circle.radius)
     }
 
     /// Returns how far the cut is from making a feature, the least for the best; `None` if it can't make it.
@@ -117,6 +123,8 @@ impl<'a> Cut<'a> {
     /// tool's end is unknown.
     pub(super) fn depth_of(&self, feature: &Feature) -> Option<f64> {
         match (feature.kind, feature.to, feature.angle) {
+            // A mill leaves the cone of its point at the wall.
+            _ if self.is_circle() => self.full_depth(feature.diameter),
             (FeatureKind::Drill, DepthTo::Full, Some(angle)) if self.point == PointShape::Unknown => {
                 let point = PointShape::Pointed(gcode_lang::units::Deg(angle));
                 Some(self.tip - point.length(self.pass.diameter.unwrap_or(feature.diameter))?)
@@ -187,6 +195,7 @@ pub(super) fn cylinder_depth(cuts: &[Cut<'_>], nominal: f64, tolerance: f64) -> 
         let tip = if exceeds(nominal - cut.tip, tolerance) { cut.tip } else { nominal };
         let diameter = cut.pass.diameter.unwrap_or(0.0);
         match cut.point {
+            _ if cut.is_circle() => tip,
             PointShape::Unknown if is_mill(cut.pass.tool) => tip,
             PointShape::Unknown => tip - POINT_LENGTH * diameter,
             point => tip - point.length(diameter).unwrap_or(0.0),

@@ -2,13 +2,18 @@
 use super::*;
 use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFSET, SPINDLE_REVERSED};
 use crate::holes::CutConditions;
+use crate::machine::ToolKind;
 use gcode_lang::motion::{LengthCompensation, SpindleDirection};
+use gcode_part::Hand;
 
 /// Relative deviation of S and F without a finding: rounding of an inch value.
 const ROUNDING_ALLOWANCE: f64 = 0.005;
 
 /// Relative deviation above which S or F is an error: tables of cutting data leave this range open.
 const ERROR_RATIO: f64 = 0.25;
+
+/// Largest feed of a tool of unknown diameter, mm per revolution; of a known one it is half its diameter.
+const MAX_FEED_PER_TURN: f64 = 5.0;
 
 /// Pecks up to this length, mm, and up to this share of the drill's diameter are none: the drill only rubs.
 const LEAST_PECK: f64 = 0.01;
@@ -18,7 +23,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let (conditions, limits) = (&inspection.extraction.cut_conditions, &inspection.reference.process_limits);
     let mut reported: Vec<(Diagnostic, u64)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
-    for check in [reversed, speed, feed, peck, fine_peck, length, tool] {
+    for check in [reversed, speed, feed, feed_per_turn, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
             let index = *known.entry(finding.message.clone()).or_insert(reported.len());
@@ -34,11 +39,20 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     }
 }
 
-fn reversed(cut: &CutConditions, _: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
-    (cut.spindle_direction == SpindleDirection::Counterclockwise).then(|| {
-        Diagnostic::new(&SPINDLE_REVERSED, format!("{} cuts with M04", name(cut)))
-            .note("a right-hand drill rubs and breaks; the reference does not give the hand of the tool")
-            .help("use M03, unless the tool is left-hand")
+/// Reports a tool that turns against its hand. A thread has the hand of the spindle, which another check compares with the
+/// reference.
+fn reversed(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+    let hand = cut.tool.and_then(|number| machine.find_tool(number)?.hand);
+    let (wrong, code, right) = match hand.unwrap_or_default() {
+        Hand::Right => (SpindleDirection::Counterclockwise, "M04", "M03"),
+        Hand::Left => (SpindleDirection::Clockwise, "M03", "M04"),
+    };
+    let is_warning = cut.is_tapping;
+    (cut.spindle_direction == wrong).then(|| {
+        Diagnostic::new(&SPINDLE_REVERSED, format!("{} cuts with {code}", name(cut)))
+            .with_severity(if is_warning { Severity::Warning } else { Severity::Error })
+            .note("a tool that turns against its hand rubs and breaks")
+            .help(format!("use {right}, or give the tool's hand in the machine file"))
     })
 }
 
@@ -64,6 +78,32 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     );
     let finding = Diagnostic::new(&DRILL_FEED, message).with_severity(severity);
     Some(finding.help("correct F, or the tool's feed in the job; check that G94 and G21 are in force"))
+}
+
+/// Reports a feed per revolution that no tool survives: G95 with a feed per minute, or the reverse.
+fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+    let kind = cut.tool.and_then(|number| machine.find_tool(number)?.kind);
+    let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < cut.speed.0;
+    if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
+        return None;
+    }
+    let [_, feed] = cut.feed_range;
+    let per_turn = feed.0 / cut.speed.0;
+    let limit = machine.diameter_of(cut.tool).map_or(MAX_FEED_PER_TURN, |diameter| diameter / 2.0);
+    if !exceeds(per_turn, limit) {
+        return None;
+    }
+    let message = format!(
+        "{} feeds {} mm a revolution ({} mm/min at S{})",
+        name(cut),
+        round_thousandth(per_turn),
+        round_thousandth(feed.0),
+        cut.speed.0
+    );
+    Some(
+        Diagnostic::new(&DRILL_FEED, message)
+            .help("check F and S, and whether G95 is in force instead of G94"),
+    )
 }
 
 fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {

@@ -16,8 +16,12 @@ pub(in crate::verify) enum ShapeGap {
     SpotDrill(Option<u32>),
     /// The depth of its full diameter is unknown.
     FullDepth(Option<u32>),
+    /// The depth of its full diameter is unknown, which has to pass the far side.
+    FullThrough(Option<u32>),
     /// The angle of its countersink is unknown.
     Angle(Option<u32>),
+    /// It only widens or threads a hole, and the program doesn't drill that.
+    Undrilled(Option<u32>),
 }
 
 /// Findings on the features of a nominal hole, and what they leave open.
@@ -35,7 +39,7 @@ pub(super) struct Judgement<'c> {
     /// Cuts from the side of the nominal entry, in the order of the program.
     pub near: Vec<Cut<'c>>,
     /// Cuts of a through hole from its far side.
-    far: Vec<Cut<'c>>,
+    pub far: Vec<Cut<'c>>,
     pub findings: Vec<Diagnostic>,
     pub gaps: Vec<ShapeGap>,
 }
@@ -71,7 +75,7 @@ fn judge<'c>(
 ) -> Option<Judgement<'c>> {
     let (nominal, drilled) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
     let is_plain = nominal.features.is_empty() && !nominal.through;
-    if is_plain && drilled.earlier_passes.is_empty() {
+    if is_plain && drilled.earlier_passes.is_empty() && tool_kinds::is_usual(drilled, machine) {
         return None;
     }
     let out = Vector3::from(nominal.axis);
@@ -92,6 +96,7 @@ fn judge<'c>(
     judged.judge_far_widths(drilled);
     judged.judge_break_through(surface);
     threads::judge(&mut judged);
+    tool_kinds::judge(&mut judged);
     Some(judged)
 }
 
@@ -348,7 +353,7 @@ impl Judgement<'_> {
                 true => cylinder_depth(&self.near, depth, tolerances.depth),
                 false => depth - POINT_LENGTH * diameter.unwrap_or(0.0),
             };
-            (sized, full - sized.tip)
+            (sized, full - sized.full_depth(0.0).filter(|_| sized.is_circle()).unwrap_or(sized.tip))
         } else if let Some(widest) = widest_circle(&self.near, tolerances).filter(|_| diameter.is_some()) {
             let full = cylinder_depth(&self.near, depth, tolerances.depth);
             (widest, full - widest.tip)
@@ -411,7 +416,7 @@ impl Judgement<'_> {
             let depth = |cut: &Cut<'_>| cut.full_depth(diameter).unwrap_or(cut.tip);
             let deepest = cuts.iter().filter(makes).max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
             if deepest.full_depth(diameter).is_none() {
-                gaps.push(ShapeGap::FullDepth(deepest.pass.tool));
+                gaps.push(ShapeGap::FullThrough(deepest.pass.tool));
             }
             Some((depth(deepest).max(0.0), deepest.pass.backtrace.clone()))
         };

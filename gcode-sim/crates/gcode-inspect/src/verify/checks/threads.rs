@@ -51,7 +51,7 @@ fn wide_cut(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<WideCut> {
     let (core, bottom) = core(judged)?;
     let excess = |full: f64| {
         let (radius, tip) = (diameter / 2.0, full.min(bottom));
-        let shape = CutShape { radius, start: cut.start, tip, point: PointShape::Flat };
+        let shape = CutShape { radius, path: 0.0, start: cut.start, tip, point: PointShape::Flat };
         if tip <= cut.start.max(0.0) { 0.0 } else { -2.0 * core.margin(&shape) }
     };
     let is_wide = |full: f64| exceeds(excess(full), judged.comparison.tolerances.diameter);

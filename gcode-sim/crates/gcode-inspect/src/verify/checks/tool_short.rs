@@ -102,7 +102,7 @@ fn side_outline(nominal: &Hole, drilled: &DrilledHole) -> Option<Outline> {
 /// Returns true if a part of a tool is wider than the hole above a depth. A mill takes it round its circle.
 fn is_wider(radius: f64, depth: f64, cut: &Cut<'_>, outline: Option<&Outline>, tolerance: f64) -> bool {
     let circle = cut.pass.cut.milled.map_or(0.0, |circle| circle.radius);
-    let shape = CutShape { radius: radius + circle, start: 0.0, tip: depth, point: PointShape::Flat };
+    let shape = CutShape { radius, path: circle, start: 0.0, tip: depth, point: PointShape::Flat };
     match outline {
         Some(outline) => exceeds(-2.0 * outline.margin(&shape), tolerance),
         // Nothing is known of a hole without a diameter, but it is no wider than the spindle.
