@@ -71,6 +71,7 @@ impl Planner<'_> {
             axis_word_use = new.or(axis_word_use);
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
+                state.is_tapping_rigid = false;
                 is_cycle_active = false;
             }
         }

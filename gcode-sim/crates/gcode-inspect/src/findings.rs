@@ -8,8 +8,8 @@ gcode_lang::finding_kinds! {
     BACK_BORED = "back-bored", Warning, "a bore from the back is not among the holes";
     BALL_INTO_PART = "ball-into-part", Error, "an edge finder's ball is fed into the part";
     BURR_OFFSET = "burr-offset", Error, "the job and the machine file give the burr different positions";
-    DRILL_FEED = "drill-feed", Error, "a tool cuts at another feed than specified";
-    DRILL_PECK = "drill-peck", Error, "a hole is drilled with other pecks than specified";
+    DRILL_FEED = "drill-feed", Error, "a tool cuts at a wrong feed";
+    DRILL_PECK = "drill-peck", Error, "a hole is drilled with wrong pecks";
     DRILL_SPEED = "drill-speed", Error, "a tool cuts at another speed than specified";
     DRILLS_UNCLAMPED = "drills-unclamped", Error, "a feed into the part with an unclamped rotary";
     FEATURE_DEPTH = "feature-depth", Error, "a feature of a hole is too deep or too shallow";
@@ -64,7 +64,7 @@ gcode_lang::finding_kinds! {
     ROW_SEAM = "row-seam", Error, "the last row does not meet the first";
     ROW_SHORT = "row-short", Error, "all rows of a honeycomb end too early";
     SPINDLE_IN_HOLE = "spindle-in-hole", Error, "the spindle stops or reverses while a drill is in the hole";
-    SPINDLE_REVERSED = "spindle-reversed", Error, "a hole is drilled with M04";
+    SPINDLE_REVERSED = "spindle-reversed", Error, "the spindle turns against the hand of the tool";
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
     START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";
     TAP_DRILL = "tap-drill", Error, "a thread is as deep as its drilled hole, or deeper";

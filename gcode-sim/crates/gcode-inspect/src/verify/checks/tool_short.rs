@@ -70,7 +70,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let (message, help) = describe(tool, part, deepest.depth, &format!("in hole {id}{more}"));
         let finding =
             Diagnostic::new(&TOOL_SHORT, message).help(help).with_backtrace(deepest.backtrace.clone());
-        findings.add(Subject::Nominal(deepest.nominal), finding);
+        findings.add(Subject::Motion, finding);
     }
 }
 
