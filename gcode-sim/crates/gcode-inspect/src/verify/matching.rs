@@ -3,8 +3,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
+use super::hole_cuts::POINT_LENGTH;
 use super::position::Deviation;
-use super::stack::POINT_LENGTH;
 use super::{Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
 use crate::machine::{Machine, ToolCylinder};

@@ -12,7 +12,7 @@ const ROUNDING_ALLOWANCE: f64 = 0.005;
 /// Relative deviation above which S or F is an error: tables of cutting data leave this range open.
 const ERROR_RATIO: f64 = 0.25;
 
-/// Largest feed of a tool of unknown diameter, mm per revolution; of a known one it is half its diameter.
+/// Largest feed of a tool of unknown diameter, mm per revolution.
 const MAX_FEED_PER_TURN: f64 = 5.0;
 
 /// Pecks up to this length, mm, and up to this share of the drill's diameter are none: the drill only rubs.
@@ -80,7 +80,7 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     Some(finding.help("correct F, or the tool's feed in the job; check that G94 and G21 are in force"))
 }
 
-/// Reports a feed per revolution that no tool survives: G95 with a feed per minute, or the reverse.
+/// Reports a feed per revolution that no tool survives: several times what tables of cutting data give.
 fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
     let kind = cut.tool.and_then(|number| machine.find_tool(number)?.kind);
     let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < cut.speed.0;
@@ -89,7 +89,11 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
     }
     let [_, feed] = cut.feed_range;
     let per_turn = feed.0 / cut.speed.0;
-    let limit = machine.diameter_of(cut.tool).map_or(MAX_FEED_PER_TURN, |diameter| diameter / 2.0);
+    let limit = match (machine.diameter_of(cut.tool), kind) {
+        (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.1),
+        (Some(diameter), _) => (0.2 * diameter).max(0.5),
+        (None, _) => MAX_FEED_PER_TURN,
+    };
     if !exceeds(per_turn, limit) {
         return None;
     }
@@ -100,10 +104,9 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
         round_thousandth(feed.0),
         cut.speed.0
     );
-    Some(
-        Diagnostic::new(&DRILL_FEED, message)
-            .help("check F and S, and whether G95 is in force instead of G94"),
-    )
+    Some(Diagnostic::new(&DRILL_FEED, message).help(
+        "check F and S, whether F is left from another tool, and whether G95 is in force instead of G94",
+    ))
 }
 
 fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {

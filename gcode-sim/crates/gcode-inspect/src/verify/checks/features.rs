@@ -2,8 +2,8 @@
 use super::*;
 use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::machine::{PointShape, ToolKind};
+use crate::verify::hole_cuts::{Cut, POINT_LENGTH, assign, cylinder_depth, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
-use crate::verify::stack::{Cut, POINT_LENGTH, assign, cylinder_depth, deepest_circle, widest_circle};
 use gcode_part::{Feature, FeatureKind};
 
 /// Largest width by which a spot drill may break the edge of a hole, mm in diameter.
@@ -96,7 +96,7 @@ fn judge<'c>(
     judged.judge_far_widths(drilled);
     judged.judge_break_through(surface);
     threads::judge(&mut judged);
-    tool_kinds::judge(&mut judged);
+    tool_kinds::judge(&mut judged, surface.is_some());
     Some(judged)
 }
 

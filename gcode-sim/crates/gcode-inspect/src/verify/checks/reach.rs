@@ -3,7 +3,7 @@ use super::cutting::round_thousandth;
 use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING, HOLES_ALIKE, LENGTH_OFFSET};
 use crate::holes::{LengthMismatch, MAX_LINE_OFFSET};
-use crate::verify::stack::POINT_LENGTH;
+use crate::verify::hole_cuts::POINT_LENGTH;
 use gcode_lang::motion::LengthCompensation;
 use gcode_part::PARALLEL_COSINE;
 

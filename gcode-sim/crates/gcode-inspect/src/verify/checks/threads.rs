@@ -4,8 +4,8 @@ use super::features::{Judgement, ShapeGap};
 use super::*;
 use crate::findings::{TAP_DRILL, TAP_HAND, TAP_PITCH};
 use crate::machine::PointShape;
+use crate::verify::hole_cuts::{Cut, POINT_LENGTH, assign};
 use crate::verify::outline::{CutShape, Outline};
-use crate::verify::stack::{Cut, assign};
 use gcode_lang::motion::SpindleDirection;
 use gcode_part::{Feature, FeatureKind, Hand, NOISE};
 
@@ -18,8 +18,11 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     if !judged.near.iter().any(Cut::is_tap) {
         return;
     }
-    let drilled = (0..judged.near.len()).filter_map(|cut| drilled_depth(nominal, id, &judged.near, cut));
+    let slack = judged.comparison.tolerances.depth;
+    let drilled =
+        (0..judged.near.len()).filter_map(|cut| drilled_depth(nominal, id, &judged.near, cut, slack));
     let mut findings: Vec<_> = drilled.collect();
+    judged.gaps.extend(open_depths(&judged.near));
     let wide: Vec<WideCut> = judged.near.iter().filter_map(|cut| wide_cut(judged, cut)).collect();
     for cut in wide {
         match cut {
@@ -35,6 +38,23 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         findings.extend(hand(id, feature, cut));
     }
     judged.findings.extend(findings);
+}
+
+/// Returns the drills whose unknown points decide whether they are deep enough for a thread: their tips are deeper than the tap,
+/// and with points of 118° their full diameters are not.
+fn open_depths(cuts: &[Cut<'_>]) -> Vec<ShapeGap> {
+    let taps = cuts.iter().filter(|cut| cut.is_tap()).map(|cut| cut.tip);
+    let Some(thread) = taps.reduce(f64::max) else { return Vec::new() };
+    let drills = || cuts.iter().filter(|cut| !cut.is_tap());
+    let full = |cut: &Cut<'_>| {
+        let diameter = cut.pass.diameter.unwrap_or(0.0);
+        cut.full_depth(diameter).unwrap_or(cut.tip - POINT_LENGTH * diameter)
+    };
+    if drills().map(full).any(|full| thread < full) {
+        return Vec::new();
+    }
+    let is_open = |cut: &&Cut<'_>| cut.point == PointShape::Unknown && thread < cut.tip;
+    drills().filter(is_open).map(|cut| ShapeGap::FullDepth(cut.pass.tool)).collect()
 }
 
 /// Judgement of a cut that leaves too little metal for a thread.
@@ -127,13 +147,13 @@ fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
 
 /// Reports a thread that ends no higher than what is drilled before it. A thread in a hole that the program doesn't drill is
 /// left open.
-fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize) -> Option<Diagnostic> {
+fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize, slack: f64) -> Option<Diagnostic> {
     let tap = cuts.get(index).filter(|cut| cut.is_tap())?;
     cuts.iter().find(|cut| !cut.is_tap())?;
     let depth = |cut: &Cut<'_>| cut.full_depth(nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip);
     let before = cuts[..index].iter().filter(|cut| !cut.is_tap()).map(depth);
     let drilled = before.fold(0.0, f64::max);
-    let is_open = nominal.through && !exceeds(nominal.depth, drilled);
+    let is_open = nominal.through && !exceeds(nominal.depth - drilled, slack);
     if is_open || tap.tip + NOISE < drilled {
         return None;
     }
@@ -157,13 +177,13 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
         return None;
     }
     let message = format!(
-        "hole {id}: {} feeds {actual:.4} mm a revolution (F{} at S{speed}), the pitch is {nominal}",
+        "hole {id}: {} feeds {actual:.4} mm a revolution ({} mm/min at S{speed}), the pitch is {nominal}",
         cut.name(),
         cutting::round_thousandth(feed)
     );
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help(format!(
-        "command F{} at S{speed}, or correct the pitch",
+        "command a feed of {} mm/min at S{speed}, or correct the pitch",
         cutting::round_thousandth(nominal * speed)
     )))
 }

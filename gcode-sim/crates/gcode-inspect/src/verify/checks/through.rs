@@ -3,7 +3,7 @@
 use super::*;
 use crate::findings::HOLE_THROUGH;
 use crate::verify::bottom;
-use crate::verify::stack::{Cut, POINT_LENGTH};
+use crate::verify::hole_cuts::{Cut, POINT_LENGTH};
 
 /// Largest length by which the full diameter of a tool may pass the far side of a through hole, mm: the lead of a tap or a
 /// reamer, and some clearance.

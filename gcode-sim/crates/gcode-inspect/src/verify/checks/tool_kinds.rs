@@ -4,7 +4,7 @@ use super::*;
 use crate::findings::TOOL_KIND;
 use crate::holes::PassCut;
 use crate::machine::{PointShape, Tool, ToolKind};
-use crate::verify::stack::Cut;
+use crate::verify::hole_cuts::Cut;
 
 /// Returns true for a tool that only widens or threads a hole.
 pub(super) fn needs_hole(kind: Option<ToolKind>) -> bool {
@@ -28,7 +28,8 @@ fn is_end_cutting(kind: Option<ToolKind>) -> bool {
 }
 
 /// Adds the findings on the kinds of the tools that cut a hole, and the tools whose hole the program doesn't drill.
-pub(super) fn judge(judged: &mut Judgement<'_>) {
+/// The part is solid where its stock or surface is known.
+pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool) {
     let (mut findings, mut gaps) = (Vec::new(), Vec::new());
     for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
         for (index, cut) in cuts.iter().enumerate() {
@@ -38,7 +39,11 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
             }
             let makes_hole = |other: &Cut<'_>| !needs_hole(other.kind) && !other.is_tap();
             if !cuts.iter().chain(others).any(makes_hole) {
-                gaps.push(ShapeGap::Undrilled(cut.pass.tool));
+                // A tool of unknown kind may as well be a drill.
+                match cut.kind.filter(|_| is_solid) {
+                    Some(kind) => findings.push(undrilled(judged.id, cut, kind)),
+                    None => gaps.push(ShapeGap::Undrilled(cut.pass.tool)),
+                }
             } else if cut.kind.is_some_and(|kind| kind != ToolKind::Tap) {
                 findings.extend(in_solid(judged, cut, &cuts[..index], others));
             }
@@ -48,6 +53,16 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     gaps.dedup();
     judged.findings.extend(findings);
     judged.gaps.extend(gaps);
+}
+
+/// Reports a tool in a hole that nothing drills.
+fn undrilled(id: &str, cut: &Cut<'_>, kind: ToolKind) -> Diagnostic {
+    let kind = kind.name();
+    let message =
+        format!("hole {id}: {} is a {kind} and goes {:.3} mm into the solid part", cut.name(), cut.tip);
+    Diagnostic::new(&TOOL_KIND, message)
+        .with_backtrace(cut.pass.backtrace.clone())
+        .help("drill the hole before it; if another program drills it, leave out [stock]")
 }
 
 /// Reports a circle by a tool without cutting edges on its side.
@@ -74,8 +89,10 @@ fn in_solid(
     let is_reamer = cut.kind == Some(ToolKind::Reamer);
     let drilled = before.iter().filter(|other| !needs_hole(other.kind)).map(|other| depth(other, is_reamer));
     let drilled = drilled.fold(0.0, f64::max);
-    let is_open = judged.nominal.through && (!others.is_empty() || !exceeds(judged.nominal.depth, drilled));
-    if is_open || !exceeds(cut.tip - drilled, judged.comparison.tolerances.depth) {
+    let slack = judged.comparison.tolerances.depth;
+    let is_open =
+        judged.nominal.through && (!others.is_empty() || !exceeds(judged.nominal.depth - drilled, slack));
+    if is_open || !exceeds(cut.tip - drilled, slack) {
         return None;
     }
     let kind = cut.kind.map_or("tool", ToolKind::name);

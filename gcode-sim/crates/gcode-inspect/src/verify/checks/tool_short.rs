@@ -2,8 +2,8 @@
 use super::*;
 use crate::findings::TOOL_SHORT;
 use crate::machine::{PointShape, TOUCH_DEPTH, Tool};
+use crate::verify::hole_cuts::Cut;
 use crate::verify::outline::{CutShape, Outline};
-use crate::verify::stack::Cut;
 use gcode_lang::motion::Backtrace;
 
 /// Part of a tool above its flutes.

@@ -7,6 +7,7 @@ use super::Tolerances;
 use super::outline::CutShape;
 use crate::holes::{DrilledHole, ToolPass};
 use crate::machine::{Machine, PointShape, Tool, ToolKind};
+use gcode_lang::units::Deg;
 use gcode_part::{DepthTo, Feature, FeatureKind, Hole, exceeds};
 
 /// Largest difference between the angles of a countersink and its tool, degrees.
@@ -61,7 +62,7 @@ impl<'a> Cut<'a> {
     }
 
     pub(super) fn is_tap(&self) -> bool {
-        self.pass.cut.is_tapping || self.kind == Some(ToolKind::Tap)
+        self.kind.map_or(self.pass.cut.is_tapping, |kind| kind == ToolKind::Tap)
     }
 
     /// Returns the name of the tool, `T1`, with its diameter.
@@ -83,6 +84,16 @@ impl<'a> Cut<'a> {
         Some(self.tip - self.point.length(own)?)
     }
 
+    /// Returns the depth of the tip; of a cone that is milled round the axis, that of the point of the whole cone.
+    fn cone_tip(&self, feature: &Feature) -> f64 {
+        match (feature.kind, self.point) {
+            (FeatureKind::Countersink, PointShape::Pointed(angle)) => {
+                self.tip + self.path_radius() / Deg(angle.0 / 2.0).tan()
+            }
+            _ => self.tip,
+        }
+    }
+
     /// Returns the radius of a mill's circle; 0 of a stroke.
     fn path_radius(&self) -> f64 {
         self.pass.cut.milled.map_or(0.0, |circle| circle.radius)
@@ -98,7 +109,7 @@ impl<'a> Cut<'a> {
         if is_thread && !self.pass.cut.is_tapping {
             return None;
         }
-        let deep = (self.tip - feature.bottom()).abs();
+        let deep = (self.cone_tip(feature) - feature.bottom()).abs();
         if let (FeatureKind::Countersink, Some(angle)) = (feature.kind, feature.angle) {
             let is_narrow = |own: f64| exceeds(feature.diameter - own, tolerances.diameter);
             return match self.point {
@@ -123,10 +134,11 @@ impl<'a> Cut<'a> {
     /// tool's end is unknown.
     pub(super) fn depth_of(&self, feature: &Feature) -> Option<f64> {
         match (feature.kind, feature.to, feature.angle) {
+            (FeatureKind::Countersink, ..) => Some(self.cone_tip(feature)),
             // A mill leaves the cone of its point at the wall.
             _ if self.is_circle() => self.full_depth(feature.diameter),
             (FeatureKind::Drill, DepthTo::Full, Some(angle)) if self.point == PointShape::Unknown => {
-                let point = PointShape::Pointed(gcode_lang::units::Deg(angle));
+                let point = PointShape::Pointed(Deg(angle));
                 Some(self.tip - point.length(self.pass.diameter.unwrap_or(feature.diameter))?)
             }
             (FeatureKind::Drill, DepthTo::Full, _) => self.full_depth(feature.diameter),
