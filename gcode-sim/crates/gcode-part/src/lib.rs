@@ -65,7 +65,7 @@ mod touch_uncertainty;
 pub use assumption::{Assumption, AssumptionPlace};
 pub use clusters::Clusters;
 pub use entry_planes::{Collar, EntryPlanes, Metal, PARALLEL_COSINE};
-pub use feature::{DepthTo, Feature, FeatureKind};
+pub use feature::{DepthTo, Feature, FeatureKind, Hand};
 pub use flutes::Flutes;
 pub use hole::{Hole, HoleList, Origin, Unit};
 pub use indicator::tilted_ellipsoid;

@@ -2,7 +2,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use crate::machine::Machine;
-use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
+use gcode_lang::motion::{Backtrace, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::units::{MmPerMin, Rpm};
 
 /// Extent of a pass in the part's frame, with its feed and its spindle.
@@ -14,8 +14,10 @@ pub struct PassCut {
     pub bottom: Point3<f64>,
     /// Feed at the deepest point; `None` if unknown.
     pub feed: Option<MmPerMin>,
-    /// Speed of the spindle at the start.
+    /// Speed of the spindle in the last feed that cuts.
     pub speed: Rpm,
+    /// Direction of the spindle in the last feed that cuts.
+    pub direction: SpindleDirection,
     /// True if the spindle reverses in the hole, as it does for a tap.
     pub is_tapping: bool,
     /// Figures of a mill's circle; `None` for a stroke.
@@ -36,7 +38,8 @@ pub struct MilledCut {
 impl PassCut {
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
-        Self { start, bottom, feed: None, speed: Rpm(0.0), is_tapping: false, milled: None }
+        let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
+        Self { start, bottom, feed: None, speed, direction, is_tapping: false, milled: None }
     }
 }
 

@@ -339,6 +339,7 @@ impl CuttingLine {
                 bottom: self.start - self.out.into_inner() * end.depth,
                 feed: self.last_feed,
                 speed: self.cutting_state.speed,
+                direction: self.cutting_state.spindle_direction,
                 is_tapping: self.spindle == SpindleInHole::Reversed,
                 milled: None,
             },

@@ -427,6 +427,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Feed { to, .. } => self.motion(event, MotionKind::Feed, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
             EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
+            EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
                 self.check_tool_known(event, *number);
                 self.update_setup(|setup| setup.tool = Some(*number));

@@ -37,7 +37,7 @@ pub use wheel::Wheel;
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex, Position};
 use gcode_lang::units::Deg;
-use gcode_part::Stock;
+use gcode_part::{Hand, Stock};
 
 /// Rotation and translation of a point; lengths in mm.
 pub type Frame = IsometryMatrix3<f64>;
@@ -99,6 +99,8 @@ pub struct Tool {
     pub kind: Option<ToolKind>,
     /// Full angle of the point, 180° of a flat end; `None` if unknown.
     pub point_angle: Option<Deg>,
+    /// Hand; `None` for a right-hand tool.
+    pub hand: Option<Hand>,
 }
 
 /// A work offset at the start of a run.

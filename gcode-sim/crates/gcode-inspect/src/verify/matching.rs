@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
+use super::hole_cuts::POINT_LENGTH;
 use super::position::Deviation;
 use super::{Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
@@ -141,13 +142,29 @@ impl<'a> Comparison<'a> {
         Self { nominal, actual, tolerances, pattern, pairs, missing, extra, repeated, nominal_by_line }
     }
 
-    /// Leaves out of the extra holes the feeds whose tool stays in the air; without its diameter only its tip counts.
+    /// Returns the diameter of the widest nominal hole that each tool finishes whose own one is unknown.
+    fn widest_by_tool(&self, machine: &Machine) -> BTreeMap<Option<u32>, f64> {
+        let mut widest = BTreeMap::new();
+        for (_, nominal, drilled) in self.matched() {
+            let Some(diameter) = nominal.diameter.filter(|_| machine.diameter_of(drilled.tool).is_none())
+            else {
+                continue;
+            };
+            let known = widest.entry(drilled.tool).or_insert(diameter);
+            *known = known.max(diameter);
+        }
+        widest
+    }
+
+    /// Leaves out of the extra holes the feeds whose tool stays in the air. A tool of unknown diameter is as wide as the holes
+    /// that it finishes; one that finishes none counts by its tip.
     /// Those near a missing hole stay: they explain it, as the rows of a pattern do that lacks holes.
     pub(super) fn leave_out_air_feeds(&mut self, surface: &Surface, machine: &Machine) {
         if self.pattern.is_some() && !self.missing.is_empty() {
             return;
         }
         let (nominal, actual, missing) = (self.nominal, self.actual, &self.missing);
+        let widest_by_tool = self.widest_by_tool(machine);
         self.extra.retain(|index| {
             let end = actual[*index].bottom();
             let is_near = |nominal: &Hole| {
@@ -156,8 +173,11 @@ impl<'a> Comparison<'a> {
             };
             // A feed across the tool has no depth: its ends count.
             let is_known = actual[*index].unknown_axes.is_none();
-            let is_in_air =
-                is_known && actual[*index].passes().all(|pass| is_in_air(&pass, surface, machine));
+            let is_in_air = is_known
+                && actual[*index].passes().all(|pass| {
+                    let nominal = widest_by_tool.get(&pass.tool).copied();
+                    is_in_air(&pass, surface, machine, nominal)
+                });
             !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
         });
     }
@@ -171,6 +191,12 @@ impl<'a> Comparison<'a> {
     /// Returns the nominal hole that an extra hole drills a second time; `None` if there is none.
     pub fn nominal_on_line_of(&self, extra: usize) -> Option<usize> {
         self.nominal_by_line[self.actual[extra].first_on_line]
+    }
+
+    /// Returns the nominal hole whose first pass lies on the line of a drilled one; `None` if there is none.
+    pub(super) fn nominal_on_line(&self, drilled: &DrilledHole) -> Option<usize> {
+        let on_line = |pair: &&HolePair| pair.actual == drilled.first_on_line;
+        self.pairs.iter().find(on_line).map(|pair| pair.nominal)
     }
 
     /// Returns the point of the pattern's cylinder at which a drilled hole crosses it; `None` if it misses.
@@ -215,13 +241,19 @@ fn is_spring_pass(
     is_in_place && earlier.any(|pass| is_same(&pass))
 }
 
-/// Returns true if a pass cuts nothing of the body. A circle that leaves a core goes round the metal: its tip alone counts.
-fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine) -> bool {
+/// Returns true if a pass cuts nothing of the body; `nominal` is the diameter of a tool that the tool table lacks. A circle that
+/// leaves a core goes round the metal: its tip alone counts.
+fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine, nominal: Option<f64>) -> bool {
     let PassCut { start, bottom, milled, .. } = pass.cut;
     if surface.value(&surface.deepest_between(&start, &bottom)) <= 0.0 {
         return false;
     }
+    let cuts = |part: ToolCylinder| part.cuts(surface, (&bottom, &pass.axis), &(start - bottom));
     let own = machine.diameter_of(pass.tool);
+    if let (None, None, Some(diameter)) = (own, milled, nominal) {
+        let from = POINT_LENGTH * diameter;
+        return !cuts(ToolCylinder { from, to: from, radius: diameter / 2.0, is_cutter: true });
+    }
     let Some((own, cut)) = own.zip(pass.diameter).filter(|_| milled.is_none_or(|cut| cut.core.is_none()))
     else {
         return true;
@@ -229,7 +261,7 @@ fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine) -> bool 
     // A circle cuts wider than its tool.
     let wider = |part: ToolCylinder| ToolCylinder { radius: part.radius + (cut - own) / 2.0, ..part };
     let mut parts = machine.tool_end(pass.tool).into_iter().map(wider);
-    !parts.any(|part| part.cuts(surface, (&bottom, &pass.axis), &(start - bottom)))
+    !parts.any(cuts)
 }
 
 /// Matches the nominal and drilled holes that are left: the nearest pairs first, of equally near ones the first in the list;

@@ -17,10 +17,29 @@ const MOTION: &str = "motion beside the holes (no stock)";
 /// Motion whose search was given up, for the first line of a verdict.
 const UNSEARCHED: &str = "rapids whose axes may reach too many positions";
 
-/// Returns the motion that no check covers, for the first line of a verdict.
-pub(super) fn unchecked_motion(extraction: &HoleExtraction) -> Option<&'static str> {
-    let unsearched = extraction.unsearched_rapids.as_ref().map(|_| UNSEARCHED);
-    if extraction.is_metal_known { unsearched } else { Some(MOTION) }
+/// Returns what no check covers and what decides holes or the safety of the motion, for the first line of a verdict.
+pub(super) fn first_line(inspection: &HoleInspection<'_>) -> Vec<&'static str> {
+    let HoleInspection { extraction, machine, features, .. } = inspection;
+    let unsearched = extraction.unsearched_rapids.is_some().then_some(UNSEARCHED);
+    let motion = if extraction.is_metal_known { unsearched } else { Some(MOTION) };
+    let has_gap = |is_kind: fn(&ShapeGap) -> bool| features.iter().any(|hole| hole.gaps.iter().any(is_kind));
+    let is_tool_unknown =
+        !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none());
+    let others = [
+        (is_tool_unknown, "the tool in the spindle at the start"),
+        (
+            has_gap(|gap| matches!(gap, ShapeGap::Undrilled(_))),
+            "holes that the program finishes and does not drill",
+        ),
+        (
+            has_gap(|gap| matches!(gap, ShapeGap::FullThrough(_))),
+            "the full diameter on the far side of through holes",
+        ),
+    ];
+    motion
+        .into_iter()
+        .chain(others.into_iter().filter(|(is_open, _)| *is_open).map(|(_, name)| name))
+        .collect()
 }
 
 /// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
@@ -29,6 +48,7 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
     let mut all = diameters(comparison, machine);
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
+    all.extend(holders(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
     if extraction.findings.iter().any(|finding| finding.kind == &BACK_BORED) {
         all.push("bores made backwards: their depth and diameter".to_owned());
@@ -121,6 +141,15 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
                     name(tool)
                 )
             }
+            ShapeGap::Undrilled(tool) => {
+                format!("the hole in which {} cuts: the program does not drill {holes}", name(tool))
+            }
+            ShapeGap::FullThrough(tool) => {
+                format!(
+                    "the full diameter of {holes} on the far side: the machine file has no point_angle of {}",
+                    name(tool)
+                )
+            }
             ShapeGap::FullDepth(tool) => {
                 format!(
                     "the depth of the full diameter of {holes}: the machine file has no point_angle of {}",
@@ -153,6 +182,19 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<String> {
         format!("{whose}: not in the machine file, which takes {taken}")
     };
     tools.into_iter().map(sentence).collect()
+}
+
+/// Returns the tools whose holder is described, but not where it is.
+fn holders(extraction: &HoleExtraction, machine: &Machine) -> Option<String> {
+    let tools: BTreeSet<u32> = extraction.cut_conditions.iter().filter_map(|cut| cut.tool).collect();
+    let is_nowhere = |number: &&u32| {
+        machine
+            .find_tool(**number)
+            .is_some_and(|tool| tool.holder_diameter.is_some() && tool.length.is_none())
+    };
+    let names: Vec<_> = tools.iter().filter(is_nowhere).map(|number| format!("T{number}")).collect();
+    (!names.is_empty())
+        .then(|| format!("the holder of {} in the holes: the machine file has no length", names.join(", ")))
 }
 
 /// Returns the limits of the process that the reference does not specify.

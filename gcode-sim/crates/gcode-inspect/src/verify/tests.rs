@@ -316,7 +316,7 @@ proptest! {
         (a, ratio) in (150.0..2000.0, prop_oneof![Just(1.0), 0.4..2.5]),
         holes in holes(),
         negative in any::<bool>(),
-        (manual, pivot, length) in (any::<bool>(), 0.0..200.0, 0.0..150.0),
+        (manual, pivot, length) in (any::<bool>(), 0.0..200.0, 50.0..150.0),
     ) {
         let section = Section { a, b: a * ratio };
         let reference = section.reference(&holes);

@@ -216,6 +216,7 @@ const DOCUMENTED: &[SettingRow] = &[
     choice!("CYCLE-REPEATS", "the address for the number of repeats of a canned cycle", REPEAT_LETTERS, |s, v| s.cycle_repeat_letter = v),
     switch!("HOME-ALL", "G28 without an axis moves all axes to the reference position", homes_all_axes),
     switch!("DWELL-SECONDS", "P of a dwell with a decimal point is seconds; G04 takes no X and U", dwell_in_seconds),
+    switch!("G84-RIGID", "5200#0: G84 and G74 turn the spindle without M29 as well", taps_rigidly),
     switch!("PECK-IJK", "G73 and G83 accept I, J, K for decreasing pecks", has_shrinking_pecks),
     whole!("OFFSETS", "pairs of tool offsets", 1, 999, |s, v| s.tool_offsets = v),
     whole!("MACRO-LEVELS", "levels of macro calls", 1, 15, |s, v| s.macro_levels = v),

@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use crate::machine::{Head, HeadKind, Tool, ToolKind};
 use gcode_lang::units::Deg;
+use gcode_part::Hand;
 use gcode_part::reader::bounds::{Bounded, GaugeLength, OffsetNumber, PointAngle, ToolDiameter};
 use gcode_part::reader::{FileError, FileKey, Optional, Reader, Word, WordList};
 
@@ -22,6 +23,9 @@ pub(super) struct FileTool {
     kind: Option<ToolKind>,
     /// Full angle of its point, 180 of a flat end, degrees [default: 90 of a spot-drill or countersink].
     point_angle: Option<Bounded<PointAngle>>,
+    /// Its hand [default: right].
+    #[serde(default, with = "Optional::<Word<HandName>>")]
+    hand: Option<Hand>,
     /// From the tip to the shank, mm; needs `shank_diameter`.
     flute_length: Option<Bounded<GaugeLength>>,
     /// Diameter of the shank, above the flutes, mm; needs `flute_length`.
@@ -40,6 +44,17 @@ impl WordList for ToolKindName {
 
     fn all() -> Vec<(&'static str, ToolKind)> {
         ToolKind::NAMES.into()
+    }
+}
+
+/// Names of the hands.
+pub(super) enum HandName {}
+
+impl WordList for HandName {
+    type Value = Hand;
+
+    fn all() -> Vec<(&'static str, Hand)> {
+        vec![("right", Hand::Right), ("left", Hand::Left)]
     }
 }
 
@@ -81,6 +96,7 @@ impl FileTool {
             holder_length: holder_length.as_ref().map(Bounded::get),
             kind: self.kind,
             point_angle: self.point_angle.as_ref().map(Bounded::get).map(Deg),
+            hand: self.hand,
         })
     }
 

@@ -28,6 +28,7 @@ mod stock;
 mod stopped;
 mod threads;
 mod through;
+mod tool_kinds;
 mod tool_short;
 mod tools;
 
@@ -64,7 +65,7 @@ pub(super) const ALL: &[Check] = &[
     diameter::check,      // hole-diameter
     roundness::check,     // hole-roundness
     milled_core::check,   // hole-core
-    features::check,      // feature-*, hole-not-through, tap-*
+    features::check,      // feature-*, hole-not-through, tap-*, tool-kind
     tools::check,         // hole-tools
     overlap::check,       // hole-overlap
     row_short::check,     // row-short
