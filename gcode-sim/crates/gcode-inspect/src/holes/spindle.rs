@@ -53,7 +53,7 @@ impl HoleExtractor<'_> {
             SpindleInHole::Unchanged => return,
             SpindleInHole::Stopped => (
                 "stops",
-                if is_drill { Severity::Error } else { Severity::Warning },
+                Severity::Warning,
                 "G76, G86 and G88 stop the spindle for a boring bar; a stopped drill rubs in its hole, or breaks when \
                  it is moved sideways",
             ),
