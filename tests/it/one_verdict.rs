@@ -142,7 +142,7 @@ fn an_alarm_is_in_a_list_and_in_a_picture_without_reference() {
     let place = tempfile::tempdir().unwrap();
     std::fs::write(place.path().join("O1.nc"), &text).unwrap();
     let (list, exit) = run("gcode-sim holes O1.nc", place.path());
-    assert!(list.contains(&format!("1 holes, mm, in the part's frame\n{sentence}\n")) && exit == 3, "{list}");
+    assert!(list.contains(&format!("1 hole, mm, in the part's frame\n{sentence}\n")) && exit == 3, "{list}");
     let machine = Machine::default();
     let request = Request::new("O1.nc", text.as_bytes(), machine.clone());
     let simulation = simulate(&request, &mut NoLibrary, None).unwrap();

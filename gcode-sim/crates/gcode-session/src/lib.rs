@@ -25,6 +25,7 @@ mod assumptions;
 mod causes;
 mod trace;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use assumptions::Dependences;
@@ -349,8 +350,8 @@ impl Simulation {
         surface: Option<Surface>,
         is_denied: bool,
     ) {
-        let names = verdict.hole_names();
         let found = self.dependences(request, surface);
+        let names = if found.hole_count() == 0 { BTreeMap::new() } else { verdict.hole_names() };
         let found = found.assumptions(&self.run, |hole| names.get(&hole).cloned());
         verdict.add_assumptions(found, is_denied, &|span| self.run.locate(span));
     }

@@ -3,7 +3,8 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::axis_box::directions_across;
-use super::group::{DrilledHole, PassCut, ToolPass};
+use super::drill_pass::PassCut;
+use super::group::{DrilledHole, ToolPass};
 use crate::machine::TOUCH_DEPTH;
 
 /// Largest height of metal on the bottom of a hole that counts as removed, mm.

@@ -1,17 +1,19 @@
-//! Straight motions along the current line: where it begins, continues and ends.
+//! Straight motions along the current line: it continues, or ends.
 use nalgebra::Point3;
 
-use super::cutting::CuttingState;
-use super::line::{CuttingLine, ToolExit};
+use super::line::ToolExit;
 use super::{HoleExtractor, MotionKind};
-use crate::machine::TOUCH_DEPTH;
-use gcode_lang::motion::{Event, EventKind, SpindleDirection};
-use gcode_lang::source::Span;
+use gcode_lang::motion::{Event, SpindleDirection};
 
 impl HoleExtractor<'_> {
     /// Follows a straight motion from `from` along the current line. Returns the point from which the tool moved freely;
     /// `None` if it stays on the line.
-    pub(super) fn update_line(&mut self, event: &Event<'_>, kind: MotionKind, from: Point3<f64>) -> Option<Point3<f64>> {
+    pub(super) fn update_line(
+        &mut self,
+        event: &Event<'_>,
+        kind: MotionKind,
+        from: Point3<f64>,
+    ) -> Option<Point3<f64>> {
         let Some(mut line) = self.current_line.take() else { return Some(from) };
         let tip = self.pose.tip;
         if kind == MotionKind::Rapid && line.is_overrun(&tip) {
@@ -37,7 +39,7 @@ impl HoleExtractor<'_> {
                 let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {
-                            self.record_line_feed(event, &mut line);
+                            self.record_line_feed(event, &mut line, &from);
                         }
                         line.feed_to(&tip, event.backtrace(), &self.axis_position)
                     }
@@ -51,7 +53,8 @@ impl HoleExtractor<'_> {
                     }
                 };
                 if let Some(pass) = again {
-                    self.strokes.push(pass, self.cut_kind(&line, false));
+                    let order = self.strokes.begin_pass();
+                    self.strokes.push(order, pass, self.cut_kind(&line, false));
                 }
                 self.current_line = Some(line);
                 free_from
@@ -60,42 +63,12 @@ impl HoleExtractor<'_> {
                 let is_along = exit == ToolExit::AlongLine;
                 if is_spindle_stopped && !line.is_inward() && !is_along {
                     self.report_back_boring(&line);
+                    return Some(from);
                 }
                 let free_from = if is_along { line.start_level_crossing(&from, &tip) } else { from };
                 self.report_line(line, exit, kind == MotionKind::Feed);
                 Some(free_from)
             }
-        }
-    }
-
-    pub(super) fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>, last_motion: Option<(MotionKind, Span)>) {
-        let rounding = self.machine.increment.size() / 2.0;
-        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
-        self.current_line = line.map(|line| {
-            let mut line = Box::new(line);
-            line.tool_axis = self.pose.axis;
-            line.upright = self.tool_direction();
-            // A block of a cycle positions, feeds and retracts.
-            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
-            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
-            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-            line.clamp_state = self.clamp_state;
-            line.unknown_axes = self.positions.unknown_axes();
-            line.length_excess = self.length_excess();
-            line.surface_depth =
-                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
-            self.record_line_feed(event, &mut line);
-            line
-        });
-    }
-
-    /// Records the rate of a feed inwards if it cuts; the approach may be faster.
-    fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
-        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH_DEPTH));
-        if let EventKind::Feed { rate, .. } = event.kind
-            && cuts
-        {
-            line.record_feed(*rate);
         }
     }
 }

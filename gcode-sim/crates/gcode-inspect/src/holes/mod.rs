@@ -1,10 +1,12 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
 mod arc_run;
 mod axis_box;
+mod chord_run;
 mod clamping;
 mod clearance;
 mod core;
 mod cutting;
+mod drill_pass;
 #[cfg(test)]
 pub(crate) mod event_script;
 mod feed_law;
@@ -22,17 +24,17 @@ mod rapids;
 mod removed_metal;
 pub(crate) mod spindle;
 mod strokes;
+mod swallowed;
 #[cfg(test)]
 mod tests;
 mod tool_lines;
 pub(crate) mod unknown_axes;
 
-use nalgebra::Point3;
-
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
+pub use drill_pass::{MilledCut, PassCut};
 pub(crate) use group::MAX_LINE_OFFSET;
-pub use group::{DrilledHole, EarlierPass, MilledCut, PassCut, ToolPass};
+pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
@@ -43,14 +45,14 @@ use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
 use self::feed_law::Spoilt;
-use self::line::{CuttingLine, ToolExit};
+use self::line::CuttingLine;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
 use self::per_block::Findings;
 use self::removed_metal::Profile;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, TOUCH_DEPTH, ToolCylinder};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolCylinder};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
@@ -234,7 +236,7 @@ impl<'m> HoleExtractor<'m> {
         self.end_line(false);
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
-        let mut holes = group::group_holes(&passes, self.machine, self.process_limits.hole_spacing);
+        let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         self.find_cores(&mut holes);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
@@ -325,13 +327,12 @@ impl<'m> HoleExtractor<'m> {
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
-                if start.is_some() {
-                    self.forget_plunge();
-                }
-                self.remove_by_feed(event, &[before.tip, self.pose.tip], was.union(is).is_none());
+                // What a feed cuts is recorded before it is removed.
                 if let Some(start) = start {
+                    self.forget_plunge();
                     self.start_line(event, start, last_motion);
                 }
+                self.remove_by_feed(event, &[before.tip, self.pose.tip], was.union(is).is_none());
             }
             _ => {}
         }
@@ -388,6 +389,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Feed { to, .. } => self.motion(event, MotionKind::Feed, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
             EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
+            EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
                 self.check_tool_known(event, *number);
                 self.update_setup(|setup| setup.tool = Some(*number));

@@ -5,6 +5,7 @@ mod checks;
 mod conclusion;
 mod displacement;
 pub mod flutes;
+mod hole_cuts;
 mod hole_finding;
 mod matching;
 mod neighbours;
@@ -13,7 +14,6 @@ mod outline;
 mod position;
 mod rounding;
 mod rows;
-mod stack;
 #[cfg(test)]
 mod tests;
 mod verdict;
@@ -121,9 +121,10 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    if let Some(motion) = not_checked::unchecked_motion(extraction) {
+    let unchecked = not_checked::first_line(&inspection);
+    if !unchecked.is_empty() {
         verdict.summary.push_str("; not checked: ");
-        verdict.summary.push_str(motion);
+        verdict.summary.push_str(&unchecked.join(", "));
     }
     verdict.not_checked = not_checked::lines(&inspection, locate);
     verdict

@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::checks::features::ShapeGap;
 use super::{Comparison, HoleInspection};
+use crate::findings::BACK_BORED;
 use crate::holes::HoleExtraction;
 use crate::machine::{HeadKind, Machine};
 use gcode_lang::motion::LengthCompensation;
@@ -22,12 +23,29 @@ const UNSIZED: &str = "what mills of unknown diameter remove";
 /// Motion near feeds beyond the limit, for the first line of a verdict.
 const CUT_SHORT: &str = "what the feeds after the first million remove";
 
-/// Returns the motion that no check covers, for the first line of a verdict.
-pub(super) fn unchecked_motion(extraction: &HoleExtraction) -> Option<&'static str> {
-    let unsearched = extraction.unsearched_rapids.as_ref().map(|_| UNSEARCHED);
-    let unsized_mills = (!extraction.unsized_mills.is_empty()).then_some(UNSIZED);
-    let cut_short = extraction.is_removal_cut_short.then_some(CUT_SHORT);
-    if extraction.is_metal_known { unsearched.or(unsized_mills).or(cut_short) } else { Some(MOTION) }
+/// Returns what no check covers and what decides holes or the safety of the motion, for the first line of a verdict.
+pub(super) fn first_line(inspection: &HoleInspection<'_>) -> Vec<&'static str> {
+    let HoleInspection { extraction, machine, features, .. } = inspection;
+    let is_known = extraction.is_metal_known;
+    let has_gap = |is_kind: fn(&ShapeGap) -> bool| features.iter().any(|hole| hole.gaps.iter().any(is_kind));
+    let is_tool_unknown =
+        !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none());
+    let gaps = [
+        (!is_known, MOTION),
+        (is_known && extraction.unsearched_rapids.is_some(), UNSEARCHED),
+        (is_known && !extraction.unsized_mills.is_empty(), UNSIZED),
+        (is_known && extraction.is_removal_cut_short, CUT_SHORT),
+        (is_tool_unknown, "the tool in the spindle at the start"),
+        (
+            has_gap(|gap| matches!(gap, ShapeGap::Undrilled(_))),
+            "holes that the program finishes and does not drill",
+        ),
+        (
+            has_gap(|gap| matches!(gap, ShapeGap::FullThrough(_))),
+            "the full diameter on the far side of through holes",
+        ),
+    ];
+    gaps.into_iter().filter(|(is_open, _)| *is_open).map(|(_, name)| name).collect()
 }
 
 /// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
@@ -36,7 +54,11 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
     let mut all = diameters(comparison, machine);
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
+    all.extend(holders(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
+    if extraction.findings.iter().any(|finding| finding.kind == &BACK_BORED) {
+        all.push("bores made backwards: their depth and diameter".to_owned());
+    }
     let mut drilled = comparison.matched().map(|(.., drilled)| drilled);
     if machine.head.kind == HeadKind::Free && drilled.all(|hole| hole.tool_axis_deviation == Deg::ZERO) {
         all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());
@@ -98,8 +120,11 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
         match tool {
             None if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
             None => format!("the diameter of {holes} made before the first tool change"),
-            Some(tool) => {
+            Some(tool) if machine.find_tool(tool).is_none() => {
                 format!("the diameter of {holes} made by T{tool}, which is not in the machine file")
+            }
+            Some(tool) => {
+                format!("the diameter of {holes} made by T{tool}: the machine file has no diameter of it")
             }
         }
     };
@@ -128,6 +153,15 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
             ShapeGap::SpotDrill(tool) => {
                 format!(
                     "the end of {}, taken for a spot drill in {holes}: the machine file has no kind or point_angle",
+                    name(tool)
+                )
+            }
+            ShapeGap::Undrilled(tool) => {
+                format!("the hole in which {} cuts: the program does not drill {holes}", name(tool))
+            }
+            ShapeGap::FullThrough(tool) => {
+                format!(
+                    "the full diameter of {holes} on the far side: the machine file has no point_angle of {}",
                     name(tool)
                 )
             }
@@ -163,6 +197,19 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<String> {
         format!("{whose}: not in the machine file, which takes {taken}")
     };
     tools.into_iter().map(sentence).collect()
+}
+
+/// Returns the tools whose holder is described, but not where it is.
+fn holders(extraction: &HoleExtraction, machine: &Machine) -> Option<String> {
+    let tools: BTreeSet<u32> = extraction.cut_conditions.iter().filter_map(|cut| cut.tool).collect();
+    let is_nowhere = |number: &&u32| {
+        machine
+            .find_tool(**number)
+            .is_some_and(|tool| tool.holder_diameter.is_some() && tool.length.is_none())
+    };
+    let names: Vec<_> = tools.iter().filter(is_nowhere).map(|number| format!("T{number}")).collect();
+    (!names.is_empty())
+        .then(|| format!("the holder of {} in the holes: the machine file has no length", names.join(", ")))
 }
 
 /// Returns the limits of the process that the reference does not specify.
