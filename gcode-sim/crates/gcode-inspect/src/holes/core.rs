@@ -53,7 +53,13 @@ impl HoleExtractor<'_> {
     /// leave none.
     fn core_of(&self, pass: &ToolPass<'_>, passes: &[ToolPass<'_>]) -> Option<f64> {
         let circle = pass.cut.milled?;
-        let radius = pass.diameter? / 2.0 - WALL_WIDTH - circle.roundness;
+        // The cone of a pointed mill is judged by its shape: what is inside its full diameter counts.
+        let is_pointed = 0.0 < self.point_length(pass);
+        let wall = if is_pointed { 2.0 * circle.radius - pass.diameter? / 2.0 } else { pass.diameter? / 2.0 };
+        let radius = wall - WALL_WIDTH - circle.roundness;
+        if radius <= 0.0 {
+            return None;
+        }
         let level = pass.cut.bottom.coords.dot(&pass.axis) + MAX_CORE_HEIGHT;
         let gaps = self.gaps(pass, passes, (radius, level));
         if gaps.is_empty() {
@@ -82,10 +88,15 @@ impl HoleExtractor<'_> {
         gaps
     }
 
+    /// Returns the length of the tool below its full diameter.
+    fn point_length(&self, pass: &ToolPass<'_>) -> f64 {
+        self.machine.tool_end(pass.tool).first().map_or(0.0, |full| full.from)
+    }
+
     /// Returns the ring about the axis of another pass that a pass clears.
     fn cleared_ring(&self, pass: &ToolPass<'_>, at: &ToolPass<'_>) -> Option<ClearedRing> {
         let diameter = pass.diameter?;
-        let point = self.machine.tool_end(pass.tool).first().map_or(0.0, |full| full.from);
+        let point = self.point_length(pass);
         let to = pass.cut.bottom - at.cut.bottom;
         let aside = (to - at.axis.into_inner() * to.dot(&at.axis)).norm();
         // A circle cleared the metal from its path less the mill's radius on.

@@ -65,6 +65,18 @@ impl HoleExtractor<'_> {
         tool.diameter.map(|diameter| diameter / 2.0)
     }
 
+    /// Returns true if the tool cuts metal that is known between two points, false if all that is known there is removed,
+    /// and `None` if nothing is known.
+    pub(super) fn cuts_known_metal(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
+        let cuts = self.metal.cuts(from, to)?;
+        let rim = || {
+            let (axis, radius) = (self.axis_in_motion(from, to)?, self.tool_radius()?);
+            Some(rim(&axis, &(to - from), radius))
+        };
+        let is_cut = |offset: Vector3<f64>| self.metal.cuts(&(from + offset), &(to + offset)) == Some(true);
+        Some(cuts || rim().is_some_and(|rim| rim.into_iter().any(is_cut)))
+    }
+
     /// Follows a feed through points: it removes metal. Reports what it must not remove, where the positions of the axes
     /// are known.
     pub(super) fn remove_by_feed(&mut self, event: &Event<'_>, path: &[Point3<f64>], is_known: bool) {
@@ -206,6 +218,10 @@ impl HoleExtractor<'_> {
     fn spoilt_by_shank(&self, travel: &[Point3<f64>; 2]) -> Option<Spoilt> {
         let axis = &self.pose.axis?;
         if self.surface.is_some() && !self.has_left_start {
+            return None;
+        }
+        // In a nominal hole its outline decides.
+        if self.metal.is_allowed(travel, axis, 0.0) {
             return None;
         }
         self.tool_body.iter().filter(|part| !part.is_cutter).find_map(|part| {

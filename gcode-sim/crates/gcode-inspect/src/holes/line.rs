@@ -394,7 +394,7 @@ impl HoleExtractor<'_> {
         };
         let is_stopped = self.cutting_state.spindle_direction == SpindleDirection::Off;
         // A tool may enter a hole that is cut with the spindle stopped.
-        if is_in_air || is_stopped && self.metal.cuts(from, &tip) == Some(false) {
+        if is_in_air || is_stopped && self.cuts_known_metal(from, &tip) == Some(false) {
             return;
         }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };

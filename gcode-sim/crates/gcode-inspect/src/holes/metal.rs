@@ -120,6 +120,11 @@ impl KnownMetal {
         is_touched
     }
 
+    /// Returns true if a travel leads through what was metal.
+    pub(super) fn is_solid(&self, travel: &[Point3<f64>; 2]) -> bool {
+        !self.solid(travel, |_| true).is_empty()
+    }
+
     /// Returns the parts of a travel in solid metal, cut or not.
     fn solid(&self, [from, to]: &[Point3<f64>; 2], is_counted: impl Fn(usize) -> bool) -> Rest {
         let mut rest = Rest::default();

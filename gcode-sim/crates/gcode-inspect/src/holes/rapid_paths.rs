@@ -189,10 +189,8 @@ impl HoleExtractor<'_> {
         let mut budget = std::mem::take(&mut self.search_budget);
         let mut found: Option<PointInMetal> = None;
         for part in &self.tool_body {
-            let is_in_metal =
-                || self.metal.cuts(&begin, &pose.tip).is_some_and(|_| self.is_below_surface(&pose.tip));
             // A boring bar with the spindle stopped is shifted off the wall.
-            if part.is_cutter && self.tool_radius().is_none() && is_in_metal() {
+            if part.is_cutter && self.tool_radius().is_none() && self.metal.is_solid(&[begin, pose.tip]) {
                 continue;
             }
             // The metal above a nominal hole goes with the hole: in a steep flank the tool meets it on its way to the entry.
@@ -262,10 +260,6 @@ impl HoleExtractor<'_> {
                 .with_severity(severity)
                 .help("keep the diameters of the tool and its holder away from the part until the feed")
         });
-    }
-
-    fn is_below_surface(&self, p: &Point3<f64>) -> bool {
-        self.metal.depth(p).is_some_and(|depth| TOUCH_DEPTH < depth)
     }
 
     /// Returns true for a point in the metal above a nominal hole, if the tool stands above the entry in the direction of
