@@ -87,11 +87,12 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
     if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
         return None;
     }
-    let [_, feed] = cut.feed_range;
+    // An approach in the air may be faster.
+    let [feed, _] = cut.feed_range;
     let per_turn = feed.0 / cut.speed.0;
     let diameter = machine.diameter_of(cut.tool);
     let limit = match (diameter, kind) {
-        (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.1),
+        (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.2),
         (Some(diameter), _) => (0.2 * diameter).max(0.5),
         (None, _) => MAX_FEED_PER_TURN,
     };
