@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use super::solid::Rod;
 use super::surface::Surface;
 use crate::reader::bounds::{Length, MachinePoint};
-use crate::reader::{FileKey, FixedArray};
+
+use crate::reader::{FileKey, FixedArray, Items, Section};
 
 /// The solid material of the part, in the part's frame, mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -27,6 +28,7 @@ pub enum Stock {
         max: [f64; 3],
         /// What feeds may mill besides the holes.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[serde(deserialize_with = "<Items<Section<Pocket>> as FileKey>::deserialize")]
         pocket: Vec<Pocket>,
     },
     /// A cylinder about one of the part's axes.
@@ -47,12 +49,14 @@ pub enum Stock {
         to: f64,
         /// What feeds may mill besides the holes.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[serde(deserialize_with = "<Items<Section<Pocket>> as FileKey>::deserialize")]
         pocket: Vec<Pocket>,
     },
     /// The reference's own surface.
     Surface {
         /// What feeds may mill besides the holes.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[serde(deserialize_with = "<Items<Section<Pocket>> as FileKey>::deserialize")]
         pocket: Vec<Pocket>,
     },
 }
