@@ -302,7 +302,7 @@ fn holes(text: &str, variable: Option<f64>, skips: bool) -> Option<(Made, Vec<As
         points.map(|value| (value * 1000.0).round() as i64)
     });
     let made = made.collect();
-    let assumed = simulation.dependences(&request, None).numbered(&simulation.run);
+    let assumed = simulation.dependencies(&request).numbered(&simulation.run);
     Some((made, assumed.into_iter().map(|(assumption, _)| assumption).collect()))
 }
 

@@ -56,7 +56,7 @@ fn print_result(
         }
         None => Origin::FeedStart,
     };
-    let assumed = simulation.dependences(request, None).numbered(&simulation.run);
+    let assumed = simulation.dependencies(request).numbered(&simulation.run);
     let denied = arguments.denials.errors(&assumed, list.holes.len());
     list.assumptions = Some(assumed.into_iter().map(|(assumption, _)| assumption).collect());
     print(&list, origin, arguments.format)?;

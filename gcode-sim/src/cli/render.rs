@@ -103,7 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                     let tolerances = Tolerances::of(reference, tolerance);
                     let mut verdict = simulation.verify(reference, tolerances, &request.machine);
                     let is_denied = arguments.denials.denies_assumptions();
-                    simulation.add_assumptions(&mut verdict, &request, reference.body(stock), is_denied);
+                    simulation.add_assumptions(&mut verdict, &request, is_denied);
                     let drawn =
                         top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
                     Drawn {
@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                     }
                 }
                 None => {
-                    let found = simulation.dependences(&request, None);
+                    let found = simulation.dependencies(&request);
                     let assumed = found.numbered(&simulation.run);
                     let denied = arguments.denials.errors(&assumed, found.hole_count());
                     let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();

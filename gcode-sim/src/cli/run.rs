@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
         output::write(path, &bytes)?;
     }
-    let found = run.dependences(&request);
+    let found = run.dependencies(&request);
     let (assumed, holes) = (found.numbered(&run), found.hole_count());
     let denied = arguments.denials.errors(&assumed, holes);
     let assumptions = (assumed.into_iter().map(|(assumption, _)| assumption).collect(), holes);

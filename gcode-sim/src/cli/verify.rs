@@ -149,7 +149,7 @@ fn holes(
     };
     let add_assumptions = |simulation: &Simulation, verdict: &mut Verdict, request: &Request| {
         let is_denied = arguments.denials.denies_assumptions();
-        simulation.add_assumptions(verdict, request, reference.body(request.machine.stock), is_denied);
+        simulation.add_assumptions(verdict, request, is_denied);
     };
     if let Some(path) = &arguments.page {
         let traced = page::simulate_traced(request, &mut folders, reference.metal(request.machine.stock))?;

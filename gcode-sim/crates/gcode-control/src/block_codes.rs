@@ -32,6 +32,9 @@ impl Planner<'_> {
         let state = &mut plan.state;
         let before = state.modal;
         let (axis_use, is_cycle_active) = self.apply_each_code(state)?;
+        for group in self.words.g_codes().filter_map(|row| row.effect.group()) {
+            plan.commanded_groups.insert(group);
+        }
         self.check_modes(&before, state)?;
         self.update_coordinates(&before, state);
         if state.modal.cycle.is_some() && !is_cycle_active {

@@ -11,31 +11,29 @@ use gcode_lang::motion::{
     Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
 };
 use gcode_lang::program::NoLibrary;
+use gcode_lang::program::modes::{ModalGroup, WorkSystem};
 use gcode_lang::source::{SourceId, Span};
-use gcode_part::{Assumption, AssumptionPlace, Surface};
+use gcode_part::{Assumption, AssumptionPlace, Metal};
 
 /// Holes of a run, and the values from outside on which each depends.
 #[derive(Clone, Debug, Default)]
-pub struct Dependences {
+pub struct HoleDependencies {
     reads: Vec<OutsideRead>,
     /// Sets of reads, by hole in the order of the extraction.
     holes: Vec<Marks>,
 }
 
-/// Follows the outside values through a second run, if the first one can have read any. `surface` is that of the first run.
-pub(super) fn dependences(
-    request: &Request,
-    run: &Run,
-    surface: Option<Surface>,
-    has_holes: bool,
-) -> Dependences {
+/// Follows the outside values through a second run, if the first one can have read any. `metal` is that of the first run.
+pub(super) fn dependencies(request: &Request, run: &Run, metal: &Metal, has_holes: bool) -> HoleDependencies {
     if run.control.is_cancelled() || !may_read_outside(request, run, has_holes) {
-        return Dependences::default();
+        return HoleDependencies::default();
     }
-    let Ok(mut control) = set_up_control(request, causes::reload(run)) else { return Dependences::default() };
+    let Ok(mut control) = set_up_control(request, causes::reload(run)) else {
+        return HoleDependencies::default();
+    };
     let mut slice = Slice::new(stated_values(request));
     let mut sink = MarkedEvents {
-        extractor: super::extractor(request, surface),
+        extractor: super::extractor(request, metal.clone()),
         motion: slice.motion(),
         strokes: Vec::new(),
         position: Position::default(),
@@ -44,10 +42,10 @@ pub(super) fn dependences(
     control.run_observed(request.limits, &mut NoLibrary, &mut sink, &mut slice);
     let MarkedEvents { extractor, strokes, .. } = sink;
     let holes = extractor.finish().holes.iter().map(|hole| marks_of(hole, &strokes)).collect();
-    Dependences { reads: slice.into_reads(), holes }
+    HoleDependencies { reads: slice.into_reads(), holes }
 }
 
-impl Dependences {
+impl HoleDependencies {
     /// Returns the assumptions that can touch a hole, each with its block; `names` returns the name of a hole by its index in
     /// the extraction.
     pub fn assumptions(
@@ -87,9 +85,18 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let control = &run.control;
     let stated = stated_values(request);
     let is_code_unknown = || control.builder_m_codes().keys().any(|code| !stated.codes.contains(code));
+    let takes_power_on_modes = || {
+        [ModalGroup::Unit, ModalGroup::Distance, ModalGroup::Plane, ModalGroup::Work].into_iter().any(
+            |group| {
+                let has_choice = group != ModalGroup::Work || 1 < stated.work_systems.len();
+                has_choice && !control.is_commanded_before_moves(group)
+            },
+        )
+    };
     !request.variables.is_empty()
         || request.settings.skip_signal.is_some()
-        || has_holes && (!control.unset_work_systems().is_empty() || is_code_unknown())
+        || has_holes
+            && (!control.unset_work_systems().is_empty() || is_code_unknown() || takes_power_on_modes())
         || control
             .memory()
             .sources()
@@ -102,10 +109,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
 fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
     let is_outside = |at: usize| {
         let is_named = match text[at].to_ascii_uppercase() {
-            b'#' => !matches!(
-                number_behind(text, at),
-                Some(0..=33 | 3000 | 3006 | 3100..=3102 | 4001..=4330 | 5001..=5060)
-            ),
+            b'#' => !matches!(number_behind(text, at), Some(0..=33 | 3000 | 3006 | 3100..=3102)),
             // No other function of one argument ends with M.
             b'[' => text[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M')),
             // END1, AND, ROUND: part of a word.
@@ -164,7 +168,13 @@ fn is_division(before: &[u8]) -> bool {
 fn stated_values(request: &Request) -> StatedValues {
     let lengths = request.machine.tools.iter().filter(|tool| tool.length.is_some()).map(|tool| tool.number);
     let clamp = request.process_limits.clamp.iter().flat_map(|clamp| [clamp.on, clamp.off]);
-    StatedValues { lengths: lengths.collect(), codes: clamp.collect(), has_part: request.part.is_some() }
+    let offsets = request.machine.offsets.iter();
+    StatedValues {
+        lengths: lengths.collect(),
+        work_systems: offsets.map(|offset| WorkSystem::Standard((offset.code - 53) as u8)).collect(),
+        codes: clamp.collect(),
+        has_part: request.part.is_some(),
+    }
 }
 
 /// Source of the calls that mark the backtraces of events: no text has it.
@@ -240,12 +250,17 @@ mod tests {
     /// Returns the assumptions of a program as `#510=2.5@3: 1 2`, and its number of holes.
     fn assumptions_with(blocks: &str, variables: &[(u32, f64)]) -> (Vec<String>, usize) {
         let text = format!("O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z50.\n{blocks}\nG80 Z50.\nM30\n");
-        let mut request = Request::new("O1.nc", text.into_bytes(), Machine::default());
+        assumptions_on("", &text, variables)
+    }
+
+    /// Returns the assumptions of a whole program on a machine.
+    fn assumptions_on(machine: &str, text: &str, variables: &[(u32, f64)]) -> (Vec<String>, usize) {
+        let mut request = Request::new("O1.nc", text.as_bytes(), Machine::parse(machine).unwrap());
         request.variables = variables.to_vec();
         let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
-        assert!(simulation.run.stop_finding().is_none(), "{blocks}");
+        assert!(simulation.run.stop_finding().is_none(), "{text}");
         let holes = simulation.extracted.holes.len();
-        let found = simulation.dependences(&request, None);
+        let found = simulation.dependencies(&request);
         let all = found.assumptions(&simulation.run, |hole| Some((hole + 1).to_string()));
         let shown = all.into_iter().map(|(Assumption { what, value, place, decides }, _)| {
             let value = value.map_or_else(|| "vacant".to_owned(), |value| value.to_string());
@@ -335,12 +350,62 @@ mod tests {
     }
 
     #[test]
+    fn positions_and_words_that_no_block_has_commanded_are_assumptions() {
+        let drill = |number: u32| format!("#100=#{number}\nG81 X10. Y#100 Z-5. R2. F100.\nX20. Y10.");
+        // A is axis 4. Machine coordinates rest on the work offset, which nothing states.
+        for (number, value) in [(5004, "0"), (5021, "0"), (4109, "0"), (4111, "0")] {
+            assert_assumptions(&drill(number), 2, &[&format!("#{number}={value}@4: 1")]);
+        }
+        for number in [5001, 5042, 5083, 4003, 4006, 4014, 4119] {
+            assert_assumptions(&drill(number), 2, &[]);
+        }
+        // The mode that is read is in force for all holes.
+        assert_assumptions(&drill(4010).replace("#100 ", "[#100/10.] "), 2, &["G98=vacant@4: 1 2"]);
+        assert_assumptions(&format!("G28 Z0\n{}", drill(5023)), 2, &[]);
+        assert_assumptions(&format!("G28 Z0\n{}", drill(5003)), 2, &["#5003=0@5: 1"]);
+        let stated = "[offsets.G54]\nX = 5.0\n";
+        let text = format!("O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z50.\n{}\nM30\n", drill(5021));
+        assert_eq!(assumptions_on(stated, &text, &[]).0, [""; 0]);
+    }
+
+    #[test]
+    fn modes_of_power_on_are_assumptions_where_a_hole_depends_on_them() {
+        let drill = "G81 X10. Y10. Z-5. R2. F100.\nX20.\nG80\nM30\n";
+        let found = |machine: &str, header: &str| {
+            let text = format!("O1\n{header}\nG0 X0. Y0. Z50. S1000 M03\n{drill}");
+            assumptions_on(machine, &text, &[]).0
+        };
+        let all = |codes: &[(&str, u32)]| -> Vec<String> {
+            codes.iter().map(|(code, line)| format!("{code}=vacant@{line}: 1 2")).collect()
+        };
+        assert_eq!(found("", ""), all(&[("G21", 3), ("G90", 3)]));
+        assert_eq!(found("", "G90 G17"), all(&[("G21", 3)]));
+        assert_eq!(found("", "G20 G90 G17"), [""; 0]);
+        // The end of G28 depends on no mode, and a G90 before the holes makes up for none before it.
+        assert_eq!(found("", "G28 Z0\nG17 G21 G90"), [""; 0]);
+        assert_eq!(found("", "G0 X5.\nG17 G21 G90"), [""; 0]);
+        // Cycles drill along Z in every plane; an arc needs one.
+        assert_eq!(found("", "G21 G90"), [""; 0]);
+        let arc =
+            "O1\nG21 G90\nG0 X10. Y10. Z2. S1000 M03\nG1 Z-3. F100.\nX12.\nG3 I-2.\nG1 X10.\nG0 Z50.\nM30\n";
+        assert_eq!(assumptions_on("", arc, &[]).0, ["G17=vacant@6: 1"]);
+        // Several work offsets leave open which is active.
+        let one = "[offsets]\nG54 = { X = 1.0 }\n";
+        assert_eq!(found(one, "G17 G21 G90"), [""; 0]);
+        let two = format!("{one}G55 = {{ X = 2.0 }}\n");
+        assert_eq!(found(&two, "G17 G21 G90"), all(&[("G54", 3)]));
+        assert_eq!(found(&two, "G17 G21 G90 G55"), [""; 0]);
+    }
+
+    #[test]
     fn a_second_run_is_needed_only_for_texts_that_can_read_outside_values() {
         let stated = StatedValues { lengths: [1].into(), ..StatedValues::default() };
         for (text, with_holes, without) in [
             ("G0 X1. Y2.\nM30\n", false, false),
             ("#1=2\nX#[1+1] Y[COS[#2]] (#510 / H2)\n", true, true),
-            ("#1=2\nX#2 Y[COS[#2]] (#510 / H2)\n#5041\n", false, false),
+            ("#1=2\nX#2 Y[COS[#2]] (#510 / H2)\n", false, false),
+            ("#1=#5041\n", true, true),
+            ("#1=#4003\n", true, true),
             ("G43 H1\nWHILE[#1LT2]DO1\nIF[[#1GT1]AND[#2LT3]]GOTO3\n#2=ROUND[#3]\nEND1\n", false, false),
             ("G43 H2\n", true, false),
             ("G41d3\n", true, false),

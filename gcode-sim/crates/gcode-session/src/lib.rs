@@ -27,7 +27,7 @@ mod trace;
 
 use std::sync::Arc;
 
-pub use assumptions::Dependences;
+pub use assumptions::HoleDependencies;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Note, Observer, Outcome, Progress};
@@ -285,6 +285,8 @@ pub struct Simulation {
     pub run: Run,
     /// The holes, and the findings of the run.
     pub extracted: HoleExtraction,
+    /// Known metal of the run.
+    metal: Metal,
 }
 
 /// Runs a program and extracts its holes. Where metal is known, as that of a reference or inside a surface, motion in it
@@ -312,16 +314,16 @@ pub fn simulate_observed<S: EventSink>(
     sink: &mut S,
     observer: &mut impl Observer,
 ) -> Result<Simulation, SessionError> {
-    let mut extractor = extractor(request, metal);
+    let metal = metal.into();
+    let mut extractor = extractor(request, metal.clone());
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.findings());
-    Ok(Simulation { run, extracted })
+    Ok(Simulation { run, extracted, metal })
 }
 
 /// Returns the extractor of a run's holes.
-fn extractor(request: &Request, metal: impl Into<Metal>) -> HoleExtractor<'_> {
-    let metal = metal.into();
+fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
     HoleExtractor::new(&request.machine)
         .with_metal(Metal { body: metal.body.or(request.part), ..metal })
         .with_straight_rapids(request.settings.rapids_are_straight)
@@ -341,24 +343,17 @@ impl Simulation {
         verdict
     }
 
-    /// Adds the assumptions to a verdict on these holes; each is an error if `is_denied`. `surface` is that of the run.
-    pub fn add_assumptions(
-        &self,
-        verdict: &mut Verdict,
-        request: &Request,
-        surface: Option<Surface>,
-        is_denied: bool,
-    ) {
+    /// Adds the assumptions to a verdict on these holes; each is an error if `is_denied`.
+    pub fn add_assumptions(&self, verdict: &mut Verdict, request: &Request, is_denied: bool) {
         let names = verdict.hole_names();
-        let found = self.dependences(request, surface);
+        let found = self.dependencies(request);
         let found = found.assumptions(&self.run, |hole| names.get(&hole).cloned());
         verdict.add_assumptions(found, is_denied, &|span| self.run.locate(span));
     }
 
-    /// Follows the values that the run read and nothing in its program set to the holes, in a second run. `surface` is that of
-    /// the first run.
-    pub fn dependences(&self, request: &Request, surface: Option<Surface>) -> Dependences {
-        assumptions::dependences(request, &self.run, surface, !self.extracted.holes.is_empty())
+    /// Follows the values that the run read and nothing in its program set to the holes, in a second run on the same metal.
+    pub fn dependencies(&self, request: &Request) -> HoleDependencies {
+        assumptions::dependencies(request, &self.run, &self.metal, !self.extracted.holes.is_empty())
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.
@@ -369,8 +364,8 @@ impl Simulation {
 
 impl Run {
     /// Follows the values that the run read and nothing in its program set to the holes that it makes, in a second run.
-    pub fn dependences(&self, request: &Request) -> Dependences {
-        assumptions::dependences(request, self, None, true)
+    pub fn dependencies(&self, request: &Request) -> HoleDependencies {
+        assumptions::dependencies(request, self, &Metal::default(), true)
     }
 
     /// Returns program and line of a block: `O8101`, 31.

@@ -7,6 +7,7 @@ mod branches;
 mod marks;
 mod moves;
 mod possible;
+mod power_on;
 mod reads;
 mod words;
 
@@ -22,6 +23,7 @@ use super::control::{Control, Observer};
 use super::flow::ProgramFlow;
 use super::registers::Registers;
 use gcode_lang::motion::Backtrace;
+use gcode_lang::program::g_codes::name;
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Assign, AssignmentTarget, Op, OpKind, Statement};
 
@@ -44,6 +46,8 @@ pub enum OutsideValue {
     SkipSignal,
     /// M code of the machine builder.
     Auxiliary(u32),
+    /// Modal G code × 10 that holds because no block has commanded its group.
+    PowerOnMode(u32),
 }
 
 impl OutsideValue {
@@ -61,6 +65,7 @@ impl OutsideValue {
             Self::CutterRadius(number) => format!("D{number}"),
             Self::SkipSignal => "G31".to_owned(),
             Self::Auxiliary(code) => format!("M{code:02}"),
+            Self::PowerOnMode(code) => name(code),
         }
     }
 }
@@ -83,6 +88,8 @@ pub struct OutsideRead {
 pub struct StatedValues {
     /// H numbers of tools with a length.
     pub lengths: BTreeSet<u32>,
+    /// Work offsets of the machine.
+    pub work_systems: BTreeSet<WorkSystem>,
     /// M codes with a known effect, such as those of the clamp.
     pub codes: BTreeSet<u32>,
     /// A part decides where G31 stops.

@@ -6,7 +6,7 @@ use super::{Block, Marks, OutsideValue, Slice};
 use gcode_lang::control::Settings;
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes::OneShot;
-use gcode_lang::program::modes::{Distance, Motion, Plane, Polar, WorkSystem};
+use gcode_lang::program::modes::{Distance, ModalGroup, Motion, Plane, Polar, WorkSystem};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 
 /// Returns true if a canned cycle can drill along the axis of this letter.
@@ -54,7 +54,8 @@ impl Slice {
             Some(OneShot::MachineCoordinateSystem) => {
                 for (axis, word) in named() {
                     let before = if word.is_fixed() { Marks::NONE } else { self.machine.axes[axis] };
-                    self.machine.axes[axis] = before | word.marks | control | self.machine.group(3);
+                    self.machine.axes[axis] =
+                        before | word.marks | control | self.machine.group(ModalGroup::Distance);
                 }
                 return;
             }
@@ -118,6 +119,7 @@ impl Slice {
             && !state.is_in_parameter_input
             && data.settings.code_calls.is_empty();
         if !is_plain_mode
+            || !self.are_modes_settled()
             || words.call().is_some()
             || words.form_if_skipped().is_some()
             || !words.list.iter().all(is_plain)

@@ -6,11 +6,10 @@ use super::super::variables::VariableClass;
 use super::{Block, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::control::OffsetVariables;
-use gcode_lang::motion::MAX_AXES;
 use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
 
 /// Number of axes in each range of positions, #5001 to #5020 and so on.
-const POSITIONS: u32 = 20;
+pub(super) const POSITIONS: u32 = 20;
 
 /// Place of the first additional work coordinate system behind EXT and G54 to G59.
 const FIRST_ADDITIONAL: usize = 7;
@@ -141,7 +140,7 @@ impl Slice {
         }
     }
 
-    fn outside_variable(&mut self, block: &Block<'_>, number: u32) -> Marks {
+    pub(super) fn outside_variable(&mut self, block: &Block<'_>, number: u32) -> Marks {
         let value = block.registers.without_side_effects(|registers| registers.read_variable(number).ok());
         let value = value.and_then(|value| value.as_number());
         self.outside(OutsideValue::Variable(number), value, block.flow, block.op)
@@ -151,11 +150,8 @@ impl Slice {
     fn system_marks(&mut self, block: &Block<'_>, number: u32) -> Marks {
         match number {
             3000 | 3006 | 3100..=3102 => Marks::NONE,
-            4001..=4130 | 4201..=4330 => self.modal_marks(number % 200),
-            5001..=5060 | 5081..=5100 => self.position_marks(((number - 1) % POSITIONS) as usize),
-            5061..=5080 => {
-                self.machine.skip_position | self.position_marks(((number - 1) % POSITIONS) as usize)
-            }
+            4001..=4130 | 4201..=4330 => self.modal_marks(block, number),
+            5001..=5100 => self.position_marks(block, number),
             // A clock goes on whatever the program sets.
             3001 | 3002 | 3011 | 3012 => self.outside_variable(block, number),
             _ => match self.variables.system(number) {
@@ -189,26 +185,6 @@ impl Slice {
             }
             _ => Marks::NONE,
         }
-    }
-
-    /// Returns the marks of #4000 + `item`.
-    fn modal_marks(&self, item: u32) -> Marks {
-        let machine = &self.machine;
-        match item {
-            107 => machine.code(b'D'),
-            109 => machine.code(b'F'),
-            111 => machine.code(b'H'),
-            119 => machine.code(b'S'),
-            120 => machine.code(b'T'),
-            130 => machine.group(14),
-            group => machine.group(group) | machine.rest,
-        }
-    }
-
-    fn position_marks(&self, axis: usize) -> Marks {
-        let machine = &self.machine;
-        let Some(position) = machine.axes.get(axis).filter(|_| axis < MAX_AXES) else { return Marks::NONE };
-        *position | machine.coordinates(axis) | machine.length
     }
 
     /// Writes a variable.

@@ -4,7 +4,9 @@ use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::modes::{CutterSide, Distance, Length, Motion, Plane, WorkSystem};
+use gcode_lang::program::modes::{
+    CutterSide, Distance, Length, ModalGroup, Motion, Plane, Polar, WorkSystem,
+};
 use gcode_lang::program::{ArgumentLocals, CallCode, CallOp, CallTarget, LoweredWord, WordOperand, Words};
 
 /// One word with the marks of its value.
@@ -29,7 +31,9 @@ pub(super) struct BlockModes {
     pub(super) plane: Plane,
     pub(super) distance: Distance,
     length: Length,
-    cutter: CutterSide,
+    pub(super) cutter: CutterSide,
+    /// G16 or G68 is in force or begins.
+    pub(super) uses_plane: bool,
     pub(super) work: WorkSystem,
     pub(super) is_in_cycle: bool,
     pub(super) begins_cycle: bool,
@@ -61,6 +65,7 @@ impl Slice {
         }
         let modes = self.follow_g_codes(block, words, &list);
         self.is_in_cycle = modes.is_in_cycle;
+        self.follow_power_on_modes(block, &list, &modes);
         self.follow_codes(&list, guard);
         self.follow_m_codes(block, words, &list);
         self.follow_offsets(block, &list, &modes);
@@ -100,6 +105,7 @@ impl Slice {
             distance: state.modal.distance,
             length: state.modal.length,
             cutter: state.modal.cutter,
+            uses_plane: state.modal.polar == Polar::On || state.transform.rotation.is_some(),
             work: state.modal.work,
             is_in_cycle: state.modal.cycle.is_some(),
             begins_cycle: false,
@@ -113,9 +119,10 @@ impl Slice {
                 self.machine.rest |= marked.marks;
                 self.further |= marked.marks;
             }
-            if let Some(group) = row.group() {
-                self.machine.set_group(group, control | marked.marks);
+            if let Some(group) = row.effect.group() {
+                self.machine.settle_group(group, control | marked.marks);
             }
+            modes.uses_plane |= matches!(row.effect, Effect::Rotation(_) | Effect::Polar(_));
             match row.effect {
                 Effect::Motion(motion) => {
                     (modes.is_in_cycle, modes.motion) = (false, motion);
@@ -134,7 +141,10 @@ impl Slice {
                 Effect::NumberedWork(number) => modes.work = WorkSystem::Additional(number),
                 Effect::AdditionalWork => {
                     let place = list.iter().find(|word| word.letter == b'P');
-                    self.machine.set_group(14, control | place.map_or(Marks::NONE, |word| word.marks));
+                    self.machine.settle_group(
+                        ModalGroup::Work,
+                        control | place.map_or(Marks::NONE, |word| word.marks),
+                    );
                     if let Some(number) = place.and_then(|word| word.value) {
                         modes.work = WorkSystem::Additional(number as u16);
                     }
@@ -200,7 +210,7 @@ impl Slice {
         };
         let h = number_of(b'H', registers.state.modal_words.h);
         match modes.length {
-            Length::Off => self.machine.length = control | self.machine.group(8),
+            Length::Off => self.machine.length = control | self.machine.group(ModalGroup::Length),
             _ if registers.state.modal.length != modes.length
                 || list.iter().any(|word| word.letter == b'H') =>
             {

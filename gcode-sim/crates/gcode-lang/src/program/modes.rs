@@ -51,6 +51,42 @@ impl ModalGroup {
     }
 }
 
+/// Set of modal groups.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GroupSet(u32);
+
+impl GroupSet {
+    /// Returns the set of these groups.
+    pub fn of(groups: &[ModalGroup]) -> Self {
+        Self(groups.iter().fold(0, |set, group| set | 1 << group.number()))
+    }
+
+    /// Adds a group.
+    pub fn insert(&mut self, group: ModalGroup) {
+        self.0 |= 1 << group.number();
+    }
+
+    /// Returns true if the group is in the set.
+    pub fn contains(self, group: ModalGroup) -> bool {
+        self.0 >> group.number() & 1 == 1
+    }
+
+    /// Returns true for the empty set.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Returns the groups of either set.
+    pub fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Returns the groups that `other` lacks.
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+}
+
 macro_rules! group {
     ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $state:ident = $code:literal,)+ }) => {
         $(#[$doc])*
