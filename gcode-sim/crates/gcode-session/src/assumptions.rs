@@ -5,10 +5,11 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use super::{Request, Run, causes, set_up_control};
+use gcode_control::OperatorStop;
 use gcode_control::slice::{Marks, OutsideRead, Slice, StatedValues};
 use gcode_inspect::holes::{DrilledHole, HoleExtractor};
 use gcode_lang::motion::{
-    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
+    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal, StopKind,
 };
 use gcode_lang::program::NoLibrary;
 use gcode_lang::program::modes::{ModalGroup, WorkSystem};
@@ -85,6 +86,10 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let control = &run.control;
     let stated = stated_values(request);
     let is_code_unknown = || control.builder_m_codes().keys().any(|code| !stated.codes.contains(code));
+    let may_keep_spindle = || {
+        let is_stop = |stop: &OperatorStop| matches!(stop.kind, StopKind::M00 | StopKind::M01);
+        !control.settings().undocumented.stop_stops_spindle && control.stops().iter().any(is_stop)
+    };
     let takes_power_on_modes = || {
         [ModalGroup::Unit, ModalGroup::Distance, ModalGroup::Plane, ModalGroup::Work].into_iter().any(
             |group| {
@@ -96,7 +101,10 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     !request.variables.is_empty()
         || request.settings.skip_signal.is_some()
         || has_holes
-            && (!control.unset_work_systems().is_empty() || is_code_unknown() || takes_power_on_modes())
+            && (!control.unset_work_systems().is_empty()
+                || is_code_unknown()
+                || may_keep_spindle()
+                || takes_power_on_modes())
         || control
             .memory()
             .sources()
@@ -342,6 +350,9 @@ mod tests {
         assert_assumptions("G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &["H1=0@4: 1"]);
         assert_assumptions("G10 L10 P1 R0\nG43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM21\nX20.", 2, &["M21=vacant@5: 2"]);
+        // Whether the spindle goes on behind a stop.
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM00\nX20.", 2, &["M00=vacant@5: 2"]);
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM01\nM03\nX20.", 2, &[]);
         assert_assumptions(
             "G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.",
             2,

@@ -188,6 +188,15 @@ impl Slice {
                 ) => {
                     self.machine.spindle = control | marked.marks;
                 }
+                // The machine builder decides whether the spindle goes on behind a stop.
+                Some(effect @ (MCodeEffect::Stop | MCodeEffect::OptionalStop)) => {
+                    let stops = effect == MCodeEffect::Stop || settings.stops_at_m01;
+                    if stops && !settings.undocumented.stop_stops_spindle {
+                        let source = OutsideValue::Auxiliary(code);
+                        let marks = self.outside(source, None, block.flow, block.op);
+                        self.machine.spindle |= marks;
+                    }
+                }
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
                 None if settings.code_calls.find_call(b'M', 10 * code).is_none()
                     && !self.stated.codes.contains(&code) =>
