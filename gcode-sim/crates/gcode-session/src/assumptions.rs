@@ -12,7 +12,7 @@ use gcode_lang::motion::{
     Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal, StopKind,
 };
 use gcode_lang::program::NoLibrary;
-use gcode_lang::program::modes::{ModalGroup, WorkSystem};
+use gcode_lang::program::modes::ModalGroup;
 use gcode_lang::source::{SourceId, Span};
 use gcode_part::{Assumption, AssumptionPlace, Metal};
 
@@ -32,7 +32,7 @@ pub(super) fn dependencies(request: &Request, run: &Run, metal: &Metal, has_hole
     let Ok(mut control) = set_up_control(request, causes::reload(run)) else {
         return HoleDependencies::default();
     };
-    let mut slice = Slice::new(stated_values(request));
+    let mut slice = Slice::new(stated_values(request), request.settings.offset_variables, &request.variables);
     let mut sink = MarkedEvents {
         extractor: super::extractor(request, metal.clone()),
         motion: slice.motion(),
@@ -125,7 +125,10 @@ fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
                 false
             }
             letter @ (b'H' | b'D') => match number_behind(text, at) {
-                Some(number) => number != 0 && (letter == b'D' || !stated.lengths.contains(&number)),
+                Some(number) => {
+                    let stated = if letter == b'D' { &stated.radii } else { &stated.lengths };
+                    number != 0 && !stated.contains(&number)
+                }
                 // DO1, DPRNT: the beginning of a word.
                 None => !text[at + 1..].trim_ascii_start().first().is_some_and(u8::is_ascii_alphabetic),
             },
@@ -175,11 +178,14 @@ fn is_division(before: &[u8]) -> bool {
 /// Returns what the machine file and the reference state.
 fn stated_values(request: &Request) -> StatedValues {
     let lengths = request.machine.tools.iter().filter(|tool| tool.length.is_some()).map(|tool| tool.number);
+    let radii =
+        request.machine.tools.iter().filter(|tool| tool.radius_offset.is_some()).map(|tool| tool.number);
     let clamp = request.process_limits.clamp.iter().flat_map(|clamp| [clamp.on, clamp.off]);
     let offsets = request.machine.offsets.iter();
     StatedValues {
         lengths: lengths.collect(),
-        work_systems: offsets.map(|offset| WorkSystem::Standard((offset.code - 53) as u8)).collect(),
+        radii: radii.collect(),
+        work_systems: offsets.map(|offset| offset.system).collect(),
         codes: clamp.collect(),
         has_part: request.part.is_some(),
     }
@@ -406,6 +412,39 @@ mod tests {
         let two = format!("{one}G55 = {{ X = 2.0 }}\n");
         assert_eq!(found(&two, "G17 G21 G90"), all(&[("G54", 3)]));
         assert_eq!(found(&two, "G17 G21 G90 G55"), [""; 0]);
+    }
+
+    #[test]
+    fn offsets_of_the_machine_file_are_stated_and_those_of_set_are_not() {
+        let program = |words: &str| {
+            format!(
+                "O1\nG90 G17 G21 S1000 M03\n{words}\nG0 X0. Y0. Z50.\nG81 X10. Y10. Z-5. R2. F100.\nG80 Z50.\nM30\n"
+            )
+        };
+        let head = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n";
+        let machine = format!(
+            "{head}[[tool]]\nnumber = 1\nlength = 80.0\nradius_offset = 3.0\n[offsets]\nG54 = {{ X = 1.0 }}\n\
+             \"G54.1 P3\" = {{ Y = 2.0 }}\n"
+        );
+        let found =
+            |words: &str, variables: &[(u32, f64)]| assumptions_on(&machine, &program(words), variables).0;
+        for words in ["G54", "G54.1 P3", "G54 G43 H1 Z50.", "#100=#13001\nG54 G0 X#100"] {
+            assert_eq!(found(words, &[]), [""; 0], "{words}");
+        }
+        assert_eq!(found("G54.1 P4", &[]), ["G54.1 P4=vacant@4: 1"]);
+        assert_eq!(found("G55", &[]), ["G55=vacant@4: 1"]);
+        // A flag states neither what the program sets nor what the machine has.
+        for (words, variable, expected) in [
+            ("G54", 5221, "G54=vacant@4: 1"),
+            ("G54.1 P3", 14_042, "G54.1 P3=vacant@4: 1"),
+            ("G55", 5241, "G55=vacant@4: 1"),
+            ("G54", 5201, "EXT=vacant@4: 1"),
+            ("G54 G43 H1 Z50.", 11_001, "H1=7@3: 1"),
+        ] {
+            assert_eq!(found(words, &[(variable, 7.0)]), [expected], "{words}");
+        }
+        assert_eq!(found("G10 L2 P1 X3.\nG54", &[(5221, 7.0)]), [""; 0]);
+        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
     }
 
     #[test]

@@ -182,19 +182,23 @@ fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionE
     Ok(control)
 }
 
-/// Returns the variables of a machine that is set up: work offsets (#5221…), and the tool lengths as geometry
-/// offsets H (#11001…, or #2001… on a Haas).
+/// Returns the variables of a machine that is set up: work offsets (#5221…, #14001…), and the tool lengths and cutter radii as
+/// geometry offsets H and D (#11001…, #13001…, or #2001…, #2401… on a Haas).
 fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
     let work = machine.offsets.iter().flat_map(|offset| {
-        let first = 5221 + 20 * (offset.code - 54);
+        let first = offset.system.first_variable();
         offset.values.iter().map(move |(axis, value)| (first + *axis as u32, *value))
     });
-    let lengths = machine.tools.iter().filter_map(move |tool| {
-        let known = (1..=settings.tool_offsets).contains(&(tool.number as usize));
-        let variable = settings.offset_variables.length(tool.number).filter(|_| known)?;
-        Some((variable, tool.length?))
+    let tools =
+        machine.tools.iter().filter(|tool| (1..=settings.tool_offsets).contains(&(tool.number as usize)));
+    let offsets = tools.flat_map(move |tool| {
+        let unit = if settings.offsets_are_diameters { 2.0 } else { 1.0 };
+        let variables = settings.offset_variables;
+        let length = variables.length(tool.number).zip(tool.length);
+        let radius = variables.radius(tool.number).zip(tool.radius_offset.map(|radius| radius * unit));
+        length.into_iter().chain(radius)
     });
-    work.chain(lengths)
+    work.chain(offsets)
 }
 
 /// A run with the flutes that it grinds.

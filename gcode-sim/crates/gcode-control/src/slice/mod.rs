@@ -19,9 +19,12 @@ pub use self::marks::Marks;
 
 use self::branches::Branches;
 use self::marks::{LOCALS, MachineMarks, VariableMarks};
+use self::reads::OffsetEntry;
 use super::control::{Control, Observer};
+use super::data::system_index;
 use super::flow::ProgramFlow;
 use super::registers::Registers;
+use gcode_lang::control::OffsetVariables;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::g_codes::name;
 use gcode_lang::program::modes::WorkSystem;
@@ -38,6 +41,8 @@ pub enum OutsideValue {
     BlockSkip(u8),
     /// Work offset that nothing has set.
     WorkOffset(WorkSystem),
+    /// External work offset, which shifts all others.
+    ExternalOffset,
     /// Tool length, by its H.
     ToolLength(u32),
     /// Cutter radius, by its D.
@@ -59,8 +64,8 @@ impl OutsideValue {
             Self::Parameter(None) => "PRM".to_owned(),
             Self::BlockSkip(1) => "/".to_owned(),
             Self::BlockSkip(switch) => format!("/{switch}"),
-            Self::WorkOffset(WorkSystem::Additional(number)) => format!("G54.1 P{number}"),
-            Self::WorkOffset(system) => format!("G{}", system.code() / 10),
+            Self::WorkOffset(system) => system.name(),
+            Self::ExternalOffset => "EXT".to_owned(),
             Self::ToolLength(number) => format!("H{number}"),
             Self::CutterRadius(number) => format!("D{number}"),
             Self::SkipSignal => "G31".to_owned(),
@@ -88,6 +93,8 @@ pub struct OutsideRead {
 pub struct StatedValues {
     /// H numbers of tools with a length.
     pub lengths: BTreeSet<u32>,
+    /// D numbers of tools with a cutter radius.
+    pub radii: BTreeSet<u32>,
     /// Work offsets of the machine.
     pub work_systems: BTreeSet<WorkSystem>,
     /// M codes with a known effect, such as those of the clamp.
@@ -116,6 +123,8 @@ pub struct Slice {
     set_lengths: BTreeSet<u32>,
     /// Cutter radii that the program has set, by their D.
     set_radii: BTreeSet<u32>,
+    /// Work coordinate systems that the machine file states or the program has set, by their index.
+    set_systems: BTreeSet<usize>,
     /// Values that decide whether the run cuts elsewhere.
     further: Marks,
     motion: Rc<Cell<Marks>>,
@@ -126,9 +135,23 @@ pub struct Slice {
 }
 
 impl Slice {
-    /// Returns the observer of a run.
-    pub fn new(stated: StatedValues) -> Self {
-        Self { stated, ..Self::default() }
+    /// Returns the observer of a run. `variables` are set before its start; an offset that they set is not stated.
+    pub fn new(
+        mut stated: StatedValues,
+        offset_variables: OffsetVariables,
+        variables: &[(u32, f64)],
+    ) -> Self {
+        let mut set_systems: BTreeSet<usize> =
+            stated.work_systems.iter().copied().map(system_index).collect();
+        for (number, _) in variables {
+            match reads::offset_of(*number, offset_variables) {
+                Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
+                Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
+                Some(OffsetEntry::Work(system)) => _ = set_systems.remove(&system),
+                None => {}
+            }
+        }
+        Self { stated, set_systems, ..Self::default() }
     }
 
     /// Returns the marks of the current block's motion, shared with the sink of the run.

@@ -1,11 +1,12 @@
 //! Marks of the values that a block reads: variables, system variables, parameters.
-use super::super::data::ControlData;
+use super::super::data::{ControlData, system_index};
 use super::super::evaluation::RoundingTarget;
 use super::super::functions::variable_number;
 use super::super::variables::VariableClass;
 use super::{Block, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::control::OffsetVariables;
+use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
 
 /// Number of axes in each range of positions, #5001 to #5020 and so on.
@@ -15,14 +16,14 @@ pub(super) const POSITIONS: u32 = 20;
 const FIRST_ADDITIONAL: usize = 7;
 
 /// Entry of an offset table.
-enum OffsetEntry {
+pub(super) enum OffsetEntry {
     Length(u32),
     Radius(u32),
     Work(usize),
 }
 
 /// Returns the entry that a system variable addresses.
-fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
+pub(super) fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
     let is_haas = offsets == OffsetVariables::Haas;
     let work =
         |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
@@ -167,12 +168,25 @@ impl Slice {
         self.stated.lengths.contains(&number) || self.set_lengths.contains(&number)
     }
 
+    /// Returns true if the machine file states the cutter radius D or a block has set it.
+    pub(super) fn is_radius_set(&self, number: u32) -> bool {
+        self.stated.radii.contains(&number) || self.set_radii.contains(&number)
+    }
+
+    /// Returns true if a move in a work coordinate system rests on an offset that is an outside value. G54 is the part's zero
+    /// unless something sets it.
+    pub(super) fn is_system_open(&self, data: &ControlData, work: WorkSystem) -> bool {
+        let index = system_index(work);
+        let has_offset = work != WorkSystem::default() || data.set_systems.contains(&index);
+        has_offset && !self.set_systems.contains(&index)
+    }
+
     /// Returns true if the machine file states an offset or a block has set it, by its variable.
     fn is_offset_set(&self, data: &ControlData, number: u32) -> bool {
         match offset_of(number, data.settings.offset_variables) {
             Some(OffsetEntry::Length(tool)) => self.is_length_set(tool),
-            Some(OffsetEntry::Radius(tool)) => self.set_radii.contains(&tool),
-            Some(OffsetEntry::Work(system)) => data.set_systems.contains(&system),
+            Some(OffsetEntry::Radius(tool)) => self.is_radius_set(tool),
+            Some(OffsetEntry::Work(system)) => self.set_systems.contains(&system),
             None => false,
         }
     }
@@ -198,7 +212,8 @@ impl Slice {
                 match offset_of(number, registers.data.settings.offset_variables) {
                     Some(OffsetEntry::Length(tool)) => _ = self.set_lengths.insert(tool),
                     Some(OffsetEntry::Radius(tool)) => _ = self.set_radii.insert(tool),
-                    Some(OffsetEntry::Work(_)) | None => {}
+                    Some(OffsetEntry::Work(system)) => _ = self.set_systems.insert(system),
+                    None => {}
                 }
             }
         }

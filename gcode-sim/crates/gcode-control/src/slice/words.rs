@@ -239,7 +239,7 @@ impl Slice {
             CutterSide::Off => self.machine.radius = control,
             _ if begins => {
                 let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
-                if d != 0 && !self.set_radii.contains(&d) {
+                if d != 0 && !self.is_radius_set(d) {
                     let value = registers.data.offset_radius(d);
                     marks |= self.outside(OutsideValue::CutterRadius(d), value, block.flow, block.op);
                 }

@@ -162,4 +162,20 @@ impl WorkSystem {
             Self::Additional(_) => 541,
         }
     }
+
+    /// Returns the code: `G55`, `G54.1 P3`.
+    pub fn name(self) -> String {
+        match self {
+            Self::Standard(_) => format!("G{}", self.code() / 10),
+            Self::Additional(number) => format!("G54.1 P{number}"),
+        }
+    }
+
+    /// Returns the variable of the offset of axis 1.
+    pub fn first_variable(self) -> u32 {
+        match self {
+            Self::Standard(number) => 5201 + 20 * u32::from(number),
+            Self::Additional(number) => 13_981 + 20 * u32::from(number),
+        }
+    }
 }
