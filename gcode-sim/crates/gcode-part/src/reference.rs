@@ -66,7 +66,13 @@ impl Reference {
 
     /// Returns the hole list that `reference` writes.
     pub fn list(&self) -> HoleList {
-        HoleList { unit: Unit::Mm, holes: self.holes.clone(), stock: self.stock, assumptions: None }
+        HoleList {
+            unit: Unit::Mm,
+            holes: self.holes.clone(),
+            stock: self.stock,
+            assumptions: None,
+            stopped: None,
+        }
     }
 }
 

@@ -39,6 +39,7 @@ pub(super) fn dependencies(request: &Request, run: &Run, metal: &Metal, has_hole
         strokes: Vec::new(),
         position: Position::default(),
         last: None,
+        has_fed: false,
     };
     control.run_observed(request.limits, &mut NoLibrary, &mut sink, &mut slice);
     let MarkedEvents { extractor, strokes, .. } = sink;
@@ -115,30 +116,50 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
 /// Returns true if a text has a block skip, `#` before anything but a local or a harmless system variable, PRM, or a tool
 /// offset whose value the machine file does not state.
 fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
-    let is_outside = |at: usize| {
-        let is_named = match text[at].to_ascii_uppercase() {
-            b'#' => !matches!(number_behind(text, at), Some(0..=33 | 3000 | 3006 | 3100..=3102)),
+    let (mut is_in_comment, mut has_assignment, mut open_brackets) = (false, false, 0);
+    text.iter().enumerate().any(|(at, byte)| match byte.to_ascii_uppercase() {
+        b'\n' => {
+            (is_in_comment, has_assignment, open_brackets) = (false, false, 0);
+            false
+        }
+        bracket @ (b'(' | b')') => {
+            is_in_comment = bracket == b'(';
+            false
+        }
+        _ if is_in_comment => false,
+        b'=' => {
+            has_assignment = true;
+            false
+        }
+        b'[' => {
+            open_brackets += 1;
             // No other function of one argument ends with M.
-            b'[' => text[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M')),
-            // END1, AND, ROUND: part of a word.
-            b'H' | b'D' if at.checked_sub(1).is_some_and(|before| text[before].is_ascii_alphabetic()) => {
-                false
-            }
-            letter @ (b'H' | b'D') => match number_behind(text, at) {
-                Some(number) => {
-                    let stated = if letter == b'D' { &stated.radii } else { &stated.lengths };
-                    number != 0 && !stated.contains(&number)
-                }
-                // DO1, DPRNT: the beginning of a word.
-                None => !text[at + 1..].trim_ascii_start().first().is_some_and(u8::is_ascii_alphabetic),
-            },
-            _ => !is_division(line_before(text, at)),
-        };
-        is_named && !is_in_comment(line_before(text, at))
-    };
-    memchr::memchr3_iter(b'#', b'/', b'[', text).any(is_outside)
-        || has_holes && memchr::memchr2_iter(b'H', b'D', text).any(is_outside)
-        || has_holes && memchr::memchr2_iter(b'h', b'd', text).any(is_outside)
+            text[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M'))
+        }
+        b']' => {
+            open_brackets -= 1;
+            false
+        }
+        // Behind `=` or inside brackets a slash divides.
+        b'/' => !has_assignment && open_brackets <= 0,
+        b'#' => !matches!(number_behind(text, at), Some(0..=33 | 3000 | 3006 | 3100..=3102)),
+        letter @ (b'H' | b'D') if has_holes => is_open_offset(text, at, letter, stated),
+        _ => false,
+    })
+}
+
+/// Returns true if the letter H or D at a place of a text can name an offset that nothing states.
+fn is_open_offset(text: &[u8], at: usize, letter: u8, stated: &StatedValues) -> bool {
+    // END1, AND, ROUND: part of a word.
+    if at.checked_sub(1).is_some_and(|before| text[before].is_ascii_alphabetic()) {
+        return false;
+    }
+    let stated = if letter == b'D' { &stated.radii } else { &stated.lengths };
+    match number_behind(text, at) {
+        Some(number) => number != 0 && !stated.contains(&number),
+        // DO1, DPRNT: the beginning of a word.
+        None => !text[at + 1..].trim_ascii_start().first().is_some_and(u8::is_ascii_alphabetic),
+    }
 }
 
 /// Returns the number behind a byte of a text.
@@ -146,33 +167,6 @@ fn number_behind(text: &[u8], at: usize) -> Option<u32> {
     let behind = text[at + 1..].trim_ascii_start();
     let digits = behind.iter().take_while(|byte| byte.is_ascii_digit()).count();
     std::str::from_utf8(&behind[..digits]).ok()?.parse().ok()
-}
-
-/// Returns the line of a byte up to it.
-fn line_before(text: &[u8], at: usize) -> &[u8] {
-    &text[memchr::memrchr(b'\n', &text[..at]).map_or(0, |end| end + 1)..at]
-}
-
-/// Returns true if a byte behind this part of its line is in a comment.
-fn is_in_comment(before: &[u8]) -> bool {
-    before.iter().rposition(|byte| *byte == b'(') > before.iter().rposition(|byte| *byte == b')')
-}
-
-/// Returns true if a slash behind this part of its line divides: behind `=` or inside brackets, comments left out.
-fn is_division(before: &[u8]) -> bool {
-    let (mut is_in_comment, mut has_assignment, mut open_brackets) = (false, false, 0);
-    for byte in before {
-        match byte {
-            b'(' => is_in_comment = true,
-            b')' => is_in_comment = false,
-            _ if is_in_comment => {}
-            b'=' => has_assignment = true,
-            b'[' => open_brackets += 1,
-            b']' => open_brackets -= 1,
-            _ => {}
-        }
-    }
-    has_assignment || 0 < open_brackets
 }
 
 /// Returns what the machine file and the reference state.
@@ -208,6 +202,8 @@ struct MarkedEvents<'m> {
     position: Position,
     /// Direction of the last move, and whether it was a rapid.
     last: Option<(Position, bool)>,
+    /// The stroke has fed: rapids before a feed decide no hole but by their end, from which it feeds.
+    has_fed: bool,
 }
 
 impl EventSink for MarkedEvents<'_> {
@@ -232,13 +228,17 @@ impl EventSink for MarkedEvents<'_> {
                 self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
             if !continues {
                 self.strokes.push(Marks::NONE);
+                self.has_fed = false;
             }
             self.last = Some((direction, is_rapid));
         } else if self.strokes.is_empty() {
             self.strokes.push(Marks::NONE);
         }
         let stroke = self.strokes.len() - 1;
-        self.strokes[stroke] |= self.motion.get();
+        self.has_fed |= !is_rapid;
+        if self.has_fed {
+            self.strokes[stroke] |= self.motion.get();
+        }
         let place = Span { source: MARKER, start: stroke as u32, end: stroke as u32 };
         let calls = Some(Arc::new(Call { calling_block: place, outer_calls: event.calls.clone() }));
         self.extractor.event(&Event { calls: &calls, ..*event });
@@ -332,6 +332,13 @@ mod tests {
         let hole = "G81 X10. Y10. Z-5. R2. F100.";
         assert_assumptions(&format!("IF[#510EQ1]THEN #3000=1(NO)\n{hole}"), 1, &[]);
         assert_assumptions(&format!("IF[#510NE1]GOTO5\n#3000=1(NO)\nN5 {hole}"), 1, &[]);
+        // A jump to the reasons of an alarm.
+        let guard = format!(
+            "IF[#510EQ1]GOTO900\n{hole}\nG80 Z50.\nM30\nN900 IF[#510EQ2]THEN #3000=2(TWO)\n#3000=1(ONE)"
+        );
+        assert_assumptions(&guard, 1, &[]);
+        let not_all = guard.replace("#3000=1(ONE)", "#1=1");
+        assert_assumptions(&not_all, 1, &["#510=vacant@4: 1"]);
         // The end of the program is no alarm.
         assert_assumptions(&format!("IF[#510NE1]GOTO5\nM30\nN5 {hole}"), 1, &["#510=vacant@4: 1"]);
     }
@@ -376,8 +383,7 @@ mod tests {
         for number in [5001, 5042, 5083, 4003, 4006, 4014, 4119] {
             assert_assumptions(&drill(number), 2, &[]);
         }
-        // The mode that is read is in force for all holes.
-        assert_assumptions(&drill(4010).replace("#100 ", "[#100/10.] "), 2, &["G98=vacant@4: 1 2"]);
+        assert_assumptions(&drill(4010).replace("#100 ", "[#100/10.] "), 2, &["G98=vacant@4: 1"]);
         assert_assumptions(&format!("G28 Z0\n{}", drill(5023)), 2, &[]);
         assert_assumptions(&format!("G28 Z0\n{}", drill(5003)), 2, &["#5003=0@5: 1"]);
         let stated = "[offsets.G54]\nX = 5.0\n";
@@ -433,6 +439,10 @@ mod tests {
         }
         assert_eq!(found("G54.1 P4", &[]), ["G54.1 P4=vacant@4: 1"]);
         assert_eq!(found("G55", &[]), ["G55=vacant@4: 1"]);
+        // The file states no wear.
+        let wear = "#100=#10001\nG54 G43 H1 Z50.\nG81 X20. Y#100 Z-5. R2. F100.\nG80";
+        assert_eq!(found(wear, &[]), ["#10001=0@3: 1"]);
+        assert_eq!(found(&wear.replace("10001", "11001"), &[]), [""; 0]);
         // A flag states neither what the program sets nor what the machine has.
         for (words, variable, expected) in [
             ("G54", 5221, "G54=vacant@4: 1"),

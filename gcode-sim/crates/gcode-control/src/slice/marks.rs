@@ -235,10 +235,10 @@ impl MachineMarks {
         groups | self.transform | self.work_table
     }
 
-    /// Returns the marks of a motion from or to the current position.
+    /// Returns the marks of a motion from or to the current position, without those of the feed.
     pub(super) fn motion(&self) -> Marks {
         let modes: Marks = self.axes.iter().chain(&self.groups).copied().collect();
-        let codes: Marks = b"FST".iter().map(|letter| self.code(*letter)).collect();
+        let codes: Marks = b"ST".iter().map(|letter| self.code(*letter)).collect();
         modes
             | codes
             | self.cycle

@@ -119,6 +119,8 @@ pub struct Slice {
     block_marks: Marks,
     /// The current block drills by a canned cycle.
     is_in_cycle: bool,
+    /// The current block moves in rapid.
+    is_rapid: bool,
     /// Tool length offsets that the program has set, by their H.
     set_lengths: BTreeSet<u32>,
     /// Cutter radii that the program has set, by their D.
@@ -302,7 +304,7 @@ impl Observer for Slice {
         }
         self.branches.enter(&control.executor.flow);
         self.block_marks = Marks::NONE;
-        self.is_in_cycle = false;
+        (self.is_in_cycle, self.is_rapid) = (false, false);
         let before = self.machine_motion;
         {
             let Control { memory, executor, .. } = &*control;
@@ -316,7 +318,8 @@ impl Observer for Slice {
         // A cycle drills where its block leads, wherever it comes from.
         let before = if self.is_in_cycle { Marks::NONE } else { before };
         self.machine_motion = self.machine.motion();
-        let marks = before | self.machine_motion | self.block_marks | self.branches.marks();
+        let feed = if self.is_rapid { Marks::NONE } else { self.machine.code(b'F') };
+        let marks = before | self.machine_motion | feed | self.block_marks | self.branches.marks();
         self.waiting =
             if control.executor.registers.lookahead.is_idle() { marks } else { marks | self.waiting };
         self.motion.set(self.waiting);

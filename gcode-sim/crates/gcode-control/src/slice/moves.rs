@@ -128,6 +128,7 @@ impl Slice {
         {
             return false;
         }
+        self.is_rapid = modal.motion == Motion::Rapid;
         self.machine.transform = Marks::NONE;
         let marks = self.branches.marks() | self.machine.coordinate_system();
         for word in &words.list {

@@ -2,8 +2,9 @@
 use super::moves::is_drilling;
 use super::{Marks, Slice};
 use crate::registers::Registers;
+use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::modes::{ModalGroup, Plane};
+use gcode_lang::program::modes::{ModalGroup, Motion, Plane};
 use gcode_lang::program::{AssignmentTarget, OpKind, Slot, Statement, WordOperand, Words};
 
 impl Slice {
@@ -55,10 +56,22 @@ impl Slice {
             self.further |= marks;
             return;
         }
+        // A rapid after a rapid cuts nothing, whether the run executes it or not.
+        let modal = &registers.state.modal;
+        let is_rapid = modal.motion == Motion::Rapid
+            && modal.cycle.is_none()
+            && words.list.iter().all(|word| match &word.value {
+                WordOperand::G(_, found) => found.row_for(settings.codes).is_some_and(|row| {
+                    matches!(row.effect, Effect::Motion(Motion::Rapid) | Effect::Distance(_))
+                }),
+                _ => word.letter != b'G',
+            });
         for word in &words.list {
             if let Some(axis) = settings.axes.find(word.letter) {
                 self.machine.axes[axis] |= marks;
-                self.further |= marks;
+                if !is_rapid {
+                    self.further |= marks;
+                }
                 let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
                 if planes.into_iter().any(|plane| is_drilling(settings, plane, word.letter)) {
                     self.machine.cycle |= marks;

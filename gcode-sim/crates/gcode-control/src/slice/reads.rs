@@ -1,4 +1,6 @@
 //! Marks of the values that a block reads: variables, system variables, parameters.
+use std::collections::BTreeSet;
+
 use super::super::data::{ControlData, system_index};
 use super::super::evaluation::RoundingTarget;
 use super::super::functions::variable_number;
@@ -39,6 +41,14 @@ pub(super) fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetE
         14_001..=20_000 => work(14_001, FIRST_ADDITIONAL),
         _ => return None,
     })
+}
+
+/// Returns true if a system variable is the wear of a tool, which no machine file states.
+fn is_wear(number: u32, offsets: OffsetVariables) -> bool {
+    match offsets {
+        OffsetVariables::Fanuc => matches!(number, 2001..=2200 | 10_001..=10_999 | 12_001..=12_999),
+        OffsetVariables::Haas => matches!(number, 2201..=2400 | 2601..=2800),
+    }
 }
 
 impl Block<'_> {
@@ -183,9 +193,15 @@ impl Slice {
 
     /// Returns true if the machine file states an offset or a block has set it, by its variable.
     fn is_offset_set(&self, data: &ControlData, number: u32) -> bool {
-        match offset_of(number, data.settings.offset_variables) {
-            Some(OffsetEntry::Length(tool)) => self.is_length_set(tool),
-            Some(OffsetEntry::Radius(tool)) => self.is_radius_set(tool),
+        let offsets = data.settings.offset_variables;
+        let is_stated = |tools: &BTreeSet<u32>, tool: u32| tools.contains(&tool) && !is_wear(number, offsets);
+        match offset_of(number, offsets) {
+            Some(OffsetEntry::Length(tool)) => {
+                self.set_lengths.contains(&tool) || is_stated(&self.stated.lengths, tool)
+            }
+            Some(OffsetEntry::Radius(tool)) => {
+                self.set_radii.contains(&tool) || is_stated(&self.stated.radii, tool)
+            }
             Some(OffsetEntry::Work(system)) => self.set_systems.contains(&system),
             None => false,
         }

@@ -18,7 +18,7 @@ mod stack;
 mod tests;
 mod verdict;
 
-pub use assumption::denied_assumptions;
+pub use assumption::{denied_assumptions, denied_words};
 pub use conclusion::{Answer, Conclusion, Ending, stop_sentence};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
@@ -121,11 +121,12 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    if let Some(motion) = not_checked::unchecked_motion(extraction) {
-        verdict.summary.push_str("; not checked: ");
-        verdict.summary.push_str(motion);
-    }
     verdict.not_checked = not_checked::lines(&inspection, locate);
+    let gaps = not_checked::gaps(&verdict.not_checked);
+    if !gaps.is_empty() {
+        verdict.summary.push_str("; not checked: ");
+        verdict.summary.push_str(&gaps.join(", "));
+    }
     verdict
 }
 

@@ -10,19 +10,23 @@ use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
 use gcode_part::{Reference, ToolProcess};
 
-/// Motion that no check covers if neither stock nor surface is known, for the first line of a verdict.
+/// Motion that no check covers if neither stock nor surface is known.
 const MOTION: &str = "motion beside the holes (no stock)";
 
-/// Motion whose search was given up, for the first line of a verdict.
+/// Motion whose search was given up.
 const UNSEARCHED: &str = "rapids whose axes may reach too many positions";
 
-/// Returns the motion that no check covers, for the first line of a verdict.
-pub(super) fn unchecked_motion(extraction: &HoleExtraction) -> Option<&'static str> {
-    let unsearched = extraction.unsearched_rapids.as_ref().map(|_| UNSEARCHED);
-    if extraction.is_metal_known { unsearched } else { Some(MOTION) }
+/// End of a sentence on what a reference could specify: it is no gap in a verdict on that reference.
+const UNSPECIFIED: &str = "not specified in the reference";
+
+/// Returns what these sentences name, for the first line of a verdict: all before the first colon.
+pub(super) fn gaps(lines: &[String]) -> Vec<&str> {
+    let is_gap = |line: &&String| !line.ends_with(UNSPECIFIED);
+    lines.iter().filter(is_gap).map(|line| line.split(": ").next().unwrap_or(line)).collect()
 }
 
-/// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
+/// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is. What is not checked stands
+/// before a colon, the reason behind it.
 pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
     let HoleInspection { comparison, extraction, reference, machine, .. } = inspection;
     let mut all = diameters(comparison, machine);
@@ -35,7 +39,7 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
     }
     if extraction.assumed_axes != 0 && !extraction.holes.is_empty() {
         all.push(format!(
-            "{}, where the last job left it: no block commands it, and it counts as 0",
+            "the position of {}: no block commands it, and it counts as 0",
             machine.axes.names(extraction.assumed_axes)
         ));
     }
@@ -75,15 +79,13 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
     }
     let sentence = |(tool, ids): (Option<u32>, Vec<&str>)| {
         let holes = match ids[..] {
-            [one] => format!("hole {one},"),
-            _ => format!("{} holes (first: {}),", ids.len(), ids[0]),
+            [one] => format!("hole {one}"),
+            _ => format!("{} holes (first {})", ids.len(), ids[0]),
         };
         match tool {
             None if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
-            None => format!("the diameter of {holes} made before the first tool change"),
-            Some(tool) => {
-                format!("the diameter of {holes} made by T{tool}, which is not in the machine file")
-            }
+            None => format!("the diameter of {holes}: made before the first tool change"),
+            Some(tool) => format!("the diameter of {holes}: the machine file has none of T{tool}"),
         }
     };
     by_tool.into_iter().map(sentence).collect()
@@ -104,13 +106,13 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
     let sentence = |(gap, ids): (ShapeGap, Vec<&str>)| {
         let holes = match ids[..] {
             [one] => format!("hole {one}"),
-            _ => format!("{} holes (first: {})", ids.len(), ids[0]),
+            _ => format!("{} holes (first {})", ids.len(), ids[0]),
         };
         let name = |tool: Option<u32>| tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
         match gap {
             ShapeGap::SpotDrill(tool) => {
                 format!(
-                    "the end of {}, taken for a spot drill in {holes}: the machine file has no kind or point_angle",
+                    "the end of {0} in {holes}: the machine file has no kind or point_angle; {0} is taken for a spot drill",
                     name(tool)
                 )
             }
@@ -167,5 +169,5 @@ fn conditions(extraction: &HoleExtraction, reference: &Reference, machine: &Mach
         (rotates && limits.clamp.is_none(), "the rotary clamp"),
     ];
     let names: Vec<_> = conditions.iter().filter(|(lacks, _)| *lacks).map(|(_, name)| *name).collect();
-    (!names.is_empty()).then(|| format!("{}: not specified in the reference", names.join(", ")))
+    (!names.is_empty()).then(|| format!("{}: {UNSPECIFIED}", names.join(", ")))
 }
