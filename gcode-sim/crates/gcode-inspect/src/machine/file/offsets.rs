@@ -90,6 +90,12 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_point_without_a_digit_behind_it_is_explained() {
+        let error = crate::machine::Machine::parse("[offsets.G54]\nX = 5.\n").unwrap_err();
+        assert_eq!(error.to_string(), "line 2: a number needs a digit behind its point: 5.0 or 5, not 5.");
+    }
+
+    #[test]
     fn a_work_offset_has_one_spelling() {
         assert_eq!(WorkCode::find("G59"), Some(WorkSystem::Standard(6)));
         assert_eq!(WorkCode::find("G54.1 P300"), Some(WorkSystem::Additional(300)));
