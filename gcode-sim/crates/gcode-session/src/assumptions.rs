@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::{Request, Run, causes, set_up_control};
 use gcode_control::OperatorStop;
-use gcode_control::slice::{Marks, OutsideRead, Slice, StatedValues};
+use gcode_control::slice::{KEPT_GROUPS, Marks, OutsideRead, Slice, StatedValues};
 use gcode_inspect::holes::{DrilledHole, HoleExtractor};
 use gcode_lang::motion::{
     Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal, StopKind,
@@ -92,12 +92,10 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
         !control.settings().undocumented.stop_stops_spindle && control.stops().iter().any(is_stop)
     };
     let takes_power_on_modes = || {
-        [ModalGroup::Unit, ModalGroup::Distance, ModalGroup::Plane, ModalGroup::Work].into_iter().any(
-            |group| {
-                let has_choice = group != ModalGroup::Work || 1 < stated.work_systems.len();
-                has_choice && !control.is_commanded_before_moves(group)
-            },
-        )
+        KEPT_GROUPS.into_iter().any(|group| {
+            let is_used = group != ModalGroup::Work || !stated.work_systems.is_empty();
+            is_used && !control.is_commanded_before_moves(group)
+        })
     };
     !request.variables.is_empty()
         || request.settings.skip_signal.is_some()
@@ -263,7 +261,7 @@ mod tests {
 
     /// Returns the assumptions of a program as `#510=2.5@3: 1 2`, and its number of holes.
     fn assumptions_with(blocks: &str, variables: &[(u32, f64)]) -> (Vec<String>, usize) {
-        let text = format!("O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z50.\n{blocks}\nG80 Z50.\nM30\n");
+        let text = format!("O1\nG90 G54 G17 G21 G98 S1000 M03\nG0 X0. Y0. Z50.\n{blocks}\nG80 Z50.\nM30\n");
         assumptions_on("", &text, variables)
     }
 
@@ -383,17 +381,17 @@ mod tests {
         for number in [5001, 5042, 5083, 4003, 4006, 4014, 4119] {
             assert_assumptions(&drill(number), 2, &[]);
         }
-        assert_assumptions(&drill(4010).replace("#100 ", "[#100/10.] "), 2, &["G98=vacant@4: 1"]);
+        assert_assumptions(&drill(4011).replace("#100 ", "[#100/10.] "), 2, &["G50=vacant@4: 1"]);
         assert_assumptions(&format!("G28 Z0\n{}", drill(5023)), 2, &[]);
         assert_assumptions(&format!("G28 Z0\n{}", drill(5003)), 2, &["#5003=0@5: 1"]);
         let stated = "[offsets.G54]\nX = 5.0\n";
-        let text = format!("O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z50.\n{}\nM30\n", drill(5021));
+        let text = format!("O1\nG90 G54 G17 G21 G98 S1000 M03\nG0 X0. Y0. Z50.\n{}\nM30\n", drill(5021));
         assert_eq!(assumptions_on(stated, &text, &[]).0, [""; 0]);
     }
 
     #[test]
     fn modes_of_power_on_are_assumptions_where_a_hole_depends_on_them() {
-        let drill = "G81 X10. Y10. Z-5. R2. F100.\nX20.\nG80\nM30\n";
+        let drill = "G98 G81 X10. Y10. Z-5. R2. F100.\nX20.\nG80\nM30\n";
         let found = |machine: &str, header: &str| {
             let text = format!("O1\n{header}\nG0 X0. Y0. Z50. S1000 M03\n{drill}");
             assumptions_on(machine, &text, &[]).0
@@ -412,19 +410,20 @@ mod tests {
         let arc =
             "O1\nG21 G90\nG0 X10. Y10. Z2. S1000 M03\nG1 Z-3. F100.\nX12.\nG3 I-2.\nG1 X10.\nG0 Z50.\nM30\n";
         assert_eq!(assumptions_on("", arc, &[]).0, ["G17=vacant@6: 1"]);
-        // Several work offsets leave open which is active.
-        let one = "[offsets]\nG54 = { X = 1.0 }\n";
-        assert_eq!(found(one, "G17 G21 G90"), [""; 0]);
-        let two = format!("{one}G55 = {{ X = 2.0 }}\n");
-        assert_eq!(found(&two, "G17 G21 G90"), all(&[("G54", 3)]));
-        assert_eq!(found(&two, "G17 G21 G90 G55"), [""; 0]);
+        // With work offsets another may be active; without any all are zero.
+        let offsets = "[offsets]\nG54 = { X = 1.0 }\nG55 = { X = 2.0 }\n";
+        assert_eq!(found(offsets, "G17 G21 G90"), all(&[("G54", 3)]));
+        assert_eq!(found(offsets, "G17 G21 G90 G55"), [""; 0]);
+        // G99 of the last job would keep the tool low between the holes.
+        let low = format!("O1\nG21 G90\nG0 X0. Y0. Z50. S1000 M03\n{}", drill.replace("G98 ", ""));
+        assert_eq!(assumptions_on("", &low, &[]).0, all(&[("G98", 4)]));
     }
 
     #[test]
     fn offsets_of_the_machine_file_are_stated_and_those_of_set_are_not() {
         let program = |words: &str| {
             format!(
-                "O1\nG90 G17 G21 S1000 M03\n{words}\nG0 X0. Y0. Z50.\nG81 X10. Y10. Z-5. R2. F100.\nG80 Z50.\nM30\n"
+                "O1\nG90 G17 G21 G98 S1000 M03\n{words}\nG0 X0. Y0. Z50.\nG81 X10. Y10. Z-5. R2. F100.\nG80 Z50.\nM30\n"
             )
         };
         let head = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n";

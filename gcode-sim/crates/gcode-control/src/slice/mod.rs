@@ -16,6 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 pub use self::marks::Marks;
+pub use self::power_on::KEPT_GROUPS;
 
 use self::branches::Branches;
 use self::marks::{LOCALS, MachineMarks, VariableMarks};

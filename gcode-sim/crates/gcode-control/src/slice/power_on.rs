@@ -11,6 +11,10 @@ use gcode_lang::program::modes::{CutterSide, GroupSet, ModalGroup, Motion};
 /// Number of the modal groups of G codes in #4001….
 const GROUP_NUMBERS: std::ops::RangeInclusive<u32> = 1..=22;
 
+/// Groups without a state that is off: after the last job any of their codes may hold.
+pub const KEPT_GROUPS: [ModalGroup; 5] =
+    [ModalGroup::Unit, ModalGroup::Distance, ModalGroup::Plane, ModalGroup::ReturnTo, ModalGroup::Work];
+
 impl Slice {
     /// Returns the marks of the state of a modal group; one that no block has commanded is an outside value. What power-on
     /// switches off is off: only a read of its code rests on that.
@@ -20,14 +24,14 @@ impl Slice {
         }
         let mode = OutsideValue::PowerOnMode(block.registers.state.modal.code_in(group));
         let marks = self.outside(mode, None, block.flow, block.op) | self.machine.group(group);
-        if [ModalGroup::Unit, ModalGroup::Distance, ModalGroup::Plane, ModalGroup::Work].contains(&group) {
+        if KEPT_GROUPS.contains(&group) {
             self.machine.settle_group(group, marks);
         }
         marks
     }
 
-    /// Follows the modes of power-on that a block makes use of: unit, G90 or G91, plane, and on a machine with several work
-    /// offsets the active one.
+    /// Follows the modes of power-on that a block makes use of: unit, G90 or G91, plane, return level of cycles, and on
+    /// a machine with work offsets the active one.
     pub(super) fn follow_power_on_modes(
         &mut self,
         block: &Block<'_>,
@@ -56,7 +60,8 @@ impl Slice {
             (ModalGroup::Unit, places.any(|letter| !is_rotary(letter))),
             (ModalGroup::Distance, !is_on_machine),
             (ModalGroup::Plane, is_in_plane),
-            (ModalGroup::Work, !is_on_machine && 1 < self.stated.work_systems.len()),
+            (ModalGroup::ReturnTo, modes.is_in_cycle),
+            (ModalGroup::Work, !is_on_machine && !self.stated.work_systems.is_empty()),
         ] {
             if is_used {
                 self.mode_marks(block, group);
@@ -66,9 +71,9 @@ impl Slice {
 
     /// Returns true if a move of nothing but numbers makes use of no mode of power-on.
     pub(super) fn are_modes_settled(&self) -> bool {
-        let groups: &[ModalGroup] = match self.stated.work_systems.len() {
-            0 | 1 => &[ModalGroup::Unit, ModalGroup::Distance],
-            _ => &[ModalGroup::Unit, ModalGroup::Distance, ModalGroup::Work],
+        let groups: &[ModalGroup] = match self.stated.work_systems.is_empty() {
+            true => &[ModalGroup::Unit, ModalGroup::Distance],
+            false => &[ModalGroup::Unit, ModalGroup::Distance, ModalGroup::Work],
         };
         self.machine.is_settled(GroupSet::of(groups))
     }

@@ -30,7 +30,7 @@ const DIALECTS: &[DialectRow] = &[
     DialectRow { dialect: Dialect::Fanuc0iF, base: Some(Dialect::Fanuc31i), settings: &[
         ("CODES", "fanuc-0i-f"), ("WORK-SYSTEMS", "48"),
     ] },
-    // Nine macro levels in all; offsets: #2001 length and #2201 its wear, #2401 diameter and #2601 its wear;
+    // Nine macro levels in all; offsets: #2001 length and #2201 its wear, #2401 D and #2601 its wear;
     // #3000=n shows 1000 + n; DPRNT prints all digits, its format has at most seven; IF without THEN.
     DialectRow { dialect: Dialect::HaasNgc, base: None, settings: &[
         ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
