@@ -410,6 +410,12 @@ mod tests {
         let arc =
             "O1\nG21 G90\nG0 X10. Y10. Z2. S1000 M03\nG1 Z-3. F100.\nX12.\nG3 I-2.\nG1 X10.\nG0 Z50.\nM30\n";
         assert_eq!(assumptions_on("", arc, &[]).0, ["G17=vacant@6: 1"]);
+        // A macro that leaves a mode as it was decides nothing by it.
+        let restored = format!(
+            "O1\nG21 G90 G17\nG0 X0. Y0. Z50. S1000 M03\n#5=#4010\n{}",
+            drill.replace("G80", "G80 G#5")
+        );
+        assert_eq!(assumptions_on("", &restored, &[]).0, [""; 0]);
         // With work offsets another may be active; without any all are zero.
         let offsets = "[offsets]\nG54 = { X = 1.0 }\nG55 = { X = 2.0 }\n";
         assert_eq!(found(offsets, "G17 G21 G90"), all(&[("G54", 3)]));

@@ -24,6 +24,11 @@ impl Marks {
         self.0 == 0
     }
 
+    /// Returns true if `other` has all values of this set, none of which shares the last index.
+    pub(super) fn is_within(self, other: Self) -> bool {
+        self.0 & !other.0 == 0 && !self.contains(LAST_INDEX)
+    }
+
     /// Returns true if the set contains the value with this index.
     pub fn contains(self, index: usize) -> bool {
         self.0 >> index.min(LAST_INDEX) & 1 == 1

@@ -128,6 +128,8 @@ pub struct Slice {
     set_radii: BTreeSet<u32>,
     /// Work coordinate systems that the machine file states or the program has set, by their index.
     set_systems: BTreeSet<usize>,
+    /// Modal codes of power-on that the run has read: each is one of its group.
+    power_on_modes: Marks,
     /// Values that decide whether the run cuts elsewhere.
     further: Marks,
     motion: Rc<Cell<Marks>>,

@@ -23,7 +23,9 @@ impl Slice {
             return self.machine.group(group);
         }
         let mode = OutsideValue::PowerOnMode(block.registers.state.modal.code_in(group));
-        let marks = self.outside(mode, None, block.flow, block.op) | self.machine.group(group);
+        let marks = self.outside(mode, None, block.flow, block.op);
+        self.power_on_modes |= marks;
+        let marks = marks | self.machine.group(group);
         if KEPT_GROUPS.contains(&group) {
             self.machine.settle_group(group, marks);
         }

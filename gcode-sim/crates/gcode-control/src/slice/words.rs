@@ -115,7 +115,11 @@ impl Slice {
         };
         for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'G') {
             let Some(row) = row_of(block, words, word, codes) else { continue };
-            if !marked.marks.is_none() {
+            // G#5 with a code that #4003 had before is one of the same group.
+            let is_restored = matches!(word.value, WordOperand::Variable { .. })
+                && marked.marks.is_within(self.power_on_modes)
+                && !matches!(row.effect, Effect::Motion(_) | Effect::Cycle(_));
+            if !marked.marks.is_none() && !is_restored {
                 // Another value is another code.
                 self.machine.add_to_all(marked.marks);
                 self.machine.rest |= marked.marks;
