@@ -23,6 +23,7 @@
 #![warn(missing_docs)]
 mod assumptions;
 mod causes;
+mod outside_text;
 mod trace;
 
 use std::sync::Arc;
