@@ -102,7 +102,7 @@ fn a_denied_assumption_fails_everywhere() {
     let (verdict, code) = run_json(&format!("{line} --format json"), place);
     assert_eq!((&verdict["verdict"], code), (&json!("fail"), 1));
     let summary = "1 assumption is denied; 3 of 3 holes in tolerance; not checked: diameters, the tool's length, \
-                   head angles, the position of B, motion beside the holes (no stock)";
+                   head angles, motion beside the holes (no stock)";
     assert_eq!(verdict["summary"], summary);
     assert_eq!(verdict["findings"][0]["code"], "assumption");
     let (text, code) = run(line, place);

@@ -347,9 +347,11 @@ impl Control {
         &self.executor.log.unset_systems
     }
 
-    /// Returns true if a block has commanded this modal group, other than 01, before the first move of the run.
-    pub fn is_commanded_before_moves(&self, group: ModalGroup) -> bool {
+    /// Returns true if a block has commanded this modal group, other than 01, before the first move of the run; G98 or G99
+    /// before the first canned cycle, if there is one.
+    pub fn is_commanded_before_use(&self, group: ModalGroup) -> bool {
         let log = &self.executor.log;
-        log.commanded_groups.without(log.late_groups).contains(group)
+        let is_unused = group == ModalGroup::ReturnTo && !log.has_drilled;
+        is_unused || log.commanded_groups.without(log.late_groups).contains(group)
     }
 }

@@ -13,7 +13,7 @@ use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{Event, EventKind, EventSink};
-use gcode_lang::program::modes::{GroupSet, WorkSystem};
+use gcode_lang::program::modes::{GroupSet, ModalGroup, WorkSystem};
 use gcode_lang::program::{ProgramId, Words};
 use gcode_lang::source::{Span, Spanned};
 use gcode_lang::units::Seconds;
@@ -77,6 +77,7 @@ impl Executor {
             self.emit(kind, *seconds, sink);
         }
         if let Some(cycle_plan) = plan.cycle_plan.take() {
+            self.log.has_drilled = true;
             self.emit_cycle(&cycle_plan, sink);
         }
         for (kind, seconds) in &plan.events_after_motion {
@@ -215,7 +216,11 @@ impl Executor {
     fn record_groups(&mut self, groups: GroupSet) {
         let log = &mut self.log;
         if 0 < log.moves || !self.registers.lookahead.is_idle() {
-            log.late_groups = log.late_groups.union(groups.without(log.commanded_groups));
+            let mut late = groups.without(log.commanded_groups);
+            if !log.has_drilled {
+                late = late.without(GroupSet::of(&[ModalGroup::ReturnTo]));
+            }
+            log.late_groups = log.late_groups.union(late);
         }
         log.commanded_groups = log.commanded_groups.union(groups);
     }

@@ -159,8 +159,10 @@ pub(super) struct RunLog {
     pub(super) unset_systems: Vec<(WorkSystem, Backtrace)>,
     /// Modal groups that a block has commanded, without group 01.
     pub(super) commanded_groups: GroupSet,
-    /// Those that a move preceded.
+    /// Those that a move preceded, or a canned cycle G98 and G99.
     pub(super) late_groups: GroupSet,
+    /// A canned cycle has drilled.
+    pub(super) has_drilled: bool,
 }
 
 impl RunLog {

@@ -95,7 +95,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let takes_power_on_modes = || {
         KEPT_GROUPS.into_iter().any(|group| {
             let is_used = group != ModalGroup::Work || !stated.work_systems.is_empty();
-            is_used && !control.is_commanded_before_moves(group)
+            is_used && !control.is_commanded_before_use(group)
         })
     };
     !request.variables.is_empty()

@@ -19,9 +19,12 @@ const UNSEARCHED: &str = "rapids whose axes may reach too many positions";
 /// End of a sentence on what a reference could specify: it is no gap in a verdict on that reference.
 const UNSPECIFIED: &str = "not specified in the reference";
 
+/// End of a sentence on axes that most machines lack.
+const UNCOMMANDED: &str = "no block commands it, and it counts as 0";
+
 /// Returns what these sentences name, for the first line of a verdict: all before the first colon.
 pub(super) fn gaps(lines: &[String]) -> Vec<&str> {
-    let is_gap = |line: &&String| !line.ends_with(UNSPECIFIED);
+    let is_gap = |line: &&String| ![UNSPECIFIED, UNCOMMANDED].iter().any(|end| line.ends_with(end));
     lines.iter().filter(is_gap).map(|line| line.split(": ").next().unwrap_or(line)).collect()
 }
 
@@ -38,10 +41,7 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
         all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());
     }
     if extraction.assumed_axes != 0 && !extraction.holes.is_empty() {
-        all.push(format!(
-            "the position of {}: no block commands it, and it counts as 0",
-            machine.axes.names(extraction.assumed_axes)
-        ));
+        all.push(format!("the position of {}: {UNCOMMANDED}", machine.axes.names(extraction.assumed_axes)));
     }
     if !extraction.is_metal_known {
         all.push(format!(
