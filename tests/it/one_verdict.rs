@@ -142,7 +142,7 @@ fn an_alarm_is_in_a_list_and_in_a_picture_without_reference() {
     let place = tempfile::tempdir().unwrap();
     std::fs::write(place.path().join("O1.nc"), &text).unwrap();
     let (list, exit) = run("gcode-sim holes O1.nc", place.path());
-    assert!(list.contains(&format!("1 holes, mm, in the part's frame\n{sentence}\n")) && exit == 3, "{list}");
+    assert!(list.contains(&format!("1 hole, mm, in the part's frame\n{sentence}\n")) && exit == 3, "{list}");
     let (list, exit) = run("gcode-sim holes O1.nc --format json", place.path());
     let list: Value = serde_json::from_str(&list).unwrap();
     assert_eq!((&list["stopped"], exit), (&Value::from(sentence), 3));

@@ -41,6 +41,10 @@ fn shown(ran: &Ran) -> String {
     // Of the axes that are unknown only those at machine coordinates are shown.
     let mut at_machine_position = 0;
     for (span, kind, _) in &ran.recorder.0 {
+        // The tool change shows the tool.
+        if let EventKind::ToolSelected { .. } = kind {
+            continue;
+        }
         if let EventKind::PositionUnknown { axes } = kind {
             let before = std::mem::replace(&mut at_machine_position, axes.at_machine_position);
             if before == at_machine_position {
@@ -104,6 +108,7 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
             format!("skip  {} at {:.1}, {}", at(to), rate.0, if *touched { "signal" } else { "no signal" })
         }
         EventKind::Dwell { time } => format!("dwell {:.3} s", time.0),
+        EventKind::ToolSelected { number } => format!("tool {number} selected"),
         EventKind::ToolChange { number } => format!("tool {number}"),
         EventKind::ToolLength { offset, compensation: by } => match by {
             LengthCompensation::Off => format!("tool length {}", at(offset)),

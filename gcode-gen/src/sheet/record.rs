@@ -175,6 +175,7 @@ impl EventSink for RunRecorder {
             EventKind::ToolLength { .. }
             | EventKind::PositionUnknown { .. }
             | EventKind::Spindle { .. }
+            | EventKind::ToolSelected { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => {}
         }

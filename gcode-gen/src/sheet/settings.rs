@@ -115,6 +115,7 @@ impl EventSink for RunTrace {
             EventKind::ToolLength { .. }
             | EventKind::PositionUnknown { .. }
             | EventKind::Spindle { .. }
+            | EventKind::ToolSelected { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => {}
         }

@@ -1,4 +1,5 @@
 //! `gcode-sim verify`: verifies a program's holes or flutes against a reference.
+use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -72,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
-            holes(arguments, &mut request, folders, &reference, tolerances)
+            holes(arguments, &mut request, folders, &ManuallyDrop::new(reference), tolerances)
         }
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
@@ -113,6 +114,9 @@ fn print_verdict(
     table: impl Fn() -> String,
     picture: impl Fn() -> Picture,
 ) -> Result<ExitStatus, UsageError> {
+    if let Some(path) = &arguments.picture {
+        render::write(&picture(), "1600x1200", path)?;
+    }
     let sources = run.control.memory().sources();
     match arguments.format {
         FindingFormat::Json => output::json(verdict)?,
@@ -124,7 +128,6 @@ fn print_verdict(
         }
     }
     if let Some(path) = &arguments.picture {
-        render::write(&picture(), "1600x1200", path)?;
         output::written("picture", path, arguments.format == FindingFormat::Text)?;
     }
     Ok(super::concluded(conclusion, findings, run))
@@ -167,5 +170,6 @@ fn holes(
     let simulation = progress::of_run(request, simulate)?;
     let mut verdict = simulation.verify(reference, tolerances, &machine);
     add_assumptions(&simulation, &mut verdict, request);
-    print(&simulation, &verdict)
+    // The process ends with the result: the system takes its memory back as a whole.
+    print(&ManuallyDrop::new(simulation), &ManuallyDrop::new(verdict))
 }

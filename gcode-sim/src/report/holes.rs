@@ -50,7 +50,8 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
             hole.depth
         );
     }
-    let _ = writeln!(text, "{} holes, mm, in the part's frame", list.holes.len());
+    let plural = if list.holes.len() == 1 { "" } else { "s" };
+    let _ = writeln!(text, "{} hole{plural}, mm, in the part's frame", list.holes.len());
     append_assumptions(&mut text, list.assumptions.as_deref().unwrap_or_default(), list.holes.len());
     text
 }

@@ -284,6 +284,7 @@ mod tests {
             holes: vec![hole("1", 0.0002, &[]), hole("2", 0.1234, &["hole-position"])],
             missing: (3..18).map(|id| id.to_string()).collect(),
             extra: Vec::new(),
+            repeated: Vec::new(),
             findings: Vec::new(),
             neighbours: None,
             not_checked: Vec::new(),

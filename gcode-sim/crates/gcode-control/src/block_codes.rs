@@ -74,6 +74,7 @@ impl Planner<'_> {
             axis_word_use = new.or(axis_word_use);
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
+                state.is_tapping_rigid = false;
                 is_cycle_active = false;
             }
         }
@@ -141,6 +142,7 @@ impl Planner<'_> {
         }
         if let Some(t) = self.words.count(b'T')? {
             plan.state.modal_words.t = t;
+            plan.push_event(EventKind::ToolSelected { number: t });
         }
         let codes = &mut plan.state.modal_words;
         for (letter, code) in [(b'D', &mut codes.d), (b'H', &mut codes.h)] {
@@ -239,6 +241,9 @@ impl Planner<'_> {
                         .push((EventKind::Spindle { direction: SpindleDirection::Off, speed }, 0.0));
                 }
                 MCodeEffect::ToolChange => {
+                    if self.data.settings.undocumented.tool_change_homes_z {
+                        self.plan_z_home(plan);
+                    }
                     let stops_spindle = self.data.settings.undocumented.tool_change_stops_spindle;
                     if stops_spindle && plan.state.spindle != SpindleDirection::Off {
                         self.set_spindle(plan, SpindleDirection::Off, speed);
@@ -246,6 +251,7 @@ impl Planner<'_> {
                     plan.state.tool = plan.state.modal_words.t;
                     plan.push_event(EventKind::ToolChange { number: plan.state.modal_words.t });
                 }
+                MCodeEffect::RigidTapping => plan.state.is_tapping_rigid = true,
                 MCodeEffect::CoolantOn => {
                     plan.state.is_coolant_on = true;
                     plan.push_event(EventKind::Coolant { is_on: true, code });

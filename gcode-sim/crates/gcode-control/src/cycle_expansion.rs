@@ -71,6 +71,7 @@ impl CyclePlan {
     ) {
         let state = &self.start_state;
         let initial = state.cycle.initial;
+        let is_rigid = state.is_tapping_rigid || data.settings.taps_rigidly;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
         let spindle = |direction| EventKind::Spindle { direction, speed: Rpm(state.modal_words.s) };
         let returns_to_initial = match step {
@@ -88,6 +89,8 @@ impl CyclePlan {
             | CycleStep::SpindleStop
             | CycleStep::SpindleForward
             | CycleStep::SpindleReverse
+            | CycleStep::RigidForward
+            | CycleStep::RigidReverse
             | CycleStep::ManualRetract => false,
         };
         if returns_to_initial {
@@ -118,6 +121,11 @@ impl CyclePlan {
             CycleStep::SpindleStop => (motion.emit)(spindle(SpindleDirection::Off), 0.0),
             CycleStep::SpindleForward => (motion.emit)(spindle(SpindleDirection::Clockwise), 0.0),
             CycleStep::SpindleReverse => (motion.emit)(spindle(SpindleDirection::Counterclockwise), 0.0),
+            CycleStep::RigidForward if is_rigid => (motion.emit)(spindle(SpindleDirection::Clockwise), 0.0),
+            CycleStep::RigidReverse if is_rigid => {
+                (motion.emit)(spindle(SpindleDirection::Counterclockwise), 0.0)
+            }
+            CycleStep::RigidForward | CycleStep::RigidReverse => {}
             CycleStep::ManualRetract => {
                 let (text, variables) = ("retract by hand to R".into(), Vec::new());
                 (motion.emit)(EventKind::Stop { kind: StopKind::M00, text, variables }, 0.0);

@@ -236,7 +236,9 @@ impl Registers {
                 let Ok(code) = count(raw, b'M') else { continue };
                 let text = |letters| self.with_words(words, format!("M{code:02}"), letters);
                 match m_codes::find(code, self.data.settings.codes) {
-                    Some(MCodeEffect::NoEffect) => unsimulated.m_codes.push(text(Letters::NONE)),
+                    Some(MCodeEffect::NoEffect | MCodeEffect::RigidTapping) => {
+                        unsimulated.m_codes.push(text(Letters::NONE))
+                    }
                     Some(MCodeEffect::Orient) => unsimulated.m_codes.push(text(Letters::of(b"PR"))),
                     Some(MCodeEffect::End) => unsimulated.end_code = Some(code),
                     Some(

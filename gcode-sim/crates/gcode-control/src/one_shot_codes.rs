@@ -240,6 +240,19 @@ impl Planner<'_> {
         plan.commands_axes = true;
     }
 
+    /// M06 of a Haas: Z goes straight home before the tool changes. A position on the part that is unknown stays so.
+    pub(super) fn plan_z_home(&self, plan: &mut BlockPlan) {
+        let Some(z) = self.data.settings.axes.find(b'Z') else { return };
+        let is_offset_known = self.data.set_systems.contains(&system_index(plan.state.modal.work));
+        let mut home = plan.state.machine_position;
+        home[z] = 0.0;
+        if is_offset_known || plan.state.unknown.all() >> z & 1 == 0 {
+            self.place_at_machine_coordinates(plan, 1 << z);
+        }
+        self.push_rapid(plan, &home);
+        self.data.recompute_position(&mut plan.state);
+    }
+
     /// G29: by rapid over the intermediate point of the last G28 to the end point.
     fn plan_return_from_reference(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let mut intermediate = plan.state.machine_position;

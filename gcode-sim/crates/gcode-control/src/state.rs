@@ -53,6 +53,8 @@ pub struct State {
     pub(super) is_coolant_on: bool,
     /// Between G10 L52 and G11.
     pub(super) is_in_parameter_input: bool,
+    /// M29: G84 and G74 turn the spindle themselves until the cycle ends.
+    pub(super) is_tapping_rigid: bool,
     /// Number of the tool in the spindle.
     pub tool: u32,
 }
@@ -64,6 +66,7 @@ impl State {
         self.modal.motion = motion;
         if self.modal.cycle.take().is_some() {
             self.cycle = CycleState::default();
+            self.is_tapping_rigid = false;
         }
     }
 

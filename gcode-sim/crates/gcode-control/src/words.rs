@@ -36,8 +36,8 @@ impl WordNumber {
     }
 }
 
-/// Largest number of G codes in a block.
-pub(super) const MAX_G_CODES: usize = 12;
+/// Largest number of G codes in a block: more than there are modal groups.
+pub(super) const MAX_G_CODES: usize = 32;
 
 /// Words of a block by letter. They are kept between blocks, and the mask of letters is all that is cleared of the values.
 #[derive(Clone, Debug, Default)]
@@ -85,7 +85,8 @@ impl BlockWords {
 
     pub(super) fn put_g(&mut self, row: &'static GCodeRow) -> Result<(), Alarm> {
         if self.g_rows.len() == MAX_G_CODES {
-            return Err(Alarm::MacroFormat { what: "too many G codes in one block".into() });
+            let what = format!("more than {MAX_G_CODES} G codes in a block");
+            return Err(Alarm::NotSimulated { what });
         }
         self.g_rows.push(row);
         match row.effect {

@@ -217,6 +217,11 @@ pub enum EventKind {
         /// Length of the pause.
         time: Seconds,
     },
+    /// T: the tool that the next M06 puts into the spindle; causes no motion.
+    ToolSelected {
+        /// Tool number.
+        number: u32,
+    },
     /// M06: the tool is now in the spindle.
     ToolChange {
         /// Tool number.
@@ -277,6 +282,7 @@ impl EventKind {
                 Some(to)
             }
             Self::Dwell { .. }
+            | Self::ToolSelected { .. }
             | Self::ToolChange { .. }
             | Self::ToolLength { .. }
             | Self::PositionUnknown { .. }

@@ -39,6 +39,8 @@ pub struct EntryPlanes {
     middles: PointTree,
     /// Largest distance of a collar's point from its middle.
     reach: f64,
+    /// The same along each axis.
+    extent: Vector3<f64>,
     /// Direction of all axes if they agree, and the height of the highest entry along it.
     top: Option<(Unit<Vector3<f64>>, f64)>,
 }
@@ -64,6 +66,7 @@ impl EntryPlanes {
         Self {
             middles: PointTree::new(collars.iter().map(middle)),
             reach: collars.iter().map(reach).fold(0.0, f64::max),
+            extent: collars.iter().map(|collar| extent(&collar.rod)).fold(Vector3::zeros(), |a, b| a.sup(&b)),
             top: top(&collars),
             ids: holes.iter().map(|hole| hole.id.clone().unwrap_or_default()).collect(),
             collars,
@@ -111,9 +114,13 @@ impl EntryPlanes {
 
     /// Calls `each` with the holes whose metal, or the space above it, may reach into the box from `low` to `high`.
     pub fn around(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
-        let margin = Vector3::repeat(self.reach);
-        self.middles.in_box(&(low - margin), &(high + margin), each);
+        self.middles.in_box(&(low - self.extent), &(high + self.extent), each);
     }
+}
+
+/// Returns the largest distance of a rod's point from its middle along each axis.
+fn extent(rod: &Rod) -> Vector3<f64> {
+    rod.axis.map(|along| along.abs() * rod.length / 2.0 + rod.radius * (1.0 - along * along).max(0.0).sqrt())
 }
 
 /// Returns the direction of all axes if they agree, and the height of the highest entry along it.

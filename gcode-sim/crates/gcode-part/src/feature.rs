@@ -34,6 +34,23 @@ pub enum DepthTo {
     Full,
 }
 
+/// Hand of a thread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Hand {
+    /// Right-hand: cut clockwise.
+    #[default]
+    Right,
+    /// Left-hand: cut counterclockwise.
+    Left,
+}
+
+impl Hand {
+    fn is_right(&self) -> bool {
+        *self == Self::Right
+    }
+}
+
 /// A feature of a hole; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -57,6 +74,9 @@ pub struct Feature {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub pitch: Option<f64>,
+    /// Hand of a thread.
+    #[serde(default, skip_serializing_if = "Hand::is_right")]
+    pub hand: Hand,
 }
 
 /// Largest difference between the stated depth of a countersink and that of its cone, mm.
@@ -81,6 +101,19 @@ impl FeatureKind {
 }
 
 impl Feature {
+    /// Returns a feature without sizes.
+    pub fn of(kind: FeatureKind) -> Self {
+        Self {
+            kind,
+            diameter: 0.0,
+            depth: None,
+            to: DepthTo::Point,
+            angle: None,
+            pitch: None,
+            hand: Hand::Right,
+        }
+    }
+
     /// Returns the depth of the feature, for a countersink that of its cone's point, mm.
     pub fn bottom(&self) -> f64 {
         match (self.kind, self.angle) {
@@ -94,14 +127,16 @@ impl Feature {
         let Self { kind, diameter, .. } = *self;
         match (kind, self.pitch, self.angle) {
             (FeatureKind::Tap, Some(pitch), _) => {
-                format!("thread {diameter}×{pitch}, {} deep", self.bottom())
+                let hand = if self.hand == Hand::Left { "left-hand " } else { "" };
+                format!("{hand}thread {diameter}×{pitch}, {} deep", self.bottom())
             }
             (FeatureKind::Countersink, _, Some(angle)) => format!("countersink Φ{diameter}, {angle}°"),
             _ => format!("{} Φ{diameter}×{}", kind.name(), self.bottom()),
         }
     }
 
-    /// Parses the notation of a CSV cell: kind, diameter and depth, then `to=full`, `angle=` and `pitch=`:
+    /// Parses the notation of a CSV cell: kind, diameter and depth, then `to=full`, `angle=`, `pitch=` and
+    /// `hand=`:
     /// `tap 10 22 pitch=1.5`, `countersink 12 angle=90`.
     ///
     /// # Errors
@@ -115,18 +150,20 @@ impl Feature {
         })?;
         let number = |word: &str| word.parse::<f64>().map_err(|_| format!("'{word}' is not a number"));
         let diameter = number(words.next().ok_or("a feature needs its diameter behind its kind")?)?;
-        let mut feature = Self { kind, diameter, depth: None, to: DepthTo::Point, angle: None, pitch: None };
+        let mut feature = Self { diameter, ..Self::of(kind) };
         for word in words {
             match word.split_once('=') {
                 None if feature.depth.is_none() => feature.depth = Some(number(word)?),
                 Some(("angle", value)) => feature.angle = Some(number(value)?),
                 Some(("pitch", value)) => feature.pitch = Some(number(value)?),
+                Some(("hand", "right")) => feature.hand = Hand::Right,
+                Some(("hand", "left")) => feature.hand = Hand::Left,
                 Some(("to", "full")) => feature.to = DepthTo::Full,
                 Some(("to", "point")) => feature.to = DepthTo::Point,
                 _ => {
                     return Err(format!(
                         "'{word}' is not understood: a feature is its kind, diameter and depth, then to=full, \
-                         angle= or pitch="
+                         angle=, pitch= or hand="
                     ));
                 }
             }
@@ -163,6 +200,9 @@ impl Feature {
                 false => format!("its {name} has a pitch: only a tap has one"),
             });
         }
+        if self.hand == Hand::Left && !is_thread {
+            return Err(format!("its {name} has a hand: only a tap has one"));
+        }
         match self.depth {
             None if !is_cone => Err(format!("its {name} has no depth")),
             Some(depth) if is_cone => self.check_cone(depth, walls),
@@ -195,7 +235,8 @@ mod tests {
     fn a_cell_of_a_list_has_kind_diameter_depth_and_keys() {
         let feature = Feature::parse("tap 10 22 pitch=1.5").unwrap();
         assert_eq!((feature.kind, feature.diameter, feature.depth), (FeatureKind::Tap, 10.0, Some(22.0)));
-        assert_eq!(feature.pitch, Some(1.5));
+        assert_eq!((feature.pitch, feature.hand), (Some(1.5), Hand::Right));
+        assert_eq!(Feature::parse("tap 10 22 pitch=1.5 hand=left").unwrap().hand, Hand::Left);
         assert_eq!(Feature::parse("drill 8.5 30 to=full").unwrap().to, DepthTo::Full);
         for (text, expected) in [
             ("bored 8 3", "'bored' is no kind of feature"),
@@ -233,6 +274,7 @@ mod tests {
         for (text, expected) in [
             ("tap 10 22", "its tap has no pitch"),
             ("drill 8 22 pitch=1", "its drill has a pitch"),
+            ("drill 8 22 hand=left", "its drill has a hand"),
             ("drill 8", "its drill has no depth"),
             ("countersink 12 3", "its countersink has no angle"),
             ("ream 8 20 angle=90", "its ream has an angle"),

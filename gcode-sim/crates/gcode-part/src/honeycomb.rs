@@ -5,10 +5,12 @@
 //!
 //! Part frame: x along the cylinder's axis, with the origin at the first hole of the first row; the first row
 //! lies at +z, and azimuth counts from z towards y. Both senses give the same holes.
+use std::sync::Arc;
+
 use super::hole::Hole;
+use super::nominal_axes::NominalAxes;
 use super::pattern::{Pattern, point, solve_pitch};
 use super::reference::{ProcessLimits, Reference, ToolProcess};
-use super::spacing::hole_spacing;
 use super::surface::Surface;
 use crate::job::{Cylinder, Drill, Honeycomb, Metric, Spacing};
 use crate::reader::FileError;
@@ -43,7 +45,8 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, FileError> {
             });
         }
     }
-    let process_limits = ProcessLimits { hole_spacing: hole_spacing(&holes), ..process_limits(job) };
+    let process_limits =
+        ProcessLimits { hole_axes: Arc::new(NominalAxes::of(&holes)), ..process_limits(job) };
     Ok(Reference {
         holes,
         position: Some(job.tolerance.position),

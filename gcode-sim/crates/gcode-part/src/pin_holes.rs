@@ -3,9 +3,11 @@
 //! The direction is the gradient of the surface there, or its axis of revolution.
 use nalgebra::{Point3, Vector3};
 
+use std::sync::Arc;
+
 use super::hole::Hole;
+use super::nominal_axes::NominalAxes;
 use super::reference::{ProcessLimits, Reference, ToolProcess};
-use super::spacing::hole_spacing;
 use super::surface::Surface;
 use crate::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 use crate::reader::FileError;
@@ -18,7 +20,8 @@ use gcode_lang::units::Deg;
 pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
     let holes = job.holes.iter().map(|hole| pin_hole(&surface, hole)).collect::<Result<Vec<_>, _>>()?;
-    let process_limits = ProcessLimits { hole_spacing: hole_spacing(&holes), ..process_limits(job) };
+    let process_limits =
+        ProcessLimits { hole_axes: Arc::new(NominalAxes::of(&holes)), ..process_limits(job) };
     Ok(Reference {
         holes,
         position: Some(job.tolerance.position),

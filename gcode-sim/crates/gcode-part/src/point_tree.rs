@@ -5,12 +5,12 @@ use nalgebra::{Point3, Vector3};
 pub(crate) const LEAF_SIZE: usize = 8;
 
 /// Points in k-d order: the middle point of each range is its node, and both halves are ranges.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointTree {
     nodes: Vec<Node>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Node {
     pub point: Point3<f64>,
     pub index: u32,

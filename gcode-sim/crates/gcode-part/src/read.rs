@@ -41,7 +41,7 @@ pub(super) fn has_semicolons(text: &str) -> bool {
 }
 
 pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
     let column = |name: &str| header.iter().position(|h| h == name);
     for name in &COLUMNS[..REQUIRED] {
@@ -57,10 +57,10 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
         ));
     }
     let mut holes = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| csv_error(&e))?;
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(|e| csv_error(&e))? {
         let line = record.position().map(|p| p.line() as usize);
-        let field = |name: &str| column(name).and_then(|c| record.get(c)).unwrap_or_default();
+        let field = |name: &str| column(name).and_then(|c| record.get(c)).unwrap_or_default().trim();
         let number = |name: &str| {
             let text = field(name);
             text.parse::<f64>().map_err(|_| error(line, format!("column '{name}' is '{text}': a number")))
@@ -140,29 +140,36 @@ fn complete(hole: &mut Hole) {
 
 /// Checks one hole for finite, plausible values.
 fn check(hole: &Hole, index: usize) -> Result<(), String> {
-    let name = match &hole.id {
-        Some(id) => format!("hole {} (id '{id}')", index + 1),
-        None => format!("hole {}", index + 1),
-    };
+    find_fault(hole).map_or(Ok(()), |fault| {
+        let name = match &hole.id {
+            Some(id) => format!("hole {} (id '{id}')", index + 1),
+            None => format!("hole {}", index + 1),
+        };
+        Err(format!("{name}: {fault}"))
+    })
+}
+
+/// Returns what is wrong with a hole.
+fn find_fault(hole: &Hole) -> Option<String> {
     let numbers = hole.entry.iter().chain(&hole.axis).chain([&hole.depth]).chain(&hole.diameter);
     if let Some(number) = numbers.clone().find(|n| !n.is_finite()) {
-        return Err(format!("{name}: a number is {number}: all must be finite"));
+        return Some(format!("a number is {number}: all must be finite"));
     }
     let length = Vector3::from(hole.axis).norm();
     if length == 0.0 {
-        return Err(format!("{name}: the axis is 0, 0, 0: give the unit vector out of the part"));
+        return Some("the axis is 0, 0, 0: give the unit vector out of the part".to_owned());
     }
     // Axes rounded to a few digits are normalised; a larger error is not a direction of length 1.
     if (length - 1.0).abs() > 1e-3 {
-        return Err(format!("{name}: the axis has the length {length:.7}: divide i, j, k by it"));
+        return Some(format!("the axis has the length {length:.7}: divide i, j, k by it"));
     }
     if hole.depth <= 0.0 {
-        return Err(format!("{name}: the depth is {}: a number above 0", hole.depth));
+        return Some(format!("the depth is {}: a number above 0", hole.depth));
     }
     if let Some(diameter) = hole.diameter.filter(|diameter| *diameter <= 0.0) {
-        return Err(format!("{name}: the diameter is {diameter}: a number above 0"));
+        return Some(format!("the diameter is {diameter}: a number above 0"));
     }
-    check_features(hole).map_err(|message| format!("{name}: {message}"))
+    check_features(hole).err()
 }
 
 /// Checks each feature, and that the hole's own diameter is that of one of them.

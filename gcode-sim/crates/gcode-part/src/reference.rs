@@ -3,9 +3,9 @@ use std::sync::Arc;
 
 use super::entry_planes::{EntryPlanes, Metal};
 use super::hole::{Hole, HoleList, Unit};
+use super::nominal_axes::NominalAxes;
 use super::pattern::Pattern;
 use super::read;
-use super::spacing::hole_spacing;
 use super::stock::Stock;
 use super::surface::Surface;
 use crate::job::{Clamp, Rotary};
@@ -34,21 +34,26 @@ impl Reference {
     /// Returns the reference of a hole list. Holes without an id get `#` and their number.
     ///
     /// # Errors
-    /// Values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
+    /// A list without holes, values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
+        if list.holes.is_empty() {
+            return Err(FileError {
+                line: None,
+                message: "holes: none; a reference needs one at least".into(),
+            });
+        }
         if let Some(fault) = list.stock.and_then(|stock| stock.fault()) {
             return Err(FileError { line: None, message: format!("stock: {fault}") });
         }
         let holes = read::check_all(list.holes)?;
-        let hole_axes = holes.iter().map(|hole| NominalAxis { entry: hole.entry, axis: hole.axis }).collect();
-        let hole_spacing = hole_spacing(&holes);
+        let hole_axes = Arc::new(NominalAxes::of(&holes));
         Ok(Self {
             holes,
             position: None,
             depth: None,
             surface: None,
             stock: list.stock,
-            process_limits: ProcessLimits { hole_axes, hole_spacing, ..ProcessLimits::default() },
+            process_limits: ProcessLimits { hole_axes, ..ProcessLimits::default() },
             pattern: None,
         })
     }
@@ -91,19 +96,8 @@ pub struct ProcessLimits {
     pub clamp: Option<Clamp>,
     /// Limits of each tool.
     pub tools: Vec<ToolProcess>,
-    /// Least distance of two nominal axes, mm; `None` above 1 mm.
-    pub hole_spacing: Option<f64>,
-    /// Axes of the holes of a list: a mill that plunges there drills.
-    pub hole_axes: Arc<[NominalAxis]>,
-}
-
-/// Axis of a nominal hole.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NominalAxis {
-    /// Where the axis meets the surface.
-    pub entry: [f64; 3],
-    /// Unit vector out of the part.
-    pub axis: [f64; 3],
+    /// Axes of the nominal holes: a mill that plunges there drills, and passes nearer to another one are another hole's.
+    pub hole_axes: Arc<NominalAxes>,
 }
 
 /// Limits of one tool.

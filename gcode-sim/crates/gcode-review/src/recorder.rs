@@ -351,7 +351,7 @@ impl Recorder {
                 self.length = *offset;
                 StepKind::Length(*offset)
             }
-            EventKind::PositionUnknown { .. } => return,
+            EventKind::PositionUnknown { .. } | EventKind::ToolSelected { .. } => return,
             EventKind::Spindle { direction, speed } => {
                 // The speed of a stopped spindle is recorded when it starts.
                 let is_off = *direction == SpindleDirection::Off;

@@ -26,6 +26,7 @@ mod causes;
 mod outside_text;
 mod trace;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use assumptions::HoleDependencies;
@@ -350,8 +351,8 @@ impl Simulation {
 
     /// Adds the assumptions to a verdict on these holes; each is an error if `is_denied`.
     pub fn add_assumptions(&self, verdict: &mut Verdict, request: &Request, is_denied: bool) {
-        let names = verdict.hole_names();
         let found = self.dependencies(request);
+        let names = if found.hole_count() == 0 { BTreeMap::new() } else { verdict.hole_names() };
         let found = found.assumptions(&self.run, |hole| names.get(&hole).cloned());
         verdict.add_assumptions(found, is_denied, &|span| self.run.locate(span));
     }

@@ -116,7 +116,8 @@ impl Slice {
                 MCodeEffect::SpindleForward
                 | MCodeEffect::SpindleReverse
                 | MCodeEffect::SpindleStop
-                | MCodeEffect::Orient,
+                | MCodeEffect::Orient
+                | MCodeEffect::RigidTapping,
             ) => self.machine.spindle |= marks,
             Some(MCodeEffect::ToolChange) => self.machine.tool |= marks,
             Some(MCodeEffect::CoolantOn | MCodeEffect::CoolantOff | MCodeEffect::NoEffect) => {}

@@ -203,6 +203,7 @@ impl Slice {
                         self.machine.spindle |= marks;
                     }
                 }
+                Some(MCodeEffect::RigidTapping) => self.machine.spindle |= control | marked.marks,
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
                 None if settings.code_calls.find_call(b'M', 10 * code).is_none()
                     && !self.stated.codes.contains(&code) =>

@@ -123,7 +123,10 @@ pub fn top_view(view: &TopView) -> Picture {
         [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
     });
     scene.strokes.extend(outline.into_iter().chain(sides).map(|shape| Stroke::new(Pen::Outline, shape)));
-    let hidden = (!far.is_empty()).then(|| format!("{} holes on the far side not drawn", far.len()));
+    let hidden = (!far.is_empty()).then(|| match far.len() {
+        1 => "1 hole on the far side not drawn".to_owned(),
+        count => format!("{count} holes on the far side not drawn"),
+    });
     let what = format!("Top view, seen from {}", view.side.name());
     let position = view.tolerance.filter(|_| view.purpose == PicturePurpose::Verdict);
     let legend = legend(view, &scene);

@@ -365,6 +365,7 @@ impl EventSink for FluteTracker<'_> {
             EventKind::Dwell { .. }
             | EventKind::ToolChange { .. }
             | EventKind::ToolLength { .. }
+            | EventKind::ToolSelected { .. }
             | EventKind::Coolant { .. }
             | EventKind::Stop { .. } => {}
         }

@@ -46,6 +46,7 @@ impl WheelState {
             | EventKind::ToolChange { .. }
             | EventKind::ToolLength { .. }
             | EventKind::PositionUnknown { .. }
+            | EventKind::ToolSelected { .. }
             | EventKind::Coolant { .. }
             | EventKind::Stop { .. } => {}
         }

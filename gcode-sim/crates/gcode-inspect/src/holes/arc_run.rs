@@ -17,7 +17,7 @@ const MAX_LEVEL_CHANGE: f64 = 0.01;
 /// Largest angle between two samples of an arc, degrees.
 const MAX_SAMPLE: f64 = 5.0;
 
-/// Arc on the part: a circular path, straight along the axis of the circle.
+/// Arc on the part: a circular path, straight along the axis of the circle; or a chord of it.
 #[derive(Clone, Debug)]
 pub(super) struct PartArc {
     /// Centre, at the height of the start.
@@ -28,6 +28,8 @@ pub(super) struct PartArc {
     pub to: Point3<f64>,
     /// Swept angle, right-handed about `out`.
     pub sweep: Deg,
+    /// True for a straight path.
+    pub is_chord: bool,
 }
 
 impl PartArc {
@@ -37,6 +39,9 @@ impl PartArc {
 
     /// Returns the point after the fraction `t` of the arc, 0 to 1.
     pub(super) fn point(&self, t: f64) -> Point3<f64> {
+        if self.is_chord {
+            return self.from + (self.to - self.from) * t;
+        }
         let spoke = self.from - self.centre;
         let (cos, sin) = ((self.sweep * t).cos(), (self.sweep * t).sin());
         let rise = (self.to - self.from).dot(&self.out) * t;
@@ -64,7 +69,41 @@ pub(super) struct ArcRun {
     swept: f64,
     /// Height of the start along the axis.
     top: f64,
+    /// Heights of the ends of these arcs.
+    heights: HeightRange,
     turn: Option<FullTurn>,
+}
+
+/// Extremes of the last heights of a path, each with the angle swept before it: of the upper ones each is above all later
+/// ones, of the lower ones below.
+#[derive(Clone, Debug, Default)]
+struct HeightRange {
+    upper: VecDeque<(f64, f64)>,
+    lower: VecDeque<(f64, f64)>,
+}
+
+impl HeightRange {
+    fn push(&mut self, swept: f64, height: f64) {
+        while self.upper.back().is_some_and(|(_, last)| *last <= height) {
+            self.upper.pop_back();
+        }
+        while self.lower.back().is_some_and(|(_, last)| height <= *last) {
+            self.lower.pop_back();
+        }
+        self.upper.push_back((swept, height));
+        self.lower.push_back((swept, height));
+    }
+
+    /// Drops the heights before a swept angle and returns the highest and the lowest of the others and of the one there.
+    fn since(&mut self, swept: f64, there: f64) -> [f64; 2] {
+        for heights in [&mut self.upper, &mut self.lower] {
+            while heights.front().is_some_and(|(at, _)| *at < swept) {
+                heights.pop_front();
+            }
+        }
+        let extreme = |heights: &VecDeque<(f64, f64)>| heights.front().map_or(there, |(_, height)| *height);
+        [extreme(&self.upper).max(there), extreme(&self.lower).min(there)]
+    }
 }
 
 /// Deepest full turn of a run.
@@ -108,7 +147,8 @@ impl Ring {
 impl ArcRun {
     pub(super) fn new(arc: PartArc, place: impl FnOnce() -> (Backtrace, Position)) -> Self {
         let top = arc.from.coords.dot(&arc.out);
-        let mut run = Self { arcs: VecDeque::new(), swept: 0.0, top, turn: None };
+        let mut run =
+            Self { arcs: VecDeque::new(), swept: 0.0, top, heights: HeightRange::default(), turn: None };
         run.push(arc, place);
         run
     }
@@ -130,6 +170,8 @@ impl ArcRun {
         let end = arc.to.coords.dot(&arc.out);
         let before = self.swept;
         self.swept += arc.sweep.0.abs();
+        self.heights.push(before, arc.from.coords.dot(&arc.out));
+        self.heights.push(self.swept, end);
         self.arcs.push_back((before, arc));
         if self.swept < FULL_TURN {
             return;
@@ -138,14 +180,8 @@ impl ArcRun {
         while self.arcs.get(1).is_some_and(|(before, _)| *before <= begin) {
             self.arcs.pop_front();
         }
-        let heights = self.arcs.iter().map(|(before, arc)| {
-            let t = ((begin - before) / arc.sweep.0.abs()).max(0.0);
-            let (from, to) = (arc.from.coords.dot(&arc.out), arc.to.coords.dot(&arc.out));
-            (from + (to - from) * t.min(1.0)).max(to)
-        });
-        let level = heights.fold(f64::NEG_INFINITY, f64::max);
         let start = self.height_at(begin);
-        let lowest = self.arcs.iter().map(|(_, arc)| arc.to.coords.dot(&arc.out)).fold(start, f64::min);
+        let [level, lowest] = self.heights.since(begin, start);
         // A turn that rises follows a thread. A single turn that falls does so too, or begins a helix.
         let is_level = level - lowest <= MAX_LEVEL_CHANGE;
         let is_helix = end < start && self.swept >= FULL_TURN + 360.0;
@@ -183,7 +219,11 @@ impl ArcRun {
         let mut samples = Vec::new();
         for (before, arc) in &self.arcs {
             let from = ((begin - before) / arc.sweep.0.abs()).clamp(0.0, 1.0);
-            let steps = (arc.sweep.0.abs() * (1.0 - from) / MAX_SAMPLE).ceil().max(1.0) as u32;
+            // The middle of a chord is nearest to the axis.
+            // Equal chords have as many samples each, besides noise.
+            let steps = arc.sweep.0.abs() * (1.0 - from) / MAX_SAMPLE - 1e-6;
+            let steps = steps.ceil().max(1.0) as u32;
+            let steps = if arc.is_chord { steps.next_multiple_of(2) } else { steps };
             let at = |step: u32| from + (1.0 - from) * f64::from(step) / f64::from(steps);
             samples.extend((0..=steps).map(|step| arc.point(at(step))));
         }
@@ -228,7 +268,7 @@ impl HoleExtractor<'_> {
             + second * (arc.centre.1 - travel.from[arc.plane.1]);
         let is_out = self.tool_direction().is_none_or(|out| out.dot(&normal) > -0.5);
         let (out, sweep) = if is_out { (normal, arc.sweep) } else { (-normal, -arc.sweep) };
-        Some(PartArc { centre, out, from: *from, to: self.pose.tip, sweep })
+        Some(PartArc { centre, out, from: *from, to: self.pose.tip, sweep, is_chord: false })
     }
 
     /// Returns the motion of the tool on the part for a command of an axis, per mm.

@@ -23,6 +23,8 @@ pub(crate) struct CutConditions {
     pub tool: Option<u32>,
     pub compensation: LengthCompensation,
     pub spindle_direction: SpindleDirection,
+    /// The spindle reverses in the hole.
+    pub is_tapping: bool,
     pub speed: Rpm,
     /// Slowest and fastest feed.
     pub feed_range: [MmPerMin; 2],
@@ -38,6 +40,8 @@ pub(crate) struct CutConditions {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CuttingState {
     pub tool: Option<u32>,
+    /// Tool of the last T.
+    pub selected_tool: Option<u32>,
     pub compensation: LengthCompensation,
     pub spindle_direction: SpindleDirection,
     pub speed: Rpm,
@@ -52,10 +56,11 @@ impl CutConditionsByBlock {
         &mut self,
         backtrace: &Backtrace,
         state: &CuttingState,
+        is_tapping: bool,
         feed_range: [MmPerMin; 2],
         pecks: PeckExtent,
     ) {
-        let CuttingState { tool, compensation, spindle_direction, speed } = *state;
+        let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;
         let length = match compensation {
             LengthCompensation::Off => 0,
             LengthCompensation::Plus(h) => 1 << 32 | u64::from(h),
@@ -63,12 +68,20 @@ impl CutConditionsByBlock {
         };
         let tool_key = tool.map_or(u64::MAX, u64::from);
         let [min_feed, max_feed] = feed_range.map(|feed| feed.0.to_bits());
-        let key = [tool_key, length, spindle_direction as u64, speed.0.to_bits(), min_feed, max_feed];
+        let key = [
+            tool_key,
+            length,
+            spindle_direction as u64 | u64::from(is_tapping) << 8,
+            speed.0.to_bits(),
+            min_feed,
+            max_feed,
+        ];
         let (_, entry) = self.0.count(backtrace.block, key, || CutConditions {
             backtrace: backtrace.clone(),
             tool,
             compensation,
             spindle_direction,
+            is_tapping,
             speed,
             feed_range,
             max_cut: 0.0,

@@ -61,6 +61,11 @@ impl CutEntries {
         Self { cuts: vec![Vec::new(); planes.len()], planes }
     }
 
+    /// Returns true if a point is above every entry, where all holes have one direction.
+    pub(super) fn is_above_all(&self, p: &Point3<f64>) -> bool {
+        self.planes.is_above_all(p, p)
+    }
+
     /// Returns the metal round the holes as convex bodies, cut or not; without the holes that `is_left_out` names.
     pub(super) fn bodies<'c>(&'c self, is_left_out: impl Fn(usize) -> bool + 'c) -> Box<Bodies<'c>> {
         Box::new(move |p, reach, each: &mut dyn FnMut(NearestPoint)| {

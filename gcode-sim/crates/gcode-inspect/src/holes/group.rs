@@ -3,11 +3,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::drill_pass::{DrillPass, MilledCut, PassCut};
+use super::swallowed::swallowing_passes;
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
-use gcode_lang::units::{Deg, MmPerMin, Rpm};
-use gcode_part::{Clusters, Hole, Origin, PARALLEL_COSINE, PointTree};
+use gcode_lang::units::Deg;
+use gcode_part::{Clusters, Hole, NominalAxes, Origin, PARALLEL_COSINE, PointTree};
 
 /// Largest distance between the lines of two passes of one hole, mm.
 pub(crate) const MAX_LINE_OFFSET: f64 = 0.5;
@@ -22,34 +24,6 @@ const MIN_DEPTH_GAIN: f64 = 0.001;
 /// Largest height of a core on the bottom of a hole that counts as removed, mm.
 const MAX_CORE_HEIGHT: f64 = 0.1;
 
-/// Extent of a pass in the part's frame, with its feed and its spindle.
-#[derive(Clone, Copy, Debug)]
-pub struct PassCut {
-    /// Point at which the feed starts.
-    pub start: Point3<f64>,
-    /// Deepest point.
-    pub bottom: Point3<f64>,
-    /// Feed at the deepest point; `None` if unknown.
-    pub feed: Option<MmPerMin>,
-    /// Speed of the spindle at the start.
-    pub speed: Rpm,
-    /// True if the spindle reverses in the hole, as it does for a tap.
-    pub is_tapping: bool,
-    /// Figures of a mill's circle; `None` for a stroke.
-    pub milled: Option<MilledCut>,
-}
-
-/// Figures of a circle that a mill cuts, mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MilledCut {
-    /// Radius of the path.
-    pub radius: f64,
-    /// Largest minus least distance of the path from the axis.
-    pub roundness: f64,
-    /// Diameter of the metal that the mill leaves on the axis; `None` without any, or if it is unknown.
-    pub core: Option<f64>,
-}
-
 /// A pass of a drilled hole.
 #[derive(Clone, Copy, Debug)]
 pub struct ToolPass<'a> {
@@ -63,40 +37,6 @@ pub struct ToolPass<'a> {
     pub cut: PassCut,
     /// Block of the pass.
     pub backtrace: &'a Backtrace,
-}
-
-/// A feed into the part along one line, in the part's frame.
-#[derive(Clone, Debug)]
-pub(super) struct DrillPass {
-    pub cut: PassCut,
-    /// Direction of the tool out of the part; that of the feed if the tool's is unknown.
-    pub axis: Unit<Vector3<f64>>,
-    /// Direction of the feed, out of the part.
-    pub feed_direction: Unit<Vector3<f64>>,
-    pub tool: Option<u32>,
-    pub backtrace: Backtrace,
-    pub axis_position: Position,
-    /// Axes of unknown position on the part.
-    pub unknown_axes: UnknownAxes,
-}
-
-impl DrillPass {
-    /// Returns the diameter that the pass cuts; `None` if the tool table lacks the tool.
-    fn diameter(&self, machine: &Machine) -> Option<f64> {
-        let cutter = machine.diameter_of(self.tool)?;
-        let Some(circle) = self.cut.milled else { return Some(cutter) };
-        // Without the noise of the arithmetic, which would be printed.
-        Some(((cutter + 2.0 * circle.radius) * 1e9).round() / 1e9)
-    }
-
-    /// Returns true if the pass cuts at least as wide as another one. Of a tool of unknown diameter only the path counts; of
-    /// two such tools the later one does.
-    fn is_as_wide(&self, other: &Self, machine: &Machine) -> bool {
-        let path = |pass: &Self| 2.0 * pass.cut.milled.map_or(0.0, |circle| circle.radius);
-        let diameter = |pass: &Self| pass.diameter(machine);
-        let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();
-        !is_comparable || diameter(other).unwrap_or(path(other)) <= diameter(self).unwrap_or(path(self))
-    }
 }
 
 /// A hole that the program drills, in the part's frame; lengths in mm.
@@ -149,13 +89,6 @@ pub struct EarlierPass {
     pub axis_position: Position,
 }
 
-impl PassCut {
-    /// Returns a pass of which only the extent is known.
-    pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
-        Self { start, bottom, feed: None, speed: Rpm(0.0), is_tapping: false, milled: None }
-    }
-}
-
 impl EarlierPass {
     fn tool_pass(&self) -> ToolPass<'_> {
         let Self { cut, axis, tool, diameter, .. } = *self;
@@ -202,30 +135,56 @@ impl DrilledHole {
     }
 }
 
-/// Groups passes to holes, in the order of the first pass of each. `spacing` is the least distance of two nominal axes, mm.
-pub(super) fn group_holes(passes: &[DrillPass], machine: &Machine, spacing: Option<f64>) -> Vec<DrilledHole> {
-    let first = first_on_same_line(passes, machine, spacing);
+/// Groups passes to holes, in the order of the first pass of each.
+pub(super) fn group_holes(
+    passes: &[DrillPass],
+    machine: &Machine,
+    nominal_axes: &NominalAxes,
+) -> Vec<DrilledHole> {
+    let tree = PointTree::new(passes.iter().map(|pass| pass.cut.bottom));
+    let on_line = first_on_same_line(passes, &tree, machine, nominal_axes);
+    // A narrower pass beside the line belongs to the hole that swallows it.
+    let swallowing = swallowing_passes(passes, &tree, machine);
+    let hole_of = |index: usize| {
+        let wider = std::iter::successors(swallowing[index], |wide| swallowing[*wide]);
+        wider.fold(on_line[index], |_, wide| on_line[wide])
+    };
+    let first: Vec<usize> = (0..passes.len()).map(hole_of).collect();
+    let is_aside = |index: usize| first[index] != on_line[index];
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // The sort is stable: passes of one line keep their order.
     order.sort_by_key(|index| first[*index]);
     let mut holes = Vec::with_capacity(passes.len());
     for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
-        push_holes(line.iter().map(|index| &passes[*index]), passes[line[0]].axis, machine, &mut holes);
+        let passes_of_hole = line.iter().map(|index| (&passes[*index], is_aside(*index)));
+        push_holes(passes_of_hole, passes[line[0]].axis, machine, &mut holes);
     }
     holes
 }
 
 /// Returns for each pass the first one on its line.
-fn first_on_same_line(passes: &[DrillPass], machine: &Machine, spacing: Option<f64>) -> Vec<usize> {
-    let tree = PointTree::new(passes.iter().map(|pass| pass.cut.bottom));
-    let mut groups = Clusters::new(&tree);
+fn first_on_same_line(
+    passes: &[DrillPass],
+    tree: &PointTree,
+    machine: &Machine,
+    nominal_axes: &NominalAxes,
+) -> Vec<usize> {
+    let mut groups = Clusters::new(tree);
     // Half way to the next nominal hole a pass belongs to that one.
-    let limit = spacing.map_or(MAX_LINE_OFFSET, |spacing| MAX_LINE_OFFSET.min(spacing / 2.0));
+    let half_way = |pass: &DrillPass| {
+        let PassCut { start, bottom, .. } = &pass.cut;
+        let nearest = nominal_axes.nearest([start, bottom], &pass.axis, MAX_LINE_OFFSET);
+        nearest.map_or(MAX_LINE_OFFSET, |(axis, _)| MAX_LINE_OFFSET.min(axis.spacing / 2.0))
+    };
+    let limits: Option<Vec<f64>> = nominal_axes.has_close().then(|| passes.iter().map(half_way).collect());
+    let limit_of = |index: usize| limits.as_ref().map_or(MAX_LINE_OFFSET, |limits| limits[index]);
     for (index, pass) in passes.iter().enumerate() {
+        let limit = limit_of(index);
         let margin = Vector3::repeat(limit);
         let low = pass.cut.start.inf(&pass.cut.bottom) - margin;
         let high = pass.cut.start.sup(&pass.cut.bottom) + margin;
         groups.join(index, &low, &high, &|other| {
+            let limit = limit.min(limit_of(other));
             let other = &passes[other];
             pass.axis.dot(&other.axis) >= PARALLEL_COSINE
                 && pass.offset_of(other) <= limit.min(max_offset(pass, other, machine))
@@ -261,10 +220,10 @@ impl DrillPass {
     }
 }
 
-/// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. Heights count
-/// along `out`, the axis of the first pass.
+/// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. True passes lie aside,
+/// in a wider one of the hole. Heights count along `out`, the axis of the first pass.
 fn push_holes<'p>(
-    passes: impl Iterator<Item = &'p DrillPass>,
+    passes: impl ExactSizeIterator<Item = (&'p DrillPass, bool)>,
     out: Unit<Vector3<f64>>,
     machine: &Machine,
     holes: &mut Vec<DrilledHole>,
@@ -274,14 +233,20 @@ fn push_holes<'p>(
     // A mill cuts the same depth with each radius.
     let radius = |pass: &DrillPass| pass.cut.milled.map(|circle| (circle.radius * 1000.0).round() as u64);
     let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
-    let (cutting, repeated): (Vec<&DrillPass>, Vec<&DrillPass>) = passes.partition(|pass| {
+    let is_single = passes.len() == 1;
+    let (mut cutting, mut repeated) = (Vec::new(), Vec::new());
+    for (pass, is_aside) in passes {
+        if is_aside || is_single {
+            cutting.push(pass);
+            continue;
+        }
         let lowest = lowest_by_tool.entry((pass.tool, radius(pass))).or_insert(f64::INFINITY);
         let cuts = height(&pass.cut.bottom) < *lowest - MIN_DEPTH_GAIN;
         if cuts {
             *lowest = height(&pass.cut.bottom);
         }
-        cuts
-    });
+        if cuts { cutting.push(pass) } else { repeated.push(pass) }
+    }
     let lowest = cutting.iter().map(|pass| height(&pass.cut.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing_pass(&cutting, lowest, height, machine);
     let finishing_index = cutting.iter().take_while(|pass| !std::ptr::eq(**pass, finish)).count();

@@ -3,8 +3,10 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, PeckExtent};
-use super::group::{DrillPass, PassCut};
-use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
+use super::drill_pass::{DrillPass, PassCut};
+use super::{HoleExtractor, MotionKind};
+use crate::machine::TOUCH_DEPTH;
+use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
@@ -28,6 +30,8 @@ pub(super) enum ToolExit {
 /// The current line. Depths count from `start`, positive into the part, mm.
 #[derive(Debug)]
 pub(super) struct CuttingLine {
+    /// Place of its pass among all.
+    pub order: u32,
     pub start: Point3<f64>,
     pub out: Unit<Vector3<f64>>,
     /// Direction of the tool on the part; `None` if unknown.
@@ -40,8 +44,9 @@ pub(super) struct CuttingLine {
     pub is_cycle: bool,
     /// True if the motion before the first feed was a feed too.
     pub is_reached_by_feed: bool,
-    /// Modal state and clamp at the start of the feed.
+    /// Modal state of the last feed that cuts, else that at the start.
     pub cutting_state: CuttingState,
+    /// Clamp at the start of the feed.
     pub clamp_state: ClampState,
     /// Axes of unknown position on the part.
     pub unknown_axes: UnknownAxes,
@@ -55,6 +60,8 @@ pub(super) struct CuttingLine {
     pub surface_depth: Option<f64>,
     /// Finished strokes.
     pecks: PeckExtent,
+    /// True if a feed that cuts finds the spindle stopped.
+    pub is_fed_stopped: bool,
     /// Largest change of the spindle while the tool was in the hole.
     pub spindle: SpindleInHole,
     /// Deepest point of the finished strokes.
@@ -106,6 +113,7 @@ impl CuttingLine {
         let depth = (start - end).norm();
         let end = StrokeEnd { depth, backtrace, axis_position: at };
         Some(Self {
+            order: 0,
             start,
             out,
             tool_axis: None,
@@ -121,6 +129,7 @@ impl CuttingLine {
             last_feed: None,
             surface_depth: None,
             pecks: PeckExtent::default(),
+            is_fed_stopped: false,
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
@@ -130,8 +139,13 @@ impl CuttingLine {
         })
     }
 
-    /// Records the rate of a feed inwards that cuts.
-    pub(super) fn record_feed(&mut self, feed: MmPerMin) {
+    /// Records rate and modal state of a feed inwards that cuts. A reversal before it taps no thread.
+    pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState) {
+        self.is_fed_stopped |= state.spindle_direction == SpindleDirection::Off;
+        self.cutting_state = state;
+        if self.spindle == SpindleInHole::Reversed {
+            self.spindle = SpindleInHole::Unchanged;
+        }
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
         self.last_feed = Some(feed);
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
@@ -325,6 +339,7 @@ impl CuttingLine {
                 bottom: self.start - self.out.into_inner() * end.depth,
                 feed: self.last_feed,
                 speed: self.cutting_state.speed,
+                direction: self.cutting_state.spindle_direction,
                 is_tapping: self.spindle == SpindleInHole::Reversed,
                 milled: None,
             },
@@ -335,5 +350,54 @@ impl CuttingLine {
             axis_position: end.axis_position,
             unknown_axes: self.unknown_axes,
         }
+    }
+}
+
+impl HoleExtractor<'_> {
+    /// Starts a line with a feed from `start`.
+    pub(super) fn start_line(
+        &mut self,
+        event: &Event<'_>,
+        start: Point3<f64>,
+        last_motion: Option<(MotionKind, Span)>,
+    ) {
+        let rounding = self.machine.increment.size() / 2.0;
+        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
+        let order = self.strokes.begin_pass();
+        self.current_line = line.map(|line| {
+            let mut line = Box::new(line);
+            line.order = order;
+            line.tool_axis = self.pose.axis;
+            line.upright = self.tool_direction();
+            // A block of a cycle positions, feeds and retracts.
+            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
+            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
+            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+            line.clamp_state = self.clamp_state;
+            line.unknown_axes = self.positions.unknown_axes();
+            line.length_excess = self.length_excess();
+            line.surface_depth =
+                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
+            self.record_line_feed(event, &mut line, &start);
+            line
+        });
+    }
+
+    /// Records rate and modal state of a feed inwards from `from` if it cuts; the approach may be faster.
+    pub(super) fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine, from: &Point3<f64>) {
+        let EventKind::Feed { rate, .. } = event.kind else { return };
+        let tip = self.pose.tip;
+        let is_in_air = match (&self.surface, &self.entries) {
+            (Some(surface), _) => !surface.is_deeper(&tip, TOUCH_DEPTH),
+            (None, Some(entries)) => entries.is_above_all(&tip),
+            (None, None) => false,
+        };
+        let is_stopped = self.cutting_state.spindle_direction == SpindleDirection::Off;
+        // A tool may enter a hole that is cut with the spindle stopped.
+        if is_in_air || is_stopped && self.cuts_known_metal(from, &tip) == Some(false) {
+            return;
+        }
+        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+        line.record_feed(*rate, state);
     }
 }

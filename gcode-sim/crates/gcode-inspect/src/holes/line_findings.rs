@@ -1,13 +1,16 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
 use super::HoleExtractor;
-use super::line::{CuttingLine, ToolExit};
+use super::cutting::CuttingState;
+use super::line::{CuttingLine, SpindleInHole, ToolExit};
 use super::strokes::CutKind;
+use super::unknown_axes::without_assumed;
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
+    TOOL_NOT_CHANGED,
 };
 use crate::machine::{HeadKind, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::SpindleDirection;
+use gcode_lang::motion::{Backtrace, LengthCompensation};
 use gcode_lang::units::Deg;
 
 /// Largest angle between feed and tool, besides rounding.
@@ -22,16 +25,20 @@ impl HoleExtractor<'_> {
         self.record_length_mismatch(&line);
         let tilt = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
         // Depth in the part, computed only where it decides.
-        let surface = self.surface;
+        // A feed at an unknown position may be in the part.
+        let is_known = without_assumed(line.unknown_axes, self.machine).is_none();
+        let surface = self.surface.filter(|_| is_known);
         let inside = || surface.map(|s| s.depth(&s.deepest_between(&line.start, &line.bottom())));
         // A feed outwards, as of a tool left in its hole, makes no hole. Its start decides: a hole in a steep flank may end
         // outside the part.
-        // Parallel to the surface beside it the side of the tool decides.
+        // Parallel to the surface beside it the side of the tool decides; without its diameter the verdict does.
+        let may_cut =
+            || self.machine.diameter_of(line.cutting_state.tool).is_none() || self.cuts_in_plunge(&line);
         let is_outward = surface.is_some_and(|s| {
             let (gradient, along) = (s.gradient(&line.start), line.bottom() - line.start);
             let slope = gradient.dot(&along);
             let is_parallel = slope <= MAX_PARALLEL_COSINE * gradient.norm() * along.norm();
-            0.0 <= slope && !(is_parallel && self.cuts_in_plunge(&line))
+            0.0 <= slope && !(is_parallel && may_cut())
         });
         let is_backward = tilt.is_some_and(|tilt| tilt.0 > 90.0);
         if is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH) {
@@ -70,10 +77,12 @@ impl HoleExtractor<'_> {
         // A stroke in a hole that was cut before, as of a mill that goes on sideways, has no retract either.
         let has_retract = !matches!(exit, ToolExit::Sideways { .. });
         self.cut_axes |= !line.unknown_axes.all();
+        let order = line.order;
         let (pass, repeated) = line.finish();
-        let repeated = repeated.filter(|_| has_retract);
-        for pass in std::iter::once(pass).chain(repeated) {
-            self.strokes.push(pass, kind);
+        self.strokes.push(order, pass, kind);
+        if let Some(repeated) = repeated.filter(|_| has_retract) {
+            let order = self.strokes.begin_pass();
+            self.strokes.push(order, repeated, kind);
         }
     }
 
@@ -104,15 +113,44 @@ impl HoleExtractor<'_> {
         });
     }
 
+    /// Reports a cut with a tool that the program has selected and not changed.
+    ///
+    /// A tool that is prepared for the next change has another offset than the one in effect.
+    fn check_tool_changed(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
+        let CuttingState { tool, selected_tool, compensation, .. } = line.cutting_state;
+        if tool == Some(0) {
+            self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, 0, 1, |kind| {
+                Diagnostic::new(kind, "T0 is in the spindle and cuts: no T comes before M06")
+                    .help("command the tool with T before M06")
+            });
+        }
+        let Some(selected) = selected_tool.filter(|number| *number != 0 && tool != Some(*number)) else {
+            return;
+        };
+        let is_meant = match compensation {
+            LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0 => h == selected,
+            _ => tool.is_none(),
+        };
+        if is_meant {
+            let spindle = tool.map_or("the tool of the last job".to_owned(), |number| format!("T{number}"));
+            self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, selected, 1, |kind| {
+                let message = format!("T{selected} is selected, but {spindle} is in the spindle and cuts");
+                Diagnostic::new(kind, message).help(format!("command T{selected} M06 before the cut"))
+            });
+        }
+    }
+
     /// Reports the clamp, the spindle, the head and the direction of a feed.
     fn report_feed(&mut self, line: &CuttingLine, tilt: Option<Deg>) {
         let backtrace = line.backtrace();
         self.check_clamped(backtrace, line.clamp_state);
         if let Some(feeds) = line.cutting_feeds() {
-            self.cut_conditions.add(backtrace, &line.cutting_state, feeds, line.pecks());
+            let is_tapping = line.spindle == SpindleInHole::Reversed;
+            self.cut_conditions.add(backtrace, &line.cutting_state, is_tapping, feeds, line.pecks());
         }
         self.check_spindle(backtrace, line);
-        if line.cutting_state.spindle_direction == SpindleDirection::Off {
+        self.check_tool_changed(backtrace, line);
+        if line.is_fed_stopped {
             self.report_spindle_stopped(line.backtrace());
         }
         let Some(tilt) = tilt else {

@@ -3,7 +3,8 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
-use super::group::{DrillPass, MilledCut, PassCut};
+use super::chord_run::ChordRun;
+use super::drill_pass::{DrillPass, MilledCut, PassCut};
 use super::per_block::Findings;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
 use gcode_lang::motion::{Event, SpindleDirection, UnknownAxes};
@@ -28,6 +29,7 @@ pub(super) struct Engagement {
     /// Points of the path.
     points: Vec<Point3<f64>>,
     run: Option<ArcRun>,
+    chords: Option<ChordRun>,
     rings: Vec<Ring>,
     /// Axes of unknown position on the part during an arc.
     unknown_axes: UnknownAxes,
@@ -77,6 +79,7 @@ impl Engagement {
 
     fn end_run(&mut self) {
         self.rings.extend(self.run.take().and_then(ArcRun::finish));
+        self.rings.extend(self.chords.take().and_then(ChordRun::finish));
     }
 
     /// Returns the circle of each radius and the start of the feed, without those that others cover; `None` if the tool
@@ -172,12 +175,20 @@ impl HoleExtractor<'_> {
                 engagement.push_point(*from);
             }
         }
+        let place = || (event.backtrace(), self.axis_position);
         match arc {
+            None if is_across => {
+                engagement.rings.extend(engagement.run.take().and_then(ArcRun::finish));
+                if !engagement.chords.as_mut().is_some_and(|chords| chords.extend(to, &out, place)) {
+                    engagement.end_run();
+                    engagement.chords = Some(ChordRun::new(*from, to, out));
+                }
+            }
             Some(arc) => {
+                engagement.rings.extend(engagement.chords.take().and_then(ChordRun::finish));
                 for t in [0.25, 0.5, 0.75] {
                     engagement.push_point(arc.point(t));
                 }
-                let place = || (event.backtrace(), self.axis_position);
                 let next = match engagement.run.as_mut() {
                     Some(run) => run.extend(arc, place).err(),
                     None => Some(arc),
@@ -269,7 +280,8 @@ impl HoleExtractor<'_> {
             if self.cutting_state.spindle_direction == SpindleDirection::Off {
                 self.report_spindle_stopped(&pass.backtrace);
             }
-            self.strokes.push(pass, CutKind::Drilled);
+            let order = self.strokes.begin_pass();
+            self.strokes.push(order, pass, CutKind::Drilled);
         }
         true
     }

@@ -1,9 +1,11 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
 mod arc_run;
 mod axis_box;
+mod chord_run;
 mod clamping;
 mod clearance;
 mod cutting;
+mod drill_pass;
 mod entries;
 #[cfg(test)]
 pub(crate) mod event_script;
@@ -19,6 +21,7 @@ mod rapid_paths;
 mod rapids;
 pub(crate) mod spindle;
 mod strokes;
+mod swallowed;
 #[cfg(test)]
 mod tests;
 pub(crate) mod unknown_axes;
@@ -27,8 +30,9 @@ use nalgebra::Point3;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
+pub use drill_pass::{MilledCut, PassCut};
 pub(crate) use group::MAX_LINE_OFFSET;
-pub use group::{DrilledHole, EarlierPass, MilledCut, PassCut, ToolPass};
+pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
@@ -44,7 +48,7 @@ use self::milled::{Engagement, Path};
 use self::per_block::Findings;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, TOUCH_DEPTH};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
@@ -212,7 +216,7 @@ impl<'m> HoleExtractor<'m> {
         self.end_line(false);
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
-        let mut holes = group::group_holes(&passes, self.machine, self.process_limits.hole_spacing);
+        let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);
@@ -300,12 +304,12 @@ impl<'m> HoleExtractor<'m> {
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
+                if let Some(start) = start {
+                    self.start_line(event, start, last_motion);
+                }
                 self.follow_feed_at_holes(event, &[before.tip, self.pose.tip]);
                 if was.union(is).is_none() {
                     self.check_body_in_feed(&event.backtrace(), &[before.tip, self.pose.tip]);
-                }
-                if let Some(start) = start {
-                    self.start_line(event, start, last_motion);
                 }
             }
             _ => {}
@@ -348,7 +352,7 @@ impl<'m> HoleExtractor<'m> {
                 let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {
-                            self.record_line_feed(event, &mut line);
+                            self.record_line_feed(event, &mut line, &from);
                         }
                         line.feed_to(&tip, event.backtrace(), &self.axis_position)
                     }
@@ -362,7 +366,8 @@ impl<'m> HoleExtractor<'m> {
                     }
                 };
                 if let Some(pass) = again {
-                    self.strokes.push(pass, self.cut_kind(&line, false));
+                    let order = self.strokes.begin_pass();
+                    self.strokes.push(order, pass, self.cut_kind(&line, false));
                 }
                 self.current_line = Some(line);
                 free_from
@@ -371,42 +376,12 @@ impl<'m> HoleExtractor<'m> {
                 let is_along = exit == ToolExit::AlongLine;
                 if is_spindle_stopped && !line.is_inward() && !is_along {
                     self.report_back_boring(&line);
+                    return Some(from);
                 }
                 let free_from = if is_along { line.start_level_crossing(&from, &tip) } else { from };
                 self.report_line(line, exit, kind == MotionKind::Feed);
                 Some(free_from)
             }
-        }
-    }
-
-    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>, last_motion: Option<(MotionKind, Span)>) {
-        let rounding = self.machine.increment.size() / 2.0;
-        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
-        self.current_line = line.map(|line| {
-            let mut line = Box::new(line);
-            line.tool_axis = self.pose.axis;
-            line.upright = self.tool_direction();
-            // A block of a cycle positions, feeds and retracts.
-            line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
-            line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
-            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-            line.clamp_state = self.clamp_state;
-            line.unknown_axes = self.positions.unknown_axes();
-            line.length_excess = self.length_excess();
-            line.surface_depth =
-                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
-            self.record_line_feed(event, &mut line);
-            line
-        });
-    }
-
-    /// Records the rate of a feed inwards if it cuts; the approach may be faster.
-    fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
-        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH_DEPTH));
-        if let EventKind::Feed { rate, .. } = event.kind
-            && cuts
-        {
-            line.record_feed(*rate);
         }
     }
 
@@ -452,6 +427,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Feed { to, .. } => self.motion(event, MotionKind::Feed, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
             EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
+            EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
                 self.check_tool_known(event, *number);
                 self.update_setup(|setup| setup.tool = Some(*number));

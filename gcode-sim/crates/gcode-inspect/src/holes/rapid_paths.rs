@@ -8,7 +8,7 @@ use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, arrivals};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Backtrace, Event, Position};
+use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};
 
 /// Rapids whose paths are too many to be searched.
@@ -33,8 +33,12 @@ impl HoleExtractor<'_> {
             return;
         }
         let (machine, setup) = (self.machine, self.setup);
-        let mut all = AxisBox::new(machine, &setup, from, to);
         let round = self.axis_about_part().filter(|axis| from[*axis] != to[*axis]);
+        if (0..to.0.len()).filter(|axis| from[*axis] != to[*axis]).count() < 2 {
+            self.check_leg(event, (from, to), start, round);
+            return;
+        }
+        let mut all = AxisBox::new(machine, &setup, from, to);
         if let Some(axis) = round {
             all.leave_out(axis);
         }
@@ -57,15 +61,28 @@ impl HoleExtractor<'_> {
         let mut from = from;
         for (leg, to) in legs.iter().enumerate() {
             let begin = if leg == 0 { start } else { Some(machine.forward(from, &setup).tip) };
-            if !self.check_path(event, (from, to), begin) {
-                let mut line = AxisBox::line(machine, &setup, from, to);
-                if let Some(axis) = round {
-                    line.leave_out(axis);
-                }
-                self.check_tool_body(event, &line, (from, to), begin);
-            }
+            self.check_leg(event, (from, to), begin, round);
             from = to;
         }
+    }
+
+    /// Checks tip and body of the tool on a path along which all axes arrive together. The rotation of `round` keeps the surface.
+    fn check_leg(
+        &mut self,
+        event: &Event<'_>,
+        (from, to): (&Position, &Position),
+        start: Option<Point3<f64>>,
+        round: Option<AxisIndex>,
+    ) {
+        if self.check_path(event, (from, to), start) || self.surface.is_none() {
+            return;
+        }
+        let setup = self.setup;
+        let mut line = AxisBox::line(self.machine, &setup, from, to);
+        if let Some(axis) = round {
+            line.leave_out(axis);
+        }
+        self.check_tool_body(event, &line, (from, to), start);
     }
 
     /// Checks the path between two positions along which all axes arrive together; returns true if it cuts.
@@ -79,8 +96,10 @@ impl HoleExtractor<'_> {
         if !self.machine.is_straight(&travel) {
             return self.check_curved(event, &travel, MotionKind::Rapid);
         }
-        let tip = self.machine.forward(to, &self.setup).tip;
-        start.is_some_and(|start| self.check_rapid(event, &start, &tip))
+        let Some(start) = start else { return false };
+        let is_end = *to == self.axis_position;
+        let tip = if is_end { self.pose.tip } else { self.machine.forward(to, &self.setup).tip };
+        self.check_rapid(event, &start, &tip)
     }
 
     /// Reports a rapid that cuts if its axes arrive in another order than along the straight path; returns true if one

@@ -3,6 +3,7 @@
 use super::HoleExtractor;
 use super::line::{CuttingLine, SpindleInHole};
 use crate::findings::{SPINDLE_IN_HOLE, SPINDLE_STOPPED};
+use crate::machine::ToolKind;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, SpindleDirection};
 
@@ -40,27 +41,28 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a spindle that stops or reverses in the hole, for a tool with which the job drills.
+    /// Reports a spindle that stops or reverses in the hole, for a tool with which the job drills, or a drill of the machine file.
     pub(super) fn check_spindle(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
-        if self.process_limits.tool_process(line.cutting_state.tool).is_none() {
+        let number = line.cutting_state.tool;
+        let kind = number.and_then(|number| self.machine.find_tool(number)?.kind);
+        let is_drill = matches!(kind, Some(ToolKind::Drill | ToolKind::SpotDrill | ToolKind::Countersink));
+        if !is_drill && self.process_limits.tool_process(number).is_none() {
             return;
         }
         let (verb, severity, note) = match line.spindle {
             SpindleInHole::Unchanged => return,
             SpindleInHole::Stopped => (
                 "stops",
-                Severity::Warning,
+                if is_drill { Severity::Error } else { Severity::Warning },
                 "G76, G86 and G88 stop the spindle for a boring bar; a stopped drill rubs in its hole, or breaks when \
                  it is moved sideways",
             ),
-            SpindleInHole::Reversed => (
-                "reverses",
-                Severity::Error,
-                "G84 and G74 reverse the spindle for a tap; the job specifies a drilled hole",
-            ),
+            SpindleInHole::Reversed => {
+                ("reverses", Severity::Error, "G84 and G74 reverse the spindle for a tap; this tool drills")
+            }
         };
         let tool = line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
-        self.findings.add(&SPINDLE_IN_HOLE, backtrace, 0, |kind| {
+        self.findings.add(&SPINDLE_IN_HOLE, backtrace, line.spindle as u32, |kind| {
             Diagnostic::new(kind, format!("the spindle {verb} while {tool} is in the hole"))
                 .with_severity(severity)
                 .note(note)

@@ -2,16 +2,17 @@
 //! back.
 use std::sync::Arc;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 
 use super::HoleExtractor;
-use super::group::DrillPass;
+use super::drill_pass::{DrillPass, PassCut};
 use super::line::CuttingLine;
 use super::per_block::with_count_note;
 use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
+use crate::machine::ToolKind;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, Position};
-use gcode_part::{NominalAxis, PARALLEL_COSINE, PointTree};
+use gcode_part::NominalAxes;
 
 /// Differences of height that come from rounding, mm.
 pub(super) const LEVEL_TOLERANCE: f64 = 0.003;
@@ -65,9 +66,11 @@ pub(super) struct Strokes {
     milled_level: Option<f64>,
     /// True if the current tool stands upright.
     is_upright: bool,
+    /// True if the current tool has moved along Z alone after a stroke across Z.
+    has_moved_along_z: bool,
     /// True if any stroke of the program runs along Z.
     has_upright_stroke: bool,
-    nominal: NominalAxes,
+    nominal: Arc<NominalAxes>,
     /// Strokes that are milling.
     milled: Option<MilledStrokes>,
 }
@@ -100,44 +103,13 @@ pub(super) struct MilledStrokes {
     length: f64,
 }
 
-/// Nominal axes, on which a mill may drill.
-#[derive(Debug, Default)]
-struct NominalAxes {
-    axes: Arc<[NominalAxis]>,
-    tree: Option<PointTree>,
-}
-
-impl NominalAxes {
-    /// Returns true if a pass lies on a nominal axis.
-    fn has(&mut self, pass: &DrillPass) -> bool {
-        if self.axes.is_empty() {
-            return false;
-        }
-        let axes = &self.axes;
-        let tree =
-            self.tree.get_or_insert_with(|| PointTree::new(axes.iter().map(|axis| Point3::from(axis.entry))));
-        let margin = Vector3::repeat(MAX_AXIS_DISTANCE);
-        let (low, high) =
-            (pass.cut.start.inf(&pass.cut.bottom) - margin, pass.cut.start.sup(&pass.cut.bottom) + margin);
-        let mut found = false;
-        tree.in_box(&low, &high, &mut |index| {
-            let nominal = &axes[index];
-            let to = Point3::from(nominal.entry) - pass.cut.bottom;
-            let aside = (to - pass.axis.into_inner() * to.dot(&pass.axis)).norm();
-            found |=
-                aside <= MAX_AXIS_DISTANCE && pass.axis.dot(&Vector3::from(nominal.axis)) >= PARALLEL_COSINE;
-        });
-        found
-    }
-}
-
 impl Strokes {
     pub(super) fn new(max_passes: usize) -> Self {
         Self { max_passes, ..Self::default() }
     }
 
-    pub(super) fn set_nominal_axes(&mut self, axes: &Arc<[NominalAxis]>) {
-        self.nominal = NominalAxes { axes: axes.clone(), tree: None };
+    pub(super) fn set_nominal_axes(&mut self, axes: &Arc<NominalAxes>) {
+        self.nominal = Arc::clone(axes);
     }
 
     /// Records a feed across the tool at a height along it.
@@ -150,8 +122,13 @@ impl Strokes {
         self.across_begin < self.across.len()
     }
 
-    /// Records a motion along Z alone after strokes across it: the tool stands upright, and its strokes are milling.
-    pub(super) fn note_upright(&mut self) {
+    /// Records a motion along Z alone after strokes across it: with a further stroke across it the tool stands upright.
+    fn note_motion_along_z(&mut self) {
+        self.has_moved_along_z = true;
+    }
+
+    /// Takes the strokes across Z as milling: the tool stands upright.
+    fn note_upright(&mut self) {
         self.is_upright = true;
         for (order, pass) in self.across.split_off(self.across_begin) {
             self.push_milled(order, pass);
@@ -159,14 +136,19 @@ impl Strokes {
     }
 
     /// Returns true if a pass lies on a nominal axis.
-    pub(super) fn is_nominal(&mut self, pass: &DrillPass) -> bool {
-        self.nominal.has(pass)
+    pub(super) fn is_nominal(&self, pass: &DrillPass) -> bool {
+        let PassCut { start, bottom, .. } = &pass.cut;
+        self.nominal.nearest([start, bottom], &pass.axis, MAX_AXIS_DISTANCE).is_some()
     }
 
-    /// Adds a pass.
-    pub(super) fn push(&mut self, pass: DrillPass, kind: CutKind) {
-        let order = self.next;
+    /// Returns the place of a pass that begins now.
+    pub(super) fn begin_pass(&mut self) -> u32 {
         self.next += 1;
+        self.next
+    }
+
+    /// Adds a pass that began at `order`.
+    pub(super) fn push(&mut self, order: u32, pass: DrillPass, kind: CutKind) {
         match kind {
             CutKind::Drilled => self.push_pass(order, pass),
             CutKind::Oblique => self.push_milled(order, pass),
@@ -181,6 +163,9 @@ impl Strokes {
                 }
             }
             CutKind::Across { is_between_rapids } => {
+                if self.has_moved_along_z {
+                    self.note_upright();
+                }
                 let is_milling = self.is_upright || self.milled_level.is_some() || !is_between_rapids;
                 if is_milling || self.max_passes <= self.across.len() {
                     self.push_milled(order, pass);
@@ -203,7 +188,7 @@ impl Strokes {
             self.note_upright();
         }
         self.across_begin = self.across.len();
-        (self.milled_level, self.is_upright) = (None, false);
+        (self.milled_level, self.is_upright, self.has_moved_along_z) = (None, false, false);
     }
 
     /// Returns the passes in their order, the strokes that are milling, and the first pass beyond the limit.
@@ -241,7 +226,7 @@ impl Strokes {
 
     /// Adds a stroke of a mill: a hole only where a nominal one is.
     fn push_milled(&mut self, order: u32, pass: DrillPass) {
-        if self.nominal.has(&pass) {
+        if self.is_nominal(&pass) {
             self.push_pass(order, pass);
             return;
         }
@@ -277,7 +262,10 @@ impl HoleExtractor<'_> {
         if let Some(axis) = line.tool_axis {
             return if axis.dot(&line.out) < MIN_TOOL_COSINE { CutKind::Oblique } else { along_tool };
         }
+        let tool = line.cutting_state.tool.and_then(|number| self.machine.find_tool(number));
+        let is_mill = tool.is_some_and(|tool| tool.kind == Some(ToolKind::EndMill));
         match line.upright.map(|upright| upright.dot(&line.out)) {
+            Some(cosine) if is_mill && cosine.abs() <= MAX_SQUARE_SINE => CutKind::Oblique,
             Some(cosine) if cosine.abs() <= MAX_SQUARE_SINE => CutKind::Across { is_between_rapids },
             Some(cosine) if cosine < MIN_UPRIGHT_COSINE => CutKind::Oblique,
             _ => along_tool,
@@ -305,14 +293,14 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Follows a motion after strokes across Z: one along Z alone shows that the tool stands upright. G28 to machine zero
-    /// doesn't.
+    /// Follows a motion after strokes across Z: one along Z alone leads an upright tool to its next stroke. G28 to machine
+    /// zero doesn't.
     pub(super) fn check_upright(&mut self, from: &Position) {
         let Some(z) = self.machine.axes.find(b'Z') else { return };
         let to = &self.axis_position;
         let is_along_z = (0..to.0.len()).all(|axis| (axis == z) == (from[axis] != to[axis]));
         if is_along_z && to[z] != 0.0 {
-            self.strokes.note_upright();
+            self.strokes.note_motion_along_z();
         }
     }
 }

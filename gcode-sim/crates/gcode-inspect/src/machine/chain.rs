@@ -56,9 +56,14 @@ impl AxisLink {
         Self { axis, motion: LinkMotion::Linear { along }, sign, error: PeriodicError::default() }
     }
 
+    /// Returns the actual position of the axis, in the sense of its direction.
+    fn value(&self, at: &Position) -> f64 {
+        self.sign * (at[self.axis] + self.error.value_at(at[self.axis]))
+    }
+
     /// Returns the frame of what the link carries, for a link whose base is at `frame`.
     fn frame_on(&self, frame: &Frame, at: &Position) -> Frame {
-        let value = self.sign * (at[self.axis] + self.error.value_at(at[self.axis]));
+        let value = self.value(at);
         match &self.motion {
             LinkMotion::Rotary { about, centre } => {
                 let rotation = rotation_about(about, Deg(value));
@@ -97,6 +102,19 @@ impl Chain {
     /// Returns the transformation from the frame that the chain carries to the frame of its base.
     pub fn frame(&self, at: &Position) -> Frame {
         self.0.iter().fold(Frame::identity(), |frame, link| link.frame_on(&frame, at))
+    }
+
+    /// Returns the origin of the frame that the chain carries, in the frame of its base.
+    pub(crate) fn carried_origin(&self, at: &Position) -> Point3<f64> {
+        let is_linear = |link: &AxisLink| matches!(link.motion, LinkMotion::Linear { .. });
+        if !self.0.iter().all(is_linear) {
+            return self.frame(at) * Point3::origin();
+        }
+        let slide = |point: Point3<f64>, link: &AxisLink| match &link.motion {
+            LinkMotion::Linear { along } => point + along.into_inner() * link.value(at),
+            LinkMotion::Rotary { .. } => point,
+        };
+        self.0.iter().fold(Point3::origin(), slide)
     }
 
     /// Returns the displacement of the slides for a difference of positions; rotary axes are ignored.

@@ -38,7 +38,7 @@ use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex, Position};
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::units::Deg;
-use gcode_part::Stock;
+use gcode_part::{Hand, Stock};
 
 /// Rotation and translation of a point; lengths in mm.
 pub type Frame = IsometryMatrix3<f64>;
@@ -102,6 +102,8 @@ pub struct Tool {
     pub kind: Option<ToolKind>,
     /// Full angle of the point, 180° of a flat end; `None` if unknown.
     pub point_angle: Option<Deg>,
+    /// Hand; `None` for a right-hand tool.
+    pub hand: Option<Hand>,
 }
 
 /// A work offset at the start of a run.
@@ -201,10 +203,10 @@ impl Machine {
     /// the tool length away from it, along the tool. If the direction of the tool is unknown, the tip is the
     /// control's own: the position minus the length offset.
     pub(crate) fn tool_pose(&self, at: &Position, setup: &Setup) -> Pose {
-        let carried = self.slides.frame(at) * Point3::origin();
+        let carried = self.slides.carried_origin(at);
         match self.head.direction(at, setup) {
             Some(axis) => {
-                let reach = self.head.pivot + self.tool_length(setup);
+                let reach = self.head.pivot + self.tip_distance(setup, &axis);
                 Pose { tip: carried - axis.into_inner() * reach, axis: Some(axis) }
             }
             None => Pose { tip: carried - self.slides.displacement(&setup.offset), axis: None },
@@ -220,6 +222,17 @@ impl Machine {
     pub(crate) fn tool_length(&self, setup: &Setup) -> f64 {
         let known = self.length_of(setup.tool);
         known.unwrap_or_else(|| self.slides.displacement(&setup.offset).norm())
+    }
+
+    /// Returns the distance from the gauge line to the tip against `axis`, the tool's direction out of the part, mm: the
+    /// length of the tool, or else the length offset. A touched-off offset counts from machine zero and is negative.
+    fn tip_distance(&self, setup: &Setup, axis: &Unit<Vector3<f64>>) -> f64 {
+        let offset = self.slides.displacement(&setup.offset);
+        let is_touched_off = offset.dot(axis) < -0.5 * offset.norm();
+        match self.length_of(setup.tool) {
+            None if is_touched_off => -offset.norm(),
+            _ => self.tool_length(setup),
+        }
     }
 
     /// Returns the tool with this number; `None` if the tool table lacks it.

@@ -49,6 +49,11 @@ impl ToolKind {
         ("tap", Self::Tap),
     ];
 
+    /// Returns the name in the machine file.
+    pub(crate) fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, kind)| *kind == self).map_or("tool", |(name, _)| name)
+    }
+
     /// Returns true if a tool of this kind can make the feature.
     pub(crate) fn can_make(self, feature: FeatureKind) -> bool {
         match self {

@@ -55,6 +55,7 @@ impl Ball {
             | EventKind::Stop { .. }
             | EventKind::Dwell { .. }
             | EventKind::Spindle { .. }
+            | EventKind::ToolSelected { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => BallUpdate::Unchanged,
         }

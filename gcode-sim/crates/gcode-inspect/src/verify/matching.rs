@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
+use super::hole_cuts::POINT_LENGTH;
 use super::position::Deviation;
 use super::{Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
@@ -15,8 +16,11 @@ const MAX_LINE_DISTANCE: f64 = 5.0;
 /// Least distance within which holes are matched first, mm.
 const FIRST_DISTANCE: f64 = 0.01;
 
-/// Cosine of the largest angle between the directions of a matching pair: 30°.
-const MIN_DIRECTION_COSINE: f64 = 0.866_025_403_784_438_6;
+/// Largest difference of the depths of two passes that are one pass and its repetition, mm.
+const MAX_DEPTH_DIFFERENCE: f64 = 0.01;
+
+/// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
+const TILTED_HOLE_COSINE: f64 = 0.866_025_403_784_438_6;
 
 /// A nominal hole and the drilled one matched with it, by their indices in the lists.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +50,10 @@ pub struct Comparison<'a> {
     pub pairs: Vec<HolePair>,
     /// Nominal holes without a drilled one.
     pub missing: Vec<usize>,
-    /// Drilled holes without a nominal one.
+    /// Drilled holes without a nominal one, and repeated ones that are no spring passes.
     pub extra: Vec<usize>,
+    /// Spring passes in drilled holes.
+    pub repeated: Vec<usize>,
     /// The nominal hole matched with a line, by the first drilled hole of the line.
     nominal_by_line: Vec<Option<usize>>,
 }
@@ -83,7 +89,7 @@ impl<'a> Comparison<'a> {
                 let cosine = hole.axis.dot(&Vector3::from(nominal[other].axis));
                 // The nearer end of a through hole is the one from which it is drilled.
                 let is_far_end = nominal.len() <= point;
-                if cosine.abs() < MIN_DIRECTION_COSINE || is_far_end != (cosine < 0.0) {
+                if cosine.abs() < TILTED_HOLE_COSINE || is_far_end != (cosine < 0.0) {
                     return;
                 }
                 if let Some(deviation) = Deviation::new(&nominal[other], &deepest, &hole.axis)
@@ -126,17 +132,39 @@ impl<'a> Comparison<'a> {
             }
         }
         let missing = (0..nominal.len()).filter(|index| pair_of[*index].is_none()).collect();
-        let extra = (0..actual.len()).filter(|index| !is_taken[*index]).collect();
-        Self { nominal, actual, tolerances, pattern, pairs, missing, extra, nominal_by_line }
+        let is_spring_pass = |index: &usize| {
+            let hole = &actual[*index];
+            let on_line: Option<usize> = nominal_by_line[hole.first_on_line];
+            on_line.is_some_and(|index| is_spring_pass(hole, &nominal[index], actual, tolerances))
+        };
+        let left_over = (0..actual.len()).filter(|index| !is_taken[*index]);
+        let (repeated, extra) = left_over.partition(is_spring_pass);
+        Self { nominal, actual, tolerances, pattern, pairs, missing, extra, repeated, nominal_by_line }
     }
 
-    /// Leaves out of the extra holes the feeds whose tool stays in the air; without its diameter only its tip counts.
+    /// Returns the diameter of the widest nominal hole that each tool finishes whose own one is unknown.
+    fn widest_by_tool(&self, machine: &Machine) -> BTreeMap<Option<u32>, f64> {
+        let mut widest = BTreeMap::new();
+        for (_, nominal, drilled) in self.matched() {
+            let Some(diameter) = nominal.diameter.filter(|_| machine.diameter_of(drilled.tool).is_none())
+            else {
+                continue;
+            };
+            let known = widest.entry(drilled.tool).or_insert(diameter);
+            *known = known.max(diameter);
+        }
+        widest
+    }
+
+    /// Leaves out of the extra holes the feeds whose tool stays in the air. A tool of unknown diameter is as wide as the holes
+    /// that it finishes; one that finishes none counts by its tip.
     /// Those near a missing hole stay: they explain it, as the rows of a pattern do that lacks holes.
     pub(super) fn leave_out_air_feeds(&mut self, surface: &Surface, machine: &Machine) {
         if self.pattern.is_some() && !self.missing.is_empty() {
             return;
         }
         let (nominal, actual, missing) = (self.nominal, self.actual, &self.missing);
+        let widest_by_tool = self.widest_by_tool(machine);
         self.extra.retain(|index| {
             let end = actual[*index].bottom();
             let is_near = |nominal: &Hole| {
@@ -144,7 +172,12 @@ impl<'a> Comparison<'a> {
                 (entry - end).cross(&actual[*index].axis).norm() <= MAX_LINE_DISTANCE
             };
             // A feed across the tool has no depth: its ends count.
-            let is_in_air = actual[*index].passes().all(|pass| is_in_air(&pass, surface, machine));
+            let is_known = actual[*index].unknown_axes.is_none();
+            let is_in_air = is_known
+                && actual[*index].passes().all(|pass| {
+                    let nominal = widest_by_tool.get(&pass.tool).copied();
+                    is_in_air(&pass, surface, machine, nominal)
+                });
             !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
         });
     }
@@ -158,6 +191,12 @@ impl<'a> Comparison<'a> {
     /// Returns the nominal hole that an extra hole drills a second time; `None` if there is none.
     pub fn nominal_on_line_of(&self, extra: usize) -> Option<usize> {
         self.nominal_by_line[self.actual[extra].first_on_line]
+    }
+
+    /// Returns the nominal hole whose first pass lies on the line of a drilled one; `None` if there is none.
+    pub(super) fn nominal_on_line(&self, drilled: &DrilledHole) -> Option<usize> {
+        let on_line = |pair: &&HolePair| pair.actual == drilled.first_on_line;
+        self.pairs.iter().find(on_line).map(|pair| pair.nominal)
     }
 
     /// Returns the point of the pattern's cylinder at which a drilled hole crosses it; `None` if it misses.
@@ -184,13 +223,37 @@ impl<'a> Comparison<'a> {
     }
 }
 
-/// Returns true if a pass cuts nothing of the body. A circle that leaves a core goes round the metal: its tip alone counts.
-fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine) -> bool {
+/// Returns true if a tool goes a second time to the same depth of a hole, within the tolerance of its position: a spring pass,
+/// which cuts nothing. A tap spoils the thread.
+fn is_spring_pass(
+    again: &DrilledHole,
+    nominal: &Hole,
+    actual: &[DrilledHole],
+    tolerances: Tolerances,
+) -> bool {
+    let is_in_place = Deviation::new(nominal, &again.bottom(), &again.axis)
+        .is_some_and(|deviation| !exceeds(deviation.zone_diameter(), tolerances.position));
+    let is_same = |pass: &ToolPass<'_>| {
+        let deeper = (pass.cut.bottom - again.bottom()).dot(&again.axis);
+        pass.tool == again.tool && !pass.cut.is_tapping && deeper.abs() <= MAX_DEPTH_DIFFERENCE
+    };
+    let mut earlier = actual.get(again.first_on_line).into_iter().flat_map(DrilledHole::passes);
+    is_in_place && earlier.any(|pass| is_same(&pass))
+}
+
+/// Returns true if a pass cuts nothing of the body; `nominal` is the diameter of a tool that the tool table lacks. A circle that
+/// leaves a core goes round the metal: its tip alone counts.
+fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine, nominal: Option<f64>) -> bool {
     let PassCut { start, bottom, milled, .. } = pass.cut;
     if surface.value(&surface.deepest_between(&start, &bottom)) <= 0.0 {
         return false;
     }
+    let cuts = |part: ToolCylinder| part.cuts(surface, (&bottom, &pass.axis), &(start - bottom));
     let own = machine.diameter_of(pass.tool);
+    if let (None, None, Some(diameter)) = (own, milled, nominal) {
+        let from = POINT_LENGTH * diameter;
+        return !cuts(ToolCylinder { from, to: from, radius: diameter / 2.0, is_cutter: true });
+    }
     let Some((own, cut)) = own.zip(pass.diameter).filter(|_| milled.is_none_or(|cut| cut.core.is_none()))
     else {
         return true;
@@ -198,7 +261,7 @@ fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine) -> bool 
     // A circle cuts wider than its tool.
     let wider = |part: ToolCylinder| ToolCylinder { radius: part.radius + (cut - own) / 2.0, ..part };
     let mut parts = machine.tool_end(pass.tool).into_iter().map(wider);
-    !parts.any(|part| part.cuts(surface, (&bottom, &pass.axis), &(start - bottom)))
+    !parts.any(cuts)
 }
 
 /// Matches the nominal and drilled holes that are left: the nearest pairs first, of equally near ones the first in the list;

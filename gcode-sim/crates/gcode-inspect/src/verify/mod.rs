@@ -5,6 +5,7 @@ mod checks;
 mod conclusion;
 mod displacement;
 pub mod flutes;
+mod hole_cuts;
 mod hole_finding;
 mod matching;
 mod neighbours;
@@ -13,7 +14,6 @@ mod outline;
 mod position;
 mod rounding;
 mod rows;
-mod stack;
 #[cfg(test)]
 mod tests;
 mod verdict;

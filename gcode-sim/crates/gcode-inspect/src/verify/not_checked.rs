@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::checks::features::ShapeGap;
 use super::{Comparison, HoleInspection};
+use crate::findings::BACK_BORED;
 use crate::holes::HoleExtraction;
 use crate::machine::{HeadKind, Machine};
 use gcode_lang::motion::LengthCompensation;
@@ -33,9 +34,16 @@ pub(super) fn gaps(lines: &[String]) -> Vec<&str> {
 pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
     let HoleInspection { comparison, extraction, reference, machine, .. } = inspection;
     let mut all = diameters(comparison, machine);
+    if !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none()) {
+        all.push("the tool in the spindle at the start: it cuts before the first tool change".to_owned());
+    }
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
+    all.extend(holders(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
+    if extraction.findings.iter().any(|finding| finding.kind == &BACK_BORED) {
+        all.push("bores made backwards: their depth and diameter".to_owned());
+    }
     let mut drilled = comparison.matched().map(|(.., drilled)| drilled);
     if machine.head.kind == HeadKind::Free && drilled.all(|hole| hole.tool_axis_deviation == Deg::ZERO) {
         all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());
@@ -85,6 +93,9 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
         match tool {
             None if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
             None => format!("the diameter of {holes}: made before the first tool change"),
+            Some(tool) if machine.find_tool(tool).is_none() => {
+                format!("the diameter of {holes}: T{tool} is not in the machine file")
+            }
             Some(tool) => format!("the diameter of {holes}: the machine file has none of T{tool}"),
         }
     };
@@ -113,6 +124,15 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
             ShapeGap::SpotDrill(tool) => {
                 format!(
                     "the end of {0} in {holes}: the machine file has no kind or point_angle; {0} is taken for a spot drill",
+                    name(tool)
+                )
+            }
+            ShapeGap::Undrilled(tool) => {
+                format!("the hole in which {} cuts: the program does not drill {holes}", name(tool))
+            }
+            ShapeGap::FullThrough(tool) => {
+                format!(
+                    "the full diameter of {holes} on the far side: the machine file has no point_angle of {}",
                     name(tool)
                 )
             }
@@ -148,6 +168,19 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<String> {
         format!("{whose}: not in the machine file, which takes {taken}")
     };
     tools.into_iter().map(sentence).collect()
+}
+
+/// Returns the tools whose holder is described, but not where it is.
+fn holders(extraction: &HoleExtraction, machine: &Machine) -> Option<String> {
+    let tools: BTreeSet<u32> = extraction.cut_conditions.iter().filter_map(|cut| cut.tool).collect();
+    let is_nowhere = |number: &&u32| {
+        machine
+            .find_tool(**number)
+            .is_some_and(|tool| tool.holder_diameter.is_some() && tool.length.is_none())
+    };
+    let names: Vec<_> = tools.iter().filter(is_nowhere).map(|number| format!("T{number}")).collect();
+    (!names.is_empty())
+        .then(|| format!("the holder of {} in the holes: the machine file has no length", names.join(", ")))
 }
 
 /// Returns the limits of the process that the reference does not specify.

@@ -16,7 +16,10 @@ pub(super) struct Outline {
 /// Outline of what one pass of a tool removes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CutShape {
+    /// Radius of the tool.
     pub radius: f64,
+    /// Radius of the circle that its axis describes, mm; 0 of a stroke.
+    pub path: f64,
     /// Depth at which the feed starts; negative above the entry.
     pub start: f64,
     /// Depth of the tip.
@@ -79,10 +82,12 @@ impl Outline {
     /// Both radii are linear between the ends of their pieces, so the least difference lies at one of these ends.
     pub(super) fn margin(&self, cut: &CutShape) -> f64 {
         let (top, bottom) = (cut.start.max(0.0), cut.tip.min(self.bottom()));
-        let joints = self
-            .cones
-            .iter()
-            .flat_map(|(wide, slope)| self.cylinders.iter().map(move |(radius, _)| (wide - radius) / slope));
+        // A cone meets cylinders, and other cones: where both are as wide.
+        let joints = self.cones.iter().enumerate().flat_map(|(index, (wide, slope))| {
+            let cylinders = self.cylinders.iter().map(move |(radius, _)| (wide - radius) / slope);
+            let others = self.cones[index + 1..].iter();
+            cylinders.chain(others.map(move |(radius, other)| (wide - radius) / (slope - other)))
+        });
         let ends = self.cylinders.iter().map(|(_, depth)| *depth).chain(joints).chain([cut.full_depth()]);
         let mut depths: Vec<f64> = ends.filter(|depth| top < *depth && *depth < bottom).collect();
         depths.extend([top, bottom]);
@@ -104,12 +109,13 @@ impl CutShape {
 
     /// Returns the radius at a depth above the tip.
     fn radius_at(&self, depth: f64) -> f64 {
-        match self.point {
+        let own = match self.point {
             PointShape::Pointed(angle) => {
                 ((self.tip - depth) * Deg(angle.0 / 2.0).tan()).clamp(0.0, self.radius)
             }
             PointShape::Flat | PointShape::Unknown => self.radius,
-        }
+        };
+        self.path + own
     }
 }
 
@@ -118,13 +124,13 @@ mod tests {
     use super::*;
     use gcode_part::NominalPart;
 
-    fn outline(features: &str) -> Outline {
+    fn outline_of(features: &str) -> Outline {
         let text = format!("id,x,y,z,i,j,k,depth,diameter,features\n1,0,0,0,0,0,1,15,,{features}\n");
         Outline::of(&NominalPart::parse(&text).unwrap().into_holes().unwrap().holes[0], 0.0).unwrap()
     }
 
     fn cut(diameter: f64, tip: f64, point: PointShape) -> CutShape {
-        CutShape { radius: diameter / 2.0, start: -2.0, tip, point }
+        CutShape { radius: diameter / 2.0, path: 0.0, start: -2.0, tip, point }
     }
 
     /// Φ10×5 over Φ6×15. A flat Φ10 to 5 fits with 0; to 7 it is 2 mm wider than Φ6. A 90° point of Φ10 with its tip at 4
@@ -132,7 +138,7 @@ mod tests {
     /// wider than Φ6.
     #[test]
     fn margins_over_a_counterbore_are_those_computed_by_hand() {
-        let outline = outline("drill 6 15; counterbore 10 5");
+        let outline = outline_of("drill 6 15; counterbore 10 5");
         let pointed = PointShape::Pointed(Deg(90.0));
         for (cut, expected) in [
             (cut(10.0, 5.0, PointShape::Flat), 0.0),
@@ -151,12 +157,17 @@ mod tests {
     /// radius of 3·tan 60° = 5.196 at the entry, where 6 is allowed: 0.804 to spare.
     #[test]
     fn margins_over_a_countersink_are_those_computed_by_hand() {
-        let outline = outline("drill 6 15; countersink 12 angle=90");
+        let outline = outline_of("drill 6 15; countersink 12 angle=90");
         let pointed = |angle| PointShape::Pointed(Deg(angle));
         assert!(outline.margin(&cut(20.0, 6.0, pointed(90.0))).abs() < 1e-12);
         let wide = outline.margin(&cut(20.0, 3.0, pointed(120.0)));
         assert!((wide - 0.803_847_577_293_368).abs() < 1e-12, "{wide}");
         assert!((outline.margin(&cut(20.0, 7.0, pointed(90.0))) + 1.0).abs() < 1e-12);
+        // Φ12 at 90° and Φ8 at 60° meet where 6 - d = 4 - d tan 30°, at d = 4.732 with a radius of 1.268. There a point of 75° with
+        // its tip at 7 has (7 - 4.732) tan 37.5° = 1.740, and above it is narrower than the wide cone.
+        let cones = outline_of("drill 1 15; countersink 12 angle=90; countersink 8 angle=60");
+        let margin = cones.margin(&cut(20.0, 7.0, pointed(75.0)));
+        assert!((margin - -0.472309430286).abs() < 1e-9, "{margin}");
         // Flat, Φ8 to 2: the cone has a radius of 4 there.
         assert!(outline.margin(&cut(8.0, 2.0, PointShape::Flat)).abs() < 1e-12);
     }

@@ -54,6 +54,9 @@ pub struct Verdict {
     pub not_checked: Vec<String>,
     /// Values that the run read and nothing in the program set, and the holes that each can touch.
     pub assumptions: Vec<Assumption>,
+    /// Indices of the spring passes among the drilled holes, with the ids of their nominal holes.
+    #[serde(skip)]
+    pub repeated: Vec<(usize, String)>,
     /// The findings with their locations, for the printed report.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
@@ -186,6 +189,10 @@ pub(super) fn verdict(
         why: super::checks::extra::explain(comparison, *index),
         drilled_index: *index,
     };
+    let repeated = |index: &usize| {
+        let nominal = comparison.nominal_on_line_of(*index).map_or("?", |nominal| comparison.id(nominal));
+        (*index, nominal.to_owned())
+    };
     let as_data = |one: &HoleFinding| {
         let hole = if let Subject::Nominal(index) = one.subject { Some(comparison.id(index)) } else { None };
         finding_of(&one.finding, hole, one.subject == Subject::Motion, locate)
@@ -213,6 +220,7 @@ pub(super) fn verdict(
         rounding: rounding.position_deviations.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
         extra: comparison.extra.iter().map(extra).collect(),
+        repeated: comparison.repeated.iter().map(repeated).collect(),
         findings: findings.iter().map(as_data).collect(),
         neighbours: None,
         not_checked: Vec::new(),
@@ -333,7 +341,7 @@ impl Verdict {
         });
         let extra = self.extra.iter().enumerate();
         let extra = extra.map(|(place, hole)| (hole.drilled_index, format!("extra {}", place + 1)));
-        matched.chain(extra).collect()
+        matched.chain(extra).chain(self.repeated.iter().cloned()).collect()
     }
 
     /// Adds the assumptions; each is an error if they are denied.

@@ -280,6 +280,8 @@ with_defaults! {
         pub dwell_in_seconds: bool = false,
         /// F without a point counts increments.
         pub feed_in_increments: bool = false,
+        /// 5200#0: G84 and G74 turn the spindle without M29 as well.
+        pub taps_rigidly: bool = false,
         /// G73 and G83 accept I, J and K for decreasing pecks.
         pub has_shrinking_pecks: bool = false,
         /// Height above R to which G83 retracts, mm.

@@ -90,6 +90,7 @@ const ROWS: &[ParameterRow] = &[
     bit_row(5101, 0, ParameterAccess::Key("FXY", |s| f64::from(s.drills_by_plane))),
     length_row(5114, ParameterAccess::Key("5114", |s| s.g73_retract)),
     length_row(5115, ParameterAccess::Key("5115", |s| s.g83_clearance)),
+    bit_row(5200, 0, ParameterAccess::Key("G84-RIGID", |s| f64::from(s.taps_rigidly))),
     bit_row(5400, 7, ParameterAccess::Key("SCR", |s| f64::from(s.has_coarse_scaling))),
     length_row(5440, ParameterAccess::PerAxis(|s, axis| s.single_direction_overrun[axis], Some(|s, axis, v| { s.single_direction_overrun[axis] = v; Some(()) }))),
     bit_row(6000, 3, ParameterAccess::Key("V15", |s| f64::from(s.series_15_offsets))),

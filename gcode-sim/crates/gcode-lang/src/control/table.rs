@@ -216,6 +216,7 @@ const DOCUMENTED: &[SettingRow] = &[
     choice!("CYCLE-REPEATS", "the address for the number of repeats of a canned cycle", REPEAT_LETTERS, |s, v| s.cycle_repeat_letter = v),
     switch!("HOME-ALL", "G28 without an axis moves all axes to the reference position", homes_all_axes),
     switch!("DWELL-SECONDS", "P of a dwell with a decimal point is seconds; G04 takes no X and U", dwell_in_seconds),
+    switch!("G84-RIGID", "5200#0: G84 and G74 turn the spindle without M29 as well", taps_rigidly),
     switch!("PECK-IJK", "G73 and G83 accept I, J, K for decreasing pecks", has_shrinking_pecks),
     whole!("OFFSETS", "pairs of tool offsets", 1, 999, |s, v| s.tool_offsets = v),
     whole!("MACRO-LEVELS", "levels of macro calls", 1, 15, |s, v| s.macro_levels = v),
@@ -284,6 +285,7 @@ undocumented_choices! {
     "M98-NO-P-311" missing_p_is_311 = false, "M98 without P is PS0311, not PS0076";
     "M06-STOPS-SPINDLE" tool_change_stops_spindle = true, "M06 stops the spindle";
     "M00-STOPS-SPINDLE" stop_stops_spindle = false, "M00 and M01 stop the spindle";
+    "M06-HOMES-Z" tool_change_homes_z = false, "M06 sends Z to machine zero before the tool changes";
 }
 
 impl Settings {

@@ -33,6 +33,10 @@ pub enum CycleStep {
     SpindleForward,
     /// Spindle counterclockwise.
     SpindleReverse,
+    /// Spindle clockwise in rigid tapping; otherwise it turns as the program has started it.
+    RigidForward,
+    /// Spindle counterclockwise in rigid tapping.
+    RigidReverse,
     /// G88: retract by hand.
     ManualRetract,
 }
@@ -61,8 +65,8 @@ impl Cycle {
 
 use CycleStep::{
     Dwell, DwellAtR, FeedToBottom, FeedToR, HighSpeedPeck, ManualRetract, Peck, RapidToInitial,
-    RapidToInitialInG98, RapidToR, RapidToReturnLevel, Shift, ShiftBack, SpindleForward, SpindleReverse,
-    SpindleStop,
+    RapidToInitialInG98, RapidToR, RapidToReturnLevel, RigidForward, RigidReverse, Shift, ShiftBack,
+    SpindleForward, SpindleReverse, SpindleStop,
 };
 
 const fn row(code: u32, steps: &'static [CycleStep], description: &'static str) -> Cycle {
@@ -75,7 +79,7 @@ pub const HIGH_SPEED_PECK_DRILLING: Cycle = Cycle {
     ..row(730, &[HighSpeedPeck, RapidToReturnLevel], "high-speed peck drilling cycle")
 };
 #[rustfmt::skip]
-pub(super) const LEFT_HANDED_TAPPING: Cycle = row(740, &[SpindleReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitialInG98], "left-handed tapping cycle");
+pub(super) const LEFT_HANDED_TAPPING: Cycle = row(740, &[RigidReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitialInG98], "left-handed tapping cycle");
 #[rustfmt::skip]
 pub(super) const FINE_BORING: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidToReturnLevel, ShiftBack, SpindleForward], "fine boring cycle");
 /// G81: drilling cycle.
@@ -87,7 +91,7 @@ pub const PECK_DRILLING: Cycle =
     Cycle { needs_q: true, ..row(830, &[Peck, RapidToReturnLevel], "peck drilling cycle") };
 /// G84: tapping cycle.
 #[rustfmt::skip]
-pub const TAPPING: Cycle = row(840, &[SpindleForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitialInG98], "tapping cycle");
+pub const TAPPING: Cycle = row(840, &[RigidForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitialInG98], "tapping cycle");
 pub(super) const BORING_FEED_RETRACT: Cycle =
     row(850, &[FeedToBottom, FeedToR, RapidToInitialInG98], "boring cycle, retract by feed");
 pub(super) const BORING_SPINDLE_STOP: Cycle = row(

@@ -20,6 +20,8 @@ pub enum MCodeEffect {
     Orient,
     /// M06: tool change.
     ToolChange,
+    /// G84 and G74 turn the spindle themselves until the cycle ends.
+    RigidTapping,
     /// Mist or coolant on.
     CoolantOn,
     /// Coolant off.
@@ -76,7 +78,7 @@ pub const M_CODES: &[MCodeRow] = &[
     row(8, MCodeEffect::CoolantOn, "coolant"),
     row(9, MCodeEffect::CoolantOff, "coolant off"),
     row(19, MCodeEffect::Orient, "oriented spindle stop"),
-    row(29, MCodeEffect::NoEffect, "rigid tapping"),
+    row(29, MCodeEffect::RigidTapping, "rigid tapping"),
     row(30, MCodeEffect::End, "program end, rewind"),
     row(48, MCodeEffect::NoEffect, "overrides on"),
     row(49, MCodeEffect::NoEffect, "overrides off"),

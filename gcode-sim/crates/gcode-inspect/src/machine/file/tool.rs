@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use crate::machine::{Head, HeadKind, Tool, ToolKind};
 use gcode_lang::units::Deg;
+use gcode_part::Hand;
 use gcode_part::reader::bounds::{
     Bounded, GaugeLength, OffsetNumber, PointAngle, RadiusOffset, ToolDiameter,
 };
@@ -26,6 +27,9 @@ pub(super) struct FileTool {
     kind: Option<ToolKind>,
     /// Full angle of its point, 180 of a flat end, degrees [default: 90 of a spot-drill or countersink].
     point_angle: Option<Bounded<PointAngle>>,
+    /// Its hand [default: right].
+    #[serde(default, with = "Optional::<Word<HandName>>")]
+    hand: Option<Hand>,
     /// From the tip to the shank, mm; needs `shank_diameter`.
     flute_length: Option<Bounded<GaugeLength>>,
     /// Diameter of the shank, above the flutes, mm; needs `flute_length`.
@@ -47,6 +51,17 @@ impl WordList for ToolKindName {
     }
 }
 
+/// Names of the hands.
+pub(super) enum HandName {}
+
+impl WordList for HandName {
+    type Value = Hand;
+
+    fn all() -> Vec<(&'static str, Hand)> {
+        vec![("right", Hand::Right), ("left", Hand::Left)]
+    }
+}
+
 impl FileTool {
     pub(super) fn check(&self, reader: &Reader<'_>, head: &Head) -> Result<Tool, FileError> {
         if let (Some(length), HeadKind::Free) = (&self.length, &head.kind) {
@@ -64,15 +79,16 @@ impl FileTool {
             reader,
             [("holder_diameter", holder_diameter.is_some()), ("holder_length", holder_length.is_some())],
         )?;
-        if let (Some(holder), Some(length)) = (holder_length, length)
-            && length.get() < holder.get()
-        {
-            let message = format!(
-                "key 'tool.holder_length' is {}: at most the length of the tool, {} mm",
-                holder.get(),
-                length.get()
-            );
-            return Err(reader.error(holder, message));
+        for (name, part) in [("flute_length", flute_length), ("holder_length", holder_length)] {
+            if let (Some(part), Some(length)) = (part, length)
+                && length.get() < part.get()
+            {
+                let (part_length, length) = (part.get(), length.get());
+                let message = format!(
+                    "key 'tool.{name}' is {part_length}: at most the length of the tool, {length} mm"
+                );
+                return Err(reader.error(part, message));
+            }
         }
         Ok(Tool {
             number: self.number.get() as u32,
@@ -85,6 +101,7 @@ impl FileTool {
             radius_offset: self.radius_offset.as_ref().map(Bounded::get),
             kind: self.kind,
             point_angle: self.point_angle.as_ref().map(Bounded::get).map(Deg),
+            hand: self.hand,
         })
     }
 

@@ -32,14 +32,14 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         Some(explanation) => {
             let folded = fold_explained(inspection, findings) + fold_tilted(comparison, findings);
             findings.add_notes(explanation, folded_note(folded));
-            (Vec::new(), None)
+            (Vec::new(), Vec::new())
         }
         None => {
             let reported = report_common_shifts(comparison, inspection.machine, findings);
             if !reported.is_empty() {
                 fold_tilted(comparison, findings);
             }
-            (reported, report_repeated_set(comparison, findings))
+            (reported, report_repeated_sets(comparison, findings))
         }
     };
     reported.extend(report_common_depths(comparison, findings));
@@ -129,21 +129,24 @@ fn report_common_shifts(
     groups(&wrong, HoleDisplacement::is_same_error).into_iter().map(report).collect()
 }
 
-/// Reports a row, or the whole part, that is drilled again.
-fn report_repeated_set(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Option<Diagnostic> {
-    let repeated = |extra: &usize| Some((comparison.nominal_on_line_of(*extra)?, *extra));
-    let (nominal, actual): (BTreeSet<usize>, Vec<usize>) =
-        comparison.extra.iter().filter_map(repeated).unzip();
-    if nominal.len() < MIN_GROUP_SIZE {
-        return None;
-    }
-    let first = &comparison.actual[actual[0]];
-    let nominal = nominal.into_iter().collect();
-    let (holes, folded) = fold_group(comparison, findings, &[&HOLE_TWICE], nominal, actual);
-    let finding = Diagnostic::new(&HOLE_TWICE, format!("{holes}: drilled a second time")).help(
-        "remove the second call, or the second iteration of the loop: the same tool drills these holes twice",
-    );
-    Some(finish_group_finding(finding, folded, &first.backtrace))
+/// Reports rows, or the whole part, that are drilled again: those of spring passes, and the others.
+fn report_repeated_sets(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Vec<Diagnostic> {
+    let sets = [(&comparison.repeated, Severity::Warning), (&comparison.extra, HOLE_TWICE.severity)];
+    let report = |(drilled, severity): (&Vec<usize>, Severity)| {
+        let repeated = |index: &usize| Some((comparison.nominal_on_line_of(*index)?, *index));
+        let (nominal, actual): (BTreeSet<usize>, Vec<usize>) = drilled.iter().filter_map(repeated).unzip();
+        if nominal.len() < MIN_GROUP_SIZE {
+            return None;
+        }
+        let first = &comparison.actual[actual[0]];
+        let nominal = nominal.into_iter().collect();
+        let (holes, folded) = fold_group(comparison, findings, &[&HOLE_TWICE], nominal, actual);
+        let finding = Diagnostic::new(&HOLE_TWICE, format!("{holes}: drilled a second time"))
+            .with_severity(severity)
+            .help("remove the second call, or the second iteration of the loop: the same tool drills these holes twice");
+        Some(finish_group_finding(finding, folded, &first.backtrace))
+    };
+    sets.into_iter().filter_map(report).collect()
 }
 
 fn shift_finding(holes: &str, offset: &Vector3<f64>, pattern: Option<&Pattern>) -> Diagnostic {

@@ -1,8 +1,8 @@
 //! Passes of a hole besides the finishing one lie inside its nominal outline: no later pass restores material.
 use super::*;
 use crate::findings::HOLE_CUT_ASIDE;
+use crate::verify::hole_cuts::{Cut, side};
 use crate::verify::outline::Outline;
-use crate::verify::stack::{Cut, side};
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let HoleInspection { comparison, machine, .. } = inspection;

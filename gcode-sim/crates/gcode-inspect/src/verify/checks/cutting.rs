@@ -2,7 +2,9 @@
 use super::*;
 use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFSET, SPINDLE_REVERSED};
 use crate::holes::CutConditions;
+use crate::machine::ToolKind;
 use gcode_lang::motion::{LengthCompensation, SpindleDirection};
+use gcode_part::Hand;
 
 /// Relative deviation of S and F without a finding: rounding of an inch value.
 const ROUNDING_ALLOWANCE: f64 = 0.005;
@@ -10,11 +12,18 @@ const ROUNDING_ALLOWANCE: f64 = 0.005;
 /// Relative deviation above which S or F is an error: tables of cutting data leave this range open.
 const ERROR_RATIO: f64 = 0.25;
 
+/// Largest feed of a tool of unknown diameter, mm per revolution.
+const MAX_FEED_PER_TURN: f64 = 5.0;
+
+/// Pecks up to this length, mm, and up to this share of the drill's diameter are none: the drill only rubs.
+const LEAST_PECK: f64 = 0.01;
+const LEAST_PECK_SHARE: f64 = 0.005;
+
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let (conditions, limits) = (&inspection.extraction.cut_conditions, &inspection.reference.process_limits);
     let mut reported: Vec<(Diagnostic, u64)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
-    for check in [reversed, speed, feed, peck, length, tool] {
+    for check in [reversed, speed, feed, feed_per_turn, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
             let index = *known.entry(finding.message.clone()).or_insert(reported.len());
@@ -30,11 +39,20 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     }
 }
 
-fn reversed(cut: &CutConditions, _: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
-    (cut.spindle_direction == SpindleDirection::Counterclockwise).then(|| {
-        Diagnostic::new(&SPINDLE_REVERSED, format!("{} cuts with M04", name(cut)))
-            .note("a right-hand drill rubs and breaks; the reference does not give the hand of the tool")
-            .help("use M03, unless the tool is left-hand")
+/// Reports a tool that turns against its hand. A thread has the hand of the spindle, which another check compares with the
+/// reference.
+fn reversed(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+    let hand = cut.tool.and_then(|number| machine.find_tool(number)?.hand);
+    let (wrong, code, right) = match hand.unwrap_or_default() {
+        Hand::Right => (SpindleDirection::Counterclockwise, "M04", "M03"),
+        Hand::Left => (SpindleDirection::Clockwise, "M03", "M04"),
+    };
+    let is_warning = cut.is_tapping;
+    (cut.spindle_direction == wrong).then(|| {
+        Diagnostic::new(&SPINDLE_REVERSED, format!("{} cuts with {code}", name(cut)))
+            .with_severity(if is_warning { Severity::Warning } else { Severity::Error })
+            .note("a tool that turns against its hand rubs and breaks")
+            .help(format!("use {right}, or give the tool's hand in the machine file"))
     })
 }
 
@@ -62,6 +80,35 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     Some(finding.help("correct F, or the tool's feed in the job; check that G94 and G21 are in force"))
 }
 
+/// Reports a feed per revolution that no tool survives: several times what tables of cutting data give.
+fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+    let kind = cut.tool.and_then(|number| machine.find_tool(number)?.kind);
+    let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < cut.speed.0;
+    if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
+        return None;
+    }
+    let [_, feed] = cut.feed_range;
+    let per_turn = feed.0 / cut.speed.0;
+    let limit = match (machine.diameter_of(cut.tool), kind) {
+        (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.1),
+        (Some(diameter), _) => (0.2 * diameter).max(0.5),
+        (None, _) => MAX_FEED_PER_TURN,
+    };
+    if !exceeds(per_turn, limit) {
+        return None;
+    }
+    let message = format!(
+        "{} feeds {} mm a revolution ({} mm/min at S{})",
+        name(cut),
+        round_thousandth(per_turn),
+        round_thousandth(feed.0),
+        cut.speed.0
+    );
+    Some(Diagnostic::new(&DRILL_FEED, message).help(
+        "check F and S, whether F is left from another tool, and whether G95 is in force instead of G94",
+    ))
+}
+
 fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
     let nominal = limits.tool_process(cut.tool)?.peck?;
     if let Some(severity) = severity(cut.max_cut, nominal).filter(|_| nominal < cut.max_cut) {
@@ -82,6 +129,19 @@ fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     let finding = Diagnostic::new(&DRILL_PECK, message).with_severity(Severity::Warning);
     let finding = finding.note("this costs time, and chips are cut twice");
     Some(finding.help("correct Q, or drill.peck in the job; check Q for a missing decimal point"))
+}
+
+/// Reports pecks too short for any drill: Q without its decimal point.
+fn fine_peck(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+    if limits.tool_process(cut.tool).and_then(|tool| tool.peck).is_some() {
+        return None;
+    }
+    let share = machine.diameter_of(cut.tool).map_or(0.0, |diameter| diameter * LEAST_PECK_SHARE);
+    let peck = cut.min_peck.filter(|peck| *peck <= LEAST_PECK.max(share))?;
+    let message = format!("{} drills in pecks of {} mm", name(cut), round_thousandth(peck));
+    Some(Diagnostic::new(&DRILL_PECK, message).help(
+        "correct Q: without a decimal point it counts the control's increment, and Q5 is 0.005 mm, not 5 mm",
+    ))
 }
 
 /// Reports a tool that the job does not have, or none.

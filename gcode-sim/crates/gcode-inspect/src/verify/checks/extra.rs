@@ -4,15 +4,21 @@ use crate::findings::{HOLE_EXTRA, HOLE_TWICE};
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    for index in &comparison.extra {
-        let (kind, help) = match comparison.nominal_on_line_of(*index) {
-            Some(_) => (&HOLE_TWICE, "remove the second call: the same tool drills this hole twice"),
-            None => (&HOLE_EXTRA, "remove it from the program, or correct its position"),
+    let mut left_over: Vec<usize> = comparison.extra.iter().chain(&comparison.repeated).copied().collect();
+    left_over.sort_unstable();
+    for index in left_over {
+        let finding = match comparison.nominal_on_line_of(index) {
+            Some(_) => Diagnostic::new(&HOLE_TWICE, explain(comparison, index))
+                .help("remove the second call: the same tool drills this hole twice"),
+            None => Diagnostic::new(&HOLE_EXTRA, explain(comparison, index))
+                .help("remove it from the program, or correct its position"),
         };
-        let finding = Diagnostic::new(kind, explain(comparison, *index))
-            .help(help)
-            .with_backtrace(comparison.actual[*index].backtrace.clone());
-        findings.add(Subject::Extra(*index), finding);
+        let severity = match comparison.repeated.binary_search(&index) {
+            Ok(_) => Severity::Warning,
+            Err(_) => finding.severity,
+        };
+        let backtrace = comparison.actual[index].backtrace.clone();
+        findings.add(Subject::Extra(index), finding.with_severity(severity).with_backtrace(backtrace));
     }
 }
 

@@ -2,8 +2,8 @@
 use super::*;
 use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::machine::{PointShape, ToolKind};
+use crate::verify::hole_cuts::{Cut, POINT_LENGTH, assign, cylinder_depth, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
-use crate::verify::stack::{Cut, POINT_LENGTH, assign, cylinder_depth, deepest_circle, widest_circle};
 use gcode_part::{Feature, FeatureKind};
 
 /// Largest width by which a spot drill may break the edge of a hole, mm in diameter.
@@ -16,8 +16,12 @@ pub(in crate::verify) enum ShapeGap {
     SpotDrill(Option<u32>),
     /// The depth of its full diameter is unknown.
     FullDepth(Option<u32>),
+    /// The depth of its full diameter is unknown, which has to pass the far side.
+    FullThrough(Option<u32>),
     /// The angle of its countersink is unknown.
     Angle(Option<u32>),
+    /// It only widens or threads a hole, and the program doesn't drill that.
+    Undrilled(Option<u32>),
 }
 
 /// Findings on the features of a nominal hole, and what they leave open.
@@ -35,9 +39,9 @@ pub(super) struct Judgement<'c> {
     /// Cuts from the side of the nominal entry, in the order of the program.
     pub near: Vec<Cut<'c>>,
     /// Cuts of a through hole from its far side.
-    far: Vec<Cut<'c>>,
+    pub far: Vec<Cut<'c>>,
     pub findings: Vec<Diagnostic>,
-    gaps: Vec<ShapeGap>,
+    pub gaps: Vec<ShapeGap>,
 }
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
@@ -71,7 +75,7 @@ fn judge<'c>(
 ) -> Option<Judgement<'c>> {
     let (nominal, drilled) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
     let is_plain = nominal.features.is_empty() && !nominal.through;
-    if is_plain && drilled.earlier_passes.is_empty() {
+    if is_plain && drilled.earlier_passes.is_empty() && tool_kinds::is_usual(drilled, machine) {
         return None;
     }
     let out = Vector3::from(nominal.axis);
@@ -90,7 +94,9 @@ fn judge<'c>(
         judged.judge_features(surface);
     }
     judged.judge_far_widths(drilled);
+    judged.judge_break_through(surface);
     threads::judge(&mut judged);
+    tool_kinds::judge(&mut judged, surface.is_some());
     Some(judged)
 }
 
@@ -227,8 +233,15 @@ impl Judgement<'_> {
         let cuts: Vec<_> =
             self.near.iter().map(|cut| format!("{} to {:.3} mm", cut.name(), cut.tip)).collect();
         let finding = Diagnostic::new(&FEATURE_MISSING, message)
-            .note(format!("the hole is cut by {}", cuts.join(", by ")))
-            .help("add its pass, or correct the tool, the tool table or the reference");
+            .note(format!("the hole is cut by {}", cuts.join(", by ")));
+        let finding = match self.wrong_size(feature) {
+            Some((cut, own)) => finding.help(format!(
+                "{} reaches its depth, but the diameter is {own}, not {}: correct the tool, the tool table or the reference",
+                cut.name(),
+                feature.diameter
+            )),
+            None => finding.help("add its pass, or correct the tool, the tool table or the reference"),
+        };
         let is_stuck = |cut: &&Cut<'_>| cut.is_tap() && !cut.pass.cut.is_tapping;
         let stuck = self.near.iter().find(is_stuck).filter(|_| feature.kind == FeatureKind::Tap);
         let finding = stuck.into_iter().fold(finding, |finding, tap| {
@@ -236,6 +249,32 @@ impl Judgement<'_> {
         });
         let place = self.near.last().or(self.far.last()).map(|cut| cut.pass.backtrace.clone());
         self.findings.push(place.into_iter().fold(finding, Diagnostic::with_backtrace));
+    }
+
+    /// Returns the depth of the full diameter of a cut whose tool's end is unknown: a drill has 118°, a tool that cuts before
+    /// all deeper ones counts as a spot drill, any other as flat.
+    pub(super) fn unknown_full_depth(&self, cut: &Cut<'_>, diameter: f64) -> f64 {
+        let is_same = |other: &&Cut<'_>| std::ptr::eq(other.pass.backtrace, cut.pass.backtrace);
+        let is_first = self.near.iter().take_while(|other| !is_same(other)).all(|other| other.tip <= cut.tip);
+        let point = match cut.kind {
+            Some(ToolKind::Drill) => PointShape::DRILL,
+            _ if is_first => PointShape::SPOT_DRILL,
+            _ => PointShape::Flat,
+        };
+        cut.tip - point.length(diameter).unwrap_or(0.0)
+    }
+
+    /// Returns a cut that would make a feature if the diameter was right, with that diameter.
+    fn wrong_size(&self, feature: &Feature) -> Option<(&Cut<'_>, f64)> {
+        let tolerances = self.comparison.tolerances;
+        self.near.iter().find_map(|cut| {
+            let own = cut.pass.diameter?;
+            let resized = Feature { diameter: own, ..*feature };
+            let depth = cut.depth_of(feature).unwrap_or(cut.tip);
+            let is_as_deep = !exceeds((depth - feature.bottom()).abs(), tolerances.depth);
+            let is_cylinder = feature.kind != FeatureKind::Countersink;
+            (is_cylinder && is_as_deep && cut.mismatch(&resized, tolerances).is_some()).then_some((cut, own))
+        })
     }
 
     /// Reports a cut that is wider than the hole; `before` is the deepest tip before it.
@@ -314,7 +353,7 @@ impl Judgement<'_> {
                 true => cylinder_depth(&self.near, depth, tolerances.depth),
                 false => depth - POINT_LENGTH * diameter.unwrap_or(0.0),
             };
-            (sized, full - sized.tip)
+            (sized, full - sized.full_depth(0.0).filter(|_| sized.is_circle()).unwrap_or(sized.tip))
         } else if let Some(widest) = widest_circle(&self.near, tolerances).filter(|_| diameter.is_some()) {
             let full = cylinder_depth(&self.near, depth, tolerances.depth);
             (widest, full - widest.tip)
@@ -329,6 +368,32 @@ impl Judgement<'_> {
         let finding = Diagnostic::new(&FEATURE_DEPTH, message)
             .note("the reference gives the hole one diameter all the way down")
             .help("correct the programmed depth, or give the hole's features in the reference")
+            .with_backtrace(cut.pass.backtrace.clone());
+        self.findings.push(finding);
+    }
+
+    /// Reports the cuts that go farther beyond the far side of a through hole than any of them has to.
+    fn judge_break_through(&mut self, surface: Option<Surface>) {
+        let (nominal, id) = (self.nominal, self.id);
+        if !nominal.through {
+            return;
+        }
+        let thickness =
+            surface.map_or(0.0, |surface| through::thickness(&surface, nominal)).max(nominal.depth);
+        let beyond = |cut: &&Cut<'_>| through::break_through(cut, nominal, thickness);
+        let all = self.near.iter().chain(&self.far);
+        let Some(cut) = all.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else { return };
+        let (limit, beyond) = (through::MAX_BREAK_THROUGH, beyond(&cut));
+        if !exceeds(beyond, limit) {
+            return;
+        }
+        let message = format!(
+            "hole {id} is {thickness:.3} mm deep, and {} goes through it by {beyond:.3} mm besides its point: limit {limit}",
+            cut.name()
+        );
+        let finding = Diagnostic::new(&HOLE_DEPTH, message)
+            .note("below the part are the table, the vise and the parallels")
+            .help("check the programmed depth, the tool length and its offset")
             .with_backtrace(cut.pass.backtrace.clone());
         self.findings.push(finding);
     }
@@ -351,7 +416,7 @@ impl Judgement<'_> {
             let depth = |cut: &Cut<'_>| cut.full_depth(diameter).unwrap_or(cut.tip);
             let deepest = cuts.iter().filter(makes).max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
             if deepest.full_depth(diameter).is_none() {
-                gaps.push(ShapeGap::FullDepth(deepest.pass.tool));
+                gaps.push(ShapeGap::FullThrough(deepest.pass.tool));
             }
             Some((depth(deepest).max(0.0), deepest.pass.backtrace.clone()))
         };

@@ -24,9 +24,11 @@ mod row_seam;
 mod row_short;
 mod signs;
 mod start_unknown;
+mod stock;
 mod stopped;
 mod threads;
 mod through;
+mod tool_kinds;
 mod tool_short;
 mod tools;
 
@@ -49,6 +51,7 @@ type Check = fn(&HoleInspection<'_>, &mut HoleFindings);
 /// The checks in order, each with the codes of its findings; each sees the findings of those above it.
 pub(super) const ALL: &[Check] = &[
     start_unknown::check, // start-unknown
+    stock::check,         // stock-mismatch
     mirrored::check,      // rotary-sign, mirror-image
     row_group::check,     // row-group
     row_angle::check,     // row-angle
@@ -62,7 +65,7 @@ pub(super) const ALL: &[Check] = &[
     diameter::check,      // hole-diameter
     roundness::check,     // hole-roundness
     milled_core::check,   // hole-core
-    features::check,      // feature-*, hole-not-through, tap-*
+    features::check,      // feature-*, hole-not-through, tap-*, tool-kind
     tools::check,         // hole-tools
     overlap::check,       // hole-overlap
     row_short::check,     // row-short

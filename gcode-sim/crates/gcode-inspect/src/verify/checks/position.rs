@@ -10,11 +10,23 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             if exceeds(deviation.zone_diameter(), comparison.tolerances.position) {
                 let name = format!("hole {}{side}", comparison.id(pair.nominal));
                 let finding = finding(comparison, &deviation, nominal, &name);
+                let finding = repeated_note(comparison, pair.nominal, drilled)
+                    .into_iter()
+                    .fold(finding, Diagnostic::note);
                 findings
                     .add(Subject::Nominal(pair.nominal), finding.with_backtrace(drilled.backtrace.clone()));
             }
         }
     }
+}
+
+/// Returns a note on a hole that is drilled on the line of another one, and is itself missing.
+fn repeated_note(comparison: &Comparison<'_>, nominal: usize, drilled: &DrilledHole) -> Option<String> {
+    let is_repeated = !std::ptr::eq(drilled, &comparison.actual[drilled.first_on_line]);
+    let on_line = is_repeated.then(|| comparison.nominal_on_line(drilled)).flatten()?;
+    let own = comparison.id(nominal);
+    let other = comparison.id(on_line);
+    (on_line != nominal).then(|| format!("hole {other} is drilled twice, and hole {own} itself is missing"))
 }
 
 /// Returns the part of a through hole that is drilled from its far side.

@@ -3,6 +3,7 @@ use super::cutting::round_thousandth;
 use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING, HOLES_ALIKE, LENGTH_OFFSET};
 use crate::holes::{LengthMismatch, MAX_LINE_OFFSET};
+use crate::verify::hole_cuts::POINT_LENGTH;
 use gcode_lang::motion::LengthCompensation;
 use gcode_part::PARALLEL_COSINE;
 
@@ -69,39 +70,60 @@ fn finding(mismatch: &LengthMismatch, limits: &ProcessLimits, machine: &Machine)
         None => help,
     };
     Diagnostic::new(&LENGTH_OFFSET, message)
-        .note("this length error alone explains the missed depths; the length comes from the machine file")
+        .note("this length error alone explains the depths that are wrong; the length comes from the machine file")
         .help(help)
         .with_backtrace(mismatch.backtrace.clone())
 }
 
 /// Returns true if the tool's holes miss the nominal depth, and half of them would not with the tip at the programmed
-/// point.
+/// point. A through hole has no nominal depth: there the tip is deeper than programmed.
 fn explains(comparison: &Comparison<'_>, mismatch: &LengthMismatch) -> bool {
     let tolerance = comparison.tolerances.depth;
-    let is_right = |(depth, nominal): (f64, f64)| !exceeds((depth - nominal).abs(), tolerance);
-    let is_cut = |(depth, nominal): (f64, f64)| 0.0 < depth && !exceeds(depth - nominal, tolerance);
+    let is_right = |(depth, nominal): (f64, &Hole)| match nominal.through {
+        true => !exceeds(nominal.depth, depth) && !exceeds(depth, longest_break_through(nominal)),
+        false => !exceeds((depth - nominal.depth).abs(), tolerance),
+    };
+    let is_cut = |(depth, nominal): (f64, &Hole)| {
+        let deepest =
+            if nominal.through { longest_break_through(nominal) } else { nominal.depth + tolerance };
+        0.0 < depth && !exceeds(depth, deepest)
+    };
+    let is_deeper = exceeds(mismatch.length_excess, tolerance);
     let mut explained = 0;
     for (end, axis) in &mismatch.feed_ends {
+        let programmed = end + axis.into_inner() * mismatch.length_excess;
+        let programmed = depth(comparison, &programmed, axis);
+        let is_programmed_right = programmed.is_some_and(is_right);
         let actual = depth(comparison, end, axis);
-        if actual.is_some_and(is_right) {
+        let goes_through = actual.is_some_and(|(_, nominal)| nominal.through);
+        if actual.is_some_and(is_right) && !(goes_through && is_deeper && is_programmed_right) {
             return false;
         }
-        let programmed = end + axis.into_inner() * mismatch.length_excess;
-        let Some(programmed) = depth(comparison, &programmed, axis) else { continue };
+        let Some(programmed) = programmed else { continue };
         // A tool that does not finish the hole is less deep, but not above the part.
         let is_better = is_cut(programmed) && !actual.is_some_and(is_cut);
-        explained += usize::from(is_right(programmed) || is_better);
+        explained += usize::from(is_programmed_right || is_better);
     }
     0 < explained && mismatch.feed_ends.len() <= 2 * explained
 }
 
-/// Returns the depth of a point in the nominal hole on whose line it lies, and that hole's nominal depth.
-fn depth(comparison: &Comparison<'_>, point: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<(f64, f64)> {
+/// Returns the deepest tip in a through hole that is no fault, mm: beyond the far side by a drill's point and
+/// [`through::MAX_BREAK_THROUGH`].
+fn longest_break_through(nominal: &Hole) -> f64 {
+    nominal.depth + POINT_LENGTH * nominal.widest_diameter().unwrap_or(0.0) + through::MAX_BREAK_THROUGH
+}
+
+/// Returns the depth of a point in the nominal hole on whose line it lies, and that hole.
+fn depth<'a>(
+    comparison: &Comparison<'a>,
+    point: &Point3<f64>,
+    axis: &Unit<Vector3<f64>>,
+) -> Option<(f64, &'a Hole)> {
     comparison.nominal.iter().find_map(|hole| {
         let out = Vector3::from(hole.axis);
         let from = point - Point3::from(hole.entry);
         let depth = -from.dot(&out);
         let aside = (from + out * depth).norm();
-        (aside <= MAX_LINE_OFFSET && PARALLEL_COSINE <= out.dot(axis)).then_some((depth, hole.depth))
+        (aside <= MAX_LINE_OFFSET && PARALLEL_COSINE <= out.dot(axis)).then_some((depth, hole))
     })
 }

@@ -9,7 +9,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let both = [Some(pair.actual), pair.from_far_side];
         both.into_iter().flatten().map(|actual| (actual, Subject::Nominal(pair.nominal)))
     });
-    let extra = comparison.extra.iter().map(|extra| (*extra, Subject::Extra(*extra)));
+    let extra =
+        comparison.extra.iter().chain(&comparison.repeated).map(|extra| (*extra, Subject::Extra(*extra)));
     let mut by_axes: BTreeMap<UnknownAxes, Vec<(usize, Subject)>> = BTreeMap::new();
     for (actual, subject) in matched.chain(extra) {
         let axes = comparison.actual[actual].unknown_axes;

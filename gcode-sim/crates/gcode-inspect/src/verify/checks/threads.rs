@@ -1,9 +1,13 @@
-//! Threads: the hole is drilled deeper than its thread, before it, and feed and speed give the pitch.
-use super::features::Judgement;
+//! Threads: the hole is drilled deeper than its thread, before it, and no wider than the thread leaves metal; feed and speed
+//! give the pitch, and the spindle the hand.
+use super::features::{Judgement, ShapeGap};
 use super::*;
-use crate::findings::{TAP_DRILL, TAP_PITCH};
-use crate::verify::stack::{Cut, assign};
-use gcode_part::{FeatureKind, NOISE};
+use crate::findings::{TAP_DRILL, TAP_HAND, TAP_PITCH};
+use crate::machine::PointShape;
+use crate::verify::hole_cuts::{Cut, POINT_LENGTH, assign};
+use crate::verify::outline::{CutShape, Outline};
+use gcode_lang::motion::SpindleDirection;
+use gcode_part::{Feature, FeatureKind, Hand, NOISE};
 
 /// Largest relative deviation of the pitch: rounding of F.
 const PITCH_TOLERANCE: f64 = 0.005;
@@ -14,20 +18,142 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     if !judged.near.iter().any(Cut::is_tap) {
         return;
     }
-    let drilled = (0..judged.near.len()).filter_map(|cut| drilled_depth(nominal, id, &judged.near, cut));
-    let findings: Vec<_> = drilled.chain(pitches(judged.comparison, nominal, id, &judged.near)).collect();
+    let slack = judged.comparison.tolerances.depth;
+    let drilled =
+        (0..judged.near.len()).filter_map(|cut| drilled_depth(nominal, id, &judged.near, cut, slack));
+    let mut findings: Vec<_> = drilled.collect();
+    judged.gaps.extend(open_depths(&judged.near));
+    let wide: Vec<WideCut> = judged.near.iter().filter_map(|cut| wide_cut(judged, cut)).collect();
+    for cut in wide {
+        match cut {
+            WideCut::Fault(finding) => findings.push(finding),
+            WideCut::SpotDrill(tool) => judged.gaps.push(ShapeGap::SpotDrill(tool)),
+        }
+    }
+    let made_by = assign(&nominal.features, &judged.near, judged.comparison.tolerances);
+    for (feature, cut) in nominal.features.iter().zip(made_by).filter(|(one, _)| one.kind == FeatureKind::Tap)
+    {
+        let Some(cut) = cut.map(|cut| &judged.near[cut]) else { continue };
+        findings.extend(pitch(id, feature, cut));
+        findings.extend(hand(id, feature, cut));
+    }
     judged.findings.extend(findings);
+}
+
+/// Returns the drills whose unknown points decide whether they are deep enough for a thread: their tips are deeper than the tap,
+/// and with points of 118° their full diameters are not.
+fn open_depths(cuts: &[Cut<'_>]) -> Vec<ShapeGap> {
+    let taps = cuts.iter().filter(|cut| cut.is_tap()).map(|cut| cut.tip);
+    let Some(thread) = taps.reduce(f64::max) else { return Vec::new() };
+    let drills = || cuts.iter().filter(|cut| !cut.is_tap());
+    let full = |cut: &Cut<'_>| {
+        let diameter = cut.pass.diameter.unwrap_or(0.0);
+        cut.full_depth(diameter).unwrap_or(cut.tip - POINT_LENGTH * diameter)
+    };
+    if drills().map(full).any(|full| thread < full) {
+        return Vec::new();
+    }
+    let is_open = |cut: &&Cut<'_>| cut.point == PointShape::Unknown && thread < cut.tip;
+    drills().filter(is_open).map(|cut| ShapeGap::FullDepth(cut.pass.tool)).collect()
+}
+
+/// Judgement of a cut that leaves too little metal for a thread.
+enum WideCut {
+    Fault(Diagnostic),
+    /// Taken for a spot drill, the tool leaves enough.
+    SpotDrill(Option<u32>),
+}
+
+/// Judges a cut that is wider than the hole that the reference has for a thread. Without one the limit is the thread's diameter
+/// less half its pitch, the hole for a forming tap.
+fn wide_cut(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<WideCut> {
+    let diameter = cut.pass.diameter.filter(|_| !cut.is_tap())?;
+    let (core, bottom) = core(judged)?;
+    let excess = |full: f64| {
+        let (radius, tip) = (diameter / 2.0, full.min(bottom));
+        let shape = CutShape { radius, path: 0.0, start: cut.start, tip, point: PointShape::Flat };
+        if tip <= cut.start.max(0.0) { 0.0 } else { -2.0 * core.margin(&shape) }
+    };
+    let is_wide = |full: f64| exceeds(excess(full), judged.comparison.tolerances.diameter);
+    let full = cut.full_depth(diameter).unwrap_or_else(|| judged.unknown_full_depth(cut, diameter));
+    if !is_wide(full) {
+        let is_spot_drill = cut.kind.is_none() && cut.point == PointShape::Unknown && is_wide(cut.tip);
+        return is_spot_drill.then_some(WideCut::SpotDrill(cut.pass.tool));
+    }
+    let message = format!(
+        "hole {}: {} cuts {full:.3} mm deep at its full diameter, {:.3} mm wider than the hole for the thread",
+        judged.id,
+        cut.name(),
+        excess(full)
+    );
+    let finding = Diagnostic::new(&TAP_DRILL, message).with_backtrace(cut.pass.backtrace.clone());
+    Some(WideCut::Fault(
+        finding.help("use the tapping drill: where the metal is cut away there is no thread"),
+    ))
+}
+
+/// Returns the outline of a hole without its threads, and the depth of the deepest thread; `None` without a thread of known
+/// diameter.
+fn core(judged: &Judgement<'_>) -> Option<(Outline, f64)> {
+    let Judgement { nominal, comparison, near, .. } = judged;
+    let slack = comparison.tolerances.depth;
+    let narrowest = |diameter: f64, pitch: f64, bottom: f64| Feature {
+        depth: Some(bottom),
+        diameter: diameter - pitch / 2.0,
+        ..Feature::of(FeatureKind::Bore)
+    };
+    let (threads, mut features): (Vec<Feature>, Vec<Feature>) =
+        nominal.features.iter().partition(|feature| feature.kind == FeatureKind::Tap);
+    let threads: Vec<(f64, f64, f64)> = match threads[..] {
+        [] => {
+            let size = |cut: &Cut<'_>| {
+                let pitch = cut.pass.cut.feed.map_or(0.0, |feed| feed.0 / cut.pass.cut.speed.0);
+                Some((cut.pass.diameter?, pitch, cut.tip))
+            };
+            near.iter().filter(|cut| cut.is_tap()).filter_map(size).collect()
+        }
+        _ => threads.iter().map(|one| (one.diameter, one.pitch.unwrap_or(0.0), one.bottom())).collect(),
+    };
+    let deepest = threads.iter().map(|(.., bottom)| *bottom).reduce(f64::max)?;
+    for (diameter, pitch, bottom) in threads {
+        let is_core = |feature: &Feature| {
+            let is_cylinder = feature.kind != FeatureKind::Countersink;
+            is_cylinder && feature.diameter < diameter && !exceeds(bottom - feature.bottom(), slack)
+        };
+        if !features.iter().any(is_core) {
+            features.push(narrowest(diameter, pitch, bottom));
+        }
+    }
+    let hole = Hole { features, ..(*nominal).clone() };
+    Some((Outline::of(&hole, slack)?, deepest))
+}
+
+/// Reports a thread that the spindle cuts with the wrong hand.
+fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
+    let (own, code) = match cut.pass.cut.direction {
+        SpindleDirection::Clockwise => (Hand::Right, "G74"),
+        SpindleDirection::Counterclockwise => (Hand::Left, "G84"),
+        SpindleDirection::Off => return None,
+    };
+    if own == feature.hand {
+        return None;
+    }
+    let name = |hand| if hand == Hand::Left { "left-hand" } else { "right-hand" };
+    let message =
+        format!("hole {id}: {} cuts a {} thread, nominal {}", cut.name(), name(own), name(feature.hand));
+    let finding = Diagnostic::new(&TAP_HAND, message).with_backtrace(cut.pass.backtrace.clone());
+    Some(finding.help(format!("tap with {code}, or correct the hand of the thread in the reference")))
 }
 
 /// Reports a thread that ends no higher than what is drilled before it. A thread in a hole that the program doesn't drill is
 /// left open.
-fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize) -> Option<Diagnostic> {
+fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize, slack: f64) -> Option<Diagnostic> {
     let tap = cuts.get(index).filter(|cut| cut.is_tap())?;
     cuts.iter().find(|cut| !cut.is_tap())?;
     let depth = |cut: &Cut<'_>| cut.full_depth(nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip);
     let before = cuts[..index].iter().filter(|cut| !cut.is_tap()).map(depth);
     let drilled = before.fold(0.0, f64::max);
-    let is_open = nominal.through && !exceeds(nominal.depth, drilled);
+    let is_open = nominal.through && !exceeds(nominal.depth - drilled, slack);
     if is_open || tap.tip + NOISE < drilled {
         return None;
     }
@@ -42,28 +168,22 @@ fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize) -> Op
     ))
 }
 
-/// Reports the threads whose feed per revolution is not the pitch.
-fn pitches(comparison: &Comparison<'_>, nominal: &Hole, id: &str, cuts: &[Cut<'_>]) -> Vec<Diagnostic> {
-    let made_by = assign(&nominal.features, cuts, comparison.tolerances);
-    let threads =
-        nominal.features.iter().zip(made_by).filter(|(feature, _)| feature.kind == FeatureKind::Tap);
-    let finding = |(feature, cut): (&gcode_part::Feature, Option<usize>)| {
-        let (cut, nominal) = (&cuts[cut?], feature.pitch?);
-        let (feed, speed) = (cut.pass.cut.feed?.0, cut.pass.cut.speed.0);
-        let actual = feed / speed;
-        if !exceeds((actual - nominal).abs(), PITCH_TOLERANCE * nominal) {
-            return None;
-        }
-        let message = format!(
-            "hole {id}: {} feeds {actual:.4} mm a revolution (F{} at S{speed}), the pitch is {nominal}",
-            cut.name(),
-            cutting::round_thousandth(feed)
-        );
-        let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
-        Some(finding.help(format!(
-            "command F{} at S{speed}, or correct the pitch",
-            cutting::round_thousandth(nominal * speed)
-        )))
-    };
-    threads.filter_map(finding).collect()
+/// Reports a thread whose feed per revolution is not the pitch.
+fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
+    let nominal = feature.pitch?;
+    let (feed, speed) = (cut.pass.cut.feed?.0, cut.pass.cut.speed.0);
+    let actual = feed / speed;
+    if !exceeds((actual - nominal).abs(), PITCH_TOLERANCE * nominal) {
+        return None;
+    }
+    let message = format!(
+        "hole {id}: {} feeds {actual:.4} mm a revolution ({} mm/min at S{speed}), the pitch is {nominal}",
+        cut.name(),
+        cutting::round_thousandth(feed)
+    );
+    let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
+    Some(finding.help(format!(
+        "command a feed of {} mm/min at S{speed}, or correct the pitch",
+        cutting::round_thousandth(nominal * speed)
+    )))
 }

@@ -3,6 +3,11 @@
 use super::*;
 use crate::findings::HOLE_THROUGH;
 use crate::verify::bottom;
+use crate::verify::hole_cuts::{Cut, POINT_LENGTH};
+
+/// Largest length by which the full diameter of a tool may pass the far side of a through hole, mm: the lead of a tap or a
+/// reamer, and some clearance.
+pub(super) const MAX_BREAK_THROUGH: f64 = 10.0;
 
 /// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
@@ -48,6 +53,13 @@ pub(super) fn thickness(surface: &Surface, hole: &Hole) -> f64 {
     let entry = Point3::from(hole.entry);
     let into = Unit::new_normalize(-Vector3::from(hole.axis));
     surface.exit(&entry, &into).map_or(0.0, |far| (far - entry).dot(&into).max(0.0))
+}
+
+/// Returns how far the full diameter of a cut passes the far side of a hole of this thickness, mm. A tool whose end is unknown
+/// counts as a drill of 118°.
+pub(super) fn break_through(cut: &Cut<'_>, nominal: &Hole, thickness: f64) -> f64 {
+    let diameter = cut.pass.diameter.or(nominal.widest_diameter()).unwrap_or(0.0);
+    cut.full_depth(diameter).unwrap_or(cut.tip - POINT_LENGTH * diameter) - thickness
 }
 
 #[cfg(test)]

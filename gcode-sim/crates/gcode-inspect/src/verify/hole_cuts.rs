@@ -7,6 +7,7 @@ use super::Tolerances;
 use super::outline::CutShape;
 use crate::holes::{DrilledHole, ToolPass};
 use crate::machine::{Machine, PointShape, Tool, ToolKind};
+use gcode_lang::units::Deg;
 use gcode_part::{DepthTo, Feature, FeatureKind, Hole, exceeds};
 
 /// Largest difference between the angles of a countersink and its tool, degrees.
@@ -41,10 +42,9 @@ impl<'a> Cut<'a> {
                 start: depth(&pass.cut.start),
                 tip: depth(&pass.cut.bottom),
                 kind: tool.and_then(|tool| tool.kind).or(is_milled.then_some(ToolKind::EndMill)),
-                point: if is_milled {
-                    PointShape::Flat
-                } else {
-                    tool.map_or(PointShape::Unknown, Tool::point)
+                point: match tool.map_or(PointShape::Unknown, Tool::point) {
+                    PointShape::Unknown if is_milled => PointShape::Flat,
+                    point => point,
                 },
             }
         };
@@ -62,7 +62,7 @@ impl<'a> Cut<'a> {
     }
 
     pub(super) fn is_tap(&self) -> bool {
-        self.pass.cut.is_tapping || self.kind == Some(ToolKind::Tap)
+        self.kind.map_or(self.pass.cut.is_tapping, |kind| kind == ToolKind::Tap)
     }
 
     /// Returns the name of the tool, `T1`, with its diameter.
@@ -73,13 +73,30 @@ impl<'a> Cut<'a> {
 
     /// Returns the outline; `None` if the diameter is unknown.
     pub(super) fn shape(&self) -> Option<CutShape> {
-        let radius = self.pass.diameter? / 2.0;
-        Some(CutShape { radius, start: self.start, tip: self.tip, point: self.point })
+        let path = self.path_radius();
+        let radius = self.pass.diameter? / 2.0 - path;
+        Some(CutShape { radius, path, start: self.start, tip: self.tip, point: self.point })
     }
 
     /// Returns the depth of the full diameter; `None` if the tool's end is unknown.
     pub(super) fn full_depth(&self, diameter: f64) -> Option<f64> {
-        Some(self.tip - self.point.length(self.pass.diameter.unwrap_or(diameter))?)
+        let own = self.pass.diameter.unwrap_or(diameter) - 2.0 * self.path_radius();
+        Some(self.tip - self.point.length(own)?)
+    }
+
+    /// Returns the depth of the tip; of a cone that is milled round the axis, that of the point of the whole cone.
+    fn cone_tip(&self, feature: &Feature) -> f64 {
+        match (feature.kind, self.point) {
+            (FeatureKind::Countersink, PointShape::Pointed(angle)) => {
+                self.tip + self.path_radius() / Deg(angle.0 / 2.0).tan()
+            }
+            _ => self.tip,
+        }
+    }
+
+    /// Returns the radius of a mill's circle; 0 of a stroke.
+    fn path_radius(&self) -> f64 {
+        self.pass.cut.milled.map_or(0.0, |circle| circle.radius)
     }
 
     /// Returns how far the cut is from making a feature, the least for the best; `None` if it can't make it.
@@ -92,7 +109,7 @@ impl<'a> Cut<'a> {
         if is_thread && !self.pass.cut.is_tapping {
             return None;
         }
-        let deep = (self.tip - feature.bottom()).abs();
+        let deep = (self.cone_tip(feature) - feature.bottom()).abs();
         if let (FeatureKind::Countersink, Some(angle)) = (feature.kind, feature.angle) {
             let is_narrow = |own: f64| exceeds(feature.diameter - own, tolerances.diameter);
             return match self.point {
@@ -117,8 +134,11 @@ impl<'a> Cut<'a> {
     /// tool's end is unknown.
     pub(super) fn depth_of(&self, feature: &Feature) -> Option<f64> {
         match (feature.kind, feature.to, feature.angle) {
+            (FeatureKind::Countersink, ..) => Some(self.cone_tip(feature)),
+            // A mill leaves the cone of its point at the wall.
+            _ if self.is_circle() => self.full_depth(feature.diameter),
             (FeatureKind::Drill, DepthTo::Full, Some(angle)) if self.point == PointShape::Unknown => {
-                let point = PointShape::Pointed(gcode_lang::units::Deg(angle));
+                let point = PointShape::Pointed(Deg(angle));
                 Some(self.tip - point.length(self.pass.diameter.unwrap_or(feature.diameter))?)
             }
             (FeatureKind::Drill, DepthTo::Full, _) => self.full_depth(feature.diameter),
@@ -187,6 +207,7 @@ pub(super) fn cylinder_depth(cuts: &[Cut<'_>], nominal: f64, tolerance: f64) -> 
         let tip = if exceeds(nominal - cut.tip, tolerance) { cut.tip } else { nominal };
         let diameter = cut.pass.diameter.unwrap_or(0.0);
         match cut.point {
+            _ if cut.is_circle() => tip,
             PointShape::Unknown if is_mill(cut.pass.tool) => tip,
             PointShape::Unknown => tip - POINT_LENGTH * diameter,
             point => tip - point.length(diameter).unwrap_or(0.0),

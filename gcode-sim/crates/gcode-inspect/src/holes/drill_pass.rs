@@ -1,0 +1,78 @@
+//! Passes of tools: feeds into the part along one line, and circles of mills.
+use nalgebra::{Point3, Unit, Vector3};
+
+use crate::machine::Machine;
+use gcode_lang::motion::{Backtrace, Position, SpindleDirection, UnknownAxes};
+use gcode_lang::units::{MmPerMin, Rpm};
+
+/// Extent of a pass in the part's frame, with its feed and its spindle.
+#[derive(Clone, Copy, Debug)]
+pub struct PassCut {
+    /// Point at which the feed starts.
+    pub start: Point3<f64>,
+    /// Deepest point.
+    pub bottom: Point3<f64>,
+    /// Feed at the deepest point; `None` if unknown.
+    pub feed: Option<MmPerMin>,
+    /// Speed of the spindle in the last feed that cuts.
+    pub speed: Rpm,
+    /// Direction of the spindle in the last feed that cuts.
+    pub direction: SpindleDirection,
+    /// True if the spindle reverses in the hole, as it does for a tap.
+    pub is_tapping: bool,
+    /// Figures of a mill's circle; `None` for a stroke.
+    pub milled: Option<MilledCut>,
+}
+
+/// Figures of a circle that a mill cuts, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MilledCut {
+    /// Radius of the path.
+    pub radius: f64,
+    /// Largest minus least distance of the path from the axis.
+    pub roundness: f64,
+    /// Diameter of the metal that the mill leaves on the axis; `None` without any, or if it is unknown.
+    pub core: Option<f64>,
+}
+
+impl PassCut {
+    /// Returns a pass of which only the extent is known.
+    pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
+        let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
+        Self { start, bottom, feed: None, speed, direction, is_tapping: false, milled: None }
+    }
+}
+
+/// A feed into the part along one line, in the part's frame.
+#[derive(Clone, Debug)]
+pub(super) struct DrillPass {
+    pub cut: PassCut,
+    /// Direction of the tool out of the part; that of the feed if the tool's is unknown.
+    pub axis: Unit<Vector3<f64>>,
+    /// Direction of the feed, out of the part.
+    pub feed_direction: Unit<Vector3<f64>>,
+    pub tool: Option<u32>,
+    pub backtrace: Backtrace,
+    pub axis_position: Position,
+    /// Axes of unknown position on the part.
+    pub unknown_axes: UnknownAxes,
+}
+
+impl DrillPass {
+    /// Returns the diameter that the pass cuts; `None` if the tool table lacks the tool.
+    pub(super) fn diameter(&self, machine: &Machine) -> Option<f64> {
+        let cutter = machine.diameter_of(self.tool)?;
+        let Some(circle) = self.cut.milled else { return Some(cutter) };
+        // Without the noise of the arithmetic, which would be printed.
+        Some(((cutter + 2.0 * circle.radius) * 1e9).round() / 1e9)
+    }
+
+    /// Returns true if the pass cuts at least as wide as another one. Of a tool of unknown diameter only the path counts; of
+    /// two such tools the later one does.
+    pub(super) fn is_as_wide(&self, other: &Self, machine: &Machine) -> bool {
+        let path = |pass: &Self| 2.0 * pass.cut.milled.map_or(0.0, |circle| circle.radius);
+        let diameter = |pass: &Self| pass.diameter(machine);
+        let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();
+        !is_comparable || diameter(other).unwrap_or(path(other)) <= diameter(self).unwrap_or(path(self))
+    }
+}

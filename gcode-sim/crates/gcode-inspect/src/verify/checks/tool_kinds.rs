@@ -1,0 +1,117 @@
+//! Cuts that a kind of tool can't make: a reamer, a boring bar or a tap in solid metal, a circle by a tool that cuts with its end.
+use super::features::{Judgement, ShapeGap};
+use super::*;
+use crate::findings::TOOL_KIND;
+use crate::holes::PassCut;
+use crate::machine::{PointShape, Tool, ToolKind};
+use crate::verify::hole_cuts::Cut;
+
+/// Returns true for a tool that only widens or threads a hole.
+pub(super) fn needs_hole(kind: Option<ToolKind>) -> bool {
+    matches!(kind, Some(ToolKind::Reamer | ToolKind::BoringBar | ToolKind::Tap))
+}
+
+/// Returns true if a hole of one diameter and one pass is drilled, or milled by a flat end.
+pub(super) fn is_usual(drilled: &DrilledHole, machine: &Machine) -> bool {
+    let tool = || drilled.tool.and_then(|number| machine.find_tool(number));
+    let is_flat = |tool: &Tool| !is_end_cutting(tool.kind) && !matches!(tool.point(), PointShape::Pointed(_));
+    match drilled.finishing_cut {
+        PassCut { is_tapping: true, .. } => false,
+        PassCut { milled: Some(_), .. } => tool().is_none_or(is_flat),
+        _ => tool().is_none_or(|tool| !needs_hole(tool.kind)),
+    }
+}
+
+/// Returns true for a tool that cuts with its end alone.
+fn is_end_cutting(kind: Option<ToolKind>) -> bool {
+    kind == Some(ToolKind::Drill) || needs_hole(kind)
+}
+
+/// Adds the findings on the kinds of the tools that cut a hole, and the tools whose hole the program doesn't drill.
+/// The part is solid where its stock or surface is known.
+pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool) {
+    let (mut findings, mut gaps) = (Vec::new(), Vec::new());
+    for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
+        for (index, cut) in cuts.iter().enumerate() {
+            findings.extend(sideways(judged.id, cut));
+            if !(needs_hole(cut.kind) || cut.is_tap()) || cut.is_circle() {
+                continue;
+            }
+            let makes_hole = |other: &Cut<'_>| !needs_hole(other.kind) && !other.is_tap();
+            if !cuts.iter().chain(others).any(makes_hole) {
+                // A tool of unknown kind may as well be a drill.
+                match cut.kind.filter(|_| is_solid) {
+                    Some(kind) => findings.push(undrilled(judged.id, cut, kind)),
+                    None => gaps.push(ShapeGap::Undrilled(cut.pass.tool)),
+                }
+            } else if cut.kind.is_some_and(|kind| kind != ToolKind::Tap) {
+                findings.extend(in_solid(judged, cut, &cuts[..index], others));
+            }
+            findings.extend(torn(judged, cut));
+        }
+    }
+    gaps.dedup();
+    judged.findings.extend(findings);
+    judged.gaps.extend(gaps);
+}
+
+/// Reports a tool in a hole that nothing drills.
+fn undrilled(id: &str, cut: &Cut<'_>, kind: ToolKind) -> Diagnostic {
+    let kind = kind.name();
+    let message =
+        format!("hole {id}: {} is a {kind} and goes {:.3} mm into the solid part", cut.name(), cut.tip);
+    Diagnostic::new(&TOOL_KIND, message)
+        .with_backtrace(cut.pass.backtrace.clone())
+        .help("drill the hole before it; if another program drills it, leave out [stock]")
+}
+
+/// Reports a circle by a tool without cutting edges on its side.
+fn sideways(id: &str, cut: &Cut<'_>) -> Option<Diagnostic> {
+    let kind = cut.kind.filter(|_| cut.is_circle())?;
+    let message = format!("hole {id}: {} mills a circle and is a {}", cut.name(), kind.name());
+    let finding = Diagnostic::new(&TOOL_KIND, message).with_backtrace(cut.pass.backtrace.clone());
+    is_end_cutting(cut.kind)
+        .then(|| finding.help("use an end mill, or correct the kind of the tool in the machine file"))
+}
+
+/// Reports a reamer or a boring bar that goes deeper than the hole before it: a reamer than its full diameter, a bar than its
+/// point.
+fn in_solid(
+    judged: &Judgement<'_>,
+    cut: &Cut<'_>,
+    before: &[Cut<'_>],
+    others: &[Cut<'_>],
+) -> Option<Diagnostic> {
+    let depth = |cut: &Cut<'_>, is_reamer: bool| match is_reamer {
+        true => cut.full_depth(judged.nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip),
+        false => cut.tip,
+    };
+    let is_reamer = cut.kind == Some(ToolKind::Reamer);
+    let drilled = before.iter().filter(|other| !needs_hole(other.kind)).map(|other| depth(other, is_reamer));
+    let drilled = drilled.fold(0.0, f64::max);
+    let slack = judged.comparison.tolerances.depth;
+    let is_open =
+        judged.nominal.through && (!others.is_empty() || !exceeds(judged.nominal.depth - drilled, slack));
+    if is_open || !exceeds(cut.tip - drilled, slack) {
+        return None;
+    }
+    let kind = cut.kind.map_or("tool", ToolKind::name);
+    let message = format!(
+        "hole {}: {} is a {kind} and goes {:.3} mm deep where {drilled:.3} mm are drilled before it",
+        judged.id,
+        cut.name(),
+        cut.tip
+    );
+    let finding = Diagnostic::new(&TOOL_KIND, message).with_backtrace(cut.pass.backtrace.clone());
+    Some(finding.help("drill before it, and deeper by the point of the drill"))
+}
+
+/// Reports a tap whose spindle doesn't reverse in a hole without features; with them the thread is missing.
+fn torn(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<Diagnostic> {
+    let is_torn =
+        cut.kind == Some(ToolKind::Tap) && !cut.pass.cut.is_tapping && judged.nominal.features.is_empty();
+    let message =
+        format!("hole {}: {} is a tap, and the spindle does not reverse in the hole", judged.id, cut.name());
+    let finding = Diagnostic::new(&TOOL_KIND, message).with_backtrace(cut.pass.backtrace.clone());
+    is_torn.then(|| finding.help("tap with G84, or correct the kind of the tool in the machine file"))
+}
