@@ -8,8 +8,8 @@ use crate::machine::{AxisMotion, HeadKind};
 use gcode_lang::motion::{AxisIndex, Backtrace, Position};
 use gcode_lang::units::Deg;
 
-/// A full turn, besides rounding of the arcs' ends, degrees.
-const FULL_TURN: f64 = 360.0 - 0.01;
+/// Largest gap of a full turn, mm: rounded ends of arcs. The cutter closes it.
+const MAX_GAP: f64 = 0.02;
 
 /// Largest change of height over a level turn, mm.
 const MAX_LEVEL_CHANGE: f64 = 0.01;
@@ -173,7 +173,7 @@ impl ArcRun {
         self.heights.push(before, arc.from.coords.dot(&arc.out));
         self.heights.push(self.swept, end);
         self.arcs.push_back((before, arc));
-        if self.swept < FULL_TURN {
+        if self.swept < self.full_turn() {
             return;
         }
         let begin = (self.swept - 360.0).max(0.0);
@@ -184,11 +184,17 @@ impl ArcRun {
         let [level, lowest] = self.heights.since(begin, start);
         // A turn that rises follows a thread. A single turn that falls does so too, or begins a helix.
         let is_level = level - lowest <= MAX_LEVEL_CHANGE;
-        let is_helix = end < start && self.swept >= FULL_TURN + 360.0;
+        let is_helix = end < start && self.swept >= self.full_turn() + 360.0;
         if (is_level || is_helix) && self.turn.as_ref().is_none_or(|turn| level < turn.level - 1e-9) {
             let (backtrace, axis_position) = place();
             self.turn = Some(FullTurn { level, backtrace, axis_position });
         }
+    }
+
+    /// Returns the angle of a full turn of this radius, less the largest gap, degrees.
+    fn full_turn(&self) -> f64 {
+        let radius = self.arcs.back().map_or(f64::INFINITY, |(_, arc)| arc.radius());
+        360.0 - (MAX_GAP / radius).to_degrees().max(0.01)
     }
 
     /// Returns the height at a swept angle within the last full turn.

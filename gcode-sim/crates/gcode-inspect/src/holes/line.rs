@@ -82,6 +82,8 @@ pub(super) enum SpindleInHole {
     #[default]
     Unchanged,
     Stopped,
+    /// Stopped, and started again in its former direction.
+    Restarted,
     Reversed,
 }
 

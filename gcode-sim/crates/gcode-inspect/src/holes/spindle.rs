@@ -27,7 +27,7 @@ impl HoleExtractor<'_> {
             _ if begun == SpindleDirection::Off || now == before => SpindleInHole::Unchanged,
             SpindleDirection::Off => SpindleInHole::Stopped,
             now if now != begun => SpindleInHole::Reversed,
-            _ => SpindleInHole::Unchanged,
+            _ => SpindleInHole::Restarted,
         };
         line.spindle = line.spindle.max(state);
     }
@@ -53,9 +53,14 @@ impl HoleExtractor<'_> {
             SpindleInHole::Unchanged => return,
             SpindleInHole::Stopped => (
                 "stops",
-                if is_drill { Severity::Error } else { Severity::Warning },
+                Severity::Warning,
                 "G76, G86 and G88 stop the spindle for a boring bar; a stopped drill rubs in its hole, or breaks when \
                  it is moved sideways",
+            ),
+            SpindleInHole::Restarted => (
+                "stops and starts again",
+                Severity::Error,
+                "G84 stops the spindle that M04 turns, and G74 the one that M03 turns; this tool drills",
             ),
             SpindleInHole::Reversed => {
                 ("reverses", Severity::Error, "G84 and G74 reverse the spindle for a tap; this tool drills")

@@ -80,20 +80,23 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     Some(finding.help("correct F, or the tool's feed in the job; check that G94 and G21 are in force"))
 }
 
-/// Reports a feed per revolution that no tool survives: several times what tables of cutting data give.
+/// Reports a feed per revolution of several times what tables of cutting data give; an error above the diameter.
 fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
     let kind = cut.tool.and_then(|number| machine.find_tool(number)?.kind);
     let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < cut.speed.0;
     if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
         return None;
     }
-    let [_, feed] = cut.feed_range;
+    // An approach in the air may be faster.
+    let [feed, _] = cut.feed_range;
     let per_turn = feed.0 / cut.speed.0;
-    let limit = match (machine.diameter_of(cut.tool), kind) {
-        (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.1),
+    let diameter = machine.diameter_of(cut.tool);
+    let limit = match (diameter, kind) {
+        (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.2),
         (Some(diameter), _) => (0.2 * diameter).max(0.5),
         (None, _) => MAX_FEED_PER_TURN,
     };
+    let is_impossible = exceeds(per_turn, diameter.unwrap_or(limit).max(limit));
     if !exceeds(per_turn, limit) {
         return None;
     }
@@ -104,7 +107,8 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
         round_thousandth(feed.0),
         cut.speed.0
     );
-    Some(Diagnostic::new(&DRILL_FEED, message).help(
+    let severity = if is_impossible { Severity::Error } else { Severity::Warning };
+    Some(Diagnostic::new(&DRILL_FEED, message).with_severity(severity).help(
         "check F and S, whether F is left from another tool, and whether G95 is in force instead of G94",
     ))
 }
@@ -139,7 +143,7 @@ fn fine_peck(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> 
     let share = machine.diameter_of(cut.tool).map_or(0.0, |diameter| diameter * LEAST_PECK_SHARE);
     let peck = cut.min_peck.filter(|peck| *peck <= LEAST_PECK.max(share))?;
     let message = format!("{} drills in pecks of {} mm", name(cut), round_thousandth(peck));
-    Some(Diagnostic::new(&DRILL_PECK, message).help(
+    Some(Diagnostic::new(&DRILL_PECK, message).with_severity(Severity::Warning).help(
         "correct Q: without a decimal point it counts the control's increment, and Q5 is 0.005 mm, not 5 mm",
     ))
 }
