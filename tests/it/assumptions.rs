@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 /// Three holes; #510, vacant, counts as absent: Y of the second stays 20.
-const PROGRAM: &str = "O0001\nG90 G54 G17 G21\nS1000 M03\nG00 X0. Y0.\nZ50.\nG81 X10. Y20. Z-10. R2. F100.\n\
+const PROGRAM: &str = "O0001\nG90 G54 G17 G21 G98\nS1000 M03\nG00 X0. Y0.\nZ50.\nG81 X10. Y20. Z-10. R2. F100.\n\
                        X30. Y#510\nX50. Y20.\nG80\nZ50.\nM30\n";
 
 /// Three holes of a plate.
@@ -101,8 +101,8 @@ fn a_denied_assumption_fails_everywhere() {
     let line = "gcode-sim verify O1.nc --reference r.csv --deny assumptions";
     let (verdict, code) = run_json(&format!("{line} --format json"), place);
     assert_eq!((&verdict["verdict"], code), (&json!("fail"), 1));
-    let summary =
-        "1 assumption is denied; 3 of 3 holes in tolerance; not checked: motion beside the holes (no stock)";
+    let summary = "1 assumption is denied; 3 of 3 holes in tolerance; not checked: diameters, the tool's length, \
+                   head angles, motion beside the holes (no stock)";
     assert_eq!(verdict["summary"], summary);
     assert_eq!(verdict["findings"][0]["code"], "assumption");
     let (text, code) = run(line, place);
@@ -183,7 +183,7 @@ fn comments_and_signs_do_not_hide_an_outside_value() {
 /// With another value the run drills a hole that this run does not.
 #[test]
 fn a_value_that_keeps_the_run_from_a_hole_is_listed() {
-    let program = "O1\nG90 G54 G17 G21\nS1000 M03\nG00 X0. Y0.\nZ50.\nIF[#510NE1]GOTO9\nG81 X10. Y20. Z-10. R2. F100.\n\
+    let program = "O1\nG90 G54 G17 G21 G98\nS1000 M03\nG00 X0. Y0.\nZ50.\nIF[#510NE1]GOTO9\nG81 X10. Y20. Z-10. R2. F100.\n\
                    G80\nN9 Z50.\nM30\n";
     let place = folder(program);
     let (holes, _) = run_json("gcode-sim holes O1.nc --format json", place.path());
@@ -225,7 +225,7 @@ fn number(choice: u8) -> String {
 /// Returns a program that drills, and reads #510 and a block skip.
 fn program(choices: &[Choice]) -> String {
     let mut text = String::from(
-        "O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z20. B0\n#100=0\n#101=10.\n#102=40.\n#103=18.\nG81 X60. Y60. Z-5. R2. F100.\n",
+        "O1\nG90 G54 G17 G21 G98 S1000 M03\nG0 X0. Y0. Z20. B0\n#100=0\n#101=10.\n#102=40.\n#103=18.\nG81 X60. Y60. Z-5. R2. F100.\n",
     );
     let mut labels: Vec<(usize, usize)> = Vec::new();
     for (index, (kind, a, b, c)) in choices.iter().enumerate() {
@@ -302,7 +302,7 @@ fn holes(text: &str, variable: Option<f64>, skips: bool) -> Option<(Made, Vec<As
         points.map(|value| (value * 1000.0).round() as i64)
     });
     let made = made.collect();
-    let assumed = simulation.dependences(&request, None).numbered(&simulation.run);
+    let assumed = simulation.dependencies(&request).numbered(&simulation.run);
     Some((made, assumed.into_iter().map(|(assumption, _)| assumption).collect()))
 }
 

@@ -135,7 +135,7 @@ fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
         {
             let mut verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
             if page.code == "assumption" {
-                simulation.add_assumptions(&mut verdict, &request, surface, true);
+                simulation.add_assumptions(&mut verdict, &request, true);
             }
             verdict.diagnostics
         }

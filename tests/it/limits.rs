@@ -74,7 +74,7 @@ fn chains_without_end_are_read_at_once() {
         (format!("G0 X0{}.5", "0".repeat(MANY)), "end"),
         ("#1=1 ".repeat(MANY), "PS0125"),
         (format!("G0 X1.{}", "/2 Y1.".repeat(MANY)), "SIM0001"),
-        ("G0".repeat(MANY), "PS0125"),
+        ("G0".repeat(MANY), "SIM0001"),
         (format!("POPEN\nDPRNT[{}]", "#1[44]".repeat(10_000)), "end"),
         (format!("SETVN500[{}A]", "A,".repeat(MANY)), "PS0115"),
     ] {

@@ -44,6 +44,7 @@ fn nominal(r: f64, y: f64, angles: &[f64]) -> Reference {
         holes: angles.iter().map(hole).collect(),
         stock: None,
         assumptions: None,
+        stopped: None,
     })
     .unwrap()
 }

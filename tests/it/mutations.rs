@@ -50,7 +50,8 @@ fn edits(text: &str) -> Vec<(char, usize, String)> {
 fn is_named(letter: char, found: &[Change]) -> bool {
     let [only] = found else { return false };
     match letter {
-        '0' => only.code == "stop" && only.message.starts_with("the stop M00 is removed"),
+        // That of a Haas stops the spindle too.
+        '0' => only.effects().any(|(_, text)| text.starts_with("the stop M00 is removed")),
         'F' => only.code == "feed",
         // A tool of another diameter or length: the entry names both.
         'T' => only.effects().any(|(_, text)| text.contains("made by T") || text.starts_with("tool T")),

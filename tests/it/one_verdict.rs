@@ -31,7 +31,7 @@ const REFERENCE: &str = "id,x,y,z,i,j,k,depth,diameter\n1,10,20,0,0,0,1,10,6\n2,
 /// Drills both holes; `before` stands before the first, `between` before the second.
 fn program(before: &str, first: &str, between: &str) -> String {
     format!(
-        "O0001\nG90 G54 G17 G21\nG00 X0. Y0.\nZ50.\n{before}\nG81 {first} Y20. Z-10. R2. F100.\n{between}\nX30.\n\
+        "O0001\nG90 G54 G17 G21 G98\nG00 X0. Y0.\nZ50.\n{before}\nG81 {first} Y20. Z-10. R2. F100.\n{between}\nX30.\n\
          G80\nZ50.\nM30\n"
     )
 }
@@ -143,6 +143,12 @@ fn an_alarm_is_in_a_list_and_in_a_picture_without_reference() {
     std::fs::write(place.path().join("O1.nc"), &text).unwrap();
     let (list, exit) = run("gcode-sim holes O1.nc", place.path());
     assert!(list.contains(&format!("1 hole, mm, in the part's frame\n{sentence}\n")) && exit == 3, "{list}");
+    let (list, exit) = run("gcode-sim holes O1.nc --format json", place.path());
+    let list: Value = serde_json::from_str(&list).unwrap();
+    assert_eq!((&list["stopped"], exit), (&Value::from(sentence), 3));
+    let (drawn, exit) = run("gcode-sim render O1.nc -o O1.png --size 480x360 --format json", place.path());
+    let drawn: Value = serde_json::from_str(&drawn).unwrap();
+    assert_eq!((&drawn["verdict"], &drawn["summary"], exit), (&"fail".into(), &sentence.into(), 3));
     let machine = Machine::default();
     let request = Request::new("O1.nc", text.as_bytes(), machine.clone());
     let simulation = simulate(&request, &mut NoLibrary, None).unwrap();

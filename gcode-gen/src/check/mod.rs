@@ -112,7 +112,7 @@ fn check_holes(
         simulate(&request, &mut Programs(package), reference.metal(request.machine.stock.as_ref()))
             .map_err(|e| broken_package("the main program", &e))?;
     let mut verdict = simulation.verify(reference, Tolerances::of(reference, None), &request.machine);
-    simulation.add_assumptions(&mut verdict, &request, reference.body(request.machine.stock.as_ref()), false);
+    simulation.add_assumptions(&mut verdict, &request, false);
     let top = top::of_verdict(&request.name, &simulation, reference, &verdict, &request.machine);
     let mut also = Vec::new();
     // A pattern checks for overlaps before it computes any holes.

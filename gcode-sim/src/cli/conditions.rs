@@ -10,24 +10,24 @@ use gcode_part::Assumption;
 
 /// What a result must not rest on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Denial {
+pub(super) enum DeniedKind {
     /// Values that the run reads and nothing in the program sets
     Assumptions,
 }
 
-/// Denial of assumptions.
+/// DeniedKind of assumptions.
 #[derive(Clone, Copy, Debug, Default, Args)]
-pub(super) struct Denials {
+pub(super) struct DenyArguments {
     /// Fail if a hole depends on a value that the run reads and nothing in the program sets: a common variable, an
     /// input, a clock, a block skip, an offset, an M code of the machine builder
     #[arg(long, value_name = "WHAT", value_enum)]
-    deny: Option<Denial>,
+    deny: Option<DeniedKind>,
 }
 
-impl Denials {
+impl DenyArguments {
     /// Returns true if assumptions are denied.
     pub(super) fn denies_assumptions(self) -> bool {
-        self.deny == Some(Denial::Assumptions)
+        self.deny == Some(DeniedKind::Assumptions)
     }
 
     /// Returns the errors of assumptions that are denied; `holes` is the number of all holes.

@@ -117,8 +117,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             let verify = |reference: &Reference| {
                 let tolerances = Tolerances::of(reference, None);
                 let mut verdict = revision.simulation.verify(reference, tolerances, &new_request.machine);
-                let body = reference.body(request.machine.stock.as_ref());
-                revision.simulation.add_assumptions(&mut verdict, request, body, false);
+                revision.simulation.add_assumptions(&mut verdict, request, false);
                 verdict
             };
             reference.as_ref().map(verify)

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::conditions::{Denials, ProgramArguments};
+use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, options, output, page, progress};
 use crate::report::holes::{self as report, Origin};
@@ -16,7 +16,7 @@ pub(super) struct Arguments {
     program: ProgramArguments,
 
     #[command(flatten)]
-    denials: Denials,
+    deny: DenyArguments,
 
     /// Also write a page to this file: the holes, the path, the blocks and the values of the variables; opens in
     /// any browser
@@ -56,11 +56,12 @@ fn print_result(
         }
         None => Origin::FeedStart,
     };
-    let assumed = simulation.dependences(request, None).numbered(&simulation.run);
-    let denied = arguments.denials.errors(&assumed, list.holes.len());
+    let assumed = simulation.dependencies(request).numbered(&simulation.run);
+    let denied = arguments.deny.errors(&assumed, list.holes.len());
     list.assumptions = Some(assumed.into_iter().map(|(assumption, _)| assumption).collect());
+    list.stopped = simulation.run.stop_sentence();
     print(&list, origin, arguments.format)?;
-    if let Some(sentence) = simulation.run.stop_sentence().filter(|_| arguments.format == ListFormat::Text) {
+    if let Some(sentence) = list.stopped.filter(|_| arguments.format == ListFormat::Text) {
         output::print(&format!("{sentence}\n"))?;
     }
     let of_run = super::findings(&simulation.extracted.findings, &simulation.run);

@@ -3,13 +3,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::conditions::{Denials, ProgramArguments};
+use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
 use gcode_draw::{FluteView, Picture, Size, TopView};
-use gcode_inspect::verify::{Answer, Tolerances};
+use gcode_inspect::verify::{Answer, Tolerances, denied_words};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::{Assumption, NominalPart};
 use gcode_session::{Request, Run};
@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     tolerance: Option<f64>,
 
     #[command(flatten)]
-    denials: Denials,
+    deny: DenyArguments,
 
     /// The view [default: top, or side for a burr]
     #[arg(long, value_enum)]
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let drawn = match nominal {
-        Some(NominalPart::Flutes(_)) if arguments.denials.denies_assumptions() => {
+        Some(NominalPart::Flutes(_)) if arguments.deny.denies_assumptions() => {
             return Err(UsageError::new("--deny is for holes, and the reference is a burr"));
         }
         Some(NominalPart::Flutes(mut flutes)) => {
@@ -102,13 +102,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                 Some(reference) => {
                     let tolerances = Tolerances::of(reference, tolerance);
                     let mut verdict = simulation.verify(reference, tolerances, &request.machine);
-                    let is_denied = arguments.denials.denies_assumptions();
-                    simulation.add_assumptions(
-                        &mut verdict,
-                        &request,
-                        reference.body(stock.as_ref()),
-                        is_denied,
-                    );
+                    let is_denied = arguments.deny.denies_assumptions();
+                    simulation.add_assumptions(&mut verdict, &request, is_denied);
                     let drawn =
                         top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
                     Drawn {
@@ -121,16 +116,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                     }
                 }
                 None => {
-                    let found = simulation.dependences(&request, None);
+                    let found = simulation.dependencies(&request);
                     let assumed = found.numbered(&simulation.run);
-                    let denied = arguments.denials.errors(&assumed, found.hole_count());
+                    let denied = arguments.deny.errors(&assumed, found.hole_count());
                     let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();
                     let drawn = top::of_holes(&name(&request), &simulation, &request.machine, &assumed);
+                    let denial = (!denied.is_empty()).then(|| denied_words(denied.len()));
+                    let faults: Vec<String> =
+                        simulation.run.stop_sentence().into_iter().chain(denial).collect();
                     let findings: Vec<Diagnostic> = simulation.run.findings().chain(denied).collect();
                     Drawn {
                         picture: hole_picture(view, &drawn)?,
                         view,
-                        verdict: None,
+                        verdict: (!faults.is_empty()).then(|| (Answer::Fail, faults.join("; "))),
                         status: None,
                         findings,
                         run: simulation.run,
@@ -152,7 +150,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
 struct Drawn {
     picture: Picture,
     view: View,
-    /// Answer and summary; `None` without a reference.
+    /// Answer and summary; without a reference only of a run that fails.
     verdict: Option<(Answer, String)>,
     /// Exit status of the verdict; that of the findings without one.
     status: Option<ExitStatus>,

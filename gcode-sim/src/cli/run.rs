@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::conditions::{Denials, ProgramArguments};
+use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress};
 use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport};
@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     moves: bool,
 
     #[command(flatten)]
-    denials: Denials,
+    deny: DenyArguments,
 
     /// Write what the program prints (DPRNT, BPRNT) to this file
     #[arg(long, value_name = "FILE")]
@@ -65,9 +65,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
         output::write(path, &bytes)?;
     }
-    let found = run.dependences(&request);
+    let found = run.dependencies(&request);
     let (assumed, holes) = (found.numbered(&run), found.hole_count());
-    let denied = arguments.denials.errors(&assumed, holes);
+    let denied = arguments.deny.errors(&assumed, holes);
     let assumptions = (assumed.into_iter().map(|(assumption, _)| assumption).collect(), holes);
     let report = RunReport::new(&run, &request.machine, moves.as_ref(), system, assumptions);
     output::report(&report, RunReport::text, arguments.format)?;

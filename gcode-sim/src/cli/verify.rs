@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::conditions::{Denials, ProgramArguments};
+use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::FindingFormat;
 use super::library::Folders;
 use super::{ExitStatus, UsageError, options, output, page, progress, render};
@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     depth_tolerance: Option<f64>,
 
     #[command(flatten)]
-    denials: Denials,
+    deny: DenyArguments,
 
     /// List the worst hole first
     #[arg(long)]
@@ -78,7 +78,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
                 ("--depth-tolerance", depth.is_some()),
-                ("--deny", arguments.denials.denies_assumptions()),
+                ("--deny", arguments.deny.denies_assumptions()),
                 ("--worst-first", arguments.worst_first),
                 ("--full", arguments.full),
                 ("--page", arguments.page.is_some()),
@@ -151,13 +151,8 @@ fn holes(
         print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
     let add_assumptions = |simulation: &Simulation, verdict: &mut Verdict, request: &Request| {
-        let is_denied = arguments.denials.denies_assumptions();
-        simulation.add_assumptions(
-            verdict,
-            request,
-            reference.body(request.machine.stock.as_ref()),
-            is_denied,
-        );
+        let is_denied = arguments.deny.denies_assumptions();
+        simulation.add_assumptions(verdict, request, is_denied);
     };
     if let Some(path) = &arguments.page {
         let traced =

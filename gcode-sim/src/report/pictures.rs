@@ -12,9 +12,9 @@ pub(crate) struct RenderReport {
     pub(crate) picture: String,
     /// Name of the view.
     pub(crate) view: String,
-    /// The answer of the verdict; null without a reference.
+    /// The answer of the verdict; without a reference `fail` for a run that fails, else null.
     pub(crate) verdict: Option<Answer>,
-    /// The reasons for the answer in one line; null without a reference.
+    /// The reasons for the answer in one line; null without one.
     pub(crate) summary: Option<String>,
 }
 

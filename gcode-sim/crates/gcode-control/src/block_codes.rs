@@ -32,6 +32,9 @@ impl Planner<'_> {
         let state = &mut plan.state;
         let before = state.modal;
         let (axis_use, is_cycle_active) = self.apply_each_code(state)?;
+        for group in self.words.g_codes().filter_map(|row| row.effect.group()) {
+            plan.commanded_groups.insert(group);
+        }
         self.check_modes(&before, state)?;
         self.update_coordinates(&before, state);
         if state.modal.cycle.is_some() && !is_cycle_active {
@@ -219,9 +222,9 @@ impl Planner<'_> {
                 continue;
             };
             match effect {
-                MCodeEffect::Stop => plan.stops.push(StopKind::M00),
+                MCodeEffect::Stop => self.plan_stop(plan, StopKind::M00, speed),
                 MCodeEffect::OptionalStop if self.data.settings.stops_at_m01 => {
-                    plan.stops.push(StopKind::M01)
+                    self.plan_stop(plan, StopKind::M01, speed);
                 }
                 MCodeEffect::OptionalStop | MCodeEffect::NoEffect => {}
                 MCodeEffect::End => plan.flow = BlockFlow::End,
@@ -273,6 +276,15 @@ impl Planner<'_> {
             self.set_spindle(plan, plan.state.spindle, Rpm(plan.state.modal_words.s));
         }
         Ok(())
+    }
+
+    fn plan_stop(&self, plan: &mut BlockPlan, kind: StopKind, speed: Rpm) {
+        plan.stops.push(kind);
+        if self.data.settings.undocumented.stop_stops_spindle && plan.state.spindle != SpindleDirection::Off {
+            plan.state.spindle = SpindleDirection::Off;
+            let stop = EventKind::Spindle { direction: SpindleDirection::Off, speed };
+            plan.events_after_motion.push((stop, 0.0));
+        }
     }
 
     fn set_spindle(&self, plan: &mut BlockPlan, direction: SpindleDirection, speed: Rpm) {

@@ -16,7 +16,7 @@ use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{AxisIndex, Backtrace, EventSink, Position};
-use gcode_lang::program::modes::{Unit, WorkSystem};
+use gcode_lang::program::modes::{ModalGroup, Unit, WorkSystem};
 use gcode_lang::program::{Library, Memory, Slot};
 use gcode_lang::source::Span;
 use gcode_lang::units::Seconds;
@@ -345,5 +345,13 @@ impl Control {
     /// block that selected it first.
     pub fn unset_work_systems(&self) -> &[(WorkSystem, Backtrace)] {
         &self.executor.log.unset_systems
+    }
+
+    /// Returns true if a block has commanded this modal group, other than 01, before the first move of the run; G98 or G99
+    /// before the first canned cycle, if there is one.
+    pub fn is_commanded_before_use(&self, group: ModalGroup) -> bool {
+        let log = &self.executor.log;
+        let is_unused = group == ModalGroup::ReturnTo && !log.has_drilled;
+        is_unused || log.commanded_groups.without(log.late_groups).contains(group)
     }
 }

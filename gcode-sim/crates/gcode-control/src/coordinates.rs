@@ -53,6 +53,17 @@ impl ControlData {
         machine
     }
 
+    /// Returns a point of a canned cycle in machine coordinates; `start` is the state at the start of its block. An axis that
+    /// rolls over counts on from there without a wrap.
+    pub(super) fn cycle_point(&self, start: &State, point: &Position) -> Position {
+        let mut machine = self.to_machine(start, point);
+        for axis in self.settings.rollover_axes() {
+            let travel = point[axis] - start.programmed_position[axis];
+            machine[axis] = self.remove_residue(start.machine_position[axis] + travel);
+        }
+        machine
+    }
+
     /// Returns a work coordinate in machine coordinates; every caller adds in this order, so that all get the same bits.
     #[inline(always)]
     pub(super) fn on_machine(&self, work: f64, zero: f64, length: f64) -> f64 {

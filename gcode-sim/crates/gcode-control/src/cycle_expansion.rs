@@ -44,7 +44,7 @@ impl CyclePlan {
             let point_at = |value: f64| {
                 let mut point = *hole;
                 point[self.axis] = value;
-                data.to_machine(state, &point)
+                data.cycle_point(state, &point)
             };
             let mut above_hole = point_at(r);
             above_hole[self.axis] = motion.position[self.axis];

@@ -1,6 +1,7 @@
 //! Checks a block of a canned cycle: its axis, words, repeats and end; G70 and G71 of a Haas repeat it round a centre.
 use super::cycle_expansion::{CyclePlan, has_too_many_pecks};
 use super::functions::ExecResult;
+use super::linear_motion::Endpoint;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
@@ -65,7 +66,13 @@ impl Planner<'_> {
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = *plan.state;
         // The depth is no move.
-        let mut endpoint = self.compute_endpoint(&mut plan.state)?.programmed;
+        let Endpoint { programmed: mut endpoint, machine: end_on_machine, .. } =
+            self.compute_endpoint(&mut plan.state)?;
+        // The holes count on from the start without a wrap, so that each rotation keeps its direction and its length.
+        for turning in self.data.settings.rollover_axes() {
+            endpoint[turning] = from.programmed_position[turning]
+                + (end_on_machine[turning] - from.machine_position[turning]);
+        }
         endpoint[axis] = from.programmed_position[axis];
         plan.state.unknown = plan.state.unknown.with_axes_of(1 << axis, from.unknown);
         self.read_cycle_words(plan, axis, incremental)?;
@@ -77,9 +84,6 @@ impl Planner<'_> {
         plan.commands_axes = true;
         if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.with_unscaled_pecks(scale_factor), repeats) {
             return Err(self.not_simulated("more than a million pecks in one block"));
-        }
-        if incremental && self.named_axes().any(|axis| self.data.settings.rolls_over[axis]) {
-            return Err(self.not_simulated("a canned cycle with an incremental axis that rolls over"));
         }
         if repeats == 0 && !self.data.settings.undocumented.k0_positions {
             plan.notes.push(Note::CycleRepeatsZero);
@@ -99,14 +103,17 @@ impl Planner<'_> {
         plan.state.programmed_position = holes.last().copied().unwrap_or(endpoint);
         if repeats == 0 {
             // K0 of some controls: a position only.
-            let mut to = self.data.to_machine(&plan.state, &plan.state.programmed_position);
+            let mut to = self.data.cycle_point(&start_state, &plan.state.programmed_position);
             to[axis] = from.machine_position[axis];
+            self.wrap_position(&mut plan.state);
             plan.state.machine_position = from.machine_position;
             self.push_unknown_axes(plan);
             self.push_rapid(plan, &to);
             return Ok(());
         }
         self.move_to_return_level(&mut plan.state, cycle, axis);
+        plan.state.machine_position = self.data.cycle_point(&start_state, &plan.state.programmed_position);
+        self.wrap_position(&mut plan.state);
         plan.cycle_plan = Some(CyclePlan {
             cycle,
             start_state,
@@ -143,7 +150,13 @@ impl Planner<'_> {
         };
         state.unknown = state.unknown.with_axes_of(1 << axis, unknown);
         state.programmed_position[axis] = level;
-        state.machine_position = self.data.to_machine(state, &state.programmed_position);
+    }
+
+    /// Wraps the axes that roll over.
+    fn wrap_position(&self, state: &mut State) {
+        for axis in self.data.settings.rollover_axes() {
+            state.programmed_position[axis] = self.data.wrap_angle(axis, state.programmed_position[axis]);
+        }
     }
 
     fn cycle_repeats(&self, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {

@@ -13,7 +13,7 @@ use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{Event, EventKind, EventSink};
-use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::modes::{GroupSet, ModalGroup, WorkSystem};
 use gcode_lang::program::{ProgramId, Words};
 use gcode_lang::source::{Span, Spanned};
 use gcode_lang::units::Seconds;
@@ -67,6 +67,9 @@ impl Executor {
     pub(super) fn commit<S: EventSink>(&mut self, plan: &mut BlockPlan, sink: &mut S) {
         std::mem::swap(&mut self.registers.state, &mut plan.state);
         self.record_work_use(plan.state.modal.work, plan.commands_axes);
+        if !plan.commanded_groups.is_empty() {
+            self.record_groups(plan.commanded_groups);
+        }
         if plan.uses_lookahead {
             self.take_lookahead(&mut plan.lookahead, sink);
         }
@@ -74,6 +77,7 @@ impl Executor {
             self.emit(kind, *seconds, sink);
         }
         if let Some(cycle_plan) = plan.cycle_plan.take() {
+            self.log.has_drilled = true;
             self.emit_cycle(&cycle_plan, sink);
         }
         for (kind, seconds) in &plan.events_after_motion {
@@ -206,6 +210,19 @@ impl Executor {
         if work != WorkSystem::default() {
             self.record_other_work(work, before, has_moved);
         }
+    }
+
+    /// Records modal groups that a block commands, before its moves.
+    fn record_groups(&mut self, groups: GroupSet) {
+        let log = &mut self.log;
+        if 0 < log.moves || !self.registers.lookahead.is_idle() {
+            let mut late = groups.without(log.commanded_groups);
+            if !log.has_drilled {
+                late = late.without(GroupSet::of(&[ModalGroup::ReturnTo]));
+            }
+            log.late_groups = log.late_groups.union(late);
+        }
+        log.commanded_groups = log.commanded_groups.union(groups);
     }
 
     #[inline(never)]

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64};
 use super::notes::Note;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{Backtrace, StopKind};
-use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::modes::{GroupSet, WorkSystem};
 use gcode_lang::source::Span;
 
 /// Limit of a run.
@@ -157,6 +157,12 @@ pub(super) struct RunLog {
     pub(super) work_selected: Backtrace,
     /// Systems that the run has moved in before anything set them, with the blocks that selected them.
     pub(super) unset_systems: Vec<(WorkSystem, Backtrace)>,
+    /// Modal groups that a block has commanded, without group 01.
+    pub(super) commanded_groups: GroupSet,
+    /// Those that a move preceded, or a canned cycle G98 and G99.
+    pub(super) late_groups: GroupSet,
+    /// A canned cycle has drilled.
+    pub(super) has_drilled: bool,
 }
 
 impl RunLog {

@@ -9,6 +9,7 @@ use super::variables::{Locals, Value};
 use crate::contour::Blend;
 use gcode_lang::control::ParameterId;
 use gcode_lang::motion::{EventKind, Position, StopKind};
+use gcode_lang::program::modes::GroupSet;
 use gcode_lang::program::{OpIndex, ProgramId};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
@@ -31,6 +32,8 @@ pub(super) struct BlockPlan {
     /// True if `lookahead` replaces that of the control.
     pub(super) uses_lookahead: bool,
     pub(super) lookahead: Lookahead,
+    /// Modal groups of the block's codes, without group 01.
+    pub(super) commanded_groups: GroupSet,
     /// True if the block commands axes, which triggers a modal macro call.
     pub(super) commands_axes: bool,
     /// In the order of their M codes.
@@ -145,6 +148,7 @@ impl BlockPlan {
             uses_lookahead,
             // Valid with `uses_lookahead` only.
             lookahead: _,
+            commanded_groups,
             commands_axes,
             stops,
             builder_m_codes,
@@ -154,6 +158,7 @@ impl BlockPlan {
         **state = *start;
         (*skip_plan, *cycle_plan, *corner, *flow) = (None, None, None, BlockFlow::Next);
         (*uses_lookahead, *commands_axes) = (false, false);
+        *commanded_groups = GroupSet::default();
         events.clear();
         events_after_motion.clear();
         writes.clear();

@@ -86,6 +86,9 @@ pub struct HoleList {
     /// Values that the run read and nothing in the program set; absent in a reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assumptions: Option<Vec<Assumption>>,
+    /// The alarm or the limit that ended the run before its end, so that holes may be missing; absent otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stopped: Option<String>,
 }
 
 impl HoleList {

@@ -91,7 +91,7 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
     if holes.is_empty() {
         return Err(error(None, "no hole after the header: one line for each"));
     }
-    Ok(HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None })
+    Ok(HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None, stopped: None })
 }
 
 fn csv_error(e: &csv::Error) -> FileError {

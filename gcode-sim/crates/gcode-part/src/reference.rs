@@ -76,7 +76,13 @@ impl Reference {
 
     /// Returns the hole list that `reference` writes.
     pub fn list(&self) -> HoleList {
-        HoleList { unit: Unit::Mm, holes: self.holes.clone(), stock: self.stock.clone(), assumptions: None }
+        HoleList {
+            unit: Unit::Mm,
+            holes: self.holes.clone(),
+            stock: self.stock.clone(),
+            assumptions: None,
+            stopped: None,
+        }
     }
 }
 

@@ -4,50 +4,51 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use super::outside_text::names_outside;
 use super::{Request, Run, causes, set_up_control};
-use gcode_control::slice::{Marks, OutsideRead, Slice, StatedValues};
+use gcode_control::OperatorStop;
+use gcode_control::slice::{KEPT_GROUPS, Marks, OutsideRead, Slice, StatedValues};
 use gcode_inspect::holes::{DrilledHole, HoleExtractor};
 use gcode_lang::motion::{
-    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
+    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal, StopKind,
 };
 use gcode_lang::program::NoLibrary;
+use gcode_lang::program::modes::ModalGroup;
 use gcode_lang::source::{SourceId, Span};
-use gcode_part::{Assumption, AssumptionPlace, Surface};
+use gcode_part::{Assumption, AssumptionPlace, Metal};
 
 /// Holes of a run, and the values from outside on which each depends.
 #[derive(Clone, Debug, Default)]
-pub struct Dependences {
+pub struct HoleDependencies {
     reads: Vec<OutsideRead>,
     /// Sets of reads, by hole in the order of the extraction.
     holes: Vec<Marks>,
 }
 
-/// Follows the outside values through a second run, if the first one can have read any. `surface` is that of the first run.
-pub(super) fn dependences(
-    request: &Request,
-    run: &Run,
-    surface: Option<Surface>,
-    has_holes: bool,
-) -> Dependences {
+/// Follows the outside values through a second run, if the first one can have read any. `metal` is that of the first run.
+pub(super) fn dependencies(request: &Request, run: &Run, metal: &Metal, has_holes: bool) -> HoleDependencies {
     if run.control.is_cancelled() || !may_read_outside(request, run, has_holes) {
-        return Dependences::default();
+        return HoleDependencies::default();
     }
-    let Ok(mut control) = set_up_control(request, causes::reload(run)) else { return Dependences::default() };
-    let mut slice = Slice::new(stated_values(request));
+    let Ok(mut control) = set_up_control(request, causes::reload(run)) else {
+        return HoleDependencies::default();
+    };
+    let mut slice = Slice::new(stated_values(request), request.settings.offset_variables, &request.variables);
     let mut sink = MarkedEvents {
-        extractor: super::extractor(request, surface),
+        extractor: super::extractor(request, metal.clone()),
         motion: slice.motion(),
         strokes: Vec::new(),
         position: Position::default(),
         last: None,
+        has_fed: false,
     };
     control.run_observed(request.limits, &mut NoLibrary, &mut sink, &mut slice);
     let MarkedEvents { extractor, strokes, .. } = sink;
     let holes = extractor.finish().holes.iter().map(|hole| marks_of(hole, &strokes)).collect();
-    Dependences { reads: slice.into_reads(), holes }
+    HoleDependencies { reads: slice.into_reads(), holes }
 }
 
-impl Dependences {
+impl HoleDependencies {
     /// Returns the assumptions that can touch a hole, each with its block; `names` returns the name of a hole by its index in
     /// the extraction.
     pub fn assumptions(
@@ -87,9 +88,23 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let control = &run.control;
     let stated = stated_values(request);
     let is_code_unknown = || control.builder_m_codes().keys().any(|code| !stated.codes.contains(code));
+    let may_keep_spindle = || {
+        let is_stop = |stop: &OperatorStop| matches!(stop.kind, StopKind::M00 | StopKind::M01);
+        !control.settings().undocumented.stop_stops_spindle && control.stops().iter().any(is_stop)
+    };
+    let takes_power_on_modes = || {
+        KEPT_GROUPS.into_iter().any(|group| {
+            let is_used = group != ModalGroup::Work || !stated.work_systems.is_empty();
+            is_used && !control.is_commanded_before_use(group)
+        })
+    };
     !request.variables.is_empty()
         || request.settings.skip_signal.is_some()
-        || has_holes && (!control.unset_work_systems().is_empty() || is_code_unknown())
+        || has_holes
+            && (!control.unset_work_systems().is_empty()
+                || is_code_unknown()
+                || may_keep_spindle()
+                || takes_power_on_modes())
         || control
             .memory()
             .sources()
@@ -97,74 +112,20 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
             .any(|(_, source)| names_outside(&source.bytes, &stated, has_holes))
 }
 
-/// Returns true if a text has a block skip, `#` before anything but a local or a harmless system variable, PRM, or a tool
-/// offset whose value the machine file does not state.
-fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
-    let is_outside = |at: usize| {
-        let is_named = match text[at].to_ascii_uppercase() {
-            b'#' => !matches!(
-                number_behind(text, at),
-                Some(0..=33 | 3000 | 3006 | 3100..=3102 | 4001..=4330 | 5001..=5060)
-            ),
-            // No other function of one argument ends with M.
-            b'[' => text[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M')),
-            // END1, AND, ROUND: part of a word.
-            b'H' | b'D' if at.checked_sub(1).is_some_and(|before| text[before].is_ascii_alphabetic()) => {
-                false
-            }
-            letter @ (b'H' | b'D') => match number_behind(text, at) {
-                Some(number) => number != 0 && (letter == b'D' || !stated.lengths.contains(&number)),
-                // DO1, DPRNT: the beginning of a word.
-                None => !text[at + 1..].trim_ascii_start().first().is_some_and(u8::is_ascii_alphabetic),
-            },
-            _ => !is_division(line_before(text, at)),
-        };
-        is_named && !is_in_comment(line_before(text, at))
-    };
-    memchr::memchr3_iter(b'#', b'/', b'[', text).any(is_outside)
-        || has_holes && memchr::memchr2_iter(b'H', b'D', text).any(is_outside)
-        || has_holes && memchr::memchr2_iter(b'h', b'd', text).any(is_outside)
-}
-
-/// Returns the number behind a byte of a text.
-fn number_behind(text: &[u8], at: usize) -> Option<u32> {
-    let behind = text[at + 1..].trim_ascii_start();
-    let digits = behind.iter().take_while(|byte| byte.is_ascii_digit()).count();
-    std::str::from_utf8(&behind[..digits]).ok()?.parse().ok()
-}
-
-/// Returns the line of a byte up to it.
-fn line_before(text: &[u8], at: usize) -> &[u8] {
-    &text[memchr::memrchr(b'\n', &text[..at]).map_or(0, |end| end + 1)..at]
-}
-
-/// Returns true if a byte behind this part of its line is in a comment.
-fn is_in_comment(before: &[u8]) -> bool {
-    before.iter().rposition(|byte| *byte == b'(') > before.iter().rposition(|byte| *byte == b')')
-}
-
-/// Returns true if a slash behind this part of its line divides: behind `=` or inside brackets, comments left out.
-fn is_division(before: &[u8]) -> bool {
-    let (mut is_in_comment, mut has_assignment, mut open_brackets) = (false, false, 0);
-    for byte in before {
-        match byte {
-            b'(' => is_in_comment = true,
-            b')' => is_in_comment = false,
-            _ if is_in_comment => {}
-            b'=' => has_assignment = true,
-            b'[' => open_brackets += 1,
-            b']' => open_brackets -= 1,
-            _ => {}
-        }
-    }
-    has_assignment || 0 < open_brackets
-}
-
 /// Returns what the machine file and the reference state.
 fn stated_values(request: &Request) -> StatedValues {
     let lengths = request.machine.tools.iter().filter(|tool| tool.length.is_some()).map(|tool| tool.number);
+    let radii =
+        request.machine.tools.iter().filter(|tool| tool.radius_offset.is_some()).map(|tool| tool.number);
     let clamp = request.process_limits.clamp.iter().flat_map(|clamp| [clamp.on, clamp.off]);
-    StatedValues { lengths: lengths.collect(), codes: clamp.collect(), has_part: request.part.is_some() }
+    let offsets = request.machine.offsets.iter();
+    StatedValues {
+        lengths: lengths.collect(),
+        radii: radii.collect(),
+        work_systems: offsets.map(|offset| offset.system).collect(),
+        codes: clamp.collect(),
+        has_part: request.part.is_some(),
+    }
 }
 
 /// Source of the calls that mark the backtraces of events: no text has it.
@@ -184,6 +145,8 @@ struct MarkedEvents<'m> {
     position: Position,
     /// Direction of the last move, and whether it was a rapid.
     last: Option<(Position, bool)>,
+    /// The stroke has fed: rapids before a feed decide no hole but by their end, from which it feeds.
+    has_fed: bool,
 }
 
 impl EventSink for MarkedEvents<'_> {
@@ -208,13 +171,17 @@ impl EventSink for MarkedEvents<'_> {
                 self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
             if !continues {
                 self.strokes.push(Marks::NONE);
+                self.has_fed = false;
             }
             self.last = Some((direction, is_rapid));
         } else if self.strokes.is_empty() {
             self.strokes.push(Marks::NONE);
         }
         let stroke = self.strokes.len() - 1;
-        self.strokes[stroke] |= self.motion.get();
+        self.has_fed |= !is_rapid;
+        if self.has_fed {
+            self.strokes[stroke] |= self.motion.get();
+        }
         let place = Span { source: MARKER, start: stroke as u32, end: stroke as u32 };
         let calls = Some(Arc::new(Call { calling_block: place, outer_calls: event.calls.clone() }));
         self.extractor.event(&Event { calls: &calls, ..*event });
@@ -239,13 +206,18 @@ mod tests {
 
     /// Returns the assumptions of a program as `#510=2.5@3: 1 2`, and its number of holes.
     fn assumptions_with(blocks: &str, variables: &[(u32, f64)]) -> (Vec<String>, usize) {
-        let text = format!("O1\nG90 G54 G17 G21 S1000 M03\nG0 X0. Y0. Z50.\n{blocks}\nG80 Z50.\nM30\n");
-        let mut request = Request::new("O1.nc", text.into_bytes(), Machine::default());
+        let text = format!("O1\nG90 G54 G17 G21 G98 S1000 M03\nG0 X0. Y0. Z50.\n{blocks}\nG80 Z50.\nM30\n");
+        assumptions_on("", &text, variables)
+    }
+
+    /// Returns the assumptions of a whole program on a machine.
+    fn assumptions_on(machine: &str, text: &str, variables: &[(u32, f64)]) -> (Vec<String>, usize) {
+        let mut request = Request::new("O1.nc", text.as_bytes(), Machine::parse(machine).unwrap());
         request.variables = variables.to_vec();
         let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
-        assert!(simulation.run.stop_finding().is_none(), "{blocks}");
+        assert!(simulation.run.stop_finding().is_none(), "{text}");
         let holes = simulation.extracted.holes.len();
-        let found = simulation.dependences(&request, None);
+        let found = simulation.dependencies(&request);
         let all = found.assumptions(&simulation.run, |hole| Some((hole + 1).to_string()));
         let shown = all.into_iter().map(|(Assumption { what, value, place, decides }, _)| {
             let value = value.map_or_else(|| "vacant".to_owned(), |value| value.to_string());
@@ -303,6 +275,13 @@ mod tests {
         let hole = "G81 X10. Y10. Z-5. R2. F100.";
         assert_assumptions(&format!("IF[#510EQ1]THEN #3000=1(NO)\n{hole}"), 1, &[]);
         assert_assumptions(&format!("IF[#510NE1]GOTO5\n#3000=1(NO)\nN5 {hole}"), 1, &[]);
+        // A jump to the reasons of an alarm.
+        let guard = format!(
+            "IF[#510EQ1]GOTO900\n{hole}\nG80 Z50.\nM30\nN900 IF[#510EQ2]THEN #3000=2(TWO)\n#3000=1(ONE)"
+        );
+        assert_assumptions(&guard, 1, &[]);
+        let not_all = guard.replace("#3000=1(ONE)", "#1=1");
+        assert_assumptions(&not_all, 1, &["#510=vacant@4: 1"]);
         // The end of the program is no alarm.
         assert_assumptions(&format!("IF[#510NE1]GOTO5\nM30\nN5 {hole}"), 1, &["#510=vacant@4: 1"]);
     }
@@ -327,6 +306,9 @@ mod tests {
         assert_assumptions("G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &["H1=0@4: 1"]);
         assert_assumptions("G10 L10 P1 R0\nG43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM21\nX20.", 2, &["M21=vacant@5: 2"]);
+        // Whether the spindle goes on behind a stop.
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM00\nX20.", 2, &["M00=vacant@5: 2"]);
+        assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM01\nM03\nX20.", 2, &[]);
         assert_assumptions(
             "G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.",
             2,
@@ -335,25 +317,94 @@ mod tests {
     }
 
     #[test]
-    fn a_second_run_is_needed_only_for_texts_that_can_read_outside_values() {
-        let stated = StatedValues { lengths: [1].into(), ..StatedValues::default() };
-        for (text, with_holes, without) in [
-            ("G0 X1. Y2.\nM30\n", false, false),
-            ("#1=2\nX#[1+1] Y[COS[#2]] (#510 / H2)\n", true, true),
-            ("#1=2\nX#2 Y[COS[#2]] (#510 / H2)\n#5041\n", false, false),
-            ("G43 H1\nWHILE[#1LT2]DO1\nIF[[#1GT1]AND[#2LT3]]GOTO3\n#2=ROUND[#3]\nEND1\n", false, false),
-            ("G43 H2\n", true, false),
-            ("G41d3\n", true, false),
-            ("G43 H#1\n", true, false),
-            ("X#510\n", true, true),
-            ("#4=ATAN[#2]/[#3]\nX[#4/2]\n", false, false),
-            ("(A) /X1.\n", true, true),
-            ("X[#4/2] /2 Y1.\n", true, true),
-            ("#1=PRM[20]\n", true, true),
-        ] {
-            let found = [true, false].map(|has_holes| names_outside(text.as_bytes(), &stated, has_holes));
-            assert_eq!(found, [with_holes, without], "{text}");
+    fn positions_and_words_that_no_block_has_commanded_are_assumptions() {
+        let drill = |number: u32| format!("#100=#{number}\nG81 X10. Y#100 Z-5. R2. F100.\nX20. Y10.");
+        // A is axis 4. Machine coordinates rest on the work offset, which nothing states.
+        for (number, value) in [(5004, "0"), (5021, "0"), (4109, "0"), (4111, "0")] {
+            assert_assumptions(&drill(number), 2, &[&format!("#{number}={value}@4: 1")]);
         }
+        for number in [5001, 5042, 5083, 4003, 4006, 4014, 4119] {
+            assert_assumptions(&drill(number), 2, &[]);
+        }
+        assert_assumptions(&drill(4011).replace("#100 ", "[#100/10.] "), 2, &["G50=vacant@4: 1"]);
+        assert_assumptions(&format!("G28 Z0\n{}", drill(5023)), 2, &[]);
+        assert_assumptions(&format!("G28 Z0\n{}", drill(5003)), 2, &["#5003=0@5: 1"]);
+        let stated = "[offsets.G54]\nX = 5.0\n";
+        let text = format!("O1\nG90 G54 G17 G21 G98 S1000 M03\nG0 X0. Y0. Z50.\n{}\nM30\n", drill(5021));
+        assert_eq!(assumptions_on(stated, &text, &[]).0, [""; 0]);
+    }
+
+    #[test]
+    fn modes_of_power_on_are_assumptions_where_a_hole_depends_on_them() {
+        let drill = "G98 G81 X10. Y10. Z-5. R2. F100.\nX20.\nG80\nM30\n";
+        let found = |machine: &str, header: &str| {
+            let text = format!("O1\n{header}\nG0 X0. Y0. Z50. S1000 M03\n{drill}");
+            assumptions_on(machine, &text, &[]).0
+        };
+        let all = |codes: &[(&str, u32)]| -> Vec<String> {
+            codes.iter().map(|(code, line)| format!("{code}=vacant@{line}: 1 2")).collect()
+        };
+        assert_eq!(found("", ""), all(&[("G21", 3), ("G90", 3)]));
+        assert_eq!(found("", "G90 G17"), all(&[("G21", 3)]));
+        assert_eq!(found("", "G20 G90 G17"), [""; 0]);
+        // The end of G28 depends on no mode, and a G90 before the holes makes up for none before it.
+        assert_eq!(found("", "G28 Z0\nG17 G21 G90"), [""; 0]);
+        assert_eq!(found("", "G0 X5.\nG17 G21 G90"), [""; 0]);
+        // Cycles drill along Z in every plane; an arc needs one.
+        assert_eq!(found("", "G21 G90"), [""; 0]);
+        let arc =
+            "O1\nG21 G90\nG0 X10. Y10. Z2. S1000 M03\nG1 Z-3. F100.\nX12.\nG3 I-2.\nG1 X10.\nG0 Z50.\nM30\n";
+        assert_eq!(assumptions_on("", arc, &[]).0, ["G17=vacant@6: 1"]);
+        // A macro that leaves a mode as it was decides nothing by it.
+        let restored = format!(
+            "O1\nG21 G90 G17\nG0 X0. Y0. Z50. S1000 M03\n#5=#4010\n{}",
+            drill.replace("G80", "G80 G#5")
+        );
+        assert_eq!(assumptions_on("", &restored, &[]).0, [""; 0]);
+        // With work offsets another may be active; without any all are zero.
+        let offsets = "[offsets]\nG54 = { X = 1.0 }\nG55 = { X = 2.0 }\n";
+        assert_eq!(found(offsets, "G17 G21 G90"), all(&[("G54", 3)]));
+        assert_eq!(found(offsets, "G17 G21 G90 G55"), [""; 0]);
+        // G99 of the last job would keep the tool low between the holes.
+        let low = format!("O1\nG21 G90\nG0 X0. Y0. Z50. S1000 M03\n{}", drill.replace("G98 ", ""));
+        assert_eq!(assumptions_on("", &low, &[]).0, all(&[("G98", 4)]));
+    }
+
+    #[test]
+    fn offsets_of_the_machine_file_are_stated_and_those_of_set_are_not() {
+        let program = |words: &str| {
+            format!(
+                "O1\nG90 G17 G21 G98 S1000 M03\n{words}\nG0 X0. Y0. Z50.\nG81 X10. Y10. Z-5. R2. F100.\nG80 Z50.\nM30\n"
+            )
+        };
+        let head = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n";
+        let machine = format!(
+            "{head}[[tool]]\nnumber = 1\nlength = 80.0\nradius_offset = 3.0\n[offsets]\nG54 = {{ X = 1.0 }}\n\
+             \"G54.1 P3\" = {{ Y = 2.0 }}\n"
+        );
+        let found =
+            |words: &str, variables: &[(u32, f64)]| assumptions_on(&machine, &program(words), variables).0;
+        for words in ["G54", "G54.1 P3", "G54 G43 H1 Z50.", "#100=#13001\nG54 G0 X#100"] {
+            assert_eq!(found(words, &[]), [""; 0], "{words}");
+        }
+        assert_eq!(found("G54.1 P4", &[]), ["G54.1 P4=vacant@4: 1"]);
+        assert_eq!(found("G55", &[]), ["G55=vacant@4: 1"]);
+        // The file states no wear.
+        let wear = "#100=#10001\nG54 G43 H1 Z50.\nG81 X20. Y#100 Z-5. R2. F100.\nG80";
+        assert_eq!(found(wear, &[]), ["#10001=0@3: 1"]);
+        assert_eq!(found(&wear.replace("10001", "11001"), &[]), [""; 0]);
+        // A flag states neither what the program sets nor what the machine has.
+        for (words, variable, expected) in [
+            ("G54", 5221, "G54=vacant@4: 1"),
+            ("G54.1 P3", 14_042, "G54.1 P3=vacant@4: 1"),
+            ("G55", 5241, "G55=vacant@4: 1"),
+            ("G54", 5201, "EXT=vacant@4: 1"),
+            ("G54 G43 H1 Z50.", 11_001, "H1=7@3: 1"),
+        ] {
+            assert_eq!(found(words, &[(variable, 7.0)]), [expected], "{words}");
+        }
+        assert_eq!(found("G10 L2 P1 X3.\nG54", &[(5221, 7.0)]), [""; 0]);
+        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
     }
 
     #[test]

@@ -59,17 +59,19 @@ pub(super) fn unset_work_offsets<'r>(
 }
 
 fn offset_finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {
-    let name = match system {
-        WorkSystem::Standard(_) => format!("G{}", system.code() / 10),
+    let name = |system: WorkSystem| match system {
+        WorkSystem::Standard(_) => system.name(),
         WorkSystem::Additional(number) => additional_system_name(machine.dialect, usize::from(number)),
     };
-    let known: Vec<_> = machine.offsets.iter().map(|offset| format!("G{}", offset.code)).collect();
+    let known: Vec<_> = machine.offsets.iter().map(|offset| name(offset.system)).collect();
     let given = match known.as_slice() {
         [] => format!("no work offset; all count as zero here, and the {made} are computed as with G54"),
         known => format!("{} only; this one counts as zero here", known.join(", ")),
     };
-    let message =
-        format!("the program uses work offset {name}, which is unknown: the machine file gives {given}");
+    let message = format!(
+        "the program uses work offset {}, which is unknown: the machine file gives {given}",
+        name(system)
+    );
     Diagnostic::new(&WORK_OFFSET, message)
         .help("check that it is the offset set up on the machine; its values there are not checked")
 }

@@ -23,12 +23,13 @@
 #![warn(missing_docs)]
 mod assumptions;
 mod causes;
+mod outside_text;
 mod trace;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use assumptions::Dependences;
+pub use assumptions::HoleDependencies;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Note, Observer, Outcome, Progress};
@@ -183,19 +184,23 @@ fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionE
     Ok(control)
 }
 
-/// Returns the variables of a machine that is set up: work offsets (#5221…), and the tool lengths as geometry
-/// offsets H (#11001…, or #2001… on a Haas).
+/// Returns the variables of a machine that is set up: work offsets (#5221…, #14001…), and the tool lengths and cutter radii as
+/// geometry offsets H and D (#11001…, #13001…, or #2001…, #2401… on a Haas).
 fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
     let work = machine.offsets.iter().flat_map(|offset| {
-        let first = 5221 + 20 * (offset.code - 54);
+        let first = offset.system.first_variable();
         offset.values.iter().map(move |(axis, value)| (first + *axis as u32, *value))
     });
-    let lengths = machine.tools.iter().filter_map(move |tool| {
-        let known = (1..=settings.tool_offsets).contains(&(tool.number as usize));
-        let variable = settings.offset_variables.length(tool.number).filter(|_| known)?;
-        Some((variable, tool.length?))
+    let tools =
+        machine.tools.iter().filter(|tool| (1..=settings.tool_offsets).contains(&(tool.number as usize)));
+    let offsets = tools.flat_map(move |tool| {
+        let unit = if settings.offsets_are_diameters { 2.0 } else { 1.0 };
+        let variables = settings.offset_variables;
+        let length = variables.length(tool.number).zip(tool.length);
+        let radius = variables.radius(tool.number).zip(tool.radius_offset.map(|radius| radius * unit));
+        length.into_iter().chain(radius)
     });
-    work.chain(lengths)
+    work.chain(offsets)
 }
 
 /// A run with the flutes that it grinds.
@@ -286,6 +291,8 @@ pub struct Simulation {
     pub run: Run,
     /// The holes, and the findings of the run.
     pub extracted: HoleExtraction,
+    /// Known metal of the run.
+    metal: Metal,
 }
 
 /// Runs a program and extracts its holes. Where metal is known, as that of a reference or inside a surface, motion in it
@@ -313,16 +320,16 @@ pub fn simulate_observed<S: EventSink>(
     sink: &mut S,
     observer: &mut impl Observer,
 ) -> Result<Simulation, SessionError> {
-    let mut extractor = extractor(request, metal);
+    let metal = metal.into();
+    let mut extractor = extractor(request, metal.clone());
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.findings());
-    Ok(Simulation { run, extracted })
+    Ok(Simulation { run, extracted, metal })
 }
 
 /// Returns the extractor of a run's holes.
-fn extractor(request: &Request, metal: impl Into<Metal>) -> HoleExtractor<'_> {
-    let metal = metal.into();
+fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
     HoleExtractor::new(&request.machine)
         .with_metal(Metal { body: metal.body.or(request.part), ..metal })
         .with_straight_rapids(request.settings.rapids_are_straight)
@@ -342,24 +349,17 @@ impl Simulation {
         verdict
     }
 
-    /// Adds the assumptions to a verdict on these holes; each is an error if `is_denied`. `surface` is that of the run.
-    pub fn add_assumptions(
-        &self,
-        verdict: &mut Verdict,
-        request: &Request,
-        surface: Option<Surface>,
-        is_denied: bool,
-    ) {
-        let found = self.dependences(request, surface);
+    /// Adds the assumptions to a verdict on these holes; each is an error if `is_denied`.
+    pub fn add_assumptions(&self, verdict: &mut Verdict, request: &Request, is_denied: bool) {
+        let found = self.dependencies(request);
         let names = if found.hole_count() == 0 { BTreeMap::new() } else { verdict.hole_names() };
         let found = found.assumptions(&self.run, |hole| names.get(&hole).cloned());
         verdict.add_assumptions(found, is_denied, &|span| self.run.locate(span));
     }
 
-    /// Follows the values that the run read and nothing in its program set to the holes, in a second run. `surface` is that of
-    /// the first run.
-    pub fn dependences(&self, request: &Request, surface: Option<Surface>) -> Dependences {
-        assumptions::dependences(request, &self.run, surface, !self.extracted.holes.is_empty())
+    /// Follows the values that the run read and nothing in its program set to the holes, in a second run on the same metal.
+    pub fn dependencies(&self, request: &Request) -> HoleDependencies {
+        assumptions::dependencies(request, &self.run, &self.metal, !self.extracted.holes.is_empty())
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.
@@ -370,8 +370,8 @@ impl Simulation {
 
 impl Run {
     /// Follows the values that the run read and nothing in its program set to the holes that it makes, in a second run.
-    pub fn dependences(&self, request: &Request) -> Dependences {
-        assumptions::dependences(request, self, None, true)
+    pub fn dependencies(&self, request: &Request) -> HoleDependencies {
+        assumptions::dependencies(request, self, &Metal::default(), true)
     }
 
     /// Returns program and line of a block: `O8101`, 31.

@@ -52,7 +52,7 @@ fn assumptions_alone(page: &Page<'_>, side: &ReviewSide<'_>) -> Vec<String> {
         return Vec::new();
     }
     let simulation = &side.observed.revision.simulation;
-    let found = simulation.dependences(side.observed.request, None);
+    let found = simulation.dependencies(side.observed.request);
     let numbered = found.numbered(&simulation.run);
     numbered.iter().map(|(assumption, _)| assumption.sentence(found.hole_count())).collect()
 }

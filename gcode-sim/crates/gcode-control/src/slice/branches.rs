@@ -8,7 +8,7 @@ use crate::functions::integer;
 use crate::registers::Registers;
 use gcode_lang::program::m_codes::ends_or_stops;
 use gcode_lang::program::{
-    CallCode, OpIndex, OpKind, Operand, Program, ProgramId, Statement, WordOperand, Words,
+    AssignmentTarget, CallCode, OpIndex, OpKind, Operand, Program, ProgramId, Statement, WordOperand, Words,
 };
 
 /// Blocks between a jump and the place where both ways meet: longer stretches count as open to the end of the run.
@@ -118,6 +118,9 @@ impl Slice {
         let program = control.executor.flow.frame.program;
         let depth = control.executor.flow.callers.len();
         let Some(target) = target else { return self.leave(marks) };
+        if leads_to_alarm(control, program, target) {
+            return;
+        }
         let (first, end) = if here < target { (here, target) } else { (target, here + 1) };
         if MAX_STRETCH < end - first || !is_closed(control, program, first, end) {
             return self.leave(marks);
@@ -137,6 +140,39 @@ impl Slice {
             Some(open) => open.marks |= marks,
             None => self.branches.open.push(Branch { program, depth, first, end, marks }),
         }
+    }
+}
+
+/// Largest number of blocks before an alarm at the target of a jump.
+const MAX_REASONS: OpIndex = 100;
+
+/// Returns true if the blocks from `target` on raise an alarm before anything moves, as one of several `IF … THEN #3000=1`
+/// and a last `#3000=2`. The other way then decides nothing but the alarm.
+fn leads_to_alarm(control: &mut Control, program: ProgramId, target: OpIndex) -> bool {
+    for index in target..target + MAX_REASONS {
+        let Some((_, op)) = control.memory.get_mut(program).and_then(|program| program.lower_block(index))
+        else {
+            return false;
+        };
+        if op.skip().is_some() {
+            return false;
+        }
+        match op.kind() {
+            OpKind::Alarm(_) => return true,
+            OpKind::Statement(statement) if raises_alarm(statement) => return true,
+            OpKind::Statement(statement) if !jumps(statement) => {}
+            OpKind::Empty | OpKind::AssignDirect(_) => {}
+            OpKind::Statement(_) | OpKind::Words(_) | OpKind::If { .. } => return false,
+        }
+    }
+    false
+}
+
+fn raises_alarm(statement: &Statement) -> bool {
+    match statement {
+        Statement::Alarm(_) => true,
+        Statement::Assign { target: AssignmentTarget::Slot(slot), .. } => slot.number() == 3000,
+        _ => false,
     }
 }
 

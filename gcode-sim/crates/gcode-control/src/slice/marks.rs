@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 use std::ops::{BitOr, BitOrAssign};
 
 use gcode_lang::motion::MAX_AXES;
+use gcode_lang::program::modes::{GroupSet, ModalGroup};
 
 /// Set of outside values by their index. All values from the last index on share it, which adds dependences and loses none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,6 +22,11 @@ impl Marks {
     /// Returns true for the empty set.
     pub fn is_none(self) -> bool {
         self.0 == 0
+    }
+
+    /// Returns true if `other` has all values of this set, none of which shares the last index.
+    pub(super) fn is_within(self, other: Self) -> bool {
+        self.0 & !other.0 == 0 && !self.contains(LAST_INDEX)
     }
 
     /// Returns true if the set contains the value with this index.
@@ -147,8 +153,12 @@ pub(super) struct MachineMarks {
     /// Shifts of G52 and G92.
     pub(super) shifts: [Marks; MAX_AXES],
     groups: [Marks; GROUPS],
+    /// Groups whose state a block has commanded, or is an outside value that is recorded.
+    settled: GroupSet,
     /// F, S, T, H and D.
     codes: [Marks; 26],
+    /// Those of them that a block has commanded, as bits.
+    commanded: u32,
     /// Levels and pecks of the canned cycle.
     pub(super) cycle: Marks,
     /// Mirror, scaling, rotation and tilted plane.
@@ -171,25 +181,52 @@ pub(super) struct MachineMarks {
 }
 
 /// Groups that decide where a programmed point is: plane, distance, unit, scaling, work offset, rotation, polar, mirror.
-const COORDINATE_GROUPS: [u32; 8] = [2, 3, 6, 11, 14, 16, 17, 22];
+const COORDINATE_GROUPS: [ModalGroup; 8] = [
+    ModalGroup::Plane,
+    ModalGroup::Distance,
+    ModalGroup::Unit,
+    ModalGroup::Scaling,
+    ModalGroup::Work,
+    ModalGroup::Rotation,
+    ModalGroup::Polar,
+    ModalGroup::Mirror,
+];
 
 impl MachineMarks {
-    pub(super) fn group(&self, group: u32) -> Marks {
-        self.groups.get(group as usize).copied().unwrap_or_default()
+    pub(super) fn group(&self, group: ModalGroup) -> Marks {
+        self.groups[group.number() as usize]
     }
 
-    pub(super) fn set_group(&mut self, group: u32, marks: Marks) {
-        if let Some(old) = self.groups.get_mut(group as usize) {
-            *old = marks;
-        }
+    pub(super) fn add_to_group(&mut self, group: ModalGroup, marks: Marks) {
+        self.groups[group.number() as usize] |= marks;
+    }
+
+    /// Sets the marks of the state that a block commands, or that is an outside value.
+    pub(super) fn settle_group(&mut self, group: ModalGroup, marks: Marks) {
+        self.settled.insert(group);
+        self.groups[group.number() as usize] = marks;
+    }
+
+    pub(super) fn is_settled(&self, groups: GroupSet) -> bool {
+        groups.without(self.settled).is_empty()
     }
 
     pub(super) fn code(&self, letter: u8) -> Marks {
         self.codes[usize::from(letter - b'A')]
     }
 
+    /// Sets the marks of the word that a block commands.
     pub(super) fn set_code(&mut self, letter: u8, marks: Marks) {
+        self.commanded |= 1 << (letter - b'A');
         self.codes[usize::from(letter - b'A')] = marks;
+    }
+
+    pub(super) fn add_to_code(&mut self, letter: u8, marks: Marks) {
+        self.codes[usize::from(letter - b'A')] |= marks;
+    }
+
+    pub(super) fn is_commanded(&self, letter: u8) -> bool {
+        self.commanded >> (letter - b'A') & 1 == 1
     }
 
     /// Returns the marks of the coordinate system of an axis.
@@ -203,10 +240,10 @@ impl MachineMarks {
         groups | self.transform | self.work_table
     }
 
-    /// Returns the marks of a motion from or to the current position.
+    /// Returns the marks of a motion from or to the current position, without those of the feed.
     pub(super) fn motion(&self) -> Marks {
         let modes: Marks = self.axes.iter().chain(&self.groups).copied().collect();
-        let codes: Marks = b"FST".iter().map(|letter| self.code(*letter)).collect();
+        let codes: Marks = b"ST".iter().map(|letter| self.code(*letter)).collect();
         modes
             | codes
             | self.cycle

@@ -7,6 +7,7 @@ mod branches;
 mod marks;
 mod moves;
 mod possible;
+mod power_on;
 mod reads;
 mod words;
 
@@ -15,13 +16,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 pub use self::marks::Marks;
+pub use self::power_on::KEPT_GROUPS;
 
 use self::branches::Branches;
 use self::marks::{LOCALS, MachineMarks, VariableMarks};
+use self::reads::OffsetEntry;
 use super::control::{Control, Observer};
+use super::data::system_index;
 use super::flow::ProgramFlow;
 use super::registers::Registers;
+use gcode_lang::control::OffsetVariables;
 use gcode_lang::motion::Backtrace;
+use gcode_lang::program::g_codes::name;
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Assign, AssignmentTarget, Op, OpKind, Statement};
 
@@ -36,6 +42,8 @@ pub enum OutsideValue {
     BlockSkip(u8),
     /// Work offset that nothing has set.
     WorkOffset(WorkSystem),
+    /// External work offset, which shifts all others.
+    ExternalOffset,
     /// Tool length, by its H.
     ToolLength(u32),
     /// Cutter radius, by its D.
@@ -44,6 +52,8 @@ pub enum OutsideValue {
     SkipSignal,
     /// M code of the machine builder.
     Auxiliary(u32),
+    /// Modal G code × 10 that holds because no block has commanded its group.
+    PowerOnMode(u32),
 }
 
 impl OutsideValue {
@@ -55,12 +65,13 @@ impl OutsideValue {
             Self::Parameter(None) => "PRM".to_owned(),
             Self::BlockSkip(1) => "/".to_owned(),
             Self::BlockSkip(switch) => format!("/{switch}"),
-            Self::WorkOffset(WorkSystem::Additional(number)) => format!("G54.1 P{number}"),
-            Self::WorkOffset(system) => format!("G{}", system.code() / 10),
+            Self::WorkOffset(system) => system.name(),
+            Self::ExternalOffset => "EXT".to_owned(),
             Self::ToolLength(number) => format!("H{number}"),
             Self::CutterRadius(number) => format!("D{number}"),
             Self::SkipSignal => "G31".to_owned(),
             Self::Auxiliary(code) => format!("M{code:02}"),
+            Self::PowerOnMode(code) => name(code),
         }
     }
 }
@@ -83,6 +94,10 @@ pub struct OutsideRead {
 pub struct StatedValues {
     /// H numbers of tools with a length.
     pub lengths: BTreeSet<u32>,
+    /// D numbers of tools with a cutter radius.
+    pub radii: BTreeSet<u32>,
+    /// Work offsets of the machine.
+    pub work_systems: BTreeSet<WorkSystem>,
     /// M codes with a known effect, such as those of the clamp.
     pub codes: BTreeSet<u32>,
     /// A part decides where G31 stops.
@@ -105,10 +120,16 @@ pub struct Slice {
     block_marks: Marks,
     /// The current block drills by a canned cycle.
     is_in_cycle: bool,
+    /// The current block moves in rapid.
+    is_rapid: bool,
     /// Tool length offsets that the program has set, by their H.
     set_lengths: BTreeSet<u32>,
     /// Cutter radii that the program has set, by their D.
     set_radii: BTreeSet<u32>,
+    /// Work coordinate systems that the machine file states or the program has set, by their index.
+    set_systems: BTreeSet<usize>,
+    /// Modal codes of power-on that the run has read: each is one of its group.
+    power_on_modes: Marks,
     /// Values that decide whether the run cuts elsewhere.
     further: Marks,
     motion: Rc<Cell<Marks>>,
@@ -119,9 +140,23 @@ pub struct Slice {
 }
 
 impl Slice {
-    /// Returns the observer of a run.
-    pub fn new(stated: StatedValues) -> Self {
-        Self { stated, ..Self::default() }
+    /// Returns the observer of a run. `variables` are set before its start; an offset that they set is not stated.
+    pub fn new(
+        mut stated: StatedValues,
+        offset_variables: OffsetVariables,
+        variables: &[(u32, f64)],
+    ) -> Self {
+        let mut set_systems: BTreeSet<usize> =
+            stated.work_systems.iter().copied().map(system_index).collect();
+        for (number, _) in variables {
+            match reads::offset_of(*number, offset_variables) {
+                Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
+                Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
+                Some(OffsetEntry::Work(system)) => _ = set_systems.remove(&system),
+                None => {}
+            }
+        }
+        Self { stated, set_systems, ..Self::default() }
     }
 
     /// Returns the marks of the current block's motion, shared with the sink of the run.
@@ -272,7 +307,7 @@ impl Observer for Slice {
         }
         self.branches.enter(&control.executor.flow);
         self.block_marks = Marks::NONE;
-        self.is_in_cycle = false;
+        (self.is_in_cycle, self.is_rapid) = (false, false);
         let before = self.machine_motion;
         {
             let Control { memory, executor, .. } = &*control;
@@ -286,7 +321,8 @@ impl Observer for Slice {
         // A cycle drills where its block leads, wherever it comes from.
         let before = if self.is_in_cycle { Marks::NONE } else { before };
         self.machine_motion = self.machine.motion();
-        let marks = before | self.machine_motion | self.block_marks | self.branches.marks();
+        let feed = if self.is_rapid { Marks::NONE } else { self.machine.code(b'F') };
+        let marks = before | self.machine_motion | feed | self.block_marks | self.branches.marks();
         self.waiting =
             if control.executor.registers.lookahead.is_idle() { marks } else { marks | self.waiting };
         self.motion.set(self.waiting);

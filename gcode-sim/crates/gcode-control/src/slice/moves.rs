@@ -6,7 +6,7 @@ use super::{Block, Marks, OutsideValue, Slice};
 use gcode_lang::control::Settings;
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes::OneShot;
-use gcode_lang::program::modes::{Distance, Motion, Plane, Polar, WorkSystem};
+use gcode_lang::program::modes::{Distance, ModalGroup, Motion, Plane, Polar, WorkSystem};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 
 /// Returns true if a canned cycle can drill along the axis of this letter.
@@ -54,7 +54,8 @@ impl Slice {
             Some(OneShot::MachineCoordinateSystem) => {
                 for (axis, word) in named() {
                     let before = if word.is_fixed() { Marks::NONE } else { self.machine.axes[axis] };
-                    self.machine.axes[axis] = before | word.marks | control | self.machine.group(3);
+                    self.machine.axes[axis] =
+                        before | word.marks | control | self.machine.group(ModalGroup::Distance);
                 }
                 return;
             }
@@ -114,16 +115,20 @@ impl Slice {
             && modal.distance == Distance::Absolute
             && modal.polar == Polar::Off
             && modal.work == WorkSystem::default()
+            && !self.is_system_open(data, modal.work)
+            && !data.set_systems.contains(&0)
             && state.transform.is_identity()
             && !state.is_in_parameter_input
             && data.settings.code_calls.is_empty();
         if !is_plain_mode
+            || !self.are_modes_settled()
             || words.call().is_some()
             || words.form_if_skipped().is_some()
             || !words.list.iter().all(is_plain)
         {
             return false;
         }
+        self.is_rapid = modal.motion == Motion::Rapid;
         self.machine.transform = Marks::NONE;
         let marks = self.branches.marks() | self.machine.coordinate_system();
         for word in &words.list {
@@ -147,8 +152,9 @@ impl Slice {
         let control = self.branches.marks();
         let settings = &data.settings;
         let drills = |axis: AxisIndex| is_drilling(settings, modes.plane, settings.axes.letter(axis) as u8);
-        let is_unset =
-            modes.work != WorkSystem::default() && !data.set_systems.contains(&system_index(modes.work));
+        let is_unset = self.is_system_open(data, modes.work);
+        // Only --set can have set the external offset.
+        let has_shift = data.set_systems.contains(&0) && !self.set_systems.contains(&0);
         let is_cut = modes.is_in_cycle
             || modes.one_shot == Some(OneShot::Skip)
             || modes.one_shot.is_none() && modes.motion != Motion::Rapid;
@@ -160,6 +166,9 @@ impl Slice {
         for (axis, word) in named {
             if is_unset && work.is_none() {
                 work = self.outside(OutsideValue::WorkOffset(modes.work), None, block.flow, block.op);
+            }
+            if has_shift {
+                work |= self.outside(OutsideValue::ExternalOffset, None, block.flow, block.op);
             }
             let mut marks = word.marks | control | work | self.machine.coordinates(axis);
             if word.letter == b'Z' || drills(axis) {
@@ -209,7 +218,15 @@ impl Slice {
         let value = |letter: u8| list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
         let number = value(b'P').map(|number| number as u32);
         match (value(b'L').map(|l| l as u32), number) {
-            (Some(2 | 20), _) => self.machine.work_table |= marks,
+            (Some(l @ (2 | 20)), number) => {
+                self.machine.work_table |= marks;
+                let system = match (l, number) {
+                    (2, Some(number)) => number as usize,
+                    (_, Some(number)) => system_index(WorkSystem::Additional(number as u16)),
+                    (_, None) => system_index(block.registers.state.modal.work),
+                };
+                self.set_systems.insert(system);
+            }
             (Some(l @ (1 | 10..=13)), Some(number)) => {
                 self.machine.tool_table |= marks;
                 let set = if matches!(l, 12 | 13) { &mut self.set_radii } else { &mut self.set_lengths };

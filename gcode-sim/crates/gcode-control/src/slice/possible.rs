@@ -2,13 +2,10 @@
 use super::moves::is_drilling;
 use super::{Marks, Slice};
 use crate::registers::Registers;
-use gcode_lang::program::g_codes::GCodeRow;
+use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::modes::Plane;
+use gcode_lang::program::modes::{ModalGroup, Motion, Plane};
 use gcode_lang::program::{AssignmentTarget, OpKind, Slot, Statement, WordOperand, Words};
-
-/// Modal group of tool length compensation.
-const LENGTH_GROUP: u32 = 8;
 
 impl Slice {
     /// Adds the marks of a condition to everything that an assignment under it can write.
@@ -59,10 +56,22 @@ impl Slice {
             self.further |= marks;
             return;
         }
+        // A rapid after a rapid cuts nothing, whether the run executes it or not.
+        let modal = &registers.state.modal;
+        let is_rapid = modal.motion == Motion::Rapid
+            && modal.cycle.is_none()
+            && words.list.iter().all(|word| match &word.value {
+                WordOperand::G(_, found) => found.row_for(settings.codes).is_some_and(|row| {
+                    matches!(row.effect, Effect::Motion(Motion::Rapid) | Effect::Distance(_))
+                }),
+                _ => word.letter != b'G',
+            });
         for word in &words.list {
             if let Some(axis) = settings.axes.find(word.letter) {
                 self.machine.axes[axis] |= marks;
-                self.further |= marks;
+                if !is_rapid {
+                    self.further |= marks;
+                }
                 let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
                 if planes.into_iter().any(|plane| is_drilling(settings, plane, word.letter)) {
                     self.machine.cycle |= marks;
@@ -71,12 +80,11 @@ impl Slice {
             }
             match (word.letter, &word.value) {
                 (b'G', WordOperand::G(_, found)) => {
-                    match found.row_for(settings.codes).and_then(GCodeRow::group) {
+                    match found.row_for(settings.codes).and_then(|row| row.effect.group()) {
                         Some(group) => {
-                            let before = self.machine.group(group);
-                            self.machine.set_group(group, before | marks);
+                            self.machine.add_to_group(group, marks);
                             self.machine.cycle |= marks;
-                            if group == LENGTH_GROUP {
+                            if group == ModalGroup::Length {
                                 self.machine.length |= marks;
                             }
                         }
@@ -92,8 +100,7 @@ impl Slice {
                     self.machine.rest |= marks;
                 }
                 (letter @ (b'F' | b'S' | b'T' | b'H' | b'D'), _) => {
-                    let before = self.machine.code(letter);
-                    self.machine.set_code(letter, before | marks);
+                    self.machine.add_to_code(letter, marks);
                     self.machine.length |= marks;
                     self.machine.radius |= marks;
                 }

@@ -1,29 +1,31 @@
 //! Marks of the values that a block reads: variables, system variables, parameters.
-use super::super::data::ControlData;
+use std::collections::BTreeSet;
+
+use super::super::data::{ControlData, system_index};
 use super::super::evaluation::RoundingTarget;
 use super::super::functions::variable_number;
 use super::super::variables::VariableClass;
 use super::{Block, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::control::OffsetVariables;
-use gcode_lang::motion::MAX_AXES;
+use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
 
 /// Number of axes in each range of positions, #5001 to #5020 and so on.
-const POSITIONS: u32 = 20;
+pub(super) const POSITIONS: u32 = 20;
 
 /// Place of the first additional work coordinate system behind EXT and G54 to G59.
 const FIRST_ADDITIONAL: usize = 7;
 
 /// Entry of an offset table.
-enum OffsetEntry {
+pub(super) enum OffsetEntry {
     Length(u32),
     Radius(u32),
     Work(usize),
 }
 
 /// Returns the entry that a system variable addresses.
-fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
+pub(super) fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
     let is_haas = offsets == OffsetVariables::Haas;
     let work =
         |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
@@ -39,6 +41,14 @@ fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
         14_001..=20_000 => work(14_001, FIRST_ADDITIONAL),
         _ => return None,
     })
+}
+
+/// Returns true if a system variable is the wear of a tool, which no machine file states.
+fn is_wear(number: u32, offsets: OffsetVariables) -> bool {
+    match offsets {
+        OffsetVariables::Fanuc => matches!(number, 2001..=2200 | 10_001..=10_999 | 12_001..=12_999),
+        OffsetVariables::Haas => matches!(number, 2201..=2400 | 2601..=2800),
+    }
 }
 
 impl Block<'_> {
@@ -141,7 +151,7 @@ impl Slice {
         }
     }
 
-    fn outside_variable(&mut self, block: &Block<'_>, number: u32) -> Marks {
+    pub(super) fn outside_variable(&mut self, block: &Block<'_>, number: u32) -> Marks {
         let value = block.registers.without_side_effects(|registers| registers.read_variable(number).ok());
         let value = value.and_then(|value| value.as_number());
         self.outside(OutsideValue::Variable(number), value, block.flow, block.op)
@@ -151,11 +161,8 @@ impl Slice {
     fn system_marks(&mut self, block: &Block<'_>, number: u32) -> Marks {
         match number {
             3000 | 3006 | 3100..=3102 => Marks::NONE,
-            4001..=4130 | 4201..=4330 => self.modal_marks(number % 200),
-            5001..=5060 | 5081..=5100 => self.position_marks(((number - 1) % POSITIONS) as usize),
-            5061..=5080 => {
-                self.machine.skip_position | self.position_marks(((number - 1) % POSITIONS) as usize)
-            }
+            4001..=4130 | 4201..=4330 => self.modal_marks(block, number),
+            5001..=5100 => self.position_marks(block, number),
             // A clock goes on whatever the program sets.
             3001 | 3002 | 3011 | 3012 => self.outside_variable(block, number),
             _ => match self.variables.system(number) {
@@ -171,12 +178,31 @@ impl Slice {
         self.stated.lengths.contains(&number) || self.set_lengths.contains(&number)
     }
 
+    /// Returns true if the machine file states the cutter radius D or a block has set it.
+    pub(super) fn is_radius_set(&self, number: u32) -> bool {
+        self.stated.radii.contains(&number) || self.set_radii.contains(&number)
+    }
+
+    /// Returns true if a move in a work coordinate system rests on an offset that is an outside value. G54 is the part's zero
+    /// unless something sets it.
+    pub(super) fn is_system_open(&self, data: &ControlData, work: WorkSystem) -> bool {
+        let index = system_index(work);
+        let has_offset = work != WorkSystem::default() || data.set_systems.contains(&index);
+        has_offset && !self.set_systems.contains(&index)
+    }
+
     /// Returns true if the machine file states an offset or a block has set it, by its variable.
     fn is_offset_set(&self, data: &ControlData, number: u32) -> bool {
-        match offset_of(number, data.settings.offset_variables) {
-            Some(OffsetEntry::Length(tool)) => self.is_length_set(tool),
-            Some(OffsetEntry::Radius(tool)) => self.set_radii.contains(&tool),
-            Some(OffsetEntry::Work(system)) => data.set_systems.contains(&system),
+        let offsets = data.settings.offset_variables;
+        let is_stated = |tools: &BTreeSet<u32>, tool: u32| tools.contains(&tool) && !is_wear(number, offsets);
+        match offset_of(number, offsets) {
+            Some(OffsetEntry::Length(tool)) => {
+                self.set_lengths.contains(&tool) || is_stated(&self.stated.lengths, tool)
+            }
+            Some(OffsetEntry::Radius(tool)) => {
+                self.set_radii.contains(&tool) || is_stated(&self.stated.radii, tool)
+            }
+            Some(OffsetEntry::Work(system)) => self.set_systems.contains(&system),
             None => false,
         }
     }
@@ -191,26 +217,6 @@ impl Slice {
         }
     }
 
-    /// Returns the marks of #4000 + `item`.
-    fn modal_marks(&self, item: u32) -> Marks {
-        let machine = &self.machine;
-        match item {
-            107 => machine.code(b'D'),
-            109 => machine.code(b'F'),
-            111 => machine.code(b'H'),
-            119 => machine.code(b'S'),
-            120 => machine.code(b'T'),
-            130 => machine.group(14),
-            group => machine.group(group) | machine.rest,
-        }
-    }
-
-    fn position_marks(&self, axis: usize) -> Marks {
-        let machine = &self.machine;
-        let Some(position) = machine.axes.get(axis).filter(|_| axis < MAX_AXES) else { return Marks::NONE };
-        *position | machine.coordinates(axis) | machine.length
-    }
-
     /// Writes a variable.
     pub(super) fn write(&mut self, registers: &Registers, number: u32, marks: Marks) {
         match registers.variables.classify(number) {
@@ -222,7 +228,8 @@ impl Slice {
                 match offset_of(number, registers.data.settings.offset_variables) {
                     Some(OffsetEntry::Length(tool)) => _ = self.set_lengths.insert(tool),
                     Some(OffsetEntry::Radius(tool)) => _ = self.set_radii.insert(tool),
-                    Some(OffsetEntry::Work(_)) | None => {}
+                    Some(OffsetEntry::Work(system)) => _ = self.set_systems.insert(system),
+                    None => {}
                 }
             }
         }

@@ -4,7 +4,9 @@ use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::modes::{CutterSide, Distance, Length, Motion, Plane, WorkSystem};
+use gcode_lang::program::modes::{
+    CutterSide, Distance, Length, ModalGroup, Motion, Plane, Polar, WorkSystem,
+};
 use gcode_lang::program::{ArgumentLocals, CallCode, CallOp, CallTarget, LoweredWord, WordOperand, Words};
 
 /// One word with the marks of its value.
@@ -29,7 +31,9 @@ pub(super) struct BlockModes {
     pub(super) plane: Plane,
     pub(super) distance: Distance,
     length: Length,
-    cutter: CutterSide,
+    pub(super) cutter: CutterSide,
+    /// G16 or G68 is in force or begins.
+    pub(super) uses_plane: bool,
     pub(super) work: WorkSystem,
     pub(super) is_in_cycle: bool,
     pub(super) begins_cycle: bool,
@@ -61,6 +65,9 @@ impl Slice {
         }
         let modes = self.follow_g_codes(block, words, &list);
         self.is_in_cycle = modes.is_in_cycle;
+        self.is_rapid =
+            !modes.is_in_cycle && modes.motion == Motion::Rapid && modes.one_shot != Some(OneShot::Skip);
+        self.follow_power_on_modes(block, &list, &modes);
         self.follow_codes(&list, guard);
         self.follow_m_codes(block, words, &list);
         self.follow_offsets(block, &list, &modes);
@@ -100,6 +107,7 @@ impl Slice {
             distance: state.modal.distance,
             length: state.modal.length,
             cutter: state.modal.cutter,
+            uses_plane: state.modal.polar == Polar::On || state.transform.rotation.is_some(),
             work: state.modal.work,
             is_in_cycle: state.modal.cycle.is_some(),
             begins_cycle: false,
@@ -107,15 +115,20 @@ impl Slice {
         };
         for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'G') {
             let Some(row) = row_of(block, words, word, codes) else { continue };
-            if !marked.marks.is_none() {
+            // G#5 with a code that #4003 had before is one of the same group.
+            let is_restored = matches!(word.value, WordOperand::Variable { .. })
+                && marked.marks.is_within(self.power_on_modes)
+                && !matches!(row.effect, Effect::Motion(_) | Effect::Cycle(_));
+            if !marked.marks.is_none() && !is_restored {
                 // Another value is another code.
                 self.machine.add_to_all(marked.marks);
                 self.machine.rest |= marked.marks;
                 self.further |= marked.marks;
             }
-            if let Some(group) = row.group() {
-                self.machine.set_group(group, control | marked.marks);
+            if let Some(group) = row.effect.group() {
+                self.machine.settle_group(group, control | marked.marks);
             }
+            modes.uses_plane |= matches!(row.effect, Effect::Rotation(_) | Effect::Polar(_));
             match row.effect {
                 Effect::Motion(motion) => {
                     (modes.is_in_cycle, modes.motion) = (false, motion);
@@ -134,7 +147,10 @@ impl Slice {
                 Effect::NumberedWork(number) => modes.work = WorkSystem::Additional(number),
                 Effect::AdditionalWork => {
                     let place = list.iter().find(|word| word.letter == b'P');
-                    self.machine.set_group(14, control | place.map_or(Marks::NONE, |word| word.marks));
+                    self.machine.settle_group(
+                        ModalGroup::Work,
+                        control | place.map_or(Marks::NONE, |word| word.marks),
+                    );
                     if let Some(number) = place.and_then(|word| word.value) {
                         modes.work = WorkSystem::Additional(number as u16);
                     }
@@ -178,6 +194,15 @@ impl Slice {
                 ) => {
                     self.machine.spindle = control | marked.marks;
                 }
+                // The machine builder decides whether the spindle goes on behind a stop.
+                Some(effect @ (MCodeEffect::Stop | MCodeEffect::OptionalStop)) => {
+                    let stops = effect == MCodeEffect::Stop || settings.stops_at_m01;
+                    if stops && !settings.undocumented.stop_stops_spindle {
+                        let source = OutsideValue::Auxiliary(code);
+                        let marks = self.outside(source, None, block.flow, block.op);
+                        self.machine.spindle |= marks;
+                    }
+                }
                 Some(MCodeEffect::RigidTapping) => self.machine.spindle |= control | marked.marks,
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
                 None if settings.code_calls.find_call(b'M', 10 * code).is_none()
@@ -201,7 +226,7 @@ impl Slice {
         };
         let h = number_of(b'H', registers.state.modal_words.h);
         match modes.length {
-            Length::Off => self.machine.length = control | self.machine.group(8),
+            Length::Off => self.machine.length = control | self.machine.group(ModalGroup::Length),
             _ if registers.state.modal.length != modes.length
                 || list.iter().any(|word| word.letter == b'H') =>
             {
@@ -221,7 +246,7 @@ impl Slice {
             CutterSide::Off => self.machine.radius = control,
             _ if begins => {
                 let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
-                if d != 0 && !self.set_radii.contains(&d) {
+                if d != 0 && !self.is_radius_set(d) {
                     let value = registers.data.offset_radius(d);
                     marks |= self.outside(OutsideValue::CutterRadius(d), value, block.flow, block.op);
                 }

@@ -432,6 +432,6 @@ impl HoleExtraction {
     /// Returns the holes as a list; `locate` returns the program and the line of a block.
     pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
         let holes = self.holes.iter().map(|hole| hole.hole(&locate)).collect();
-        HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None }
+        HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None, stopped: None }
     }
 }

@@ -36,6 +36,7 @@ pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex, Position};
+use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::units::Deg;
 use gcode_part::{Hand, Stock};
 
@@ -95,6 +96,8 @@ pub struct Tool {
     pub holder_diameter: Option<f64>,
     /// Length of the holder below the gauge line, mm.
     pub holder_length: Option<f64>,
+    /// Cutter radius offset D of the tool's number, mm; `None` for that of the control.
+    pub radius_offset: Option<f64>,
     /// Kind; `None` if unknown.
     pub kind: Option<ToolKind>,
     /// Full angle of the point, 180° of a flat end; `None` if unknown.
@@ -106,8 +109,8 @@ pub struct Tool {
 /// A work offset at the start of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorkOffset {
-    /// 54 to 59.
-    pub code: u32,
+    /// The work coordinate system.
+    pub system: WorkSystem,
     /// Values of the axes named, mm or degrees; the others are 0.
     pub values: Vec<(AxisIndex, f64)>,
 }

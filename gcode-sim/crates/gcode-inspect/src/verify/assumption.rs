@@ -16,6 +16,6 @@ pub fn denied_assumptions(assumptions: &[(Assumption, Backtrace)], holes: usize)
 }
 
 /// Returns `2 assumptions are denied`.
-pub(super) fn denied_words(count: usize) -> String {
+pub fn denied_words(count: usize) -> String {
     if count == 1 { "1 assumption is denied".to_owned() } else { format!("{count} assumptions are denied") }
 }

@@ -18,7 +18,7 @@ mod rows;
 mod tests;
 mod verdict;
 
-pub use assumption::denied_assumptions;
+pub use assumption::{denied_assumptions, denied_words};
 pub use conclusion::{Answer, Conclusion, Ending, stop_sentence};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
@@ -121,12 +121,12 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    let unchecked = not_checked::first_line(&inspection);
-    if !unchecked.is_empty() {
-        verdict.summary.push_str("; not checked: ");
-        verdict.summary.push_str(&unchecked.join(", "));
-    }
     verdict.not_checked = not_checked::lines(&inspection, locate);
+    let gaps = not_checked::gaps(&verdict.not_checked);
+    if !gaps.is_empty() {
+        verdict.summary.push_str("; not checked: ");
+        verdict.summary.push_str(&gaps.join(", "));
+    }
     verdict
 }
 

@@ -11,47 +11,38 @@ use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
 use gcode_part::{Reference, ToolProcess};
 
-/// Motion that no check covers if neither stock nor surface is known, for the first line of a verdict.
+/// Motion that no check covers if neither stock nor surface is known.
 const MOTION: &str = "motion beside the holes (no stock)";
 
-/// Motion whose search was given up, for the first line of a verdict.
+/// Motion whose search was given up.
 const UNSEARCHED: &str = "rapids whose axes may reach too many positions";
 
-/// Motion near feeds of unknown width, for the first line of a verdict.
+/// Metal near feeds of unknown width.
 const UNSIZED: &str = "what mills of unknown diameter remove";
 
-/// Motion near feeds beyond the limit, for the first line of a verdict.
+/// Metal of feeds beyond the limit.
 const CUT_SHORT: &str = "what the feeds after the first million remove";
 
-/// Returns what no check covers and what decides holes or the safety of the motion, for the first line of a verdict.
-pub(super) fn first_line(inspection: &HoleInspection<'_>) -> Vec<&'static str> {
-    let HoleInspection { extraction, machine, features, .. } = inspection;
-    let is_known = extraction.is_metal_known;
-    let has_gap = |is_kind: fn(&ShapeGap) -> bool| features.iter().any(|hole| hole.gaps.iter().any(is_kind));
-    let is_tool_unknown =
-        !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none());
-    let gaps = [
-        (!is_known, MOTION),
-        (is_known && extraction.unsearched_rapids.is_some(), UNSEARCHED),
-        (is_known && !extraction.unsized_mills.is_empty(), UNSIZED),
-        (is_known && extraction.is_removal_cut_short, CUT_SHORT),
-        (is_tool_unknown, "the tool in the spindle at the start"),
-        (
-            has_gap(|gap| matches!(gap, ShapeGap::Undrilled(_))),
-            "holes that the program finishes and does not drill",
-        ),
-        (
-            has_gap(|gap| matches!(gap, ShapeGap::FullThrough(_))),
-            "the full diameter on the far side of through holes",
-        ),
-    ];
-    gaps.into_iter().filter(|(is_open, _)| *is_open).map(|(_, name)| name).collect()
+/// End of a sentence on what a reference could specify: it is no gap in a verdict on that reference.
+const UNSPECIFIED: &str = "not specified in the reference";
+
+/// End of a sentence on axes that most machines lack.
+const UNCOMMANDED: &str = "no block commands it, and it counts as 0";
+
+/// Returns what these sentences name, for the first line of a verdict: all before the first colon.
+pub(super) fn gaps(lines: &[String]) -> Vec<&str> {
+    let is_gap = |line: &&String| ![UNSPECIFIED, UNCOMMANDED].iter().any(|end| line.ends_with(end));
+    lines.iter().filter(is_gap).map(|line| line.split(": ").next().unwrap_or(line)).collect()
 }
 
-/// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is.
+/// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is. What is not checked stands
+/// before a colon, the reason behind it.
 pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
     let HoleInspection { comparison, extraction, reference, machine, .. } = inspection;
     let mut all = diameters(comparison, machine);
+    if !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none()) {
+        all.push("the tool in the spindle at the start: it cuts before the first tool change".to_owned());
+    }
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
     all.extend(holders(extraction, machine));
@@ -64,10 +55,7 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
         all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());
     }
     if extraction.assumed_axes != 0 && !extraction.holes.is_empty() {
-        all.push(format!(
-            "{}, where the last job left it: no block commands it, and it counts as 0",
-            machine.axes.names(extraction.assumed_axes)
-        ));
+        all.push(format!("the position of {}: {UNCOMMANDED}", machine.axes.names(extraction.assumed_axes)));
     }
     if !extraction.is_metal_known {
         all.push(format!(
@@ -114,18 +102,16 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
     }
     let sentence = |(tool, ids): (Option<u32>, Vec<&str>)| {
         let holes = match ids[..] {
-            [one] => format!("hole {one},"),
-            _ => format!("{} holes (first: {}),", ids.len(), ids[0]),
+            [one] => format!("hole {one}"),
+            _ => format!("{} holes (first {})", ids.len(), ids[0]),
         };
         match tool {
             None if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
-            None => format!("the diameter of {holes} made before the first tool change"),
+            None => format!("the diameter of {holes}: made before the first tool change"),
             Some(tool) if machine.find_tool(tool).is_none() => {
-                format!("the diameter of {holes} made by T{tool}, which is not in the machine file")
+                format!("the diameter of {holes}: T{tool} is not in the machine file")
             }
-            Some(tool) => {
-                format!("the diameter of {holes} made by T{tool}: the machine file has no diameter of it")
-            }
+            Some(tool) => format!("the diameter of {holes}: the machine file has none of T{tool}"),
         }
     };
     by_tool.into_iter().map(sentence).collect()
@@ -146,13 +132,13 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
     let sentence = |(gap, ids): (ShapeGap, Vec<&str>)| {
         let holes = match ids[..] {
             [one] => format!("hole {one}"),
-            _ => format!("{} holes (first: {})", ids.len(), ids[0]),
+            _ => format!("{} holes (first {})", ids.len(), ids[0]),
         };
         let name = |tool: Option<u32>| tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
         match gap {
             ShapeGap::SpotDrill(tool) => {
                 format!(
-                    "the end of {}, taken for a spot drill in {holes}: the machine file has no kind or point_angle",
+                    "the end of {0} in {holes}: the machine file has no kind or point_angle; {0} is taken for a spot drill",
                     name(tool)
                 )
             }
@@ -231,5 +217,5 @@ fn conditions(extraction: &HoleExtraction, reference: &Reference, machine: &Mach
         (rotates && limits.clamp.is_none(), "the rotary clamp"),
     ];
     let names: Vec<_> = conditions.iter().filter(|(lacks, _)| *lacks).map(|(_, name)| *name).collect();
-    (!names.is_empty()).then(|| format!("{}: not specified in the reference", names.join(", ")))
+    (!names.is_empty()).then(|| format!("{}: {UNSPECIFIED}", names.join(", ")))
 }

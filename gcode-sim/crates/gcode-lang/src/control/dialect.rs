@@ -24,13 +24,13 @@ const DIALECTS: &[DialectRow] = &[
         ("PLAIN-IF", "0"), ("THEN-WORDS", "0"), ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
         ("NEW-WORDS", "1"), ("MORE-FUNCTIONS", "1"), ("G10-PARAMETERS", "1"), ("REPEATS-IN-P", "1"), ("M97-CALLS", "0"),
         ("CYCLE-REPEATS", "K"), ("K0-MOVES", "0"), ("HOME-ALL", "0"), ("DWELL-SECONDS", "0"), ("FEED-INCREMENTS", "0"), ("PECK-IJK", "0"),
-        ("TAP-DWELL-R", "1"), ("G84-RIGID", "0"), ("M06-HOMES-Z", "0"),
+        ("TAP-DWELL-R", "1"), ("G84-RIGID", "0"), ("M06-HOMES-Z", "0"), ("M00-STOPS-SPINDLE", "0"),
     ] },
     // Four simultaneous axes, so no five-axis codes; 48 additional work coordinate systems, 300 by option.
     DialectRow { dialect: Dialect::Fanuc0iF, base: Some(Dialect::Fanuc31i), settings: &[
         ("CODES", "fanuc-0i-f"), ("WORK-SYSTEMS", "48"),
     ] },
-    // Nine macro levels in all; offsets: #2001 length and #2201 its wear, #2401 diameter and #2601 its wear;
+    // Nine macro levels in all; offsets: #2001 length and #2201 its wear, #2401 D and #2601 its wear;
     // #3000=n shows 1000 + n; DPRNT prints all digits, its format has at most seven; IF without THEN.
     DialectRow { dialect: Dialect::HaasNgc, base: None, settings: &[
         ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
@@ -39,7 +39,7 @@ const DIALECTS: &[DialectRow] = &[
         ("PLAIN-IF", "1"), ("THEN-WORDS", "1"), ("THEN-GOTO", "1"), ("G67-ALARM", "1"),
         ("NEW-WORDS", "0"), ("MORE-FUNCTIONS", "0"), ("G10-PARAMETERS", "0"), ("REPEATS-IN-P", "0"), ("M97-CALLS", "1"),
         ("CYCLE-REPEATS", "L"), ("K0-MOVES", "1"), ("HOME-ALL", "1"), ("DWELL-SECONDS", "1"), ("FEED-INCREMENTS", "1"), ("PECK-IJK", "1"),
-        ("TAP-DWELL-R", "0"), ("G84-RIGID", "1"), ("M06-HOMES-Z", "1"),
+        ("TAP-DWELL-R", "0"), ("G84-RIGID", "1"), ("M06-HOMES-Z", "1"), ("M00-STOPS-SPINDLE", "1"),
     ] },
 ];
 

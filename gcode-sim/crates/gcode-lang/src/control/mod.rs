@@ -106,6 +106,14 @@ impl OffsetVariables {
             Self::Haas => (tool <= 200).then_some(2_000 + tool),
         }
     }
+
+    /// Returns the variable of the geometry offset D of a tool; `None` beyond the last tool.
+    pub fn radius(self, tool: u32) -> Option<u32> {
+        match self {
+            Self::Fanuc => (tool <= 999).then_some(13_000 + tool),
+            Self::Haas => (tool <= 200).then_some(2_400 + tool),
+        }
+    }
 }
 
 /// Unit of a macro argument without a decimal point.

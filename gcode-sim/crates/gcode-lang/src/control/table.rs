@@ -284,6 +284,7 @@ undocumented_choices! {
     "LARGE-ALARMS" shows_large_alarm_numbers = true, "#3000=n shows a number that is too large instead of raising PS0119";
     "M98-NO-P-311" missing_p_is_311 = false, "M98 without P is PS0311, not PS0076";
     "M06-STOPS-SPINDLE" tool_change_stops_spindle = true, "M06 stops the spindle";
+    "M00-STOPS-SPINDLE" stop_stops_spindle = false, "M00 and M01 stop the spindle";
     "M06-HOMES-Z" tool_change_homes_z = false, "M06 sends Z to machine zero before the tool changes";
 }
 

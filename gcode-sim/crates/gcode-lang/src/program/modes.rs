@@ -51,6 +51,42 @@ impl ModalGroup {
     }
 }
 
+/// Set of modal groups.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GroupSet(u32);
+
+impl GroupSet {
+    /// Returns the set of these groups.
+    pub fn of(groups: &[ModalGroup]) -> Self {
+        Self(groups.iter().fold(0, |set, group| set | 1 << group.number()))
+    }
+
+    /// Adds a group.
+    pub fn insert(&mut self, group: ModalGroup) {
+        self.0 |= 1 << group.number();
+    }
+
+    /// Returns true if the group is in the set.
+    pub fn contains(self, group: ModalGroup) -> bool {
+        self.0 >> group.number() & 1 == 1
+    }
+
+    /// Returns true for the empty set.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Returns the groups of either set.
+    pub fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Returns the groups that `other` lacks.
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+}
+
 macro_rules! group {
     ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $state:ident = $code:literal,)+ }) => {
         $(#[$doc])*
@@ -124,6 +160,22 @@ impl WorkSystem {
         match self {
             Self::Standard(number) => 530 + 10 * u32::from(number),
             Self::Additional(_) => 541,
+        }
+    }
+
+    /// Returns the code: `G55`, `G54.1 P3`.
+    pub fn name(self) -> String {
+        match self {
+            Self::Standard(_) => format!("G{}", self.code() / 10),
+            Self::Additional(number) => format!("G54.1 P{number}"),
+        }
+    }
+
+    /// Returns the variable of the offset of axis 1.
+    pub fn first_variable(self) -> u32 {
+        match self {
+            Self::Standard(number) => 5201 + 20 * u32::from(number),
+            Self::Additional(number) => 13_981 + 20 * u32::from(number),
         }
     }
 }

@@ -42,6 +42,21 @@ pub trait WordList {
 
     /// Returns all words.
     fn all() -> Vec<(&'static str, Self::Value)>;
+
+    /// Returns the value of a word; `None` for one that is not in the list.
+    fn find(word: &str) -> Option<Self::Value> {
+        Self::all().into_iter().find(|(name, _)| *name == word).map(|(_, value)| value)
+    }
+
+    /// Returns the words as a message lists them.
+    fn names() -> Vec<String> {
+        Self::all().into_iter().map(|(name, _)| name.to_owned()).collect()
+    }
+
+    /// Returns a regular expression of the words.
+    fn pattern() -> String {
+        Self::names().join("|")
+    }
 }
 
 /// One word of the list `W`.
@@ -53,10 +68,8 @@ impl<W: WordList> FileKey for Word<W> {
 
     fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<W::Value, D::Error> {
         let written = String::deserialize(deserializer)?;
-        let found = W::all().into_iter().find(|(name, _)| *name == written);
-        found.map(|(_, value)| value).ok_or_else(|| {
-            let names: Vec<_> = W::all().into_iter().map(|(name, _)| name).collect();
-            D::Error::custom(format!("{OUT_OF_RANGE}'{written}': one of {}", names.join(", ")))
+        W::find(&written).ok_or_else(|| {
+            D::Error::custom(format!("{OUT_OF_RANGE}'{written}': one of {}", W::names().join(", ")))
         })
     }
 }
@@ -208,8 +221,7 @@ impl<W: WordList, K: JsonSchema> JsonSchema for TableOf<W, K> {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let names: Vec<_> = W::all().into_iter().map(|(name, _)| name).collect();
-        let pattern = format!("^({})$", names.join("|"));
+        let pattern = format!("^({})$", W::pattern());
         let value = generator.subschema_for::<K>();
         json_schema!({
             "type": "object",
@@ -225,9 +237,8 @@ struct TableKey<W: WordList>(W::Value);
 impl<'de, W: WordList> Deserialize<'de> for TableKey<W> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let written = String::deserialize(deserializer)?;
-        let found = W::all().into_iter().find(|(name, _)| *name == written);
-        found.map(|(_, value)| Self(value)).ok_or_else(|| {
-            let names: Vec<_> = W::all().into_iter().map(|(name, _)| format!("`{name}`")).collect();
+        W::find(&written).map(Self).ok_or_else(|| {
+            let names: Vec<_> = W::names().into_iter().map(|name| format!("`{name}`")).collect();
             D::Error::custom(format!("unknown field `{written}`, expected one of {}", names.join(", ")))
         })
     }

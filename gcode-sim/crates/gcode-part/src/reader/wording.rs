@@ -18,6 +18,9 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
             name => format!("key '{}' is missing", name.join(".")),
         };
     }
+    if message.starts_with("invalid fraction") {
+        return "a number needs a digit behind its point: 5.0 or 5, not 5.".to_owned();
+    }
     let name = place.join(".");
     if message.starts_with("unknown field ") {
         let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);

@@ -57,7 +57,7 @@ pub struct File {
     /// The tools.
     #[serde(default, with = "Optional::<Items<Section<FileTool>>>")]
     tool: Option<Vec<FileTool>>,
-    /// The work offsets G54 to G59 at the start of the run, by axis, mm and degrees; axes that are not named are 0.
+    /// The work offsets G54 to G59 and G54.1 P1… at the start of the run, by axis, mm and degrees; axes that are not named are 0.
     #[serde(default, with = "Optional::<FileOffsets>")]
     offsets: Option<<FileOffsets as FileKey>::Value>,
     /// Positions of the axes at the start of the run, by axis, mm and degrees, in the work coordinate system active then;

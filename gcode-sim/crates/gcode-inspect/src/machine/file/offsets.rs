@@ -1,21 +1,47 @@
-//! `[offsets]`: the work offsets G54 to G59.
+//! `[offsets]`: the work offsets G54 to G59 and G54.1 P1 to P300.
 use super::AXES;
 use crate::machine::WorkOffset;
 use gcode_lang::motion::{Axes, AxisIndex};
+use gcode_lang::program::modes::WorkSystem;
 use gcode_part::reader::bounds::WorkOffsetValue;
 use gcode_part::reader::{FileError, FileKey, Reader, TableOf, WordList};
 
 /// Work offsets by code, each with its axes.
 pub(super) type FileOffsets = TableOf<WorkCode, TableOf<AxisLetter, WorkOffsetValue>>;
 
+/// Largest number of an additional work coordinate system.
+const MAX_ADDITIONAL: u16 = 300;
+
 /// Codes of work offsets.
 pub(super) enum WorkCode {}
 
 impl WordList for WorkCode {
-    type Value = u32;
+    type Value = WorkSystem;
 
-    fn all() -> Vec<(&'static str, u32)> {
-        vec![("G54", 54), ("G55", 55), ("G56", 56), ("G57", 57), ("G58", 58), ("G59", 59)]
+    fn all() -> Vec<(&'static str, WorkSystem)> {
+        let names = ["G54", "G55", "G56", "G57", "G58", "G59"];
+        names.into_iter().zip((1..).map(WorkSystem::Standard)).collect()
+    }
+
+    fn find(word: &str) -> Option<WorkSystem> {
+        if let Some((_, system)) = Self::all().into_iter().find(|(name, _)| *name == word) {
+            return Some(system);
+        }
+        let digits = ["G54.1 P", "G154 P"].into_iter().find_map(|code| word.strip_prefix(code))?;
+        let number = digits.parse().ok().filter(|number| (1..=MAX_ADDITIONAL).contains(number))?;
+        // One spelling for each: two would be two keys for one offset.
+        (number.to_string() == digits).then_some(WorkSystem::Additional(number))
+    }
+
+    fn names() -> Vec<String> {
+        let standard = Self::all().into_iter().map(|(name, _)| name.to_owned());
+        standard
+            .chain([format!("G54.1 P1 to P{MAX_ADDITIONAL}"), "G154 P1 to P99 of a Haas".to_owned()])
+            .collect()
+    }
+
+    fn pattern() -> String {
+        r"G5[4-9]|G54\.1 P[1-9][0-9]{0,2}|G154 P[1-9][0-9]?".to_owned()
     }
 }
 
@@ -49,10 +75,33 @@ pub(super) fn work_offsets(
     axes: &Axes,
     offsets: <FileOffsets as FileKey>::Value,
 ) -> Result<Vec<WorkOffset>, FileError> {
-    let axis = |code: u32, letter: char| axis_of(reader, axes, &format!("offsets.G{code}"), letter);
-    let offset = |(code, values): (u32, Vec<(char, f64)>)| {
-        let values = values.into_iter().map(|(letter, value)| Ok((axis(code, letter)?, value)));
-        Ok(WorkOffset { code, values: values.collect::<Result<_, FileError>>()? })
+    let axis = |system: WorkSystem, letter: char| {
+        axis_of(reader, axes, &format!("offsets.{}", system.name()), letter)
+    };
+    let offset = |(system, values): (WorkSystem, Vec<(char, f64)>)| {
+        let values = values.into_iter().map(|(letter, value)| Ok((axis(system, letter)?, value)));
+        Ok(WorkOffset { system, values: values.collect::<Result<_, FileError>>()? })
     };
     offsets.into_iter().map(offset).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_without_a_digit_behind_it_is_explained() {
+        let error = crate::machine::Machine::parse("[offsets.G54]\nX = 5.\n").unwrap_err();
+        assert_eq!(error.to_string(), "line 2: a number needs a digit behind its point: 5.0 or 5, not 5.");
+    }
+
+    #[test]
+    fn a_work_offset_has_one_spelling() {
+        assert_eq!(WorkCode::find("G59"), Some(WorkSystem::Standard(6)));
+        assert_eq!(WorkCode::find("G54.1 P300"), Some(WorkSystem::Additional(300)));
+        assert_eq!(WorkCode::find("G154 P9"), Some(WorkSystem::Additional(9)));
+        for word in ["G60", "G54.1 P301", "G54.1 P0", "G54.1 P01", "G54.1P1", "g54"] {
+            assert_eq!(WorkCode::find(word), None, "{word}");
+        }
+    }
 }

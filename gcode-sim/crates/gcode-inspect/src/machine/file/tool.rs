@@ -5,7 +5,9 @@ use serde::Deserialize;
 use crate::machine::{Head, HeadKind, Tool, ToolKind};
 use gcode_lang::units::Deg;
 use gcode_part::Hand;
-use gcode_part::reader::bounds::{Bounded, GaugeLength, OffsetNumber, PointAngle, ToolDiameter};
+use gcode_part::reader::bounds::{
+    Bounded, GaugeLength, OffsetNumber, PointAngle, RadiusOffset, ToolDiameter,
+};
 use gcode_part::reader::{FileError, FileKey, Optional, Reader, Word, WordList};
 
 /// A tool.
@@ -18,6 +20,8 @@ pub(super) struct FileTool {
     length: Option<Bounded<GaugeLength>>,
     /// mm [default: unknown].
     diameter: Option<Bounded<ToolDiameter>>,
+    /// Cutter radius offset D of its number, mm [default: what the program sets, else 0].
+    radius_offset: Option<Bounded<RadiusOffset>>,
     /// Its kind [default: unknown].
     #[serde(default, with = "Optional::<Word<ToolKindName>>")]
     kind: Option<ToolKind>,
@@ -94,6 +98,7 @@ impl FileTool {
             shank_diameter: shank_diameter.as_ref().map(Bounded::get),
             holder_diameter: holder_diameter.as_ref().map(Bounded::get),
             holder_length: holder_length.as_ref().map(Bounded::get),
+            radius_offset: self.radius_offset.as_ref().map(Bounded::get),
             kind: self.kind,
             point_angle: self.point_angle.as_ref().map(Bounded::get).map(Deg),
             hand: self.hand,
