@@ -233,7 +233,7 @@ impl<'m> HoleExtractor<'m> {
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
         self.end_in_metal();
-        self.end_line(false);
+        self.end_line(None);
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
@@ -266,10 +266,10 @@ impl<'m> HoleExtractor<'m> {
     }
 
     /// Ends the current line where the tool leaves it along a curve, or is replaced.
-    fn end_line(&mut self, is_feeding: bool) {
+    fn end_line(&mut self, next: Option<MotionKind>) {
         if let Some(line) = self.current_line.take() {
             let exit = line.curved_exit();
-            self.report_line(line, exit, is_feeding);
+            self.report_line(line, exit, next);
         }
     }
 
@@ -303,7 +303,7 @@ impl<'m> HoleExtractor<'m> {
             return;
         }
         if is_rotating || arc.is_some() {
-            self.end_line(kind == MotionKind::Feed);
+            self.end_line(Some(kind));
             match kind {
                 MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
                 MotionKind::Feed => {
@@ -365,7 +365,7 @@ impl<'m> HoleExtractor<'m> {
             return;
         }
         let after = std::mem::replace(&mut self.setup, before);
-        self.end_line(false);
+        self.end_line(None);
         self.end_engagement();
         self.strokes.end_tool();
         self.setup = after;
