@@ -41,11 +41,13 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a spindle that stops or reverses in the hole, for a tool with which the job drills, or a drill of the machine file.
+    /// Reports a spindle that stops or reverses in the hole, for a tool with which the job drills, or one whose kind the machine
+    /// file states: only a tap reverses, and a stop is a boring bar's.
     pub(super) fn check_spindle(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
         let number = line.cutting_state.tool;
         let kind = number.and_then(|number| self.machine.find_tool(number)?.kind);
-        let is_drill = matches!(kind, Some(ToolKind::Drill | ToolKind::SpotDrill | ToolKind::Countersink));
+        let is_bar = matches!(kind, Some(ToolKind::BoringBar)) && line.spindle != SpindleInHole::Reversed;
+        let is_drill = kind.is_some_and(|kind| kind != ToolKind::Tap) && !is_bar;
         if !is_drill && self.process_limits.tool_process(number).is_none() {
             return;
         }
@@ -60,10 +62,10 @@ impl HoleExtractor<'_> {
             SpindleInHole::Restarted => (
                 "stops and starts again",
                 Severity::Error,
-                "G84 stops the spindle that M04 turns, and G74 the one that M03 turns; this tool drills",
+                "G84 stops the spindle that M04 turns, and G74 the one that M03 turns: this tool is no tap",
             ),
             SpindleInHole::Reversed => {
-                ("reverses", Severity::Error, "G84 and G74 reverse the spindle for a tap; this tool drills")
+                ("reverses", Severity::Error, "G84 and G74 reverse the spindle for a tap: this tool is none")
             }
         };
         let tool = line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
