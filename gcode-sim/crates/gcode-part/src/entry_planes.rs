@@ -4,13 +4,25 @@ use std::sync::Arc;
 
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::feature::{DepthTo, Feature, FeatureKind};
 use super::hole::Hole;
+use super::limits::NOISE;
 use super::point_tree::PointTree;
 use super::solid::Rod;
 use super::surface::Surface;
 
 /// Thickness of the wall round a hole that is known to be metal, mm.
 const WALL: f64 = 1.0;
+
+/// Largest length by which the full diameter of a tool may pass the far side of a through hole, mm: the lead of a tap or a
+/// reamer, and some clearance.
+pub const MAX_BREAK_THROUGH: f64 = 10.0;
+
+/// Length of a drill's point of 118° in diameters: a finishing tool need not reach below the drill's full diameter.
+pub const POINT_LENGTH: f64 = 0.300_430;
+
+/// Number of cylinders for the cone of a countersink.
+const CONE_STEPS: u8 = 8;
 
 /// Cosine of the largest angle between axes that count as parallel: 5°.
 pub const PARALLEL_COSINE: f64 = 0.996_194_698_091_745_5;
@@ -49,22 +61,33 @@ pub struct EntryPlanes {
 
 /// Metal round one hole: a cylinder from the plane of the nominal entry to the bottom, with the hole in it, and the floor
 /// of a hole that goes through nothing.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Collar {
     /// The cylinder, its base at the bottom of the hole.
     pub rod: Rod,
-    /// Radius inside which the metal belongs to the hole, mm.
+    /// Radius inside which the metal at the entry belongs to the hole, mm.
     pub hole_radius: f64,
+    /// Cylinders that the hole consists of, each from the entry.
+    pub steps: Vec<Step>,
     /// The reference states the hole's diameter.
     pub has_diameter: bool,
     /// The hole breaks out on the far side.
     pub is_through: bool,
 }
 
+/// Cylinder of a hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Radius, mm.
+    pub radius: f64,
+    /// Largest depth of a feed below the entry, mm: with the tolerance, or the room below the far side.
+    pub max_depth: f64,
+}
+
 impl EntryPlanes {
-    /// Returns the metal round these holes.
-    pub fn of(holes: &[Hole]) -> Self {
-        let collars: Vec<Collar> = holes.iter().map(Collar::of).collect();
+    /// Returns the metal round these holes; their depths have a tolerance.
+    pub fn of(holes: &[Hole], depth_tolerance: f64) -> Self {
+        let collars: Vec<Collar> = holes.iter().map(|hole| Collar::of(hole, depth_tolerance)).collect();
         let middle =
             |collar: &Collar| collar.rod.base + collar.rod.axis.into_inner() * (collar.rod.length / 2.0);
         let reach =
@@ -143,13 +166,14 @@ fn top(collars: &[Collar]) -> Option<(Unit<Vector3<f64>>, f64)> {
 }
 
 impl Collar {
-    fn of(hole: &Hole) -> Self {
+    fn of(hole: &Hole, depth_tolerance: f64) -> Self {
         let axis = Unit::new_normalize(Vector3::from(hole.axis));
         let base = Point3::from(hole.entry) - axis.into_inner() * hole.depth;
         let radius = hole.widest_diameter().map(|diameter| diameter / 2.0);
         Self {
             rod: Rod { base, axis, length: hole.depth, radius: radius.unwrap_or(0.0) + WALL },
             hole_radius: radius.unwrap_or(WALL),
+            steps: steps(hole, radius.unwrap_or(WALL), depth_tolerance),
             has_diameter: radius.is_some(),
             is_through: hole.through,
         }
@@ -188,17 +212,46 @@ impl Collar {
         if self.is_through { 0.0 } else { WALL }
     }
 
-    /// Returns the shares of a straight travel between which it is within `radius` of the axis, above the bottom or at
-    /// most `below` under it; a through hole has no bottom.
-    pub fn piece_in_hole(
+    /// Returns the shares of a straight travel between which it is within `radius` of the axis and not below a depth.
+    pub fn piece_above(
         &self,
         from: &Point3<f64>,
         to: &Point3<f64>,
         radius: f64,
-        below: f64,
+        max_depth: f64,
     ) -> Option<[f64; 2]> {
-        let bottom = if self.is_through { f64::NEG_INFINITY } else { -below };
-        self.rod.piece(from, to, (bottom, f64::INFINITY), radius)
+        self.rod.piece(from, to, (self.rod.length - max_depth, f64::INFINITY), radius)
+    }
+
+    /// Returns the largest depth of a feed in the hole, mm.
+    pub fn max_depth(&self) -> f64 {
+        self.steps.iter().map(|step| step.max_depth).fold(0.0, f64::max)
+    }
+}
+
+/// Returns the cylinders of a hole; `radius` is that of a hole without features.
+fn steps(hole: &Hole, radius: f64, tolerance: f64) -> Vec<Step> {
+    let step = |radius: f64, depth: f64| {
+        let is_far = hole.through && hole.depth <= depth + NOISE;
+        let room = if is_far { MAX_BREAK_THROUGH + POINT_LENGTH * 2.0 * radius } else { tolerance };
+        Step { radius, max_depth: depth + room }
+    };
+    let of_feature = |feature: &Feature| {
+        let (radius, bottom) = (feature.diameter / 2.0, feature.bottom());
+        let is_cone = feature.kind == FeatureKind::Countersink && feature.angle.is_some();
+        let point = match feature.to {
+            DepthTo::Full => POINT_LENGTH * feature.diameter,
+            DepthTo::Point => 0.0,
+        };
+        let count = if is_cone { CONE_STEPS } else { 1 };
+        (0..count).map(move |index| {
+            let share = |index: u8| f64::from(index) / f64::from(count);
+            step(radius * (1.0 - share(index)), (bottom + point) * share(index + 1))
+        })
+    };
+    match hole.features[..] {
+        [] => vec![step(radius, hole.depth)],
+        _ => hole.features.iter().flat_map(of_feature).collect(),
     }
 }
 
@@ -212,7 +265,7 @@ mod tests {
 
     fn piece(hole: &Hole, from: [f64; 3], to: [f64; 3]) -> Option<[[f64; 3]; 2]> {
         let (from, to) = (Point3::from(from), Point3::from(to));
-        let piece = Collar::of(hole).piece(&from, &to, 0.01)?.map(|share| from + (to - from) * share);
+        let piece = Collar::of(hole, 0.1).piece(&from, &to, 0.01)?.map(|share| from + (to - from) * share);
         Some(piece.map(|p| [p.x, p.y, p.z].map(|v| (v * 1e6).round() / 1e6 + 0.0)))
     }
 
@@ -236,11 +289,35 @@ mod tests {
         );
     }
 
+    /// A drill of 6 through 19 may end 10 mm and its point, 1.803, below the far side; the counterbore of 20 ends at 5.1. The
+    /// cone of Φ16 and 90° is 8 deep, in eight steps of 1.
+    #[test]
+    fn each_feature_of_a_hole_has_its_room() {
+        let features = |texts: &[&str]| texts.iter().map(|text| Feature::parse(text).unwrap()).collect();
+        let up = |through, texts: &[&str]| Hole {
+            depth: 19.0,
+            through,
+            features: features(texts),
+            ..hole([0.0; 3], [0.0, 0.0, 1.0], None)
+        };
+        let steps = |hole: &Hole| -> Vec<[f64; 2]> {
+            let rounded = |s: &Step| [s.radius, s.max_depth].map(|v| (v * 1e3).round() / 1e3);
+            Collar::of(hole, 0.1).steps.iter().map(rounded).collect()
+        };
+        let bored = ["drill 6 19", "counterbore 20 5"];
+        assert_eq!(steps(&up(false, &bored)), [[3.0, 19.1], [10.0, 5.1]]);
+        assert_eq!(steps(&up(true, &bored)), [[3.0, 30.803], [10.0, 5.1]]);
+        assert_eq!(steps(&up(false, &["drill 6 19 to=full"])), [[3.0, 20.903]]);
+        let cone = steps(&up(false, &["countersink 16 angle=90"]));
+        assert_eq!(cone[..3], [[8.0, 1.1], [7.0, 2.1], [6.0, 3.1]]);
+        assert_eq!(cone.len(), 8);
+    }
+
     #[test]
     fn only_holes_that_a_box_reaches_are_near() {
         let up = [0.0, 0.0, 1.0];
         let planes =
-            EntryPlanes::of(&[hole([10.0, 0.0, 0.0], up, Some(6.0)), hole([40.0, 0.0, -5.0], up, None)]);
+            EntryPlanes::of(&[hole([10.0, 0.0, 0.0], up, Some(6.0)), hole([40.0, 0.0, -5.0], up, None)], 0.1);
         let near = |low: [f64; 3], high: [f64; 3]| {
             let mut found = Vec::new();
             planes.near(&low.into(), &high.into(), &mut |index| found.push(index));

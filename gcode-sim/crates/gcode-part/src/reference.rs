@@ -64,9 +64,14 @@ impl Reference {
         let stock = self.stock.as_ref().or(of_machine);
         Metal {
             body: self.body(of_machine),
-            entries: Some(Arc::new(EntryPlanes::of(&self.holes))),
+            entries: Some(Arc::new(EntryPlanes::of(&self.holes, self.depth_tolerance()))),
             pockets: stock.map(Stock::pockets).unwrap_or_default(),
         }
+    }
+
+    /// Returns the tolerance of a depth, either way, mm; ±0.1 by default.
+    pub fn depth_tolerance(&self) -> f64 {
+        self.depth.unwrap_or(0.1)
     }
 
     /// Returns the body of [`Self::metal`].

@@ -41,6 +41,8 @@ enum SpoiltBy {
     Tip,
     Side,
     Shank,
+    /// The tip, fed through this hole and beyond its far side.
+    TipBeyond(usize),
 }
 
 impl HoleExtractor<'_> {
@@ -195,8 +197,17 @@ impl HoleExtractor<'_> {
         }
         match self.metal.spoilt(travel, FeedPart::Tip) {
             Some(at) => Some(Spoilt { at, part: SpoiltBy::Tip }),
-            None => self.spoilt_by_side(travel, axis),
+            None => self.spoilt_by_side(travel, axis).or_else(|| self.spoilt_beyond(travel)),
         }
+    }
+
+    /// Returns what the tool may meet beyond the far side of a hole through which it is fed.
+    fn spoilt_beyond(&self, travel: &[Point3<f64>; 2]) -> Option<Spoilt> {
+        let axis = self.pose.axis.filter(|_| self.surface.is_some())?;
+        let beyond = |tip| self.metal.beyond_hole(tip, &axis);
+        let (hole, at) =
+            travel.iter().filter_map(beyond).reduce(|a, b| if a.1.depth < b.1.depth { b } else { a })?;
+        Some(Spoilt { at, part: SpoiltBy::TipBeyond(hole) })
     }
 
     /// Returns what the cutting parts of the tool remove of the metal that has to stay.
@@ -281,9 +292,21 @@ impl HoleExtractor<'_> {
 
     fn report_spoilt(&mut self, backtrace: &Backtrace, Spoilt { at, part }: Spoilt) {
         let (depth, point) = (at.depth, format_point(&at.point));
+        if let (SpoiltBy::TipBeyond(hole), Some(holes)) = (part, self.metal.nominal_holes()) {
+            let (id, limit) = (holes.id(hole), holes.collar(hole).max_depth());
+            let message = format!(
+                "the tool is fed through hole {id} and {depth:.3} mm below its entry, at {point}: limit {limit:.3}"
+            );
+            self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| {
+                Diagnostic::new(kind, message).help(
+                    "feed less deep: what is below the part, a table or a vise, is not in the machine file's [stock]",
+                )
+            });
+            return;
+        }
         let level = self.metal.level_at(&at.point);
         let what = match part {
-            SpoiltBy::Tip => "the feed cuts",
+            SpoiltBy::TipBeyond(_) | SpoiltBy::Tip => "the feed cuts",
             SpoiltBy::Side => "the side of the tool cuts",
             SpoiltBy::Shank => "the shank or the holder of the tool touches",
         };

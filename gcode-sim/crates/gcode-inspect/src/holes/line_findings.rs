@@ -1,12 +1,12 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
 use nalgebra::Point3;
 
-use super::HoleExtractor;
 use super::cutting::CuttingState;
 use super::line::{CuttingLine, ToolExit};
 use super::metal::FeedPart;
 use super::strokes::{CutKind, MIN_TOOL_COSINE};
 use super::unknown_axes::without_assumed;
+use super::{HoleExtractor, MotionKind};
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
     TOOL_NOT_CHANGED,
@@ -24,7 +24,10 @@ const MAX_PARALLEL_COSINE: f64 = 1e-9;
 
 impl HoleExtractor<'_> {
     /// Reports a line that the tool has left, and keeps its passes if it makes a hole.
-    pub(super) fn report_line(&mut self, line: Box<CuttingLine>, exit: ToolExit, is_feeding: bool) {
+    ///
+    /// `next` is the motion by which the tool has left it; `None` if the tool stands there and is changed, or the run ends.
+    pub(super) fn report_line(&mut self, line: Box<CuttingLine>, exit: ToolExit, next: Option<MotionKind>) {
+        let is_feeding = next == Some(MotionKind::Feed);
         self.record_length_mismatch(&line);
         let tilt = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
         // Depth in the part, computed only where it decides.
@@ -56,7 +59,7 @@ impl HoleExtractor<'_> {
                     }
                     return;
                 }
-                self.report_no_retract(&line, inside);
+                self.report_no_retract(&line, inside, next.is_some());
                 if inside.is_none() || is_feeding {
                     return;
                 }
@@ -98,14 +101,14 @@ impl HoleExtractor<'_> {
 
     /// Records a feed without retract, unless it belongs to a milled hole: an error `inside` the part, by its depth, a
     /// warning if the surface is unknown.
-    fn report_no_retract(&mut self, line: &CuttingLine, inside: Option<f64>) {
+    fn report_no_retract(&mut self, line: &CuttingLine, inside: Option<f64>, moves_on: bool) {
         let Some(depth) = inside else {
             self.engagement.uncounted.add_unretracted(line.backtrace(), line.cut_depth());
             return;
         };
         let is_judged = self.metal.holes.is_some() && line.tool_axis.is_some();
         // Where the tool goes next is judged, unless that is unknown, or it is changed in the hole.
-        let is_followed = self.positions.is_known(self.machine) && !self.is_tool_changing;
+        let is_followed = moves_on && self.positions.is_known(self.machine);
         if is_judged && is_followed && !self.is_spoilt_by_plunge(line) {
             return;
         }

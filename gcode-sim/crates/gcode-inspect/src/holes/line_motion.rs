@@ -66,7 +66,7 @@ impl HoleExtractor<'_> {
                     return Some(from);
                 }
                 let free_from = if is_along { line.start_level_crossing(&from, &tip) } else { from };
-                self.report_line(line, exit, kind == MotionKind::Feed);
+                self.report_line(line, exit, Some(kind));
                 Some(free_from)
             }
         }

@@ -6,7 +6,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::axis_box::Bodies;
 use super::removed_metal::{RemovedMetal, Rest};
 use crate::machine::{TOUCH_DEPTH, ToolCylinder};
-use gcode_part::{Collar, EntryPlanes, Metal, NearestPoint, Rod, Surface};
+use gcode_part::{Collar, EntryPlanes, Metal, NearestPoint, PARALLEL_COSINE, Rod, Step, Surface};
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
 const MAX_OFFSET: f64 = 0.5;
@@ -14,12 +14,14 @@ const MAX_OFFSET: f64 = 0.5;
 /// Rounding of a point on a hole's wall, mm.
 const ROUNDING: f64 = 1e-6;
 
-/// Excess of a tool's side over a nominal hole, and of a feed over its depth, that other checks judge, mm.
+/// Excess of a tool's side over a nominal hole that other checks judge, mm.
 const SIDE_SLACK: f64 = 0.1;
-const DEPTH_SLACK: f64 = 0.5;
 
 /// Height above a hole up to which the metal goes with it, mm.
 pub(super) const MAX_HEIGHT: f64 = 50.0;
+
+/// Distance down to another hole on the axis of the first, mm.
+const MAX_HEIGHT_ABOVE_HOLE: f64 = 1000.0;
 
 /// Half diagonal up to which the holes in a box are few, mm.
 const SMALL_BOX: f64 = 20.0;
@@ -115,8 +117,10 @@ impl KnownMetal {
         }
         let Some(holes) = &self.holes else { return false };
         let margin = Vector3::repeat(radius);
+        let up = axis.into_inner() * self.removed.height_of_metal(from, axis);
+        let (low, high) = (from.inf(to) - margin, from.sup(to) + margin);
         let mut is_touched = false;
-        holes.near(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |_| is_touched = true);
+        holes.near(&low.inf(&(low + up)), &high.sup(&(high + up)), &mut |_| is_touched = true);
         is_touched
     }
 
@@ -185,21 +189,24 @@ impl KnownMetal {
         if rest.is_empty() {
             return None;
         }
-        self.removed.uncover(travel, true, &mut rest);
-        if rest.is_empty() {
-            return None;
-        }
         let mut allow = |collar: &Collar| {
-            let radius = match part {
-                FeedPart::Tip => collar.hole_radius.max(MAX_OFFSET) + ROUNDING,
-                FeedPart::Side(_) if collar.has_diameter => collar.hole_radius + SIDE_SLACK,
-                FeedPart::Side(radius) => 2.0 * radius,
-            };
-            if let Some(piece) = collar.piece_in_hole(from, to, radius, DEPTH_SLACK) {
-                rest.take_away(piece);
+            for step in &collar.steps {
+                let radius = match part {
+                    FeedPart::Tip => step.radius.max(MAX_OFFSET) + ROUNDING,
+                    FeedPart::Side(_) if collar.has_diameter => step.radius + SIDE_SLACK,
+                    FeedPart::Side(radius) => 2.0 * radius,
+                };
+                if let Some(piece) = collar.piece_above(from, to, radius, step.max_depth + TOUCH_DEPTH) {
+                    rest.take_away(piece);
+                }
             }
         };
         self.around(travel, MAX_HEIGHT, &mut allow);
+        // Many feeds may have been here: they come last.
+        if rest.is_empty() {
+            return None;
+        }
+        self.removed.uncover(travel, true, &mut rest);
         self.deepest(travel, &rest, &|_| false)
     }
 
@@ -223,15 +230,50 @@ impl KnownMetal {
             let mut is_hole = |collar: &Collar| {
                 let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
                 let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
-                let room =
-                    if collar.has_diameter { collar.hole_radius + SIDE_SLACK - radius } else { radius };
-                is_within |= collar.is_parallel(axis)
-                    && aside <= room
-                    && (collar.is_through || deepest <= collar.rod.length + DEPTH_SLACK);
+                let is_in_step = |step: &Step| {
+                    let room = if collar.has_diameter { step.radius + SIDE_SLACK - radius } else { radius };
+                    aside <= room && deepest <= step.max_depth + TOUCH_DEPTH
+                };
+                is_within |= collar.is_parallel(axis) && collar.steps.iter().any(is_in_step);
             };
             self.around(tips, 0.0, &mut is_hole);
             is_within
         }
+    }
+
+    /// Returns the tip that is fed through a nominal hole and deeper than any tool has to break through, with its depth
+    /// below the entry. In a pocket, and in or above another hole, it may be there.
+    pub(super) fn beyond_hole(
+        &self,
+        tip: &Point3<f64>,
+        axis: &Unit<Vector3<f64>>,
+    ) -> Option<(usize, PointInMetal)> {
+        let holes = self.holes.as_deref()?;
+        if self.pockets.iter().any(|pocket| -TOUCH_DEPTH < pocket.depth(tip)) {
+            return None;
+        }
+        let up = tip + axis.into_inner() * self.removed.height_of_metal(tip, axis);
+        let down = tip - axis.into_inner() * MAX_HEIGHT_ABOVE_HOLE;
+        let mut beyond: Option<(usize, PointInMetal)> = None;
+        let mut is_in_other = false;
+        holes.around(&up.inf(&down), &up.sup(&down), &mut |hole| {
+            let collar = holes.collar(hole);
+            let depth = collar.depth(tip);
+            let is_same_way = PARALLEL_COSINE <= axis.dot(&collar.rod.axis);
+            if is_same_way && collar.from_axis(tip) <= collar.hole_radius {
+                match collar.max_depth() + TOUCH_DEPTH < depth {
+                    true if collar.is_through => beyond = Some((hole, PointInMetal { point: *tip, depth })),
+                    true => {}
+                    false => is_in_other = true,
+                }
+            }
+        });
+        beyond.filter(|_| !is_in_other)
+    }
+
+    /// Returns the metal round the nominal holes.
+    pub(super) fn nominal_holes(&self) -> Option<&EntryPlanes> {
+        self.holes.as_deref()
     }
 
     /// Returns the upper end of a part of the tool; where its length is unknown, that of the metal.
@@ -242,8 +284,45 @@ impl KnownMetal {
         }
     }
 
-    /// Returns the heights above the tip between which there may be metal, part of a tool or not.
-    pub(super) fn heights(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<[f64; 2]> {
+    /// Returns heights above the tip, within some, at which a part of the tool crosses metal whose lower end is above that of
+    /// the part: one for the body, or enough for each hole near a travel.
+    pub(super) fn heights(
+        &self,
+        [from, to]: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+        within: [f64; 2],
+    ) -> Vec<f64> {
+        let clip = |[low, high]: [f64; 2]| {
+            let high = high.min(within[1]);
+            (within[0] < low && low < high).then_some([low, high])
+        };
+        if self.body.is_some() {
+            return self
+                .heights_of_body(from, axis)
+                .and_then(clip)
+                .map_or(Vec::new(), |[low, high]| vec![f64::midpoint(low, high)]);
+        }
+        let Some(holes) = &self.holes else { return Vec::new() };
+        let margin = Vector3::repeat(radius);
+        let up = axis.into_inner() * within[1].min(self.removed.height_of_metal(from, axis));
+        let (low, high) = (from.inf(to) - margin, from.sup(to) + margin);
+        let mut common: Vec<[f64; 2]> = Vec::new();
+        holes.near(&low.inf(&(low + up)), &high.sup(&(high + up)), &mut |hole| {
+            let rod = holes.collar(hole).rod;
+            let ends =
+                [rod.base, rod.base + rod.axis.into_inner() * rod.length].map(|p| (p - from).dot(axis));
+            let Some([low, high]) = clip([ends[0].min(ends[1]), ends[0].max(ends[1])]) else { return };
+            match common.iter_mut().find(|range| low < range[1] && range[0] < high) {
+                Some(range) => *range = [range[0].max(low), range[1].min(high)],
+                None => common.push([low, high]),
+            }
+        });
+        common.iter().map(|[low, high]| f64::midpoint(*low, *high)).collect()
+    }
+
+    /// Returns the heights above the tip between which a body may have metal, part of a tool or not.
+    fn heights_of_body(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<[f64; 2]> {
         let [low, high] = self.body?.bounds();
         let along = |corner: &Vector3<f64>, other: &Vector3<f64>| {
             (0..3)

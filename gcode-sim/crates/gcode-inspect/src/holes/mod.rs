@@ -108,8 +108,6 @@ pub struct HoleExtractor<'m> {
     tool_body: Vec<ToolCylinder>,
     /// What it cuts in a feed; `None` if its diameter is unknown.
     profile: Option<Profile>,
-    /// True while the tool, its offset or the head is changed.
-    is_tool_changing: bool,
     /// What the current line removes of the metal that has to stay.
     plunge_spoilt: Option<Spoilt>,
     /// Tools of unknown diameter that mill the part.
@@ -172,7 +170,6 @@ impl<'m> HoleExtractor<'m> {
             setup,
             tool_body: Vec::new(),
             profile: None,
-            is_tool_changing: false,
             plunge_spoilt: None,
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
@@ -236,7 +233,7 @@ impl<'m> HoleExtractor<'m> {
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
         self.end_in_metal();
-        self.end_line(false);
+        self.end_line(None);
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
@@ -269,10 +266,10 @@ impl<'m> HoleExtractor<'m> {
     }
 
     /// Ends the current line where the tool leaves it along a curve, or is replaced.
-    fn end_line(&mut self, is_feeding: bool) {
+    fn end_line(&mut self, next: Option<MotionKind>) {
         if let Some(line) = self.current_line.take() {
             let exit = line.curved_exit();
-            self.report_line(line, exit, is_feeding);
+            self.report_line(line, exit, next);
         }
     }
 
@@ -306,7 +303,7 @@ impl<'m> HoleExtractor<'m> {
             return;
         }
         if is_rotating || arc.is_some() {
-            self.end_line(kind == MotionKind::Feed);
+            self.end_line(Some(kind));
             match kind {
                 MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
                 MotionKind::Feed => {
@@ -368,9 +365,7 @@ impl<'m> HoleExtractor<'m> {
             return;
         }
         let after = std::mem::replace(&mut self.setup, before);
-        self.is_tool_changing = true;
-        self.end_line(false);
-        self.is_tool_changing = false;
+        self.end_line(None);
         self.end_engagement();
         self.strokes.end_tool();
         self.setup = after;

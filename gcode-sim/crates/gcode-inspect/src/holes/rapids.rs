@@ -227,7 +227,7 @@ impl HoleExtractor<'_> {
             Diagnostic::new(kind, message).help("retract above the surface before the end of the program")
         });
         if let Some(line) = self.current_line.take() {
-            self.report_line(line, ToolExit::OnLine, false);
+            self.report_line(line, ToolExit::OnLine, None);
         }
     }
 

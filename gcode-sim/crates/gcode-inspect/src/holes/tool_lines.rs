@@ -64,11 +64,10 @@ pub(super) fn lines(
             let radius = part.radius * f64::from(inner) / f64::from(count);
             offsets.extend(ring(axis, &along, radius, rim_count(radius)));
         }
-    } else if let Some([low, high]) = metal.heights(from, axis) {
+    } else {
         // The lower end may be below all metal.
-        let (low, high) = (low.max(part.from), high.min(top));
-        if part.from < low && low < high {
-            lines.extend(offsets.iter().map(at_height(f64::midpoint(low, high))));
+        for height in metal.heights(&[*from, *to], axis, part.radius, [part.from, top]) {
+            lines.extend(offsets.iter().map(at_height(height)));
         }
     }
     offsets.push(Vector3::zeros());

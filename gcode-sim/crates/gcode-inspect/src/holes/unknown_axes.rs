@@ -131,7 +131,7 @@ impl HoleExtractor<'_> {
         } else if let Some(line) = self.current_line.take() {
             let is_out = self.is_out_along(&line, is.all() & !was.all());
             let exit = if is_out { ToolExit::AlongLine } else { line.curved_exit() };
-            self.report_line(line, exit, false);
+            self.report_line(line, exit, Some(kind));
         }
         self.positions.note_rapid(event, was.union(is));
         let to = self.pose.tip;

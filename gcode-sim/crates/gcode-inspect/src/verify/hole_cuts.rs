@@ -8,13 +8,10 @@ use super::outline::CutShape;
 use crate::holes::{DrilledHole, ToolPass};
 use crate::machine::{Machine, PointShape, Tool, ToolKind};
 use gcode_lang::units::Deg;
-use gcode_part::{DepthTo, Feature, FeatureKind, Hole, exceeds};
+use gcode_part::{DepthTo, Feature, FeatureKind, Hole, POINT_LENGTH, exceeds};
 
 /// Largest difference between the angles of a countersink and its tool, degrees.
 const ANGLE_TOLERANCE: f64 = 0.5;
-
-/// Length of a drill's point of 118° in diameters: a finishing tool need not reach below the drill's full diameter.
-pub(super) const POINT_LENGTH: f64 = 0.300_430;
 
 /// A pass of a tool on the axis of a nominal hole. Depths count from the nominal entry, mm.
 #[derive(Clone, Copy, Debug)]

@@ -3,12 +3,11 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
-use super::hole_cuts::POINT_LENGTH;
 use super::position::Deviation;
 use super::{Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
 use crate::machine::{Machine, ToolCylinder};
-use gcode_part::{Hole, Pattern, PointTree, Surface, exceeds};
+use gcode_part::{Hole, POINT_LENGTH, Pattern, PointTree, Surface, exceeds};
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
 const MAX_LINE_DISTANCE: f64 = 5.0;

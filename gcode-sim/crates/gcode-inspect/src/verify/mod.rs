@@ -58,7 +58,7 @@ impl Tolerances {
     pub fn of(reference: &Reference, specified: Option<f64>) -> Self {
         Self {
             position: specified.or(reference.position).unwrap_or(0.1),
-            depth: reference.depth.unwrap_or(0.1),
+            depth: reference.depth_tolerance(),
             diameter: 0.05,
         }
     }

@@ -2,9 +2,9 @@
 use super::*;
 use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::machine::{PointShape, ToolKind};
-use crate::verify::hole_cuts::{Cut, POINT_LENGTH, assign, cylinder_depth, deepest_circle, widest_circle};
+use crate::verify::hole_cuts::{Cut, assign, cylinder_depth, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
-use gcode_part::{Feature, FeatureKind};
+use gcode_part::{Feature, FeatureKind, POINT_LENGTH};
 
 /// Largest width by which a spot drill may break the edge of a hole, mm in diameter.
 const MAX_EDGE_BREAK: f64 = 1.0;
@@ -383,7 +383,7 @@ impl Judgement<'_> {
         let beyond = |cut: &&Cut<'_>| through::break_through(cut, nominal, thickness);
         let all = self.near.iter().chain(&self.far);
         let Some(cut) = all.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else { return };
-        let (limit, beyond) = (through::MAX_BREAK_THROUGH, beyond(&cut));
+        let (limit, beyond) = (MAX_BREAK_THROUGH, beyond(&cut));
         if !exceeds(beyond, limit) {
             return;
         }

@@ -43,7 +43,7 @@ use crate::holes::DrilledHole;
 use crate::machine::{LinkMotion, Machine};
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::units::Deg;
-use gcode_part::{Hole, Pattern, PointTree, ProcessLimits, Surface, exceeds};
+use gcode_part::{Hole, MAX_BREAK_THROUGH, Pattern, PointTree, ProcessLimits, Surface, exceeds};
 
 /// A check adds findings; it may fold earlier ones.
 type Check = fn(&HoleInspection<'_>, &mut HoleFindings);

@@ -3,9 +3,8 @@ use super::cutting::round_thousandth;
 use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING, HOLES_ALIKE, LENGTH_OFFSET};
 use crate::holes::{LengthMismatch, MAX_LINE_OFFSET};
-use crate::verify::hole_cuts::POINT_LENGTH;
 use gcode_lang::motion::LengthCompensation;
-use gcode_part::PARALLEL_COSINE;
+use gcode_part::{PARALLEL_COSINE, POINT_LENGTH};
 
 /// Findings about holes of a wrong depth.
 const DEPTH_KINDS: [&FindingKind; 5] = [&HOLE_MISSING, &HOLE_EXTRA, &HOLE_DEPTH, &HOLES_ALIKE, &HOLE_IN_AIR];
@@ -108,9 +107,9 @@ fn explains(comparison: &Comparison<'_>, mismatch: &LengthMismatch) -> bool {
 }
 
 /// Returns the deepest tip in a through hole that is no fault, mm: beyond the far side by a drill's point and
-/// [`through::MAX_BREAK_THROUGH`].
+/// [`MAX_BREAK_THROUGH`].
 fn longest_break_through(nominal: &Hole) -> f64 {
-    nominal.depth + POINT_LENGTH * nominal.widest_diameter().unwrap_or(0.0) + through::MAX_BREAK_THROUGH
+    nominal.depth + POINT_LENGTH * nominal.widest_diameter().unwrap_or(0.0) + MAX_BREAK_THROUGH
 }
 
 /// Returns the depth of a point in the nominal hole on whose line it lies, and that hole.

@@ -4,10 +4,10 @@ use super::features::{Judgement, ShapeGap};
 use super::*;
 use crate::findings::{TAP_DRILL, TAP_HAND, TAP_PITCH};
 use crate::machine::PointShape;
-use crate::verify::hole_cuts::{Cut, POINT_LENGTH, assign};
+use crate::verify::hole_cuts::{Cut, assign};
 use crate::verify::outline::{CutShape, Outline};
 use gcode_lang::motion::SpindleDirection;
-use gcode_part::{Feature, FeatureKind, Hand, NOISE};
+use gcode_part::{Feature, FeatureKind, Hand, NOISE, POINT_LENGTH};
 
 /// Largest relative deviation of the pitch: rounding of F.
 const PITCH_TOLERANCE: f64 = 0.005;

@@ -3,11 +3,8 @@
 use super::*;
 use crate::findings::HOLE_THROUGH;
 use crate::verify::bottom;
-use crate::verify::hole_cuts::{Cut, POINT_LENGTH};
-
-/// Largest length by which the full diameter of a tool may pass the far side of a through hole, mm: the lead of a tap or a
-/// reamer, and some clearance.
-pub(super) const MAX_BREAK_THROUGH: f64 = 10.0;
+use crate::verify::hole_cuts::Cut;
+use gcode_part::POINT_LENGTH;
 
 /// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
