@@ -30,7 +30,8 @@ fn random_jobs() -> impl Strategy<Value = String> {
         prop::sample::select(vec![1i8, -1]),
     );
     let head = prop::option::of((prop::sample::select(vec!['A', 'C']), 0.0..250.0f64));
-    let lengths = prop_oneof![Just([0.0, 0.0]), [0.0..200.0f64, 0.0..200.0f64]];
+    // A tool with a stated length is longer than its holes are deep.
+    let lengths = prop_oneof![Just([0.0, 0.0]), [50.0..200.0f64, 50.0..200.0f64]];
     let surface = (150.0..1200.0f64, prop_oneof![Just(1.0), 0.4..1.0f64, 1.0..2.5f64]);
     (control, head, lengths, surface, 0.5..5.0f64, 0.0..80.0f64, holes()).prop_map(
         |((increment, dialect, sign), head, lengths, (a, ratio), clearance, retract, holes)| {

@@ -111,8 +111,7 @@ impl HoleExtractor<'_> {
         };
         let is_judged = self.metal.holes.is_some() && line.tool_axis.is_some();
         // Where the tool goes next is judged, unless that is unknown, or it is changed in the hole.
-        let is_followed =
-            self.positions.is_known(self.machine) && TOUCH_DEPTH < (self.pose.tip - line.bottom()).norm();
+        let is_followed = self.positions.is_known(self.machine) && !self.is_tool_changing;
         if is_judged && is_followed && !self.is_spoilt_by_plunge(line) {
             return;
         }

@@ -44,8 +44,8 @@ impl HoleExtractor<'_> {
         let is_straight = path.len() == 2;
         let kind = state.tool.and_then(|number| self.machine.find_tool(number)?.kind);
         let wrong_kind = kind.filter(|kind| is_straight && kind.cuts_with_end());
-        let is_judged = is_known && !is_stopped && wrong_kind.is_none();
-        if is_judged || !path.windows(2).any(|chord| self.mills(&chord[0], &chord[1])) {
+        let is_done = is_known && !is_stopped && wrong_kind.is_none();
+        if is_done || !path.windows(2).any(|chord| self.mills(&chord[0], &chord[1])) {
             return;
         }
         let backtrace = event.backtrace();
@@ -71,7 +71,7 @@ impl HoleExtractor<'_> {
     fn mills(&self, from: &Point3<f64>, to: &Point3<f64>) -> bool {
         let along = from - to;
         let Some(axis) = self.axis_in_motion(from, to) else { return false };
-        axis.dot(&along) < MIN_TOOL_COSINE * along.norm()
+        axis.dot(&along).abs() < MIN_TOOL_COSINE * along.norm()
             && self.metal.is_touched(from, to, &axis, self.tool_radius().unwrap_or(0.0))
             && self.cuts_known_metal(from, to) == Some(true)
     }

@@ -110,6 +110,8 @@ pub struct HoleExtractor<'m> {
     tool_body: Vec<ToolCylinder>,
     /// What it cuts in a feed; `None` if its diameter is unknown.
     profile: Option<Profile>,
+    /// True while the tool, its offset or the head is changed.
+    is_tool_changing: bool,
     /// What the current line removes of the metal that has to stay.
     plunge_spoilt: Option<Spoilt>,
     /// Tools of unknown diameter that mill the part.
@@ -173,6 +175,7 @@ impl<'m> HoleExtractor<'m> {
             setup,
             tool_body: Vec::new(),
             profile: None,
+            is_tool_changing: false,
             plunge_spoilt: None,
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
@@ -369,7 +372,9 @@ impl<'m> HoleExtractor<'m> {
             return;
         }
         let after = std::mem::replace(&mut self.setup, before);
+        self.is_tool_changing = true;
         self.end_line(false);
+        self.is_tool_changing = false;
         self.end_engagement();
         self.strokes.end_tool();
         self.setup = after;

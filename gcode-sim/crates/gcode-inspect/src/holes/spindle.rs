@@ -41,52 +41,39 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a spindle that stops in the hole of a drill, or reverses in that of a tool that is no tap. A tool with which the
-    /// job drills is a drill.
+    /// Reports a spindle that stops or reverses in the hole, for a tool with which the job drills, or one whose kind the machine
+    /// file states: only a tap reverses, and a stop is a boring bar's.
     pub(super) fn check_spindle(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
         let number = line.cutting_state.tool;
         let kind = number.and_then(|number| self.machine.find_tool(number)?.kind);
-        let is_drill = matches!(kind, Some(ToolKind::Drill | ToolKind::SpotDrill | ToolKind::Countersink))
-            || self.process_limits.tool_process(number).is_some();
-        let is_other = kind.is_some_and(|kind| kind != ToolKind::Tap);
-        if !is_drill && !is_other {
+        let is_bar = matches!(kind, Some(ToolKind::BoringBar)) && line.spindle != SpindleInHole::Reversed;
+        let is_drill = kind.is_some_and(|kind| kind != ToolKind::Tap) && !is_bar;
+        if !is_drill && self.process_limits.tool_process(number).is_none() {
             return;
         }
-        let purpose = match kind {
-            Some(kind) if !is_drill => format!("is a {}", kind.name()),
-            _ => "drills".to_owned(),
-        };
         let (verb, severity, note) = match line.spindle {
             SpindleInHole::Unchanged => return,
-            SpindleInHole::Stopped if !is_drill => return,
             SpindleInHole::Stopped => (
                 "stops",
                 Severity::Warning,
                 "G76, G86 and G88 stop the spindle for a boring bar; a stopped drill rubs in its hole, or breaks when \
-                 it is moved sideways"
-                    .to_owned(),
+                 it is moved sideways",
             ),
             SpindleInHole::Restarted => (
                 "stops and starts again",
                 Severity::Error,
-                format!("G84 stops the spindle that M04 turns, and G74 the one that M03 turns; this tool {purpose}"),
+                "G84 stops the spindle that M04 turns, and G74 the one that M03 turns: this tool is no tap",
             ),
-            SpindleInHole::Reversed => (
-                "reverses",
-                Severity::Error,
-                format!("G84 and G74 reverse the spindle for a tap; this tool {purpose}"),
-            ),
-        };
-        let help = match is_drill {
-            true => "drill with G81, G82, G83 or G73",
-            false => "tap with a tap, use the cycle of this tool, or correct its kind in the machine file",
+            SpindleInHole::Reversed => {
+                ("reverses", Severity::Error, "G84 and G74 reverse the spindle for a tap: this tool is none")
+            }
         };
         let tool = line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
         self.findings.add(&SPINDLE_IN_HOLE, backtrace, line.spindle as u32, |kind| {
             Diagnostic::new(kind, format!("the spindle {verb} while {tool} is in the hole"))
                 .with_severity(severity)
                 .note(note)
-                .help(help)
+                .help("drill with G81, G82, G83 or G73")
         });
     }
 }
