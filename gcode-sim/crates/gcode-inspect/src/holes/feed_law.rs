@@ -55,16 +55,17 @@ impl HoleExtractor<'_> {
     /// Returns the radius of the tool; `None` if it is unknown, and for a boring bar with the spindle stopped, which is
     /// shifted off the wall. A tool of unknown kind that has turned may be one.
     pub(super) fn tool_radius(&self) -> Option<f64> {
-        let tool = self.machine.find_tool(self.setup.tool?)?;
-        let may_be_shifted = match tool.kind {
-            Some(ToolKind::BoringBar) => true,
-            None => self.has_tool_turned,
-            Some(_) => false,
-        };
-        if may_be_shifted && self.cutting_state.spindle_direction == SpindleDirection::Off {
+        if self.may_be_shifted() {
             return None;
         }
-        tool.diameter.map(|diameter| diameter / 2.0)
+        self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
+    }
+
+    /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be.
+    pub(super) fn may_be_shifted(&self) -> bool {
+        let kind = self.setup.tool.and_then(|number| self.machine.find_tool(number)?.kind);
+        let may_be_bar = kind.map_or(self.has_tool_turned, |kind| kind == ToolKind::BoringBar);
+        may_be_bar && self.cutting_state.spindle_direction == SpindleDirection::Off
     }
 
     /// Returns true if the tool cuts metal that is known between two points, false if all that is known there is removed,
@@ -87,6 +88,9 @@ impl HoleExtractor<'_> {
         }
         let radius = self.tool_radius().unwrap_or(0.0);
         let is_judged = is_known && self.metal.holes.is_some();
+        if is_judged && (self.surface.is_none() || self.has_left_start) {
+            self.check_milling(event, path);
+        }
         let mut worst: Option<Spoilt> = None;
         for chord in path.windows(2) {
             let (from, to) = (chord[0], chord[1]);

@@ -61,6 +61,9 @@ impl HoleExtractor<'_> {
                 }
                 self.report_no_retract(&line, inside, next.is_some());
                 if inside.is_none() || is_feeding {
+                    if inside.is_some() {
+                        self.report_conditions(&line);
+                    }
                     return;
                 }
             }
@@ -81,6 +84,9 @@ impl HoleExtractor<'_> {
         // In a known body a feed across the tool is judged by what it removes, and so is one in a pocket.
         let is_across = line.tool_axis.is_some_and(|axis| axis.dot(&line.out) < MIN_TOOL_COSINE);
         if surface.is_some() && self.metal.holes.is_some() && (is_across || self.is_pocketing(&line)) {
+            if !is_across {
+                self.report_conditions(&line);
+            }
             return;
         }
         let kind = self.cut_kind(&line, is_feeding);
@@ -146,8 +152,8 @@ impl HoleExtractor<'_> {
     /// Reports a cut with a tool that the program has selected and not changed.
     ///
     /// A tool that is prepared for the next change has another offset than the one in effect.
-    fn check_tool_changed(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
-        let CuttingState { tool, selected_tool, compensation, .. } = line.cutting_state;
+    pub(super) fn check_tool_changed(&mut self, backtrace: &Backtrace, state: &CuttingState) {
+        let CuttingState { tool, selected_tool, compensation, .. } = *state;
         if tool == Some(0) {
             self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, 0, 1, |kind| {
                 Diagnostic::new(kind, "T0 is in the spindle and cuts: no T comes before M06")
@@ -170,18 +176,24 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Reports the clamp, the spindle, the head and the direction of a feed.
-    fn report_feed(&mut self, line: &CuttingLine, tilt: Option<Deg>) {
+    /// Reports the clamp, the tool and its spindle in a feed along it, and records the cutting conditions.
+    fn report_conditions(&mut self, line: &CuttingLine) {
         let backtrace = line.backtrace();
         self.check_clamped(backtrace, line.clamp_state);
         if let Some(feeds) = line.cutting_feeds() {
             self.cut_conditions.add(backtrace, &line.cutting_state, line.is_tapping, feeds, line.pecks());
         }
         self.check_spindle(backtrace, line);
-        self.check_tool_changed(backtrace, line);
+        self.check_tool_changed(backtrace, &line.cutting_state);
         if line.is_fed_stopped {
-            self.report_spindle_stopped(line.backtrace());
+            self.report_spindle_stopped(backtrace);
         }
+    }
+
+    /// Reports the conditions, the head and the direction of a feed.
+    fn report_feed(&mut self, line: &CuttingLine, tilt: Option<Deg>) {
+        self.report_conditions(line);
+        let backtrace = line.backtrace();
         let Some(tilt) = tilt else {
             if matches!(self.machine.head.kind, HeadKind::Manual { .. }) {
                 self.findings.add(&HEAD_NOT_SET, backtrace, 0, |kind| {

@@ -3,7 +3,7 @@ use nalgebra::Point3;
 
 use super::line::ToolExit;
 use super::{HoleExtractor, MotionKind};
-use gcode_lang::motion::{Event, SpindleDirection};
+use gcode_lang::motion::Event;
 
 impl HoleExtractor<'_> {
     /// Follows a straight motion from `from` along the current line. Returns the point from which the tool moved freely;
@@ -24,9 +24,8 @@ impl HoleExtractor<'_> {
             }
             return Some(from);
         }
-        let is_spindle_stopped =
-            kind == MotionKind::Rapid && self.cutting_state.spindle_direction == SpindleDirection::Off;
-        if is_spindle_stopped && line.is_inward() && line.try_bar_shift(&tip) {
+        let may_be_shifted = kind == MotionKind::Rapid && self.may_be_shifted();
+        if may_be_shifted && line.is_inward() && line.try_bar_shift(&tip) {
             self.current_line = Some(line);
             return None;
         }
@@ -61,7 +60,7 @@ impl HoleExtractor<'_> {
             }
             exit @ (ToolExit::AlongLine | ToolExit::Sideways { .. }) => {
                 let is_along = exit == ToolExit::AlongLine;
-                if is_spindle_stopped && !line.is_inward() && !is_along {
+                if may_be_shifted && !line.is_inward() && !is_along {
                     self.report_back_boring(&line);
                     return Some(from);
                 }

@@ -18,6 +18,7 @@ mod line_motion;
 mod machine_requests;
 mod metal;
 mod milled;
+mod milling;
 pub(crate) mod per_block;
 mod rapid_paths;
 mod rapids;
@@ -48,6 +49,7 @@ use self::feed_law::Spoilt;
 use self::line::CuttingLine;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
+use self::milling::MillingConditions;
 use self::per_block::Findings;
 use self::removed_metal::Profile;
 use self::strokes::{MilledStrokes, Strokes};
@@ -139,6 +141,7 @@ pub struct HoleExtractor<'m> {
     findings: Findings,
     close_motions: CloseMotions,
     cut_conditions: CutConditionsByBlock,
+    milling: MillingConditions,
     length_mismatches: Vec<LengthMismatch>,
     /// Number of probing moves.
     probe_count: u64,
@@ -190,6 +193,7 @@ impl<'m> HoleExtractor<'m> {
             findings: Findings::default(),
             close_motions: CloseMotions::default(),
             cut_conditions: CutConditionsByBlock::default(),
+            milling: MillingConditions::default(),
             length_mismatches: Vec::new(),
             probe_count: 0,
             search_budget: SearchBudget::default(),

@@ -14,8 +14,6 @@ struct CutEnd {
     radius: f64,
     /// Height of the cone's edge above its tip per mm of radius; 0 of a flat end.
     rise: f64,
-    /// True if metal stays on the axis.
-    has_core: bool,
 }
 
 impl CutEnd {
@@ -30,8 +28,7 @@ impl CutEnd {
             PointShape::Unknown => Some(DRILL_POINT),
         };
         let rise = angle.map_or(0.0, |angle| 1.0 / Deg(angle.0 / 2.0).tan());
-        let has_core = pass.cut.milled.is_some_and(|circle| circle.core.is_some());
-        Some(Self { radius, rise, has_core })
+        Some(Self { radius, rise })
     }
 
     /// Returns true if a narrower end lies in this one. Its axis is `aside` from this axis, its tip `above` this tip.
@@ -40,7 +37,7 @@ impl CutEnd {
         // Both ends are straight along the radius: their tip and their edge decide.
         let tip = self.rise * aside <= above + NOISE;
         let edge = self.rise * (aside + other.radius) <= above + other.rise * other.radius + NOISE;
-        is_within && !self.has_core && tip && edge
+        is_within && tip && edge
     }
 }
 
@@ -97,7 +94,7 @@ mod tests {
     #[test]
     fn a_pilot_aside_lies_in_the_cone_of_the_drill() {
         let rise = 1.0 / Deg(59.0).tan();
-        let end = |diameter: f64| CutEnd { radius: diameter / 2.0, rise, has_core: false };
+        let end = |diameter: f64| CutEnd { radius: diameter / 2.0, rise };
         let (pilot, drill) = (end(4.0), end(12.0));
         assert!(drill.contains(&pilot, 3.0, 2.0));
         assert!(!drill.contains(&pilot, 3.0, 1.8), "the pilot's edge is at 3.002");
@@ -108,7 +105,6 @@ mod tests {
             "4 + 2 reaches the wall"
         );
         assert!(!drill.contains(&drill, 0.0, 0.0), "the same diameter is no pilot");
-        assert!(!CutEnd { has_core: true, ..end(12.0) }.contains(&pilot, 0.0, 2.0));
         let flat = CutEnd { rise: 0.0, ..end(4.0) };
         assert!(!drill.contains(&flat, 3.0, 3.0) && drill.contains(&flat, 3.0, 3.005), "a flat pilot");
     }

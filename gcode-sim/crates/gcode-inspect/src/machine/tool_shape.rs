@@ -54,6 +54,11 @@ impl ToolKind {
         Self::NAMES.iter().find(|(_, kind)| *kind == self).map_or("tool", |(name, _)| name)
     }
 
+    /// Returns true for a tool that cuts with its end alone.
+    pub(crate) fn cuts_with_end(self) -> bool {
+        matches!(self, Self::Drill | Self::Reamer | Self::BoringBar | Self::Tap)
+    }
+
     /// Returns true if a tool of this kind can make the feature.
     pub(crate) fn can_make(self, feature: FeatureKind) -> bool {
         match self {

@@ -14,17 +14,14 @@ pub(super) fn needs_hole(kind: Option<ToolKind>) -> bool {
 /// Returns true if a hole of one diameter and one pass is drilled, or milled by a flat end.
 pub(super) fn is_usual(drilled: &DrilledHole, machine: &Machine) -> bool {
     let tool = || drilled.tool.and_then(|number| machine.find_tool(number));
-    let is_flat = |tool: &Tool| !is_end_cutting(tool.kind) && !matches!(tool.point(), PointShape::Pointed(_));
+    let is_flat = |tool: &Tool| {
+        !tool.kind.is_some_and(ToolKind::cuts_with_end) && !matches!(tool.point(), PointShape::Pointed(_))
+    };
     match drilled.finishing_cut {
         PassCut { is_tapping: true, .. } => false,
         PassCut { milled: Some(_), .. } => tool().is_none_or(is_flat),
         _ => tool().is_none_or(|tool| !needs_hole(tool.kind)),
     }
-}
-
-/// Returns true for a tool that cuts with its end alone.
-fn is_end_cutting(kind: Option<ToolKind>) -> bool {
-    kind == Some(ToolKind::Drill) || needs_hole(kind)
 }
 
 /// Adds the findings on the kinds of the tools that cut a hole, and the tools whose hole the program doesn't drill.
@@ -70,7 +67,8 @@ fn sideways(id: &str, cut: &Cut<'_>) -> Option<Diagnostic> {
     let kind = cut.kind.filter(|_| cut.is_circle())?;
     let message = format!("hole {id}: {} mills a circle and is a {}", cut.name(), kind.name());
     let finding = Diagnostic::new(&TOOL_KIND, message).with_backtrace(cut.pass.backtrace.clone());
-    is_end_cutting(cut.kind)
+    cut.kind
+        .is_some_and(ToolKind::cuts_with_end)
         .then(|| finding.help("use an end mill, or correct the kind of the tool in the machine file"))
 }
 
