@@ -126,8 +126,8 @@ pub struct Slice {
     set_lengths: BTreeSet<u32>,
     /// Cutter radii that the program has set, by their D.
     set_radii: BTreeSet<u32>,
-    /// Work coordinate systems that the machine file states or the program has set, by their index.
-    set_systems: BTreeSet<usize>,
+    /// Axes, as bits, of work coordinate systems that the machine file states or the program has set, by the system's index.
+    set_systems: BTreeMap<usize, u8>,
     /// Modal codes of power-on that the run has read: each is one of its group.
     power_on_modes: Marks,
     /// Values that decide whether the run cuts elsewhere.
@@ -146,13 +146,13 @@ impl Slice {
         offset_variables: OffsetVariables,
         variables: &[(u32, f64)],
     ) -> Self {
-        let mut set_systems: BTreeSet<usize> =
-            stated.work_systems.iter().copied().map(system_index).collect();
+        let systems = stated.work_systems.iter().copied().map(system_index);
+        let mut set_systems: BTreeMap<usize, u8> = systems.map(|system| (system, u8::MAX)).collect();
         for (number, _) in variables {
             match reads::offset_of(*number, offset_variables) {
                 Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
                 Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
-                Some(OffsetEntry::Work(system)) => _ = set_systems.remove(&system),
+                Some(OffsetEntry::Work(system, _)) => _ = set_systems.remove(&system),
                 None => {}
             }
         }

@@ -62,6 +62,8 @@ pub(super) struct CuttingLine {
     pecks: PeckExtent,
     /// True if a feed that cuts finds the spindle stopped.
     pub is_fed_stopped: bool,
+    /// True if the spindle has reversed after the last feed that cuts.
+    pub is_tapping: bool,
     /// Largest change of the spindle while the tool was in the hole.
     pub spindle: SpindleInHole,
     /// Deepest point of the finished strokes.
@@ -132,6 +134,7 @@ impl CuttingLine {
             surface_depth: None,
             pecks: PeckExtent::default(),
             is_fed_stopped: false,
+            is_tapping: false,
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
@@ -145,9 +148,7 @@ impl CuttingLine {
     pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState) {
         self.is_fed_stopped |= state.spindle_direction == SpindleDirection::Off;
         self.cutting_state = state;
-        if self.spindle == SpindleInHole::Reversed {
-            self.spindle = SpindleInHole::Unchanged;
-        }
+        self.is_tapping = false;
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
         self.last_feed = Some(feed);
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
@@ -342,7 +343,7 @@ impl CuttingLine {
                 feed: self.last_feed,
                 speed: self.cutting_state.speed,
                 direction: self.cutting_state.spindle_direction,
-                is_tapping: self.spindle == SpindleInHole::Reversed,
+                is_tapping: self.is_tapping,
                 milled: None,
             },
             axis: self.tool_axis.unwrap_or(self.out),
@@ -394,9 +395,9 @@ impl HoleExtractor<'_> {
             (None, Some(holes)) => holes.is_above_all(&tip, &tip),
             (None, None) => false,
         };
-        let is_stopped = self.cutting_state.spindle_direction == SpindleDirection::Off;
-        // A tool may enter a hole that is cut with the spindle stopped.
-        if is_in_air || is_stopped && self.cuts_known_metal(from, &tip) == Some(false) {
+        // A tool may enter a hole that is cut with the spindle stopped or turning backwards.
+        let is_forward = self.cutting_state.spindle_direction == SpindleDirection::Clockwise;
+        if is_in_air || !is_forward && self.cuts_known_metal(from, &tip) == Some(false) {
             return;
         }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };

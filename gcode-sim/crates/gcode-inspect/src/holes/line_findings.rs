@@ -3,7 +3,7 @@ use nalgebra::Point3;
 
 use super::HoleExtractor;
 use super::cutting::CuttingState;
-use super::line::{CuttingLine, SpindleInHole, ToolExit};
+use super::line::{CuttingLine, ToolExit};
 use super::metal::FeedPart;
 use super::strokes::{CutKind, MIN_TOOL_COSINE};
 use super::unknown_axes::without_assumed;
@@ -178,8 +178,7 @@ impl HoleExtractor<'_> {
         let backtrace = line.backtrace();
         self.check_clamped(backtrace, line.clamp_state);
         if let Some(feeds) = line.cutting_feeds() {
-            let is_tapping = line.spindle == SpindleInHole::Reversed;
-            self.cut_conditions.add(backtrace, &line.cutting_state, is_tapping, feeds, line.pecks());
+            self.cut_conditions.add(backtrace, &line.cutting_state, line.is_tapping, feeds, line.pecks());
         }
         self.check_spindle(backtrace, line);
         self.check_tool_changed(backtrace, &line.cutting_state);

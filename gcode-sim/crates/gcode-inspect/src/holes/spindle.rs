@@ -22,13 +22,18 @@ impl HoleExtractor<'_> {
     pub(super) fn update_spindle_in_hole(&mut self, before: SpindleDirection) {
         let now = self.cutting_state.spindle_direction;
         let Some(line) = self.current_line.as_mut().filter(|line| line.is_below_start()) else { return };
-        let begun = line.cutting_state.spindle_direction;
+        let begun = match line.cutting_feeds() {
+            Some(_) => line.cutting_state.spindle_direction,
+            // Nothing is cut so far.
+            None => SpindleDirection::Off,
+        };
         let state = match now {
             _ if begun == SpindleDirection::Off || now == before => SpindleInHole::Unchanged,
             SpindleDirection::Off => SpindleInHole::Stopped,
             now if now != begun => SpindleInHole::Reversed,
             _ => SpindleInHole::Restarted,
         };
+        line.is_tapping |= state == SpindleInHole::Reversed;
         line.spindle = line.spindle.max(state);
     }
 

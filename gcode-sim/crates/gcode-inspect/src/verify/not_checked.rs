@@ -32,7 +32,14 @@ const UNCOMMANDED: &str = "no block commands it, and it counts as 0";
 /// Returns what these sentences name, for the first line of a verdict: all before the first colon.
 pub(super) fn gaps(lines: &[String]) -> Vec<&str> {
     let is_gap = |line: &&String| ![UNSPECIFIED, UNCOMMANDED].iter().any(|end| line.ends_with(end));
-    lines.iter().filter(is_gap).map(|line| line.split(": ").next().unwrap_or(line)).collect()
+    let names = lines.iter().filter(is_gap).map(|line| line.split(": ").next().unwrap_or(line));
+    let mut gaps = Vec::new();
+    names.for_each(|name| {
+        if !gaps.contains(&name) {
+            gaps.push(name)
+        }
+    });
+    gaps
 }
 
 /// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is. What is not checked stands

@@ -1,4 +1,6 @@
 //! `[offsets]`: the work offsets G54 to G59 and G54.1 P1 to P300.
+use std::collections::BTreeSet;
+
 use super::AXES;
 use crate::machine::WorkOffset;
 use gcode_lang::motion::{Axes, AxisIndex};
@@ -9,8 +11,8 @@ use gcode_part::reader::{FileError, FileKey, Reader, TableOf, WordList};
 /// Work offsets by code, each with its axes.
 pub(super) type FileOffsets = TableOf<WorkCode, TableOf<AxisLetter, WorkOffsetValue>>;
 
-/// Largest number of an additional work coordinate system.
-const MAX_ADDITIONAL: u16 = 300;
+/// Codes of additional work coordinate systems, each with its largest number.
+const ADDITIONAL: [(&str, u16); 2] = [("G54.1 P", 300), ("G154 P", 99)];
 
 /// Codes of work offsets.
 pub(super) enum WorkCode {}
@@ -27,17 +29,15 @@ impl WordList for WorkCode {
         if let Some((_, system)) = Self::all().into_iter().find(|(name, _)| *name == word) {
             return Some(system);
         }
-        let digits = ["G54.1 P", "G154 P"].into_iter().find_map(|code| word.strip_prefix(code))?;
-        let number = digits.parse().ok().filter(|number| (1..=MAX_ADDITIONAL).contains(number))?;
-        // One spelling for each: two would be two keys for one offset.
+        let (digits, max) =
+            ADDITIONAL.into_iter().find_map(|(code, max)| Some((word.strip_prefix(code)?, max)))?;
+        let number = digits.parse().ok().filter(|number| (1..=max).contains(number))?;
         (number.to_string() == digits).then_some(WorkSystem::Additional(number))
     }
 
     fn names() -> Vec<String> {
         let standard = Self::all().into_iter().map(|(name, _)| name.to_owned());
-        standard
-            .chain([format!("G54.1 P1 to P{MAX_ADDITIONAL}"), "G154 P1 to P99 of a Haas".to_owned()])
-            .collect()
+        standard.chain(["G54.1 P1 to P300".to_owned(), "G154 P1 to P99 of a Haas".to_owned()]).collect()
     }
 
     fn pattern() -> String {
@@ -78,7 +78,13 @@ pub(super) fn work_offsets(
     let axis = |system: WorkSystem, letter: char| {
         axis_of(reader, axes, &format!("offsets.{}", system.name()), letter)
     };
+    let mut systems = BTreeSet::new();
     let offset = |(system, values): (WorkSystem, Vec<(char, f64)>)| {
+        if !systems.insert(system) {
+            let key = format!("offsets.{}", system.name());
+            let message = format!("key '{key}': the offset is there twice, and G154 P1 is G54.1 P1");
+            return Err(reader.error_at(&key, message));
+        }
         let values = values.into_iter().map(|(letter, value)| Ok((axis(system, letter)?, value)));
         Ok(WorkOffset { system, values: values.collect::<Result<_, FileError>>()? })
     };
@@ -100,7 +106,7 @@ mod tests {
         assert_eq!(WorkCode::find("G59"), Some(WorkSystem::Standard(6)));
         assert_eq!(WorkCode::find("G54.1 P300"), Some(WorkSystem::Additional(300)));
         assert_eq!(WorkCode::find("G154 P9"), Some(WorkSystem::Additional(9)));
-        for word in ["G60", "G54.1 P301", "G54.1 P0", "G54.1 P01", "G54.1P1", "g54"] {
+        for word in ["G60", "G54.1 P301", "G154 P100", "G54.1 P0", "G54.1 P01", "G54.1P1", "g54"] {
             assert_eq!(WorkCode::find(word), None, "{word}");
         }
     }

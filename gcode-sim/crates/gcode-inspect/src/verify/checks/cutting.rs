@@ -87,8 +87,7 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
     if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
         return None;
     }
-    // An approach in the air may be faster.
-    let [feed, _] = cut.feed_range;
+    let [_, feed] = cut.feed_range;
     let per_turn = feed.0 / cut.speed.0;
     let diameter = machine.diameter_of(cut.tool);
     let limit = match (diameter, kind) {
