@@ -25,6 +25,9 @@ const MAX_RADIUS: f64 = 25.0;
 /// Largest number of chords of an arc by which the shank and the holder are compared.
 const SHANK_CHORDS: usize = 16;
 
+/// Number of feeds that cut what has to stay after which no more are compared.
+const MAX_SPOILT_FEEDS: u32 = 1000;
+
 /// Largest distance by which a plunge leads aside, mm.
 const MAX_ASIDE: f64 = 0.2;
 
@@ -91,6 +94,7 @@ impl HoleExtractor<'_> {
         if is_judged && (self.surface.is_none() || self.has_left_start) {
             self.check_milling(event, path);
         }
+        let is_judged = is_judged && self.spoilt_feeds < MAX_SPOILT_FEEDS;
         let mut worst: Option<Spoilt> = None;
         for chord in path.windows(2) {
             let (from, to) = (chord[0], chord[1]);
@@ -117,6 +121,7 @@ impl HoleExtractor<'_> {
             worst = chords.filter_map(|chord| self.spoilt_by_shank(&chord)).reduce(Spoilt::deeper);
         }
         if let Some(spoilt) = worst {
+            self.spoilt_feeds += 1;
             self.report_spoilt(&event.backtrace(), spoilt);
         }
     }

@@ -112,6 +112,8 @@ pub struct HoleExtractor<'m> {
     profile: Option<Profile>,
     /// What the current line removes of the metal that has to stay.
     plunge_spoilt: Option<Spoilt>,
+    /// Number of feeds that removed such metal.
+    spoilt_feeds: u32,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -174,6 +176,7 @@ impl<'m> HoleExtractor<'m> {
             tool_body: Vec::new(),
             profile: None,
             plunge_spoilt: None,
+            spoilt_feeds: 0,
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             builder_code: None,
