@@ -391,7 +391,11 @@ impl HoleExtractor<'_> {
         let EventKind::Feed { rate, .. } = event.kind else { return };
         let tip = self.pose.tip;
         let is_in_air = match (&self.surface, &self.metal.holes) {
-            (Some(surface), _) => !surface.is_deeper(&tip, TOUCH_DEPTH),
+            // A feed through the part ends in the air.
+            (Some(surface), _) => {
+                !surface.is_deeper(&tip, TOUCH_DEPTH)
+                    && surface.depth(&surface.deepest_between(from, &tip)) <= TOUCH_DEPTH
+            }
             (None, Some(holes)) => holes.is_above_all(&tip, &tip),
             (None, None) => false,
         };
