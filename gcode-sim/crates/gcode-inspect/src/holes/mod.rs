@@ -22,6 +22,7 @@ pub(crate) mod per_block;
 mod rapid_paths;
 mod rapids;
 mod removed_metal;
+mod rest;
 pub(crate) mod spindle;
 mod strokes;
 mod swallowed;
