@@ -4,7 +4,8 @@ use std::sync::Arc;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
-use super::removed_metal::{RemovedMetal, Rest};
+use super::removed_metal::RemovedMetal;
+use super::rest::Rest;
 use crate::machine::{TOUCH_DEPTH, ToolCylinder};
 use gcode_part::{Collar, EntryPlanes, Metal, NearestPoint, PARALLEL_COSINE, Rod, Step, Surface};
 

@@ -24,6 +24,7 @@ mod profile;
 mod rapid_paths;
 mod rapids;
 mod removed_metal;
+mod rest;
 pub(crate) mod spindle;
 mod strokes;
 mod swallowed;

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::profile::Profile;
+use super::rest::Rest;
 use crate::machine::{TOUCH_DEPTH, ToolCylinder};
 
 /// Largest number of sweeps that are kept, for the memory.
@@ -323,48 +324,6 @@ fn in_circle([first, last]: [f64; 2], q: &Vector3<f64>, u: &Vector3<f64>, radius
     (first <= last).then_some([first, last])
 }
 
-/// What is left of a travel, as shares of it.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Rest {
-    pieces: Vec<[f64; 2]>,
-}
-
-impl Rest {
-    /// Adds a piece.
-    pub(super) fn push(&mut self, piece: [f64; 2]) {
-        self.pieces.push(piece);
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.pieces.is_empty()
-    }
-
-    pub(super) fn pieces(&self) -> &[[f64; 2]] {
-        &self.pieces
-    }
-
-    /// Returns the least and the largest share.
-    fn extent(&self) -> Option<[f64; 2]> {
-        self.pieces.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-    }
-
-    /// Takes away the shares between two.
-    pub(super) fn take_away(&mut self, [from, to]: [f64; 2]) {
-        let mut index = 0;
-        while let Some([first, last]) = self.pieces.get(index).copied() {
-            if last < from || to < first {
-                index += 1;
-                continue;
-            }
-            self.pieces.swap_remove(index);
-            // What lies before and behind is disjoint from the shares taken away.
-            let before = (first < from).then_some([first, from.next_down()]);
-            let behind = (to < last).then_some([to.next_up(), last]);
-            self.pieces.extend(before.into_iter().chain(behind));
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -380,7 +339,7 @@ mod tests {
         rest.push([0.0, 1.0]);
         removed.uncover(&[from, to], true, &mut rest);
         let mut pieces: Vec<_> =
-            rest.pieces.iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
+            rest.pieces().iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
         pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
         pieces
     }
