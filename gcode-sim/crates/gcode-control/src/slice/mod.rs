@@ -26,7 +26,7 @@ use super::data::system_index;
 use super::flow::ProgramFlow;
 use super::registers::Registers;
 use gcode_lang::control::OffsetVariables;
-use gcode_lang::motion::Backtrace;
+use gcode_lang::motion::{Backtrace, MAX_AXES};
 use gcode_lang::program::g_codes::name;
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Assign, AssignmentTarget, Op, OpKind, Statement};
@@ -152,7 +152,10 @@ impl Slice {
             match reads::offset_of(*number, offset_variables) {
                 Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
                 Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
-                Some(OffsetEntry::Work(system, _)) => _ = set_systems.remove(&system),
+                Some(OffsetEntry::Work(system, axis)) if axis < MAX_AXES => {
+                    set_systems.entry(system).and_modify(|axes| *axes &= !(1 << axis));
+                }
+                Some(OffsetEntry::Work(..)) => {}
                 None => {}
             }
         }
