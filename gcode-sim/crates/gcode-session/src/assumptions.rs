@@ -404,10 +404,7 @@ mod tests {
             assert_eq!(found(words, &[(variable, 7.0)]), [expected], "{words}");
         }
         assert_eq!(found("G10 L2 P1 X3.\nG54", &[(5221, 7.0)]), [""; 0]);
-        assert_eq!(found("G10 L20 P3 X0 Y3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
-        // An offset is set axis by axis.
-        assert_eq!(found("G10 L2 P2 X3. Y0 Z0\nG55", &[]), [""; 0]);
-        assert_eq!(found("G10 L2 P2 X3. Y0\nG55", &[]), ["G55=vacant@5: 1"]);
+        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
     }
 
     #[test]

@@ -26,7 +26,7 @@ use super::data::system_index;
 use super::flow::ProgramFlow;
 use super::registers::Registers;
 use gcode_lang::control::OffsetVariables;
-use gcode_lang::motion::{Backtrace, MAX_AXES};
+use gcode_lang::motion::Backtrace;
 use gcode_lang::program::g_codes::name;
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Assign, AssignmentTarget, Op, OpKind, Statement};
@@ -126,8 +126,8 @@ pub struct Slice {
     set_lengths: BTreeSet<u32>,
     /// Cutter radii that the program has set, by their D.
     set_radii: BTreeSet<u32>,
-    /// Axes, as bits, of work coordinate systems that the machine file states or the program has set, by the system's index.
-    set_systems: BTreeMap<usize, u8>,
+    /// Work coordinate systems that the machine file states or the program has set, by their index.
+    set_systems: BTreeSet<usize>,
     /// Modal codes of power-on that the run has read: each is one of its group.
     power_on_modes: Marks,
     /// Values that decide whether the run cuts elsewhere.
@@ -146,16 +146,13 @@ impl Slice {
         offset_variables: OffsetVariables,
         variables: &[(u32, f64)],
     ) -> Self {
-        let systems = stated.work_systems.iter().copied().map(system_index);
-        let mut set_systems: BTreeMap<usize, u8> = systems.map(|system| (system, u8::MAX)).collect();
+        let mut set_systems: BTreeSet<usize> =
+            stated.work_systems.iter().copied().map(system_index).collect();
         for (number, _) in variables {
             match reads::offset_of(*number, offset_variables) {
                 Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
                 Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
-                Some(OffsetEntry::Work(system, axis)) if axis < MAX_AXES => {
-                    set_systems.entry(system).and_modify(|axes| *axes &= !(1 << axis));
-                }
-                Some(OffsetEntry::Work(..)) => {}
+                Some(OffsetEntry::Work(system)) => _ = set_systems.remove(&system),
                 None => {}
             }
         }

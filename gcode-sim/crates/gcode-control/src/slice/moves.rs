@@ -154,7 +154,7 @@ impl Slice {
         let drills = |axis: AxisIndex| is_drilling(settings, modes.plane, settings.axes.letter(axis) as u8);
         let is_unset = self.is_system_open(data, modes.work);
         // Only --set can have set the external offset.
-        let has_shift = data.set_systems.contains(&0) && !self.set_systems.contains_key(&0);
+        let has_shift = data.set_systems.contains(&0) && !self.set_systems.contains(&0);
         let is_cut = modes.is_in_cycle
             || modes.one_shot == Some(OneShot::Skip)
             || modes.one_shot.is_none() && modes.motion != Motion::Rapid;
@@ -225,9 +225,7 @@ impl Slice {
                     (_, Some(number)) => system_index(WorkSystem::Additional(number as u16)),
                     (_, None) => system_index(block.registers.state.modal.work),
                 };
-                let axes = &block.registers.data.settings.axes;
-                let named = list.iter().filter_map(|word| axes.find(word.letter));
-                self.set_work(system, named.fold(0, |bits, axis| bits | 1 << axis));
+                self.set_systems.insert(system);
             }
             (Some(l @ (1 | 10..=13)), Some(number)) => {
                 self.machine.tool_table |= marks;

@@ -8,7 +8,6 @@ use super::super::variables::VariableClass;
 use super::{Block, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::control::OffsetVariables;
-use gcode_lang::motion::{AxisIndex, MAX_AXES};
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
 
@@ -22,21 +21,18 @@ const FIRST_ADDITIONAL: usize = 7;
 pub(super) enum OffsetEntry {
     Length(u32),
     Radius(u32),
-    /// A work coordinate system and its axis.
-    Work(usize, AxisIndex),
+    Work(usize),
 }
 
 /// Returns the entry that a system variable addresses.
 pub(super) fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
     let is_haas = offsets == OffsetVariables::Haas;
-    let work = |first: u32, system: usize| {
-        let (row, axis) = ((number - first) / POSITIONS, (number - first) % POSITIONS);
-        OffsetEntry::Work(system + row as usize, axis as AxisIndex)
-    };
+    let work =
+        |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
     Some(match number {
         2001..=2400 => OffsetEntry::Length((number - 2001) % 200 + 1),
         2401..=2800 if is_haas => OffsetEntry::Radius((number - 2401) % 200 + 1),
-        2500..=2806 => OffsetEntry::Work((number % 100) as usize, (number / 100 - 25) as AxisIndex),
+        2500..=2806 => OffsetEntry::Work((number % 100) as usize),
         5201..=5220 if is_haas => return None,
         5201..=5340 => work(5201, 0),
         7001..=7960 => work(7001, FIRST_ADDITIONAL),
@@ -192,18 +188,7 @@ impl Slice {
     pub(super) fn is_system_open(&self, data: &ControlData, work: WorkSystem) -> bool {
         let index = system_index(work);
         let has_offset = work != WorkSystem::default() || data.set_systems.contains(&index);
-        let linear = (0..data.settings.axes.len()).filter(|axis| !data.settings.axes.is_rotary(*axis));
-        has_offset && !linear.into_iter().all(|axis| self.is_work_set(index, axis))
-    }
-
-    /// Returns true if the machine file states the work offset of an axis or a block has set it.
-    fn is_work_set(&self, system: usize, axis: AxisIndex) -> bool {
-        self.set_systems.get(&system).is_some_and(|axes| axes >> axis & 1 == 1)
-    }
-
-    /// Records that a block sets the work offset of axes, as bits.
-    pub(super) fn set_work(&mut self, system: usize, axes: u8) {
-        *self.set_systems.entry(system).or_default() |= axes;
+        has_offset && !self.set_systems.contains(&index)
     }
 
     /// Returns true if the machine file states an offset or a block has set it, by its variable.
@@ -217,7 +202,7 @@ impl Slice {
             Some(OffsetEntry::Radius(tool)) => {
                 self.set_radii.contains(&tool) || is_stated(&self.stated.radii, tool)
             }
-            Some(OffsetEntry::Work(system, axis)) => axis < MAX_AXES && self.is_work_set(system, axis),
+            Some(OffsetEntry::Work(system)) => self.set_systems.contains(&system),
             None => false,
         }
     }
@@ -243,10 +228,7 @@ impl Slice {
                 match offset_of(number, registers.data.settings.offset_variables) {
                     Some(OffsetEntry::Length(tool)) => _ = self.set_lengths.insert(tool),
                     Some(OffsetEntry::Radius(tool)) => _ = self.set_radii.insert(tool),
-                    Some(OffsetEntry::Work(system, axis)) if axis < MAX_AXES => {
-                        self.set_work(system, 1 << axis);
-                    }
-                    Some(OffsetEntry::Work(..)) => {}
+                    Some(OffsetEntry::Work(system)) => _ = self.set_systems.insert(system),
                     None => {}
                 }
             }
