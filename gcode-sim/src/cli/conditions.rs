@@ -15,7 +15,7 @@ pub(super) enum DeniedKind {
     Assumptions,
 }
 
-/// DeniedKind of assumptions.
+/// Flag that denies assumptions.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct DenyArguments {
     /// Fail if a hole depends on a value that the run reads and nothing in the program sets: a common variable, an

@@ -243,10 +243,9 @@ impl Planner<'_> {
     /// M06 of a Haas: Z goes straight home before the tool changes. A position on the part that is unknown stays so.
     pub(super) fn plan_z_home(&self, plan: &mut BlockPlan) {
         let Some(z) = self.data.settings.axes.find(b'Z') else { return };
-        let is_offset_known = self.data.set_systems.contains(&system_index(plan.state.modal.work));
         let mut home = plan.state.machine_position;
         home[z] = 0.0;
-        if is_offset_known || plan.state.unknown.all() >> z & 1 == 0 {
+        if self.is_work_offset_set(plan) || plan.state.unknown.all() >> z & 1 == 0 {
             self.place_at_machine_coordinates(plan, 1 << z);
         }
         self.push_rapid(plan, &home);
@@ -271,10 +270,14 @@ impl Planner<'_> {
         self.rapid_to_endpoint(plan)
     }
 
+    /// Returns true if anything has set the active work offset.
+    fn is_work_offset_set(&self, plan: &BlockPlan) -> bool {
+        self.data.set_systems.contains(&system_index(plan.state.modal.work))
+    }
+
     /// Plans that axes go to machine coordinates. Their position on the part is known if anything has set the work offset.
     fn place_at_machine_coordinates(&self, plan: &mut BlockPlan, axes: u8) {
-        let is_offset_known = self.data.set_systems.contains(&system_index(plan.state.modal.work));
-        let at_machine_position = if is_offset_known { 0 } else { axes };
+        let at_machine_position = if self.is_work_offset_set(plan) { 0 } else { axes };
         let unknown = UnknownAxes { at_machine_position, ..UnknownAxes::default() };
         plan.state.unknown = plan.state.unknown.with_axes_of(axes, unknown);
         self.push_unknown_axes(plan);

@@ -57,7 +57,6 @@ mod read;
 pub mod reader;
 mod reference;
 mod solid;
-
 mod stock;
 mod surface;
 mod touch_uncertainty;

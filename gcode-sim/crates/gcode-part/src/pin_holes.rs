@@ -1,9 +1,9 @@
 //! Holes of a pin-hole job: the entry is the intersection of the hole's line with the implicit surface.
 //!
 //! The direction is the gradient of the surface there, or its axis of revolution.
-use nalgebra::{Point3, Vector3};
-
 use std::sync::Arc;
+
+use nalgebra::{Point3, Vector3};
 
 use super::hole::Hole;
 use super::nominal_axes::NominalAxes;

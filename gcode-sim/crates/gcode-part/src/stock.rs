@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 use super::solid::Rod;
 use super::surface::Surface;
 use crate::reader::bounds::{Length, MachinePoint};
-
 use crate::reader::{FileKey, FixedArray, Items, Section};
 
 /// The solid material of the part, in the part's frame, mm.

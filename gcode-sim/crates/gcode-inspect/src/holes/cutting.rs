@@ -47,9 +47,21 @@ pub(super) struct CuttingState {
     pub speed: Rpm,
 }
 
+impl CuttingState {
+    /// Returns tool, length offset, direction and speed as a key.
+    pub(super) fn key(&self) -> [u64; 4] {
+        let length = match self.compensation {
+            LengthCompensation::Off => 0,
+            LengthCompensation::Plus(h) => 1 << 32 | u64::from(h),
+            LengthCompensation::Minus(h) => 2 << 32 | u64::from(h),
+        };
+        [self.tool.map_or(u64::MAX, u64::from), length, self.spindle_direction as u64, self.speed.0.to_bits()]
+    }
+}
+
 /// Conditions by block and state, in order of first occurrence.
 #[derive(Debug, Default)]
-pub(super) struct CutConditionsByBlock(PerBlock<[u64; 6], CutConditions>);
+pub(super) struct CutConditionsByBlock(PerBlock<([u64; 4], bool, [u64; 2]), CutConditions>);
 
 impl CutConditionsByBlock {
     pub(super) fn add(
@@ -61,21 +73,7 @@ impl CutConditionsByBlock {
         pecks: PeckExtent,
     ) {
         let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;
-        let length = match compensation {
-            LengthCompensation::Off => 0,
-            LengthCompensation::Plus(h) => 1 << 32 | u64::from(h),
-            LengthCompensation::Minus(h) => 2 << 32 | u64::from(h),
-        };
-        let tool_key = tool.map_or(u64::MAX, u64::from);
-        let [min_feed, max_feed] = feed_range.map(|feed| feed.0.to_bits());
-        let key = [
-            tool_key,
-            length,
-            spindle_direction as u64 | u64::from(is_tapping) << 8,
-            speed.0.to_bits(),
-            min_feed,
-            max_feed,
-        ];
+        let key = (state.key(), is_tapping, feed_range.map(|feed| feed.0.to_bits()));
         let (_, entry) = self.0.count(backtrace.block, key, || CutConditions {
             backtrace: backtrace.clone(),
             tool,

@@ -301,7 +301,7 @@ impl HoleExtractor<'_> {
 
     fn report_spoilt(&mut self, backtrace: &Backtrace, Spoilt { at, part }: Spoilt) {
         let (depth, point) = (at.depth, format_point(&at.point));
-        if let (SpoiltBy::TipBeyond(hole), Some(holes)) = (part, self.metal.nominal_holes()) {
+        if let (SpoiltBy::TipBeyond(hole), Some(holes)) = (part, self.metal.holes.as_deref()) {
             let (id, limit) = (holes.id(hole), holes.collar(hole).max_depth());
             let message = format!(
                 "the tool is fed through hole {id} and {depth:.3} mm below its entry, at {point}: limit {limit:.3}"

@@ -272,11 +272,6 @@ impl KnownMetal {
         beyond.filter(|_| !is_in_other)
     }
 
-    /// Returns the metal round the nominal holes.
-    pub(super) fn nominal_holes(&self) -> Option<&EntryPlanes> {
-        self.holes.as_deref()
-    }
-
     /// Returns the upper end of a part of the tool; where its length is unknown, that of the metal.
     pub(super) fn top_of(&self, part: &ToolCylinder, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> f64 {
         match part.is_cutter && part.to <= part.from {

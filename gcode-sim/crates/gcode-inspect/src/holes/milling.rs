@@ -7,9 +7,9 @@ use super::HoleExtractor;
 use super::cutting::{CuttingState, PeckExtent};
 use super::strokes::MIN_TOOL_COSINE;
 use crate::findings::TOOL_KIND;
+use crate::machine::tool_name;
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Event, LengthCompensation, SpindleDirection};
-use gcode_lang::units::MmPerMin;
+use gcode_lang::motion::{Event, SpindleDirection};
 
 /// Largest number of conditions under which a program mills; further ones are rates that change from block to block.
 const MAX_CONDITIONS: usize = 10_000;
@@ -18,20 +18,8 @@ const MAX_CONDITIONS: usize = 10_000;
 #[derive(Debug, Default)]
 pub(super) struct MillingConditions(BTreeSet<MillingKey>);
 
-/// Tool, selected tool, length offset, spindle and rate.
-type MillingKey = (Option<u32>, Option<u32>, (u8, u32), u8, [u64; 2]);
-
-impl MillingConditions {
-    fn key(state: &CuttingState, rate: MmPerMin) -> MillingKey {
-        let CuttingState { tool, selected_tool, compensation, spindle_direction, speed } = *state;
-        let length = match compensation {
-            LengthCompensation::Off => (0, 0),
-            LengthCompensation::Plus(h) => (1, h),
-            LengthCompensation::Minus(h) => (2, h),
-        };
-        (tool, selected_tool, length, spindle_direction as u8, [speed.0.to_bits(), rate.0.to_bits()])
-    }
-}
+/// State of the cut, selected tool and rate.
+type MillingKey = ([u64; 4], Option<u32>, u64);
 
 impl HoleExtractor<'_> {
     /// Checks the tool, its spindle and its rate in a feed that cuts metal across the tool.
@@ -39,7 +27,7 @@ impl HoleExtractor<'_> {
         let Some(rate) = event.kind.rate().filter(|_| self.metal.holes.is_some()) else { return };
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
         let is_stopped = state.spindle_direction == SpindleDirection::Off;
-        let key = MillingConditions::key(&state, rate);
+        let key = (state.key(), state.selected_tool, rate.0.to_bits());
         let is_known = MAX_CONDITIONS <= self.milling.0.len() || self.milling.0.contains(&key);
         let is_straight = path.len() == 2;
         let kind = state.tool.and_then(|number| self.machine.find_tool(number)?.kind);
@@ -54,7 +42,7 @@ impl HoleExtractor<'_> {
             self.report_spindle_stopped(&backtrace);
         }
         if let Some(kind) = wrong_kind {
-            let name = state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+            let name = tool_name(state.tool);
             self.findings.add_in_program(&TOOL_KIND, &backtrace, state.tool.unwrap_or(0), 1, |finding| {
                 Diagnostic::new(finding, format!("{name} cuts sideways and is a {}", kind.name()))
                     .help("use an end mill, or correct the kind of the tool in the machine file")

@@ -34,12 +34,8 @@ struct Sweep {
 /// End of the chain of a cell.
 const NONE: u32 = u32::MAX;
 
-/// Sweeps of one size, by the cell of their middles.
-#[derive(Debug, Default)]
-struct Level {
-    /// Last sweep of each cell.
-    cells: HashMap<[i32; 3], u32>,
-}
+/// Last sweep of each cell: sweeps of one size, by the cell of their middles.
+type Cells = HashMap<[i32; 3], u32>;
 
 /// Volumes that the tool has swept in feeds.
 #[derive(Debug)]
@@ -47,7 +43,7 @@ pub(super) struct RemovedMetal {
     sweeps: Vec<Sweep>,
     profiles: Vec<Profile>,
     /// By the logarithm of the size of their cells.
-    levels: BTreeMap<i32, Level>,
+    levels: BTreeMap<i32, Cells>,
     /// The last sweep is in no cell: the next feed may lengthen it.
     is_last_open: bool,
     /// Direction of its first feed.
@@ -84,7 +80,15 @@ impl RemovedMetal {
         axis: Unit<Vector3<f64>>,
         profile: &Profile,
     ) {
-        if self.lengthen_last(&from, &to, &axis, profile) || self.go_on(&from, &to, &axis, profile) {
+        let known = self.profiles.iter().rposition(|other| other == profile);
+        let profile = known.unwrap_or_else(|| {
+            self.profiles.push(profile.clone());
+            self.profiles.len() - 1
+        }) as u32;
+        let last = self.sweeps.last_mut().filter(|_| self.is_last_open);
+        if let Some(last) = last.filter(|last| last.axis == axis && last.profile == profile)
+            && (last.lengthen_along_axis(&from, &to) || last.go_on(&from, &to, self.heading))
+        {
             return;
         }
         self.close_last();
@@ -92,64 +96,9 @@ impl RemovedMetal {
             self.is_full = true;
             return;
         }
-        let known = self.profiles.iter().rposition(|other| other == profile);
-        let profile = known.unwrap_or_else(|| {
-            self.profiles.push(profile.clone());
-            self.profiles.len() - 1
-        });
-        self.sweeps.push(Sweep { from, to, axis, profile: profile as u32, previous: NONE });
+        self.sweeps.push(Sweep { from, to, axis, profile, previous: NONE });
         self.is_last_open = true;
         self.heading = Unit::try_new(to - from, ROUNDING);
-    }
-
-    /// Lengthens the last sweep by a feed of the same tool along its axis; a feed out of the part adds nothing. Returns
-    /// false for other feeds.
-    fn lengthen_last(
-        &mut self,
-        from: &Point3<f64>,
-        to: &Point3<f64>,
-        axis: &Unit<Vector3<f64>>,
-        profile: &Profile,
-    ) -> bool {
-        let Some(last) = self.sweeps.last_mut().filter(|_| self.is_last_open) else { return false };
-        let is_along = |v: Vector3<f64>| (v - axis.into_inner() * v.dot(axis)).norm() < ROUNDING;
-        let is_on_line = [last.to, *from, *to].into_iter().all(|p| is_along(p - last.from));
-        let height = |p: &Point3<f64>| (p - last.from).dot(axis);
-        let (reached, begin, end) = (height(&last.to), height(from), height(to));
-        let is_same = is_on_line && last.axis == *axis && self.profiles[last.profile as usize] == *profile;
-        if !is_same || reached > 0.0 || begin > ROUNDING || begin < reached - ROUNDING || end > ROUNDING {
-            return false;
-        }
-        if end < reached {
-            last.to = *to;
-        }
-        true
-    }
-
-    /// Lengthens the last sweep by a feed that goes on from its end in the direction in which it began. Returns false for
-    /// other feeds.
-    fn go_on(
-        &mut self,
-        from: &Point3<f64>,
-        to: &Point3<f64>,
-        axis: &Unit<Vector3<f64>>,
-        profile: &Profile,
-    ) -> bool {
-        let (Some(last), Some(heading)) =
-            (self.sweeps.last_mut().filter(|_| self.is_last_open), self.heading)
-        else {
-            return false;
-        };
-        let way = to - last.from;
-        let length = way.dot(&heading);
-        let is_straight = (from - last.to).norm() < ROUNDING
-            && (last.to - last.from).dot(&heading) <= length
-            && (way - heading.into_inner() * length).norm() <= MAX_BEND;
-        let is_same = last.axis == *axis && self.profiles[last.profile as usize] == *profile;
-        if is_straight && is_same {
-            last.to = *to;
-        }
-        is_straight && is_same
     }
 
     /// Enters the last sweep in its cell.
@@ -171,7 +120,7 @@ impl RemovedMetal {
         let (low, high) = (low - margin, high + margin);
         let level = level_of((high - low).amax());
         let cell = cell_of(&nalgebra::center(&low, &high), level);
-        let last = self.levels.entry(level).or_default().cells.insert(cell, index as u32);
+        let last = self.levels.entry(level).or_default().insert(cell, index as u32);
         self.sweeps[index].previous = last.unwrap_or(NONE);
     }
 
@@ -206,7 +155,7 @@ impl RemovedMetal {
         let Some([first, last]) = rest.extent() else { return };
         let along = travel[1] - travel[0];
         let (from, to) = (travel[0] + along * first, travel[0] + along * last);
-        for (level, Level { cells }) in &self.levels {
+        for (level, cells) in &self.levels {
             let half = Vector3::repeat(size_of(*level) / 2.0);
             let (low, high) =
                 (cell_of(&(from.inf(&to) - half), *level), cell_of(&(from.sup(&to) + half), *level));
@@ -251,6 +200,38 @@ fn cell_of(p: &Point3<f64>, level: i32) -> [i32; 3] {
 }
 
 impl Sweep {
+    /// Lengthens the sweep by a feed of the same tool along its axis; a feed out of the part adds nothing. Returns false
+    /// for other feeds.
+    fn lengthen_along_axis(&mut self, from: &Point3<f64>, to: &Point3<f64>) -> bool {
+        let axis = self.axis;
+        let is_along = |v: Vector3<f64>| (v - axis.into_inner() * v.dot(&axis)).norm() < ROUNDING;
+        let is_on_line = [self.to, *from, *to].into_iter().all(|p| is_along(p - self.from));
+        let height = |p: &Point3<f64>| (p - self.from).dot(&axis);
+        let (reached, begin, end) = (height(&self.to), height(from), height(to));
+        if !is_on_line || reached > 0.0 || begin > ROUNDING || begin < reached - ROUNDING || end > ROUNDING {
+            return false;
+        }
+        if end < reached {
+            self.to = *to;
+        }
+        true
+    }
+
+    /// Lengthens the sweep by a feed of the same tool that goes on from its end in the direction in which it began,
+    /// `heading`. Returns false for other feeds.
+    fn go_on(&mut self, from: &Point3<f64>, to: &Point3<f64>, heading: Option<Unit<Vector3<f64>>>) -> bool {
+        let Some(heading) = heading else { return false };
+        let way = to - self.from;
+        let length = way.dot(&heading);
+        let is_straight = (from - self.to).norm() < ROUNDING
+            && (self.to - self.from).dot(&heading) <= length
+            && (way - heading.into_inner() * length).norm() <= MAX_BEND;
+        if is_straight {
+            self.to = *to;
+        }
+        is_straight
+    }
+
     /// Returns the shares of a travel between which it is in the volume that a part of the tool sweeps.
     ///
     /// At the share s of the travel and t of the sweep the travel's point is in the cylinder if

@@ -3,7 +3,7 @@
 use super::HoleExtractor;
 use super::line::{CuttingLine, SpindleInHole};
 use crate::findings::{SPINDLE_IN_HOLE, SPINDLE_STOPPED};
-use crate::machine::ToolKind;
+use crate::machine::{ToolKind, tool_name};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, SpindleDirection};
 
@@ -52,8 +52,8 @@ impl HoleExtractor<'_> {
         let number = line.cutting_state.tool;
         let kind = number.and_then(|number| self.machine.find_tool(number)?.kind);
         let is_bar = matches!(kind, Some(ToolKind::BoringBar)) && line.spindle != SpindleInHole::Reversed;
-        let is_drill = kind.is_some_and(|kind| kind != ToolKind::Tap) && !is_bar;
-        if !is_drill && self.process_limits.tool_process(number).is_none() {
+        let needs_spindle = kind.is_some_and(|kind| kind != ToolKind::Tap) && !is_bar;
+        if !needs_spindle && self.process_limits.tool_process(number).is_none() {
             return;
         }
         let (verb, severity, note) = match line.spindle {
@@ -73,7 +73,7 @@ impl HoleExtractor<'_> {
                 ("reverses", Severity::Error, "G84 and G74 reverse the spindle for a tap: this tool is none")
             }
         };
-        let tool = line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+        let tool = tool_name(number);
         self.findings.add(&SPINDLE_IN_HOLE, backtrace, line.spindle as u32, |kind| {
             Diagnostic::new(kind, format!("the spindle {verb} while {tool} is in the hole"))
                 .with_severity(severity)

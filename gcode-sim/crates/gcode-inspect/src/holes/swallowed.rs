@@ -5,9 +5,6 @@ use gcode_lang::units::Deg;
 use gcode_part::{NOISE, PARALLEL_COSINE, PointTree};
 use nalgebra::{Point3, Vector3};
 
-/// Angle of a drill's point where the machine file states none.
-const DRILL_POINT: Deg = Deg(118.0);
-
 /// Cylinder with a conical end that a pass cuts.
 #[derive(Clone, Copy, Debug)]
 struct CutEnd {
@@ -21,13 +18,15 @@ impl CutEnd {
     fn of(pass: &DrillPass, machine: &Machine) -> Option<Self> {
         let radius = pass.diameter(machine)? / 2.0;
         let tool = pass.tool.and_then(|number| machine.find_tool(number));
-        let angle = match tool.map_or(PointShape::Unknown, Tool::point) {
-            _ if pass.cut.milled.is_some() => None,
-            PointShape::Flat => None,
-            PointShape::Pointed(angle) => Some(angle),
-            PointShape::Unknown => Some(DRILL_POINT),
+        let point = match tool.map_or(PointShape::Unknown, Tool::point) {
+            _ if pass.cut.milled.is_some() => PointShape::Flat,
+            PointShape::Unknown => PointShape::DRILL,
+            point => point,
         };
-        let rise = angle.map_or(0.0, |angle| 1.0 / Deg(angle.0 / 2.0).tan());
+        let rise = match point {
+            PointShape::Pointed(angle) => 1.0 / Deg(angle.0 / 2.0).tan(),
+            PointShape::Flat | PointShape::Unknown => 0.0,
+        };
         Some(Self { radius, rise })
     }
 

@@ -30,8 +30,8 @@ pub use rapid::RapidPath;
 pub(crate) use rapid::arrivals;
 pub use sources::{ErrorSource, Quantity};
 pub(crate) use tool_body::{TOUCH_DEPTH, ToolCylinder};
-pub(crate) use tool_shape::PointShape;
 pub use tool_shape::ToolKind;
+pub(crate) use tool_shape::{PointShape, tool_name};
 pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};

@@ -86,6 +86,11 @@ impl Tool {
     }
 }
 
+/// Returns `T1`; `the tool` before the first tool change.
+pub(crate) fn tool_name(tool: Option<u32>) -> String {
+    tool.map_or("the tool".to_owned(), |number| format!("T{number}"))
+}
+
 impl PointShape {
     /// End of a drill for which the machine file has no angle: 118°.
     pub(crate) const DRILL: Self = Self::Pointed(Deg(118.0));

@@ -6,7 +6,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::Tolerances;
 use super::outline::CutShape;
 use crate::holes::{DrilledHole, ToolPass};
-use crate::machine::{Machine, PointShape, Tool, ToolKind};
+use crate::machine::{Machine, PointShape, Tool, ToolKind, tool_name};
 use gcode_lang::units::Deg;
 use gcode_part::{DepthTo, Feature, FeatureKind, Hole, POINT_LENGTH, exceeds};
 
@@ -64,7 +64,7 @@ impl<'a> Cut<'a> {
 
     /// Returns the name of the tool, `T1`, with its diameter.
     pub(super) fn name(&self) -> String {
-        let tool = self.pass.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+        let tool = tool_name(self.pass.tool);
         self.pass.diameter.map_or(tool.clone(), |diameter| format!("{tool}, Φ{diameter},"))
     }
 

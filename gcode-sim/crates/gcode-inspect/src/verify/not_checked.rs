@@ -5,7 +5,7 @@ use super::checks::features::ShapeGap;
 use super::{Comparison, HoleInspection};
 use crate::findings::BACK_BORED;
 use crate::holes::HoleExtraction;
-use crate::machine::{HeadKind, Machine};
+use crate::machine::{HeadKind, Machine, tool_name};
 use gcode_lang::motion::LengthCompensation;
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
@@ -81,7 +81,7 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
         ));
     }
     for tool in &extraction.unsized_mills {
-        let tool = tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+        let tool = tool_name(*tool);
         all.push(format!(
             "{UNSIZED}: the machine file has no diameter of {tool}; rapids near its feeds pass"
         ));
@@ -90,6 +90,14 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
         all.push(format!("{CUT_SHORT}: rapids where they have removed the metal are reported"));
     }
     all
+}
+
+/// Returns `hole 1`, or the number of several with the first.
+fn hole_names(ids: &[&str]) -> String {
+    match ids {
+        [one] => format!("hole {one}"),
+        _ => format!("{} holes (first {})", ids.len(), ids[0]),
+    }
 }
 
 /// Returns the holes of unknown diameter, by their tools.
@@ -108,10 +116,7 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
         }
     }
     let sentence = |(tool, ids): (Option<u32>, Vec<&str>)| {
-        let holes = match ids[..] {
-            [one] => format!("hole {one}"),
-            _ => format!("{} holes (first {})", ids.len(), ids[0]),
-        };
+        let holes = hole_names(&ids);
         match tool {
             None if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
             None => format!("the diameter of {holes}: made before the first tool change"),
@@ -137,37 +142,33 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
         }
     }
     let sentence = |(gap, ids): (ShapeGap, Vec<&str>)| {
-        let holes = match ids[..] {
-            [one] => format!("hole {one}"),
-            _ => format!("{} holes (first {})", ids.len(), ids[0]),
-        };
-        let name = |tool: Option<u32>| tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+        let holes = hole_names(&ids);
         match gap {
             ShapeGap::SpotDrill(tool) => {
                 format!(
                     "the end of {0} in {holes}: the machine file has no kind or point_angle; {0} is taken for a spot drill",
-                    name(tool)
+                    tool_name(tool)
                 )
             }
             ShapeGap::Undrilled(tool) => {
-                format!("the hole in which {} cuts: the program does not drill {holes}", name(tool))
+                format!("the hole in which {} cuts: the program does not drill {holes}", tool_name(tool))
             }
             ShapeGap::FullThrough(tool) => {
                 format!(
                     "the full diameter of {holes} on the far side: the machine file has no point_angle of {}",
-                    name(tool)
+                    tool_name(tool)
                 )
             }
             ShapeGap::FullDepth(tool) => {
                 format!(
                     "the depth of the full diameter of {holes}: the machine file has no point_angle of {}",
-                    name(tool)
+                    tool_name(tool)
                 )
             }
             ShapeGap::Angle(tool) => {
                 format!(
                     "the angle of the countersink of {holes}: the machine file has no point_angle of {}",
-                    name(tool)
+                    tool_name(tool)
                 )
             }
         }

@@ -2,7 +2,7 @@
 use super::*;
 use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFSET, SPINDLE_REVERSED};
 use crate::holes::CutConditions;
-use crate::machine::ToolKind;
+use crate::machine::{ToolKind, tool_name};
 use gcode_lang::motion::{LengthCompensation, SpindleDirection};
 use gcode_part::Hand;
 
@@ -49,7 +49,7 @@ fn reversed(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option
     };
     let is_warning = cut.is_tapping;
     (cut.spindle_direction == wrong).then(|| {
-        Diagnostic::new(&SPINDLE_REVERSED, format!("{} cuts with {code}", name(cut)))
+        Diagnostic::new(&SPINDLE_REVERSED, format!("{} cuts with {code}", tool_name(cut.tool)))
             .with_severity(if is_warning { Severity::Warning } else { Severity::Error })
             .note("a tool that turns against its hand rubs and breaks")
             .help(format!("use {right}, or give the tool's hand in the machine file"))
@@ -60,7 +60,7 @@ fn speed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Dia
     let (actual, nominal) = (cut.speed.0, limits.tool_process(cut.tool)?.speed?);
     // A stopped spindle has its own finding.
     let severity = severity(actual, nominal).filter(|_| cut.spindle_direction != SpindleDirection::Off)?;
-    let message = format!("{} cuts at S{actual}; the job specifies S{nominal}", name(cut));
+    let message = format!("{} cuts at S{actual}; the job specifies S{nominal}", tool_name(cut.tool));
     let finding = Diagnostic::new(&DRILL_SPEED, message).with_severity(severity);
     Some(finding.help("correct S, or the tool's speed in the job"))
 }
@@ -73,7 +73,7 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     let severity = severity(actual, nominal)?;
     let message = format!(
         "{} feeds at {} mm/min; the job specifies {nominal} mm/min",
-        name(cut),
+        tool_name(cut.tool),
         round_thousandth(actual)
     );
     let finding = Diagnostic::new(&DRILL_FEED, message).with_severity(severity);
@@ -101,7 +101,7 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
     }
     let message = format!(
         "{} feeds {} mm a revolution ({} mm/min at S{})",
-        name(cut),
+        tool_name(cut.tool),
         round_thousandth(per_turn),
         round_thousandth(feed.0),
         cut.speed.0
@@ -117,7 +117,7 @@ fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     if let Some(severity) = severity(cut.max_cut, nominal).filter(|_| nominal < cut.max_cut) {
         let message = format!(
             "{} drills {} mm without retracting; the job specifies pecks of {nominal} mm",
-            name(cut),
+            tool_name(cut.tool),
             round_thousandth(cut.max_cut)
         );
         let finding = Diagnostic::new(&DRILL_PECK, message).with_severity(severity);
@@ -126,7 +126,7 @@ fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     let peck = cut.min_peck.filter(|peck| *peck < nominal && severity(*peck, nominal).is_some())?;
     let message = format!(
         "{} drills in pecks of {} mm; the job specifies {nominal} mm",
-        name(cut),
+        tool_name(cut.tool),
         round_thousandth(peck)
     );
     let finding = Diagnostic::new(&DRILL_PECK, message).with_severity(Severity::Warning);
@@ -141,7 +141,7 @@ fn fine_peck(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> 
     }
     let share = machine.diameter_of(cut.tool).map_or(0.0, |diameter| diameter * LEAST_PECK_SHARE);
     let peck = cut.min_peck.filter(|peck| *peck <= LEAST_PECK.max(share))?;
-    let message = format!("{} drills in pecks of {} mm", name(cut), round_thousandth(peck));
+    let message = format!("{} drills in pecks of {} mm", tool_name(cut.tool), round_thousandth(peck));
     Some(Diagnostic::new(&DRILL_PECK, message).with_severity(Severity::Warning).help(
         "correct Q: without a decimal point it counts the control's increment, and Q5 is 0.005 mm, not 5 mm",
     ))
@@ -183,7 +183,7 @@ fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Opt
         return None;
     }
     let specified = limits.tool_process(cut.tool).and_then(|tool| tool.offset);
-    let tool = name(cut);
+    let tool = tool_name(cut.tool);
     let (severity, message, help) = match (cut.compensation, specified) {
         (LengthCompensation::Minus(h), specified) => (
             if specified.is_some() { Severity::Error } else { Severity::Warning },
@@ -216,10 +216,6 @@ fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Opt
     let note = "the machine file does not give the tool's length, so the simulated holes do not depend on \
                 the length offset";
     Some(Diagnostic::new(&LENGTH_OFFSET, message).with_severity(severity).note(note).help(help))
-}
-
-fn name(cut: &CutConditions) -> String {
-    cut.tool.map_or("the tool".to_owned(), |number| format!("T{number}"))
 }
 
 /// Rounds to a thousandth; −0 becomes 0.
