@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_lang::program::Library;
+use gcode_lang::source::Bytes;
 use gcode_lang::units::Deg;
 use gcode_part::ProbedPart;
 use gcode_review::{Record, Revision, changes};
@@ -152,20 +153,20 @@ impl<F: FnMut(&str, String) -> String> EditedLibrary<F> {
         Self { folders: folders(main), edit }
     }
 
-    fn edited(&mut self, found: Option<(String, Vec<u8>)>) -> Option<(String, Vec<u8>)> {
+    fn edited(&mut self, found: Option<(String, Bytes)>) -> Option<(String, Bytes)> {
         let (name, bytes) = found?;
-        let text = (self.edit)(&name, String::from_utf8(bytes).unwrap());
-        Some((name, text.into_bytes()))
+        let text = (self.edit)(&name, String::from_utf8(bytes.to_vec()).unwrap());
+        Some((name, text.into_bytes().into()))
     }
 }
 
 impl<F: FnMut(&str, String) -> String> Library for EditedLibrary<F> {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+    fn program(&mut self, number: u32) -> Option<(String, Bytes)> {
         let found = self.folders.program(number);
         self.edited(found)
     }
 
-    fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
+    fn named(&mut self, name: &str) -> Option<(String, Bytes)> {
         let found = self.folders.named(name);
         self.edited(found)
     }

@@ -20,6 +20,7 @@ mod control;
 mod control_page;
 mod corpus;
 mod docs;
+mod dumps;
 mod ellipse;
 mod equivalent_programs;
 mod every_word;

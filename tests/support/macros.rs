@@ -147,7 +147,7 @@ impl Setup {
         let bench = edits.fold(bench, |bench, (number, edit)| bench.edited(number.unwrap_or(main), edit));
         let mut recorder = Recorder::default();
         let part = placement(self.shift, self.tilt);
-        let Run { control, outcome } =
+        let Run { control, outcome, .. } =
             bench.run_observed(main, &part, &self.variables, &mut recorder, &mut ());
         Ran { control, outcome, recorder }
     }

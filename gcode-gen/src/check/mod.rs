@@ -8,6 +8,7 @@ use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::Library;
+use gcode_lang::source::Bytes;
 use gcode_part::job::Job;
 use gcode_part::{Flutes, NominalPart, Reference, exceeds, overlaps};
 use gcode_session::{Request, Run, grind, simulate};
@@ -199,8 +200,8 @@ pub(crate) fn broken_package(what: &str, error: &dyn std::fmt::Display) -> Check
 pub struct Programs<'p>(pub &'p Package);
 
 impl Library for Programs<'_> {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+    fn program(&mut self, number: u32) -> Option<(String, Bytes)> {
         let program = self.0.program(number)?;
-        Some((file_name(number), program.text.as_bytes().to_vec()))
+        Some((file_name(number), program.text.as_bytes().into()))
     }
 }

@@ -39,6 +39,7 @@ pub(super) enum Command {
 Examples:
   gcode-sim run O8100.nc
   gcode-sim run O1234.nc --lib macros --set '#500=12.5' --format json
+  gcode-sim run ALL-PROG.TXT --program O1234
   gcode-sim run O1234.nc --control NAT=1 --control DPI=1 --show '#5041'
   gcode-sim run O1234.nc --machine machine.toml --part job.toml --show '#5061'")]
     Run(run::Arguments),
@@ -119,7 +120,7 @@ Examples:
   gcode-sim test programs --lib macros --format junit > result.xml
   gcode-sim test --merge shard-1.json shard-2.json --format sarif
 
-A case is a folder with a program (main.nc, or the only .nc in it that no other calls) and, optionally, lib/, machine.toml,
+A case is a folder with a program (main.nc, or the only one in it that no other calls) and, optionally, lib/, machine.toml,
 control.toml, a reference (reference.json, reference.csv or job.toml), and accepted.json, which --accept writes.")]
     Test(test::Arguments),
 

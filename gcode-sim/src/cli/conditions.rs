@@ -50,6 +50,11 @@ pub(super) struct ProgramArguments {
 /// The conditions of a run without its program.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct RunConditions {
+    /// The main program of a file with several, by O number, name or path in a dump, e.g. O1234 or
+    /// //CNC_MEM/USER/PATH1/O1234 [default: the first]
+    #[arg(long = "program", value_name = "O1234")]
+    pub(super) main_program: Option<String>,
+
     /// A folder that holds called programs (repeatable; the program's own folder is searched first)
     #[arg(long = "lib", value_name = "DIR")]
     pub(super) libraries: Vec<PathBuf>,

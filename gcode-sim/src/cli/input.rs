@@ -4,7 +4,11 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
+use encoding_rs::{UTF_16BE, UTF_16LE};
+
 use super::UsageError;
+use gcode_lang::source::Bytes;
 
 /// Largest input, bytes; no control holds a larger program.
 const LARGEST: u64 = 1 << 30;
@@ -38,8 +42,8 @@ const OTHERS: [(&[u8], &str); 5] = [
     (b"{\\rtf", "a word processor's document"),
 ];
 
-/// Reads a program's bytes; refuses files of another kind.
-pub fn program(path: &Path) -> Result<Vec<u8>, UsageError> {
+/// Reads a program as UTF-8 text; refuses files of another kind.
+pub fn program(path: &Path) -> Result<Bytes, UsageError> {
     let bytes = bytes(path)?;
     let name = path.display();
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
@@ -50,7 +54,26 @@ pub fn program(path: &Path) -> Result<Vec<u8>, UsageError> {
             "{name} is a job or a machine file, not a program: give it with --reference or --machine"
         )));
     }
-    Ok(bytes)
+    Ok(to_utf8(bytes))
+}
+
+/// Converts the text of a program to UTF-8. UTF-16 is recognised by its byte order mark or by its zero bytes; any other
+/// encoding is guessed from the comments, in which alone it matters.
+fn to_utf8(bytes: Vec<u8>) -> Bytes {
+    let encoding = match bytes[..] {
+        [0xff, 0xfe, ..] => UTF_16LE,
+        [0xfe, 0xff, ..] => UTF_16BE,
+        [low, 0, next, 0, ..] if low != 0 && next != 0 => UTF_16LE,
+        [0, high, 0, next, ..] if high != 0 && next != 0 => UTF_16BE,
+        _ if std::str::from_utf8(&bytes).is_ok() => return bytes.into(),
+        _ => {
+            let mut detector = EncodingDetector::new(Iso2022JpDetection::Deny);
+            detector.feed(&bytes, true);
+            detector.guess(None, Utf8Detection::Deny)
+        }
+    };
+    let text = encoding.decode_with_bom_removal(&bytes).0.into_owned();
+    Bytes::converted(text, bytes)
 }
 
 /// Returns the entries of a folder, sorted by name.
@@ -76,4 +99,50 @@ pub fn text(path: &Path) -> Result<String, UsageError> {
         UsageError::in_file(path, format!("line {line}: not UTF-8 text"))
     })?;
     Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(bytes: &[u8]) -> String {
+        String::from_utf8(to_utf8(bytes.to_vec()).to_vec()).unwrap()
+    }
+
+    #[test]
+    fn utf_16_is_read_in_both_byte_orders_with_and_without_a_mark() {
+        let program = "%\r\nO1(\u{c4}NDERUNG)\r\nM30\r\n";
+        let units: Vec<u16> = program.encode_utf16().collect();
+        let little: Vec<u8> = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+        let big: Vec<u8> = units.iter().flat_map(|unit| unit.to_be_bytes()).collect();
+        assert_eq!(text(&little), program);
+        assert_eq!(text(&big), program);
+        assert_eq!(text(&[&[0xff, 0xfe], &little[..]].concat()), program);
+        assert_eq!(text(&[&[0xfe, 0xff], &big[..]].concat()), program);
+    }
+
+    /// 钻孔加工程序 in GBK, 穴あけ加工のプログラム in Shift-JIS: tables of the two standards.
+    #[test]
+    fn comments_in_gbk_and_shift_jis_become_readable() {
+        let gbk = b"O1(\xd7\xea\xbf\xd7\xbc\xd3\xb9\xa4\xb3\xcc\xd0\xf2)\nG0X1.\nM30\n";
+        assert_eq!(text(gbk), "O1(\u{94bb}\u{5b54}\u{52a0}\u{5de5}\u{7a0b}\u{5e8f})\nG0X1.\nM30\n");
+        let shift_jis = b"O1(\x8c\x8a\x82\xa0\x82\xaf\x89\xc1\x8d\x48\x82\xcc\x83\x76\x83\x8d\x83\x4f\x83\x89\x83\x80)\nM30\n";
+        assert_eq!(
+            text(shift_jis),
+            "O1(\u{7a74}\u{3042}\u{3051}\u{52a0}\u{5de5}\u{306e}\u{30d7}\u{30ed}\u{30b0}\u{30e9}\u{30e0})\nM30\n"
+        );
+    }
+
+    #[test]
+    fn utf_8_is_taken_as_it_is_and_other_bytes_never_fail() {
+        assert_eq!(text("O1(\u{d8}10)\nM30".as_bytes()), "O1(\u{d8}10)\nM30");
+        assert!(text(b"O1(\xff\xfe\x80)\nM30").ends_with(")\nM30"));
+        assert!(text(b"O1(DIA \xd810)\nG0X1.").contains("G0X1."), "Latin-1");
+    }
+
+    #[test]
+    fn the_content_of_the_file_is_kept() {
+        let bytes = b"O1(\xd7\xea)\nM30\n";
+        assert_eq!(to_utf8(bytes.to_vec()).file_content(), bytes);
+    }
 }

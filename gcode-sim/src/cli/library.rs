@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::{UsageError, input};
 use gcode_lang::program::Library;
-use gcode_lang::source::SourceId;
+use gcode_lang::source::{Bytes, SourceId};
 use gcode_lang::syntax::{self, FileItem, ast::ProgramName};
 
 /// Folders of called programs; the first folder that has a program wins.
@@ -39,8 +39,8 @@ impl Folders {
     /// Returns the files that may be programs, in the order of folders and names; known other extensions are
     /// skipped.
     fn files(&mut self) -> Vec<PathBuf> {
-        const OTHERS: [&str; 12] =
-            ["toml", "json", "csv", "png", "md", "txt", "html", "snap", "pdf", "zip", "rs", "new"];
+        const OTHERS: [&str; 11] =
+            ["toml", "json", "csv", "png", "md", "html", "snap", "pdf", "zip", "rs", "new"];
         let mut files = Vec::new();
         for folder in &self.folders {
             match input::folder(folder) {
@@ -55,8 +55,8 @@ impl Folders {
         files
     }
 
-    fn bytes(&mut self, path: &Path) -> Option<Vec<u8>> {
-        match input::bytes(path) {
+    fn bytes(&mut self, path: &Path) -> Option<Bytes> {
+        match input::program(path) {
             Ok(bytes) => Some(bytes),
             Err(refusal) => {
                 self.unread.insert(refusal.to_string());
@@ -71,6 +71,12 @@ impl Folders {
             let mut found = Vec::new();
             for path in self.files() {
                 let Some(bytes) = self.bytes(&path) else { continue };
+                // Other texts have this ending too.
+                if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("txt"))
+                    && !begins_program(&bytes)
+                {
+                    continue;
+                }
                 found.extend(programs_in(&bytes).map(|name| (name, path.clone())));
             }
             self.programs = Some(found);
@@ -81,7 +87,7 @@ impl Folders {
 }
 
 impl Library for Folders {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+    fn program(&mut self, number: u32) -> Option<(String, Bytes)> {
         // A file name may announce a number that the file does not contain; the contents decide.
         let program = ProgramName::Number(number);
         let holds = |bytes: &[u8]| programs_in(bytes).any(|name| name == program);
@@ -97,7 +103,7 @@ impl Library for Folders {
         Some((path.display().to_string(), bytes))
     }
 
-    fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
+    fn named(&mut self, name: &str) -> Option<(String, Bytes)> {
         let path = match self.find_holder(&ProgramName::Name(name.to_owned())) {
             Some(path) => path,
             // The file's name counts if the program in it has neither name nor number.
@@ -111,6 +117,24 @@ impl Library for Folders {
         let all: Vec<_> = self.unread.iter().map(String::as_str).collect();
         (!all.is_empty()).then(|| all.join("; "))
     }
+}
+
+/// Returns true if the first line of a text is `%`, a folder line or the head of a program, `O1234(PLATE)`: other texts have the
+/// ending `.txt` too.
+pub(super) fn begins_program(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    if let [b'O' | b'o' | b':', digits @ ..] = text {
+        let count = digits.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let is_code = |next: &u8| next.is_ascii_digit() || matches!(next, b'#' | b'-' | b'.');
+        let follows = match digits[count..].trim_ascii_start() {
+            [] | [b'(' | b'<' | b';', ..] => true,
+            [letter, next, ..] => letter.is_ascii_alphabetic() && is_code(next),
+            [_] => false,
+        };
+        let ends_line = matches!(digits.get(count), Some(b'\r' | b'\n'));
+        return count > 0 && (ends_line || follows);
+    }
+    matches!(text, [b'%' | b'<', ..]) || text.starts_with(b"&F=")
 }
 
 /// Returns the programs in a file that have a number or a name.

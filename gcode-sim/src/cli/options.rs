@@ -7,6 +7,7 @@ use super::{UsageError, input, overwrite_guard, page, unused_machine};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_lang::motion::{Axes, AxisIndex};
+use gcode_lang::syntax::ast::ProgramPath;
 use gcode_part::NominalPart;
 use gcode_part::ProbedPart;
 use gcode_part::job::{Rotary, control_file};
@@ -26,6 +27,11 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     let piped = program == Path::new("-");
     let name = if piped { "standard input".to_owned() } else { program.display().to_string() };
     let mut request = Request::new(name, input::program(program)?, machine);
+    if let Some(text) = &arguments.main_program {
+        let path = ProgramPath::parse(text);
+        let path = path.ok_or_else(|| UsageError::new("--program: write an O number or a name, O1234"))?;
+        request.main = Some(path);
+    }
     if let Some(path) = &arguments.control_file {
         control_file::apply(&input::text(path)?, &mut request.settings)
             .map_err(|error| UsageError::in_file(path, error))?;

@@ -82,6 +82,7 @@ pub(super) fn documents(
 /// Returns the flags that the run depends on.
 pub(super) fn flags(conditions: &RunConditions) -> Vec<String> {
     let RunConditions {
+        main_program,
         libraries,
         set,
         start,
@@ -99,6 +100,7 @@ pub(super) fn flags(conditions: &RunConditions) -> Vec<String> {
     let path = |path: &Path| path.display().to_string();
     let mut flags: Vec<String> = Vec::new();
     let mut add = |flag: &str, value: &str| flags.push(format!("{flag} {value}"));
+    main_program.iter().for_each(|program| add("--program", program));
     machine.iter().for_each(|file| add("--machine", &path(file)));
     libraries.iter().for_each(|folder| add("--lib", &path(folder)));
     dialect.iter().for_each(|name| add("--dialect", name));

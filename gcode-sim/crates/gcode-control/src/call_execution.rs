@@ -35,6 +35,9 @@ impl Control {
             }
             ProgramRef::Resolved(program, _) => *program,
         };
+        if self.memory.is_out_of_reach(program) {
+            self.executor.log.note(Note::ProgramOutOfReach, self.executor.flow.block);
+        }
         let start = match call.start {
             None => 0,
             Some(number) => {

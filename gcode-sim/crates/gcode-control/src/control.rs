@@ -108,7 +108,9 @@ impl Control {
             outcome: None,
             progress: None,
         };
-        if let Some(program) = control.memory.programs().first() {
+        let main = control.memory.main();
+        if let Some(program) = control.memory.programs().get(main.0 as usize) {
+            control.executor.flow.frame.program = main;
             control.executor.registers.state.modal_words.o = program.number_or_zero();
             control.executor.flow.block = program.span;
         }

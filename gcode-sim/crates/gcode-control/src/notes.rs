@@ -30,6 +30,7 @@ gcode_lang::finding_kinds! {
     NO_PASS = "no-pass", Warning, "a call with L0";
     NO_REPEATS = "no-repeats", Note, "K0 stores a cycle and drills nothing";
     NO_SIGNAL = "no-signal", Warning, "G31 goes to its end";
+    OTHER_FOLDER = "other-folder", Warning, "a called program in a folder that a control does not search";
     PARAMETER_WITHOUT_EFFECT = "parameter-without-effect", Warning, "a written parameter has no effect here";
     RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41 or G42 without D";
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
@@ -68,6 +69,8 @@ pub enum Note {
     NoAxis(u32),
     /// G51 or G68, × 10, without axes: the programmed position is the centre.
     CentreDefaulted(u32),
+    /// A called program is in a folder of the dump that a control does not search.
+    ProgramOutOfReach,
     /// G68 without R rotates by 0, or by 5410 if that is set.
     NoAngle,
     /// GOTO or M99 P goes to one of several blocks with this number.
@@ -134,6 +137,7 @@ impl Note {
             Self::CallRepeatsZero => (&NO_PASS, "L0: the program is not called".into(), "omit L to call it once"),
             Self::NoAxis(code) => (&NO_AXIS, format!("G{} without an axis: nothing moves or is set", spelled(code)), "name the axes"),
             Self::CentreDefaulted(code) => (&CENTRE_HERE, format!("G{} without an axis: the programmed position is its centre", spelled(code)), "name the axes of the centre"),
+            Self::ProgramOutOfReach => (&OTHER_FOLDER, "the called program is in a folder that a control does not search: PS0076 there".into(), "move it to the folder of the main program or to //CNC_MEM/USER/LIBRARY/"),
             Self::NoAngle => (&NO_ANGLE, "G68 without R rotates by 0; a control may have an angle in 5410".into(), "write R"),
             Self::DuplicateNumber(number) => (&DOUBLED_NUMBER, format!("N{number} is defined more than once: the control decides which one a jump takes"), "give each block a number of its own"),
             Self::JumpIntoLoop(number) => (&INTO_LOOP, format!("a jump into the loop DO{number}: its END raises PS1124"), "jump to the block of its DO or WHILE"),

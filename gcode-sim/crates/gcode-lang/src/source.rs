@@ -44,19 +44,35 @@ pub struct LineColumn {
 
 /// Shared bytes of a text. Bytes read from a file are taken over without a copy.
 #[derive(Clone, Debug)]
-pub struct Bytes(Arc<Vec<u8>>);
+pub struct Bytes {
+    text: Arc<Vec<u8>>,
+    /// Content of the file, if the text was converted from another encoding.
+    file: Option<Arc<Vec<u8>>>,
+}
+
+impl Bytes {
+    /// Returns a text that was converted to UTF-8 from the encoding of its file.
+    pub fn converted(text: String, file: Vec<u8>) -> Self {
+        Self { text: Arc::new(text.into_bytes()), file: Some(Arc::new(file)) }
+    }
+
+    /// Returns the content of the file, in its own encoding.
+    pub fn file_content(&self) -> &[u8] {
+        self.file.as_ref().unwrap_or(&self.text)
+    }
+}
 
 impl Deref for Bytes {
     type Target = [u8];
 
     fn deref(&self) -> &[u8] {
-        &self.0
+        &self.text
     }
 }
 
 impl From<Vec<u8>> for Bytes {
     fn from(bytes: Vec<u8>) -> Self {
-        Self(Arc::new(bytes))
+        Self { text: Arc::new(bytes), file: None }
     }
 }
 

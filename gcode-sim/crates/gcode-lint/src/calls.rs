@@ -1,9 +1,11 @@
 //! Calls of a program: G65, G66, M98 and the codes that call programs, with the locals their arguments set.
 use gcode_lang::control::{CalledProgram, CodeCallKind, Settings};
 use gcode_lang::program::{
-    ArgumentLocals, CallCode, CallTarget, LoweredWord, Memory, OpIndex, OpKind, Program, WordOperand, Words,
+    ArgumentLocals, CallCode, CallTarget, LoweredWord, Memory, OpIndex, OpKind, Program, ProgramId,
+    WordOperand, Words,
 };
 use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::{Folder, ProgramName};
 
 use super::literal;
 
@@ -15,6 +17,8 @@ pub(crate) struct CallSite {
     /// True for G66, whose macro is called after later moves.
     pub is_modal: bool,
     pub target: CalledProgramName,
+    /// Folder of the calling program.
+    pub folder: Option<Folder>,
     /// Sequence number in Q of M98, where the subprogram starts.
     pub start: Option<u32>,
     /// Locals that the arguments set.
@@ -52,7 +56,8 @@ pub(super) fn call_sites(program: &Program, settings: &Settings) -> Vec<CallSite
     let mut found = Vec::new();
     for (block, op) in program.ops().iter().enumerate() {
         if let OpKind::Words(words) = op.kind() {
-            found.extend(call_site(block, words, settings));
+            let site = call_site(block, words, settings);
+            found.extend(site.map(|site| CallSite { folder: program.folder.clone(), ..site }));
         }
     }
     found
@@ -81,6 +86,7 @@ fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallS
         has_own_locals: !subprogram,
         is_modal: matches!(call.kind, CallCode::AfterMoves | CallCode::EveryBlock),
         target,
+        folder: None,
         start: call.start.as_ref().and_then(literal::word_count),
         arguments: arguments(&call.arguments, call.kind == CallCode::EveryBlock, settings),
         span: call.span,
@@ -113,7 +119,8 @@ fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<
             false => Vec::new(),
         };
         let target = CalledProgramName::Number(called.program);
-        Some(CallSite { block, has_own_locals, is_modal, target, start: None, arguments, span: word.span })
+        let (folder, start, span) = (None, None, word.span);
+        Some(CallSite { block, has_own_locals, is_modal, target, folder, start, arguments, span })
     })
 }
 
@@ -136,11 +143,11 @@ impl CalledProgramName {
         }
     }
 
-    /// Returns the program if it is in memory.
-    pub fn find(&self, memory: &Memory) -> Option<gcode_lang::program::ProgramId> {
+    /// Returns the program that a call from `folder` finds in memory.
+    pub fn find(&self, memory: &Memory, folder: Option<&Folder>) -> Option<ProgramId> {
         match self {
-            Self::Number(number) => memory.find(*number),
-            Self::Name(name) => memory.find_name(name),
+            Self::Number(number) => memory.find_from(&ProgramName::Number(*number), folder),
+            Self::Name(name) => memory.find_from(&ProgramName::of(name.clone()), folder),
             Self::Computed | Self::Missing => None,
         }
     }

@@ -138,7 +138,7 @@ impl<'a> CheckContext<'a> {
 
     /// Returns the index of the called program if it is under check.
     pub(crate) fn called_unit(&self, call: &CallSite) -> Option<usize> {
-        let id = call.target.find(self.memory)?;
+        let id = call.target.find(self.memory, call.folder.as_ref())?;
         self.unit_indices.get(&id).copied()
     }
 

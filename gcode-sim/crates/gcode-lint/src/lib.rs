@@ -25,6 +25,7 @@ mod control_flow;
 mod expressions;
 mod first_reach;
 mod literal;
+mod main_programs;
 mod parameters;
 mod prelude;
 mod rule;
@@ -37,6 +38,7 @@ mod variables;
 use std::collections::BTreeSet;
 
 pub use calls::{CalledProgramName, called_programs};
+pub use main_programs::{main_programs, programs_called_by_others};
 
 use context::CheckContext;
 use gcode_lang::control::Settings;
@@ -86,8 +88,10 @@ fn load_called_programs(
 ) -> Vec<ProgramId> {
     let mut found: Vec<_> = memory.ids().collect();
     let mut known: BTreeSet<_> = found.iter().copied().collect();
-    let mut next = 0;
+    let (main, mut next) = (memory.main(), 0);
     while let Some(id) = found.get(next) {
+        // Each program finds what a main program in its folder would find.
+        memory.set_main(*id);
         for target in calls::called_programs(memory.lower_program(*id), settings) {
             let called = match target {
                 CalledProgramName::Number(number) => memory.fetch(number, library),
@@ -98,6 +102,7 @@ fn load_called_programs(
         }
         next += 1;
     }
+    memory.set_main(main);
     found
 }
 

@@ -16,7 +16,7 @@ use gcode_inspect::holes::DrilledHole;
 use gcode_lang::alarm::kinds::{LIMIT, PS0076};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Axes, Backtrace, CallChain, MAX_AXES, Position};
-use gcode_lang::program::{Library, Program};
+use gcode_lang::program::Library;
 use gcode_lang::source::{Sources, Span};
 use gcode_part::Metal;
 use gcode_session::{Request, Run, SessionError, Simulation};
@@ -214,7 +214,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
         sources: Some(run.control.memory().sources().clone()),
         executed,
         first_commands: Some(first_commands),
-        program: run.control.memory().programs().first().map(Program::label),
+        program: Some(run.control.memory().get(run.control.memory().main()).label()),
         conditions,
         steps,
         holes,

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use super::outside_text::names_outside;
-use super::{Request, Run, causes, set_up_control};
+use super::{Request, Run, set_up_control};
 use gcode_control::OperatorStop;
 use gcode_control::slice::{KEPT_GROUPS, Marks, OutsideRead, Slice, StatedValues};
 use gcode_inspect::holes::{DrilledHole, HoleExtractor};
@@ -30,7 +30,7 @@ pub(super) fn dependencies(request: &Request, run: &Run, metal: &Metal, has_hole
     if run.control.is_cancelled() || !may_read_outside(request, run, has_holes) {
         return HoleDependencies::default();
     }
-    let Ok(mut control) = set_up_control(request, causes::reload(run)) else {
+    let Ok(mut control) = set_up_control(request, run.control.memory().reload()) else {
         return HoleDependencies::default();
     };
     let mut slice = Slice::new(stated_values(request), request.settings.offset_variables, &request.variables);

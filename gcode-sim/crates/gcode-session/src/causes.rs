@@ -1,16 +1,17 @@
 //! Likely causes of a verdict: unset work offsets, and what a check of the program's text finds; and of an endless loop: a
 //! counter that its assignment does not change.
-use super::Run;
+use super::{Request, Run};
 use gcode_control::{Control, Outcome, Value, additional_system_name};
-use gcode_inspect::findings::WORK_OFFSET;
+use gcode_inspect::findings::{MAIN_PROGRAM, WORK_OFFSET};
 use gcode_inspect::machine::Machine;
 use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::Backtrace;
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
-use gcode_lint::{check_loaded, rules};
+use gcode_lint::{check_loaded, main_programs, programs_called_by_others, rules};
 
 /// Rules about what a run does not show, or shows better: it finds the programs that it calls.
 const LEFT_OUT: [&str; 1] = ["missing-program"];
@@ -18,7 +19,7 @@ const LEFT_OUT: [&str; 1] = ["missing-program"];
 /// Returns what a check of the program's text finds: everything from a warning on if the verdict `fails`, otherwise numbers
 /// without a decimal point. The block of an alarm is left out: the alarm says more.
 pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
-    let checked = check_loaded(reload(run), run.control.settings(), &mut NoLibrary);
+    let checked = check_loaded(run.control.memory().reload(), run.control.settings(), &mut NoLibrary);
     let stopped = match &run.outcome {
         Outcome::Alarm(stop) => Some(stop.backtrace.block),
         Outcome::End | Outcome::Limit => None,
@@ -36,13 +37,31 @@ pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
     found
 }
 
-/// Loads the programs of the run in the same order, so that spans remain valid.
-pub(super) fn reload(run: &Run) -> Memory {
-    let mut memory = Memory::default();
-    for (_, source) in run.control.memory().sources().iter() {
-        memory.load(source.name.clone(), source.bytes.clone());
-    }
-    memory
+/// Chooses the main program of a file with several programs and returns the note that names the choice, if there is one: the
+/// first program, or the only main program if that one is called by another.
+pub(super) fn choose_main(memory: &mut Memory, request: &Request) -> Option<Diagnostic> {
+    const NAMED: usize = 5;
+    let (first, mains) = (memory.main(), main_programs(memory, &request.settings));
+    let mut is_first_called = || programs_called_by_others(memory, &request.settings).contains(&first);
+    let (main, reason) = match mains[..] {
+        [only] if only != first && is_first_called() => (only, "the only program that no other calls"),
+        _ => (first, "the first program"),
+    };
+    memory.set_main(main);
+    let others: Vec<_> = mains.into_iter().filter(|id| *id != main).collect();
+    let (shown, rest) = others.split_at(others.len().min(NAMED));
+    let paths = shown.iter().map(|id| memory.get(*id).path());
+    let others: Vec<_> = paths.chain((!rest.is_empty()).then(|| format!("{} more", rest.len()))).collect();
+    let program = memory.get(main);
+    let (path, name) = (program.path(), &request.name);
+    let message = match others.first() {
+        None if main == first => return None,
+        None => format!("{path} is executed, {reason} of {name}"),
+        Some(_) => format!("{path} is executed, {reason} of {name}, not {}", others.join(", ")),
+    };
+    let finding = Diagnostic::new(&MAIN_PROGRAM, message);
+    let finding = finding.with_backtrace(Backtrace { block: program.span, calls: None });
+    Some(finding.help("choose another program with --program"))
 }
 
 /// Returns the work offsets used by the run that neither the machine file nor the program sets. Each counts

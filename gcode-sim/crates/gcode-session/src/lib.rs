@@ -44,8 +44,9 @@ use gcode_lang::alarm::{Alarm, remedy};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, EventSink};
-use gcode_lang::program::{Library, Memory};
+use gcode_lang::program::{Library, Memory, Program};
 use gcode_lang::source::{Bytes, Span};
+use gcode_lang::syntax::ast::ProgramPath;
 use gcode_part::{Flutes, HoleList, Metal, ProcessLimits, Reference, Surface};
 
 /// A program and the conditions of its run.
@@ -55,6 +56,8 @@ pub struct Request {
     pub name: String,
     /// The program file.
     pub bytes: Bytes,
+    /// The main program; the first of the file if `None`.
+    pub main: Option<ProgramPath>,
     /// The control's settings.
     pub settings: Settings,
     /// The machine with its tools and work offsets.
@@ -80,6 +83,7 @@ impl Request {
         Self {
             name: name.into(),
             bytes: bytes.into(),
+            main: None,
             settings,
             machine,
             limits: Limits::default(),
@@ -99,6 +103,16 @@ pub enum SessionError {
     NoProgram {
         /// The file's name.
         name: String,
+    },
+    /// The file does not contain the chosen main program.
+    #[error("{name} contains no program {program}; it contains {programs}")]
+    NoSuchProgram {
+        /// The file's name.
+        name: String,
+        /// The chosen program.
+        program: String,
+        /// Programs of the file.
+        programs: String,
     },
     /// The file contains two programs of the same number or name.
     #[error(
@@ -130,6 +144,8 @@ pub struct Run {
     pub control: Control,
     /// The end of the run: program end, alarm or limit.
     pub outcome: Outcome,
+    /// The note that the file has further main programs.
+    main_note: Option<Diagnostic>,
 }
 
 /// Runs a program and emits the machine's events to `sink`.
@@ -159,16 +175,37 @@ pub fn run_observed<S: EventSink>(
     if memory.programs().is_empty() {
         return Err(SessionError::NoProgram { name: request.name.clone() });
     }
+    if let Some(path) = &request.main {
+        let main = memory.find_path(path).ok_or_else(|| no_such_program(request, &memory, path))?;
+        memory.set_main(main);
+    }
     if let Some(second) = memory.duplicates().next() {
         let (line, program) = (memory.sources().line_column(second.span).line, second.label());
         return Err(SessionError::DuplicateProgram { name: request.name.clone(), line, program });
     }
+    let is_choice_open = request.main.is_none() && memory.programs().len() > 1;
+    let main_note = is_choice_open.then(|| causes::choose_main(&mut memory, request)).flatten();
     let mut control = set_up_control(request, memory)?;
     if let Some(progress) = &request.progress {
         control.set_progress(Arc::clone(progress));
     }
     let outcome = control.run_observed(request.limits, library, sink, observer);
-    Ok(Run { control, outcome })
+    Ok(Run { control, outcome, main_note })
+}
+
+/// Returns the error of a main program that the file does not contain; it names the first programs of the file.
+fn no_such_program(request: &Request, memory: &Memory, path: &ProgramPath) -> SessionError {
+    const NAMED: usize = 10;
+    let mut programs: Vec<_> = memory.programs().iter().map(Program::path).collect();
+    let more = programs.len().saturating_sub(NAMED);
+    programs.truncate(NAMED);
+    programs.extend((more > 0).then(|| format!("{more} more")));
+    let folder = path.folder.as_ref().map_or_else(String::new, ToString::to_string);
+    SessionError::NoSuchProgram {
+        name: request.name.clone(),
+        program: folder + &path.name.label(),
+        programs: programs.join(", "),
+    }
 }
 
 /// Returns a control with these programs, set up as the request states.
@@ -391,7 +428,7 @@ impl Run {
 
     /// Returns the control's notes as findings: actions without an alarm that are probably unintended are warnings.
     pub fn note_findings(&self) -> impl Iterator<Item = Diagnostic> + '_ {
-        self.control.notes().map(|(note, block)| {
+        let of_control = self.control.notes().map(|(note, block)| {
             let (kind, message, help) = note.describe();
             let finding =
                 Diagnostic::new(kind, message).with_backtrace(Backtrace { block, calls: None }).help(help);
@@ -400,7 +437,8 @@ impl Run {
                 Note::NoAxis(530) => finding.with_severity(Severity::Note),
                 _ => finding,
             }
-        })
+        });
+        self.main_note.iter().cloned().chain(of_control)
     }
 
     /// Returns the finding that ended the run before its end: an alarm or a limit.

@@ -2,9 +2,9 @@
 #![expect(clippy::disallowed_methods, reason = "the command line finds files")]
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::main_program;
+use super::main_program::{self, MainProgram};
 use crate::cli::conditions::RunConditions;
 use crate::cli::{UsageError, input, options};
 use crate::report::test_report::{CaseAnswer, CaseReport, FirstFailure};
@@ -15,16 +15,21 @@ use gcode_part::{Metal, NominalPart};
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
 use gcode_session::Run;
 
-/// Name of the file with the accepted result.
+/// Name of the file with the accepted result; behind the program's label and a point if the folder has several cases.
 pub(super) const ACCEPTED: &str = "accepted.json";
 
-/// A folder with a program.
+/// A folder with a program, or one of its main programs.
+#[derive(Default)]
 pub(super) struct Case {
     /// Path below the given folder, with `/` as separator.
     pub name: String,
     pub folder: PathBuf,
     /// The programs in the folder; empty if only an accepted result is left.
     pub programs: Vec<PathBuf>,
+    /// Label of the main program, if the folder has several cases: its files begin with it, `O0001.accepted.json`.
+    pub label: Option<String>,
+    /// The main program, if the folder has several cases.
+    pub main: Option<MainProgram>,
 }
 
 /// Result of a case.
@@ -37,9 +42,10 @@ pub(super) struct CaseResult {
 impl Case {
     /// Runs the case and compares it with its accepted result.
     pub(super) fn run(&self, libraries: &[PathBuf], tolerance: f64) -> CaseResult {
-        let main = self.lost().map_or_else(|| main_program::of(&self.folder, &self.programs), Err);
+        let main = self.lost().map_or_else(|| self.main_program(), Err);
         let unclear = || self.programs.first().cloned().unwrap_or_else(|| self.accepted());
-        let file = Some(main.as_ref().map_or_else(|_| unclear(), PathBuf::clone).display().to_string());
+        let file = main.as_ref().map_or_else(|_| unclear(), |main| main.file.clone());
+        let file = Some(file.display().to_string());
         let tried = main.and_then(|program| self.evaluate(&program, libraries, tolerance));
         let mut result = tried.unwrap_or_else(|refusal| {
             let (answer, error) = (CaseAnswer::Refused, Some(refusal.to_string()));
@@ -50,9 +56,24 @@ impl Case {
         result
     }
 
+    fn main_program(&self) -> Result<MainProgram, UsageError> {
+        match &self.main {
+            Some(main) => Ok(main.clone()),
+            None => Ok(main_program::of(&self.folder, &self.programs)?.remove(0)),
+        }
+    }
+
+    /// Returns the path of a file of the case's own.
+    fn own_file(&self, name: &str) -> PathBuf {
+        match &self.label {
+            Some(label) => self.folder.join(format!("{label}.{name}")),
+            None => self.folder.join(name),
+        }
+    }
+
     /// Returns the path of the accepted result, or the folder's own path if the folder is gone.
-    fn accepted(&self) -> PathBuf {
-        if self.folder.is_dir() { self.folder.join(ACCEPTED) } else { self.folder.clone() }
+    pub(super) fn accepted(&self) -> PathBuf {
+        if self.folder.is_dir() { self.own_file(ACCEPTED) } else { self.folder.clone() }
     }
 
     /// Returns the reason why there is nothing to run.
@@ -63,32 +84,36 @@ impl Case {
         }
         self.programs.is_empty().then(|| {
             let remedy = "restore the program, or delete the folder if the part is no longer made";
-            UsageError::new(format!("{folder} has {ACCEPTED} and no program (.nc): {remedy}"))
+            let accepted = self.own_file(ACCEPTED);
+            let accepted = accepted.file_name().unwrap_or_default().to_string_lossy();
+            UsageError::new(format!("{folder} has {accepted} and no program (.nc): {remedy}"))
         })
     }
 
     fn evaluate(
         &self,
-        program: &Path,
+        main: &MainProgram,
         libraries: &[PathBuf],
         tolerance: f64,
     ) -> Result<CaseResult, UsageError> {
         // A broken link counts as present, so that reading it reports the error.
-        let there =
-            |name: &str| Some(self.folder.join(name)).filter(|path| path.exists() || path.is_symlink());
+        let present = |path: PathBuf| Some(path).filter(|path| path.exists() || path.is_symlink());
+        let there = |name: &str| present(self.folder.join(name));
+        let own = |name: &str| present(self.own_file(name));
         let conditions = RunConditions {
+            main_program: main.path.clone(),
             machine: there("machine.toml"),
             control_file: there("control.toml"),
             libraries: there("lib").into_iter().chain(libraries.iter().cloned()).collect(),
             max_blocks: Limits::default().blocks,
             ..RunConditions::default()
         };
-        let (mut request, mut folders) = options::request(&conditions.of(program))?;
-        if let (Some(one), Some(other)) = (there("reference.json"), there("reference.csv")) {
+        let (mut request, mut folders) = options::request(&conditions.of(&main.file))?;
+        if let (Some(one), Some(other)) = (own("reference.json"), own("reference.csv")) {
             let both = format!("{} and {}", one.display(), other.display());
             return Err(UsageError::new(format!("{both}: both are references; delete one")));
         }
-        let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
+        let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(own);
         let nominal = reference.as_deref().map(options::read_nominal).transpose()?;
         let metal = match &nominal {
             Some(NominalPart::Holes(reference)) => {
@@ -115,7 +140,7 @@ impl Case {
             }
         };
         let mut not_compared = Vec::new();
-        let (answer, changes) = match there(ACCEPTED) {
+        let (answer, changes) = match own(ACCEPTED) {
             None => (CaseAnswer::New, Vec::new()),
             Some(path) => {
                 let accepted = Record::from_json(&input::text(&path)?).map_err(|error| {

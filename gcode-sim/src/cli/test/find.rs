@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::case::{ACCEPTED, Case};
-use crate::cli::{UsageError, input};
+use super::main_program::{self, MainProgram};
+use crate::cli::{UsageError, input, library};
 
 /// Folder of a case's called programs; a folder below it is a case only if it has an accepted result.
 const LIBRARY: &str = "lib";
@@ -56,11 +57,10 @@ impl Search {
                 continue;
             }
             let entries = input::folder(&folder)?;
-            let has_accepted =
-                entries.iter().any(|path| path.file_name().is_some_and(|name| name == ACCEPTED));
+            let accepted: Vec<String> = entries.iter().filter_map(|path| accepted_label(path)).collect();
             let programs: Vec<PathBuf> =
-                entries.iter().filter(|path| is_program(path) && !path.is_dir()).cloned().collect();
-            let is_case = has_accepted || !programs.is_empty() && !in_library;
+                entries.iter().filter(|path| !path.is_dir() && is_program(path)).cloned().collect();
+            let is_case = !accepted.is_empty() || !programs.is_empty() && !in_library;
             for path in entries {
                 let own = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let below = if name.is_empty() { own.clone() } else { format!("{name}/{own}") };
@@ -70,18 +70,66 @@ impl Search {
                     list.push(CaseFolder { root, folder: path, name: below, in_library });
                 } else if path.is_symlink() && !path.exists() && !own.starts_with('.') && !is_program(&path) {
                     // The link may have been a folder of cases.
-                    self.found.push((root, Case { name: below, folder: path, programs: Vec::new() }));
+                    let case = Case { name: below, folder: path, ..Case::default() };
+                    self.found.push((root, case));
                 }
             }
             if is_case {
                 let name = if name.is_empty() { ".".to_owned() } else { name };
-                self.found.push((root, Case { name, folder, programs }));
+                let case = Case { name, folder, programs, ..Case::default() };
+                self.found.extend(case.by_main_program(&accepted).into_iter().map(|case| (root, case)));
             }
         }
         Ok(())
     }
 }
 
+impl Case {
+    /// Returns a case for each main program of the folder; the case of the folder if it has one main program or none, and no
+    /// accepted result with a label.
+    /// `accepted` are the labels of the accepted results: one without its program is a case too.
+    fn by_main_program(self, accepted: &[String]) -> Vec<Self> {
+        let mains = if self.programs.is_empty() {
+            Ok(Vec::new())
+        } else {
+            main_program::of(&self.folder, &self.programs)
+        };
+        let mains = mains.unwrap_or_default();
+        let labels: Vec<_> = mains.iter().map(MainProgram::label).collect();
+        let is_plain = mains.len() < 2 && !labels.iter().any(|label| accepted.contains(label));
+        let lost = accepted.iter().filter(|label| !label.is_empty() && !labels.contains(label));
+        let lost: Vec<_> =
+            lost.map(|label| Self { programs: Vec::new(), ..self.of_main(label, None) }).collect();
+        let found = mains.into_iter().zip(&labels).map(|(main, label)| self.of_main(label, Some(main)));
+        let mut cases: Vec<_> = found.filter(|_| !is_plain).collect();
+        let has_own = !self.programs.is_empty() || accepted.iter().any(String::is_empty);
+        if is_plain && has_own {
+            cases.push(self);
+        }
+        cases.extend(lost);
+        cases
+    }
+
+    fn of_main(&self, label: &str, main: Option<MainProgram>) -> Self {
+        let (folder, programs) = (self.folder.clone(), self.programs.clone());
+        let name = if self.name == "." { label.to_owned() } else { format!("{}/{label}", self.name) };
+        Self { name, folder, programs, label: Some(label.to_owned()), main }
+    }
+}
+
+/// Returns the label of an accepted result, empty for that of the folder; `None` for other files.
+fn accepted_label(path: &Path) -> Option<String> {
+    let label = path.file_name()?.to_str()?.strip_suffix(ACCEPTED)?;
+    label.is_empty().then(String::new).or_else(|| Some(label.strip_suffix('.')?.to_owned()))
+}
+
+/// Returns true for a file with the ending of a program, and for one with `.txt` or without ending that begins as a program
+/// does.
 fn is_program(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("nc"))
+    const ENDINGS: [&str; 7] = ["nc", "tap", "eia", "min", "cnc", "ncd", "ngc"];
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_ascii_lowercase();
+    match ending.as_str() {
+        "txt" | "" => input::program(path).is_ok_and(|text| library::begins_program(&text)),
+        ending => ENDINGS.contains(&ending),
+    }
 }

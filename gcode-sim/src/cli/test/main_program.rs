@@ -5,28 +5,76 @@ use crate::cli::{UsageError, input};
 use gcode_lang::control::Settings;
 use gcode_lang::program::Memory;
 use gcode_lang::syntax::ast::ProgramName;
-use gcode_lint::{CalledProgramName, called_programs};
+use gcode_lint::{CalledProgramName, called_programs, main_programs};
 
-/// Returns `main.nc`, the only program, or the only one that no other calls: a main program with its macros.
-pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageError> {
+/// Main program of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MainProgram {
+    pub file: PathBuf,
+    /// Path of the program in its file, if the file has several main programs.
+    pub path: Option<String>,
+}
+
+impl MainProgram {
+    fn of_file(file: &Path) -> Self {
+        Self { file: file.to_owned(), path: None }
+    }
+
+    /// Returns the name that distinguishes it from the other main programs of its folder: `O0001`, `ALL-PROG.O0001`; a
+    /// folder of a dump is part of it, `ALL-PROG.CNC_MEM-USER-PATH1-O0001`.
+    pub(super) fn label(&self) -> String {
+        let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
+        match &self.path {
+            None => stem.into_owned(),
+            Some(path) => format!("{stem}.{}", path.trim_matches('/').replace(['/', '<', '>'], "-")),
+        }
+    }
+}
+
+/// Returns the main programs of a folder: `main.nc`, the only one that no other program calls, or, if there are several, each
+/// that ends a run.
+pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<Vec<MainProgram>, UsageError> {
     let is_main = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem == "main");
     if let Some(main) = programs.iter().find(is_main) {
-        return Ok(main.clone());
+        return Ok(vec![MainProgram::of_file(main)]);
     }
     if let [only] = programs {
-        return Ok(only.clone());
+        let mains = mains_of_file(only)?;
+        let of_path = |path| MainProgram { path: Some(path), ..MainProgram::of_file(only) };
+        let has_several = mains.len() > 1;
+        return Ok(match has_several {
+            true => mains.into_iter().map(of_path).collect(),
+            false => vec![MainProgram::of_file(only)],
+        });
     }
     let candidates = uncalled(programs)?;
     if let [only] = candidates[..] {
-        return Ok(only.clone());
+        return Ok(vec![MainProgram::of_file(only)]);
+    }
+    let mut mains = Vec::new();
+    for file in &candidates {
+        if !mains_of_file(file)?.is_empty() {
+            mains.push(MainProgram::of_file(file));
+        }
+    }
+    if !mains.is_empty() {
+        return Ok(mains);
     }
     let names: Vec<_> = candidates.iter().filter_map(|path| path.file_name()?.to_str()).collect();
     let which = if names.is_empty() {
         "only programs that call one another".to_owned()
     } else {
-        format!("several programs that no other calls, {}", names.join(", "))
+        format!("several programs that no other calls and that do not end a run, {}", names.join(", "))
     };
     Err(UsageError::new(format!("{} contains {which}: name the main program main.nc", folder.display())))
+}
+
+/// Returns the paths of the main programs of a file.
+fn mains_of_file(file: &Path) -> Result<Vec<String>, UsageError> {
+    let mut memory = Memory::default();
+    memory.load(file.display().to_string(), input::program(file)?);
+    let mains = main_programs(&mut memory, &Settings::default());
+    Ok(mains.into_iter().map(|id| memory.get(id).path()).collect())
 }
 
 /// Returns the programs that none of the others calls.
@@ -35,7 +83,7 @@ fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
     let mut files = Vec::with_capacity(programs.len());
     for path in programs {
         let mut memory = Memory::default();
-        memory.load(path.display().to_string(), input::bytes(path)?);
+        memory.load(path.display().to_string(), input::program(path)?);
         let calls: Vec<CalledProgramName> =
             memory.ids().flat_map(|id| called_programs(memory.lower_program(id), &settings)).collect();
         let names: Vec<ProgramName> = memory.programs().iter().map(|p| p.name.clone()).collect();
@@ -58,38 +106,47 @@ mod tests {
     use super::*;
     use crate::cli::output;
 
-    /// Returns the file chosen from a folder with these programs, or the error.
-    fn chosen(files: &[(&str, &str)]) -> Result<String, String> {
+    /// Returns the labels of the main programs of a folder with these programs, or the error.
+    fn chosen(files: &[(&str, &str)]) -> Result<Vec<String>, String> {
         let folder = tempfile::tempdir().unwrap();
         let paths: Vec<PathBuf> = files.iter().map(|(name, _)| folder.path().join(name)).collect();
         for (path, (_, text)) in paths.iter().zip(files) {
             output::write(path, text.as_bytes()).unwrap();
         }
         match of(Path::new("part"), &paths) {
-            Ok(path) => Ok(path.file_name().unwrap().to_string_lossy().into_owned()),
+            Ok(mains) => Ok(mains.iter().map(MainProgram::label).collect()),
             Err(refusal) => Err(refusal.to_string()),
         }
+    }
+
+    fn labels(names: &[&str]) -> Result<Vec<String>, String> {
+        Ok(names.iter().map(|name| (*name).to_owned()).collect())
     }
 
     #[test]
     fn the_main_program_is_the_one_that_no_other_calls() {
         let row = ("O9001.nc", "O9001\nG66 P9002\nG67\nM99\n");
         let hole = ("hole.nc", "O9002\nM99\n");
-        assert_eq!(chosen(&[("O1.nc", "O1\nG65 P9001\nM30\n"), row, hole]), Ok("O1.nc".to_owned()));
+        assert_eq!(chosen(&[("O1.nc", "O1\nG65 P9001\nM30\n"), row, hole]), labels(&["O1"]));
         // A program that calls itself is not called by another.
-        assert_eq!(chosen(&[("O1.nc", "O1\nM98 P1\nM98 P9002\nM30\n"), hole]), Ok("O1.nc".to_owned()));
-        assert_eq!(chosen(&[("main.nc", "O1\nM30\n"), hole]), Ok("main.nc".to_owned()));
-        assert_eq!(chosen(&[hole]), Ok("hole.nc".to_owned()));
+        assert_eq!(chosen(&[("O1.nc", "O1\nM98 P1\nM98 P9002\nM30\n"), hole]), labels(&["O1"]));
+        assert_eq!(chosen(&[("main.nc", "O1\nM30\n"), hole]), labels(&["main"]));
+        assert_eq!(chosen(&[hole]), labels(&["hole"]));
+        // A computed call may call the other, which ends no run.
+        assert_eq!(chosen(&[("O1.nc", "O1\nM98 P#1\nM30\n"), hole]), labels(&["O1"]));
     }
 
     #[test]
-    fn an_ambiguous_main_program_is_refused() {
+    fn each_program_that_ends_a_run_is_a_case() {
+        let (one, two) = (("O1.nc", "O1\nM98 P9002\nM30\n"), ("O2.tap", "O2\nM98 P9002\nM02\n"));
         let hole = ("O9002.nc", "O9002\nM99\n");
-        assert_eq!(
-            chosen(&[("O1.nc", "O1\nM98 P#1\nM30\n"), hole]),
-            Err("part contains several programs that no other calls, O1.nc, O9002.nc: name the main program main.nc"
-                .to_owned())
-        );
+        assert_eq!(chosen(&[one, two, hole]), labels(&["O1", "O2"]));
+        let dump = "%\nO1\nM98 P3\nM30\nO2\nM30\nO3\nM99\n%\n";
+        assert_eq!(chosen(&[("ALL-PROG.TXT", dump)]), labels(&["ALL-PROG.O0001", "ALL-PROG.O0002"]));
+    }
+
+    #[test]
+    fn a_folder_without_a_main_program_is_refused() {
         assert_eq!(
             chosen(&[("O1.nc", "O1\nM98 P9002\nM30\n"), ("O9002.nc", "O9002\nM98 P1\nM99\n")]),
             Err("part contains only programs that call one another: name the main program main.nc".to_owned())

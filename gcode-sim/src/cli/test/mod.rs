@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 
-use self::case::{ACCEPTED, Case, CaseResult};
+use self::case::{Case, CaseResult};
 use super::format::TestFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::junit;
@@ -162,7 +162,7 @@ fn accept(cases: &[Case], tried: &mut [CaseResult]) -> Result<Vec<String>, Usage
         let is_taken = |record: &&Record| is_other && !record.lacks_program();
         let Some(record) = record.as_ref().filter(is_taken) else { continue };
         let text = record.to_json().map_err(|error| UsageError::new(error.to_string()))?;
-        files.push((case.folder.join(ACCEPTED), text));
+        files.push((case.accepted(), text));
         names.push(report.name.clone());
         report.answer = CaseAnswer::Same;
         report.changes.clear();

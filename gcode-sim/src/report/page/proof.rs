@@ -47,7 +47,7 @@ fn files<'a>(page: &'a Page<'_>, sides: &'a [ReviewSide<'_>]) -> Vec<(String, St
         let memory = side.observed.revision.simulation.run.control.memory();
         for (index, (_, source)) in memory.sources().iter().enumerate() {
             let role = if index == 0 { "program" } else { "called program" };
-            files.push((shown(&source.name), format!("{word}{role}"), &*source.bytes));
+            files.push((shown(&source.name), format!("{word}{role}"), source.bytes.file_content()));
         }
     }
     let others = page.documents.iter();

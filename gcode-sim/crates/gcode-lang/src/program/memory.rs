@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use super::{Op, OpIndex, Program, outline};
 use crate::source::{Bytes, SourceId, Sources, Span};
-use crate::syntax::ast::ProgramName;
+use crate::syntax::ast::{Folder, ProgramName, ProgramPath};
 
 /// Index of a program in its [`Memory`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -12,10 +12,10 @@ pub struct ProgramId(pub u32);
 /// Source of called programs that are not in memory: folders for the command line, a map in tests.
 pub trait Library {
     /// Returns name and content of the file that holds program O`number`.
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)>;
+    fn program(&mut self, number: u32) -> Option<(String, Bytes)>;
 
     /// Returns name and content of the file that holds program `<name>`.
-    fn named(&mut self, _: &str) -> Option<(String, Vec<u8>)> {
+    fn named(&mut self, _: &str) -> Option<(String, Bytes)> {
         None
     }
 
@@ -30,17 +30,17 @@ pub trait Library {
 pub struct NoLibrary;
 
 impl Library for NoLibrary {
-    fn program(&mut self, _: u32) -> Option<(String, Vec<u8>)> {
+    fn program(&mut self, _: u32) -> Option<(String, Bytes)> {
         None
     }
 }
 
 impl<L: Library + ?Sized> Library for &mut L {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+    fn program(&mut self, number: u32) -> Option<(String, Bytes)> {
         (**self).program(number)
     }
 
-    fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
+    fn named(&mut self, name: &str) -> Option<(String, Bytes)> {
         (**self).named(name)
     }
 
@@ -49,12 +49,27 @@ impl<L: Library + ?Sized> Library for &mut L {
     }
 }
 
+/// Folders that a control searches for a called program after that of the main program, in this order.
+const COMMON_FOLDERS: [&str; 4] = ["CNC_MEM/USER/LIBRARY", "CNC_MEM/MTB2", "CNC_MEM/MTB1", "CNC_MEM/SYSTEM"];
+
+/// Rank of folders that a control does not search.
+const OUT_OF_REACH: usize = COMMON_FOLDERS.len() + 2;
+
+/// Returns the place of a folder in the order of search from `own`, 0 for `own` itself.
+fn search_rank(folder: Option<&Folder>, own: &Folder) -> usize {
+    let Some(folder) = folder else { return COMMON_FOLDERS.len() + 1 };
+    let common = COMMON_FOLDERS.iter().position(|path| folder.path() == *path);
+    if folder == own { 0 } else { common.map_or(OUT_OF_REACH, |place| place + 1) }
+}
+
 /// Programs by number and by name.
 #[derive(Debug, Default)]
 pub struct Memory {
     sources: Sources,
     programs: Vec<Program>,
-    by_name: BTreeMap<ProgramName, ProgramId>,
+    main: ProgramId,
+    /// Programs by name, in the order loaded; each is in another folder.
+    by_name: BTreeMap<ProgramName, Vec<ProgramId>>,
     /// Programs whose number or name an earlier program has.
     duplicates: Vec<ProgramId>,
 }
@@ -69,14 +84,41 @@ impl Memory {
         let bytes = &self.sources.get(source).bytes;
         for program in outline::programs(source, bytes) {
             let id = ProgramId(self.programs.len() as u32);
-            if program.name != ProgramName::Unnamed
-                && *self.by_name.entry(program.name.clone()).or_insert(id) != id
-            {
-                self.duplicates.push(id);
+            if program.name != ProgramName::Unnamed {
+                let same_name = self.by_name.entry(program.name.clone()).or_default();
+                let is_duplicate =
+                    |other: &ProgramId| self.programs[other.0 as usize].folder == program.folder;
+                let list = if same_name.iter().any(is_duplicate) { &mut self.duplicates } else { same_name };
+                list.push(id);
             }
             self.programs.push(program);
         }
         source
+    }
+
+    /// Returns the same programs without lowered blocks; ids and spans stay valid.
+    pub fn reload(&self) -> Self {
+        let mut memory = Self::default();
+        for (_, source) in self.sources.iter() {
+            memory.load(source.name.clone(), source.bytes.clone());
+        }
+        Self { main: self.main, by_name: self.by_name.clone(), ..memory }
+    }
+
+    /// Returns the first program with this path.
+    pub fn find_path(&self, path: &ProgramPath) -> Option<ProgramId> {
+        let is_in_folder = |program: &Program| path.folder.is_none() || path.folder == program.folder;
+        self.ids().find(|id| self.get(*id).name == path.name && is_in_folder(self.get(*id)))
+    }
+
+    /// Chooses the main program; without a choice it is the first.
+    pub fn set_main(&mut self, main: ProgramId) {
+        self.main = main;
+    }
+
+    /// Returns the id of the main program.
+    pub fn main(&self) -> ProgramId {
+        self.main
     }
 
     /// Returns the loaded texts.
@@ -132,14 +174,28 @@ impl Memory {
         self.get(id).blocks.tree(index).map(|tree| tree.span)
     }
 
-    /// Returns the program with this O number.
+    /// Returns the program with this O number, as a call of the main program finds it.
     pub fn find(&self, number: u32) -> Option<ProgramId> {
-        self.by_name.get(&ProgramName::Number(number)).copied()
+        self.find_from(&ProgramName::Number(number), self.main_folder())
     }
 
-    /// Returns the program called `<name>`; `<O0123>` is program O0123.
-    pub fn find_name(&self, name: &str) -> Option<ProgramId> {
-        self.by_name.get(&ProgramName::of(name.to_owned())).copied()
+    /// Returns the program that a call from a folder finds: in that folder, in the common folders, outside folders, then in any
+    /// other folder. A caller outside folders finds the first loaded.
+    pub fn find_from(&self, name: &ProgramName, folder: Option<&Folder>) -> Option<ProgramId> {
+        let same_name = self.by_name.get(name)?;
+        let Some(own) = folder else { return same_name.first().copied() };
+        let rank = |id: &ProgramId| search_rank(self.get(*id).folder.as_ref(), own);
+        same_name.iter().min_by_key(|id| rank(id)).copied()
+    }
+
+    /// Returns true if a program is in a folder that a control does not search for a call of the main program.
+    pub fn is_out_of_reach(&self, id: ProgramId) -> bool {
+        let folder = self.get(id).folder.as_ref();
+        self.main_folder().is_some_and(|own| search_rank(folder, own) == OUT_OF_REACH)
+    }
+
+    fn main_folder(&self) -> Option<&Folder> {
+        self.programs.get(self.main.0 as usize)?.folder.as_ref()
     }
 
     /// Returns the program with this O number, loaded from the library if it is not in memory.
@@ -153,20 +209,21 @@ impl Memory {
     }
 
     fn fetch_program(&mut self, name: ProgramName, library: &mut impl Library) -> Option<ProgramId> {
-        if !self.by_name.contains_key(&name) {
-            let (file, bytes) = match &name {
-                ProgramName::Number(number) => library.program(*number)?,
-                ProgramName::Name(name) => library.named(name)?,
-                ProgramName::Unnamed => return None,
-            };
-            let first = ProgramId(self.programs.len() as u32);
-            self.load(file, bytes);
-            // A file named after its program may omit the O word or the name.
-            if self.programs.get(first.0 as usize)?.name == ProgramName::Unnamed {
-                self.by_name.entry(name.clone()).or_insert(first);
-            }
+        if let Some(found) = self.find_from(&name, self.main_folder()) {
+            return Some(found);
         }
-        self.by_name.get(&name).copied()
+        let (file, bytes) = match &name {
+            ProgramName::Number(number) => library.program(*number)?,
+            ProgramName::Name(name) => library.named(name)?,
+            ProgramName::Unnamed => return None,
+        };
+        let first = ProgramId(self.programs.len() as u32);
+        self.load(file, bytes);
+        // A file named after its program may omit the O word or the name.
+        if self.programs.get(first.0 as usize)?.name == ProgramName::Unnamed {
+            self.by_name.entry(name.clone()).or_default().push(first);
+        }
+        self.find_from(&name, self.main_folder())
     }
 
     /// Returns the program that contains a span.

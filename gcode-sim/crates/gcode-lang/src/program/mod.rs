@@ -37,7 +37,7 @@ use self::blocks::Blocks;
 use self::loops::Loops;
 use crate::alarm::LocatedAlarm;
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{self, PrintKind, ProgramName};
+use crate::syntax::ast::{self, Folder, PrintKind, ProgramName};
 
 /// Index of an operation in its program.
 pub type OpIndex = usize;
@@ -47,6 +47,8 @@ pub type OpIndex = usize;
 pub struct Program {
     /// O number or name.
     pub name: ProgramName,
+    /// Folder of a memory dump; `None` in a file without folder lines.
+    pub folder: Option<Folder>,
     /// First sequence number other than 0.
     first_number: Option<u32>,
     /// Span from the O word, or the first block, to the end of the last block.
@@ -280,6 +282,12 @@ impl Program {
     /// Returns the label that a control displays: `O8101`, `<BRACKET-OP1>`; `MAIN` for an unnamed program.
     pub fn label(&self) -> String {
         self.name.label()
+    }
+
+    /// Returns the label with the folder, if the program is in one: `//CNC_MEM/USER/PATH1/O0001`.
+    pub fn path(&self) -> String {
+        let folder = self.folder.as_ref().map_or_else(String::new, ToString::to_string);
+        folder + &self.label()
     }
 
     /// Returns all operations in order.

@@ -98,13 +98,17 @@ fn mixed_end(block: &ast::Block) -> Option<u8> {
 }
 
 fn finish(
-    ProgramParts { name, span, context, blocks, is_closed: closed }: ProgramParts<OutlineBuilder, u32>,
+    ProgramParts { name, folder, span, context, blocks, is_closed: closed }: ProgramParts<
+        OutlineBuilder,
+        u32,
+    >,
     text: ProgramText,
 ) -> Program {
     let OutlineBuilder { end, first_number, loops, separate_trees: apart, .. } = context;
     let end = end_without_spaces(text.content(), end);
     Program {
         name,
+        folder,
         first_number,
         span: Span { end: end.max(span.end), ..span },
         blocks: Blocks::new(text, blocks, apart),

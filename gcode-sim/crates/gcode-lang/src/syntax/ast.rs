@@ -48,6 +48,52 @@ impl ProgramName {
     }
 }
 
+/// Folder of a control's memory, without slashes at its ends: `CNC_MEM/USER/PATH1`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Folder(String);
+
+impl Folder {
+    /// Reads a path of a folder line; letter case, surrounding spaces and slashes at the ends do not matter.
+    pub fn new(path: &str) -> Self {
+        Self(path.trim().trim_matches('/').to_ascii_uppercase())
+    }
+
+    /// Returns the path without slashes at its ends.
+    pub fn path(&self) -> &str {
+        &self.0
+    }
+}
+
+impl std::fmt::Display for Folder {
+    /// Writes the path as a control does: `//CNC_MEM/USER/PATH1/`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "//{}/", self.0)
+    }
+}
+
+/// Program of a file, with its folder if it is stated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ProgramPath {
+    /// Folder; `None` for any.
+    pub folder: Option<Folder>,
+    /// O number or name.
+    pub name: ProgramName,
+}
+
+impl ProgramPath {
+    /// Reads `O1234`, `1234`, `NAME`, `<NAME>` or `//CNC_MEM/USER/PATH1/O1234`; `None` without a name.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (folder, name) = match text.trim().rsplit_once('/') {
+            Some((folder, name)) => (Some(Folder::new(folder)), name),
+            None => (None, text.trim()),
+        };
+        let name = name.strip_prefix('<').and_then(|name| name.strip_suffix('>')).unwrap_or(name);
+        let is_number = !name.is_empty() && name.bytes().all(|b| b.is_ascii_digit());
+        let name = if is_number { format!("O{name}") } else { name.to_ascii_uppercase() };
+        (!name.is_empty()).then(|| Self { folder, name: ProgramName::of(name) })
+    }
+}
+
 /// One line of a program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Block {

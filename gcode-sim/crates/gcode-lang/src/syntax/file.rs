@@ -2,7 +2,7 @@
 //!
 //! Most lines of a long file are one block of words, which the outline recognises without reading them. The
 //! other lines are read, so an outline has the same programs and blocks as the tree.
-use super::ast::{Block, Program, ProgramName};
+use super::ast::{Block, Folder, Program, ProgramName};
 use super::file_items::{FileItem, FileItems, is_unreadable_block};
 use super::numbers::NumberWords;
 use crate::source::{SourceId, Span};
@@ -12,6 +12,8 @@ use crate::source::{SourceId, Span};
 pub(crate) struct ProgramParts<C, B> {
     /// O number or name.
     pub name: ProgramName,
+    /// Folder of a memory dump; `None` in a file without folder lines.
+    pub folder: Option<Folder>,
     /// Span of the O word, or of the first block.
     pub span: Span,
     /// State that the caller keeps for the program.
@@ -46,11 +48,13 @@ pub(super) struct Programs<C, B> {
     list: Vec<(ProgramParts<C, B>, bool)>,
     /// True if the next block belongs to the last program.
     is_open: bool,
+    /// Folder of the next program.
+    folder: Option<Folder>,
 }
 
 impl<C, B> Default for Programs<C, B> {
     fn default() -> Self {
-        Self { list: Vec::new(), is_open: false }
+        Self { list: Vec::new(), is_open: false, folder: None }
     }
 }
 
@@ -58,8 +62,9 @@ impl<C: Default, B> Programs<C, B> {
     pub(super) fn begin(&mut self, name: ProgramName, span: Span) {
         self.close();
         let is_unreadable = name == ProgramName::Unnamed;
-        let (context, blocks) = (C::default(), Vec::new());
-        self.list.push((ProgramParts { name, span, context, blocks, is_closed: false }, is_unreadable));
+        let (folder, context, blocks) = (self.folder.clone(), C::default(), Vec::new());
+        self.list
+            .push((ProgramParts { name, folder, span, context, blocks, is_closed: false }, is_unreadable));
         self.is_open = true;
     }
 
@@ -136,11 +141,15 @@ pub(crate) fn outline<C: Default, B>(
             }
             Some(FileItem::Program { name, span }) => {
                 is_program_known = true;
+                programs.folder = items.folder();
                 programs.begin(name, span);
             }
             Some(FileItem::Block(block)) => {
                 let is_unreadable = is_unreadable_block(&block);
                 is_program_known |= !is_unreadable;
+                if !programs.is_open {
+                    programs.folder = items.folder();
+                }
                 let ProgramParts { context, blocks, .. } =
                     programs.program_for_block(block.span, is_unreadable);
                 let block = Box::new(block);

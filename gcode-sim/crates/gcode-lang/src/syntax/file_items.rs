@@ -1,7 +1,7 @@
 //! Stream of a file's items: `%`, program names and blocks.
 use std::collections::VecDeque;
 
-use super::ast::{Block, Comment, Item, ProgramName, Unreadable};
+use super::ast::{Block, Comment, Folder, Item, ProgramName, Unreadable};
 use super::block::{begins_program, read_block};
 use super::comment::blank_out_comments;
 use super::number::integer;
@@ -46,6 +46,8 @@ pub struct FileItems<'a> {
     code: Vec<u8>,
     /// Comments of the current line that belong to no item yet.
     comments: VecDeque<Comment>,
+    /// Path of the last folder line.
+    folder: Option<&'a [u8]>,
 }
 
 impl<'a> FileItems<'a> {
@@ -69,7 +71,13 @@ impl<'a> FileItems<'a> {
             blanked: None,
             code: Vec::new(),
             comments: VecDeque::new(),
+            folder: None,
         }
+    }
+
+    /// Returns the folder of the next program: the path of the last folder line, without slashes at its ends.
+    pub fn folder(&self) -> Option<Folder> {
+        self.folder.map(|path| Folder::new(&String::from_utf8_lossy(path)))
     }
 
     /// Skips the leader: text before the first `%`, ignored by a control if nothing in it is readable.
@@ -91,7 +99,10 @@ impl<'a> FileItems<'a> {
         self
     }
 
-    /// Advances to the next line. Folder lines of memory dumps, `&F=//CNC_MEM/…`, are skipped.
+    /// Advances to the next line. A folder line of a memory dump, `&F=//CNC_MEM/…`, is no item: it is the [folder] of the
+    /// programs behind it.
+    ///
+    /// [folder]: FileItems::folder
     pub(super) fn next_line(&mut self) -> Option<()> {
         loop {
             let text = self.bytes.get(self.next_line_start..).filter(|text| !text.is_empty())?;
@@ -102,7 +113,8 @@ impl<'a> FileItems<'a> {
             self.blanked = None;
             self.next_line_start = self.line_end + end_of_line(&text[length..]);
             let line = &text[..length];
-            if unspaced(line).starts_with(b"&F=") {
+            if let Some(path) = unspaced(line).strip_prefix(b"&F=") {
+                self.folder = Some(path);
                 continue;
             }
             if line.iter().fold(false, |any, byte| any | matches!(byte, b'(' | b';' | b'/')) {

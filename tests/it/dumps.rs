@@ -1,0 +1,142 @@
+//! Files with several programs: dumps of a control's memory with folders, the choice of the main program, files of other endings and
+//! encodings, and folders with several main programs.
+use std::path::Path;
+
+use gcode_tests::programs::run_line;
+
+/// Two folders with a program O1 each, and a library that both call.
+const DUMP: &str = "%\n\
+    &F=//CNC_MEM/USER/PATH1/\nO0001\n#100=1\nM98 P2\nM30\nO0002\n#101=12\nM99\n\
+    &F=//CNC_MEM/USER/PATH2/\nO0001\n#100=2\nM98 P2\nM98 P9\nM30\n\
+    &F=/CNC_MEM/USER/LIBRARY\nO0002\n#101=99\nM99\n\
+    &F=//CNC_MEM/USER/PATH3/\nO0009\n#102=3\nM99\n%\n";
+
+fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
+    let place = tempfile::tempdir().unwrap();
+    for (name, bytes) in files {
+        let path = place.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    place
+}
+
+fn run(line: &str, place: &Path) -> (i32, String, String) {
+    let done = run_line(&format!("gcode-sim {line}"), place);
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (done.status.code().unwrap(), text(done.stdout), text(done.stderr))
+}
+
+/// Returns the common variables at the end of a run.
+fn commons(line: &str, place: &Path) -> serde_json::Value {
+    let (code, json, message) = run(&format!("run {line} --format json"), place);
+    assert_eq!(code, 0, "{json} {message}");
+    serde_json::from_str::<serde_json::Value>(&json).unwrap()["variables"].take()
+}
+
+#[test]
+fn a_call_finds_the_programs_of_its_folder_and_then_the_common_ones() {
+    let place = folder(&[("ALL-PROG.TXT", DUMP.as_bytes())]);
+    let first = serde_json::json!({"#100": 1.0, "#101": 12.0});
+    assert_eq!(commons("ALL-PROG.TXT", place.path()), first, "the first program, its own O2");
+    assert_eq!(commons("ALL-PROG.TXT --program //CNC_MEM/USER/PATH1/O1", place.path()), first);
+    let second = serde_json::json!({"#100": 2.0, "#101": 99.0, "#102": 3.0});
+    assert_eq!(
+        commons("ALL-PROG.TXT --program cnc_mem/user/path2/O0001", place.path()),
+        second,
+        "O2 of the library"
+    );
+}
+
+#[test]
+fn the_choice_of_a_main_program_is_said() {
+    let place = folder(&[("ALL-PROG.TXT", DUMP.as_bytes())]);
+    let (_, _, text) = run("run ALL-PROG.TXT", place.path());
+    let note = "note[main-program]: //CNC_MEM/USER/PATH1/O0001 is executed, the first program of ALL-PROG.TXT, not \
+                //CNC_MEM/USER/PATH2/O0001";
+    assert!(text.contains(note), "{text}");
+    let (_, _, text) = run("run ALL-PROG.TXT --program O1", place.path());
+    assert!(!text.contains("main-program"), "{text}");
+    let (_, _, text) = run("run ALL-PROG.TXT --program //CNC_MEM/USER/PATH2/O1", place.path());
+    assert!(text.contains("warning[other-folder]"), "O9 is in no folder that a control searches: {text}");
+    let (code, _, message) = run("run ALL-PROG.TXT --program O7", place.path());
+    assert_eq!(code, 2);
+    assert!(
+        message.contains("ALL-PROG.TXT contains no program O0007; it contains //CNC_MEM/USER/PATH1/O0001, "),
+        "{message}"
+    );
+}
+
+/// A file may begin with the subprograms.
+#[test]
+fn the_only_main_program_is_executed_though_others_come_first() {
+    let place = folder(&[("p.eia", b"O0002\n#101=2\nM99\nO0001\n#100=1\nM98 P2\nM30\n")]);
+    assert_eq!(commons("p.eia", place.path()), serde_json::json!({"#100": 1.0, "#101": 2.0}));
+    let (_, _, text) = run("run p.eia", place.path());
+    assert!(text.contains("O0001 is executed, the only program that no other calls of p.eia"), "{text}");
+}
+
+#[test]
+fn called_programs_are_found_in_files_of_any_ending() {
+    let called: &[u8] = b"%\nO0002\n#101=7\nM99\n%\n";
+    for name in ["O0002.txt", "sub.TXT", "O2", "subs.min", "subs.tap", "subs.cnc", "subs.ncd"] {
+        let place =
+            folder(&[("main.nc", b"O1\nM98 P2\nM30\n"), (name, called), ("readme.txt", b"O2 is called\n")]);
+        assert_eq!(commons("main.nc", place.path()), serde_json::json!({"#101": 7.0}), "{name}");
+    }
+}
+
+#[test]
+fn utf_16_runs_and_its_messages_are_readable() {
+    let bytes: Vec<u8> =
+        "O1\n#3000=1(\u{5de5}\u{5177})\nM30\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let place = folder(&[("p.nc", &bytes)]);
+    let (code, json, _) = run("run p.nc --format json", place.path());
+    let alarm = &serde_json::from_str::<serde_json::Value>(&json).unwrap()["alarm"];
+    assert_eq!(
+        (code, alarm["message"].as_str(), alarm["line"].as_u64()),
+        (3, Some("\u{5de5}\u{5177}"), Some(2))
+    );
+}
+
+#[test]
+fn each_main_program_of_a_folder_is_a_case_with_its_own_accepted_result() {
+    let (one, two): (&[u8], &[u8]) = (b"O1\nG00 X1.\nM98 P3\nM30\n", b"O2\nG00 X2.\nM30\n");
+    let place = folder(&[
+        ("parts/plate/O1.nc", one),
+        ("parts/plate/O2.tap", two),
+        ("parts/plate/O3.nc", b"O3\nM99\n"),
+    ]);
+    let accepted = "accepted plate/O1\naccepted plate/O2\n2 cases: 2 as accepted\n";
+    assert_eq!(run("test parts --accept", place.path()), (0, accepted.to_owned(), String::new()));
+    assert!(place.path().join("parts/plate/O1.accepted.json").exists());
+    assert_eq!(run("test parts", place.path()).1, "2 cases: 2 as accepted\n");
+
+    std::fs::write(place.path().join("parts/plate/O2.tap"), "O2\nG00 X3.\nM30\n").unwrap();
+    let (code, text, _) = run("test parts", place.path());
+    assert_eq!((code, text.contains("2 cases: 1 as accepted, 1 changed")), (1, true), "{text}");
+
+    std::fs::remove_file(place.path().join("parts/plate/O2.tap")).unwrap();
+    let (code, text, _) = run("test parts", place.path());
+    assert_eq!(
+        (code, text.contains("refused  plate/O2: parts/plate has O2.accepted.json and no program")),
+        (2, true),
+        "{text}"
+    );
+}
+
+#[test]
+fn each_main_program_of_a_dump_is_a_case() {
+    let place = folder(&[("parts/ALL-PROG.TXT", DUMP.as_bytes())]);
+    let (code, text, _) = run("test parts --accept", place.path());
+    assert_eq!(code, 0, "{text}");
+    assert!(text.ends_with("2 cases: 2 as accepted\n"), "{text}");
+    assert_eq!(run("test parts", place.path()).1, "2 cases: 2 as accepted\n");
+}
+
+#[test]
+fn a_check_of_a_dump_resolves_calls_by_folder() {
+    let place = folder(&[("ALL-PROG.TXT", DUMP.as_bytes())]);
+    let (code, text, _) = run("check ALL-PROG.TXT", place.path());
+    assert_eq!(code, 0, "{text}");
+}
