@@ -22,8 +22,8 @@ fn collection(place: &Path) {
     case("moved", "main.nc", &drill("0.01"));
     case("lost", "main.nc", "O2\nG0 X1.\nM30\n");
     case("new & <odd>", "main.nc", "O3\nG0 X1.\nM30\n");
-    case("two", "a.nc", "O4\nM30\n");
-    case("two", "b.nc", "O5\nM30\n");
+    case("two", "a.nc", "O4\nM98 P5\nM30\n");
+    case("two", "b.nc", "O5\nM98 P4\nM30\n");
 }
 
 fn json(line: &str, place: &Path) -> Value {
@@ -192,7 +192,7 @@ fn a_refused_case_is_reported_beside_every_document() {
         let done = run_line(&format!("gcode-sim test parts --format {format} > out"), place.path());
         let messages = String::from_utf8(done.stderr).unwrap();
         assert!(
-            messages.starts_with("error: case two: parts/two contains several programs"),
+            messages.starts_with("error: case two: parts/two contains only programs that call one another"),
             "{format}: {messages}"
         );
         assert_eq!(done.status.code(), Some(2), "{format}");

@@ -6,6 +6,8 @@
 use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
 
+pub use super::program_name::{Folder, ProgramName, ProgramPath};
+
 /// One O-program of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
@@ -15,83 +17,6 @@ pub struct Program {
     pub span: Span,
     /// Blocks after the O word; words on the line of the O word form the first block.
     pub blocks: Vec<Block>,
-}
-
-/// Number or name of a program.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ProgramName {
-    /// `O0001`, `:0007` or `<O0123>`.
-    Number(u32),
-    /// `<BRACKET-OP1>`.
-    Name(String),
-    /// Main program without an O word.
-    Unnamed,
-}
-
-impl ProgramName {
-    /// Returns the label that a control displays: `O8101`, `<BRACKET-OP1>`; `MAIN` for an unnamed program.
-    pub fn label(&self) -> String {
-        match self {
-            Self::Number(number) => format!("O{number:04}"),
-            Self::Name(name) => format!("<{name}>"),
-            Self::Unnamed => "MAIN".into(),
-        }
-    }
-
-    /// Interprets the text of `<text>`: O and digits are a number, any other text is a name.
-    pub fn of(text: String) -> Self {
-        let digits = text.strip_prefix('O').filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()));
-        match digits.and_then(|digits| digits.parse().ok()) {
-            Some(number @ 1..=99_999_999) => Self::Number(number),
-            _ => Self::Name(text),
-        }
-    }
-}
-
-/// Folder of a control's memory, without slashes at its ends: `CNC_MEM/USER/PATH1`.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Folder(String);
-
-impl Folder {
-    /// Reads a path of a folder line; letter case, surrounding spaces and slashes at the ends do not matter.
-    pub fn new(path: &str) -> Self {
-        Self(path.trim().trim_matches('/').to_ascii_uppercase())
-    }
-
-    /// Returns the path without slashes at its ends.
-    pub fn path(&self) -> &str {
-        &self.0
-    }
-}
-
-impl std::fmt::Display for Folder {
-    /// Writes the path as a control does: `//CNC_MEM/USER/PATH1/`.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "//{}/", self.0)
-    }
-}
-
-/// Program of a file, with its folder if it is stated.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ProgramPath {
-    /// Folder; `None` for any.
-    pub folder: Option<Folder>,
-    /// O number or name.
-    pub name: ProgramName,
-}
-
-impl ProgramPath {
-    /// Reads `O1234`, `1234`, `NAME`, `<NAME>` or `//CNC_MEM/USER/PATH1/O1234`; `None` without a name.
-    pub fn parse(text: &str) -> Option<Self> {
-        let (folder, name) = match text.trim().rsplit_once('/') {
-            Some((folder, name)) => (Some(Folder::new(folder)), name),
-            None => (None, text.trim()),
-        };
-        let name = name.strip_prefix('<').and_then(|name| name.strip_suffix('>')).unwrap_or(name);
-        let is_number = !name.is_empty() && name.bytes().all(|b| b.is_ascii_digit());
-        let name = if is_number { format!("O{name}") } else { name.to_ascii_uppercase() };
-        (!name.is_empty()).then(|| Self { folder, name: ProgramName::of(name) })
-    }
 }
 
 /// One line of a program.

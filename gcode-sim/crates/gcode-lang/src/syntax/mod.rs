@@ -14,6 +14,8 @@ mod number;
 mod numbers;
 mod output;
 mod print;
+mod program_name;
+mod program_name;
 #[cfg(test)]
 mod property_tests;
 mod statement;
