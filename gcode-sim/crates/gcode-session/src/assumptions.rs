@@ -101,7 +101,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     !request.variables.is_empty()
         || request.settings.skip_signal.is_some()
         || has_holes
-            && (!control.unset_work_systems().is_empty()
+            && (!control.unset_work_offsets().is_empty()
                 || is_code_unknown()
                 || may_keep_spindle()
                 || takes_power_on_modes())
@@ -404,7 +404,22 @@ mod tests {
             assert_eq!(found(words, &[(variable, 7.0)]), [expected], "{words}");
         }
         assert_eq!(found("G10 L2 P1 X3.\nG54", &[(5221, 7.0)]), [""; 0]);
-        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
+        assert_eq!(found("G10 L20 P3 Y3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
+        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), ["G54.1 P3=vacant@5: 1"]);
+        // An offset is set axis by axis; B is not used.
+        for (words, is_set) in [
+            ("G10 L2 P2 X0. Y0. Z0.\nG55", true),
+            ("G10 L2 P2 X0.\nG55", false),
+            ("G10 L2 P2 X0. Y0.\nG55", false),
+            ("#5241=0.\n#5242=0.\n#5243=0.\nG55", true),
+            ("#5241=0.\n#5242=0.\nG55", false),
+            ("#2502=0.\n#2602=0.\n#2702=0.\nG55", true),
+            ("G10 L2 P2 X0. Y0. Z0.\nG55 B90.", false),
+        ] {
+            let found = found(words, &[]);
+            assert_eq!(found.is_empty(), is_set, "{words}: {found:?}");
+            assert!(found.iter().all(|one| one.starts_with("G55=vacant@") && one.ends_with(": 1")), "{found:?}");
+        }
     }
 
     #[test]

@@ -189,7 +189,10 @@ fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionE
 fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
     let work = machine.offsets.iter().flat_map(|offset| {
         let first = offset.system.first_variable();
-        offset.values.iter().map(move |(axis, value)| (first + *axis as u32, *value))
+        (0..machine.axes.len()).map(move |axis| {
+            let stated = offset.values.iter().find(|(stated, _)| *stated == axis);
+            (first + axis as u32, stated.map_or(0.0, |(_, value)| *value))
+        })
     });
     let tools =
         machine.tools.iter().filter(|tool| (1..=settings.tool_offsets).contains(&(tool.number as usize)));
