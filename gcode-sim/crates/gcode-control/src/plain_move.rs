@@ -211,6 +211,7 @@ impl Registers {
         let modal = &self.state.modal;
         modal.cycle.is_none()
             && !self.state.is_in_parameter_input
+            && !self.state.is_tapping_rigid
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
             && self.state.end_before_transform.is_none()

@@ -74,7 +74,8 @@ impl Dialect {
 
     /// Families of a code that every control has.
     pub const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::HaasNgc];
-    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
+    /// Families of Fanuc controls.
+    pub const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
     /// Controls with five simultaneous axes.
     pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
     pub(crate) const HAAS: &'static [Self] = &[Self::HaasNgc];
