@@ -119,7 +119,7 @@ impl ControlData {
     pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
         let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
         let sum = geometry + self.offsets.tool(Register::DWear, d).ok()?;
-        Some(if self.settings.offsets_are_diameters { sum / 2.0 } else { sum })
+        Some(if self.settings.has_diameter_offsets() { sum / 2.0 } else { sum })
     }
 
     pub(super) fn axis_letter(&self, axis: AxisIndex) -> u8 {

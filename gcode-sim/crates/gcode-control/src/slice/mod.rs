@@ -48,6 +48,8 @@ pub enum OutsideValue {
     ToolLength(u32),
     /// Cutter radius, by its D.
     CutterRadius(u32),
+    /// Setting 40 of a Haas, ODI: an offset that the program sets is a radius or a diameter.
+    DiameterOffsets,
     /// Position at which the skip signal of G31 comes.
     SkipSignal,
     /// M code of the machine builder.
@@ -69,6 +71,7 @@ impl OutsideValue {
             Self::ExternalOffset => "EXT".to_owned(),
             Self::ToolLength(number) => format!("H{number}"),
             Self::CutterRadius(number) => format!("D{number}"),
+            Self::DiameterOffsets => "ODI".to_owned(),
             Self::SkipSignal => "G31".to_owned(),
             Self::Auxiliary(code) => format!("M{code:02}"),
             Self::PowerOnMode(code) => name(code),

@@ -94,6 +94,7 @@ impl Alarm {
             Self::JumpTargetNotFound { number } => (&PS0128, format!("sequence number N{number} is not found"), None),
             Self::GAsArgument => (&PS0129, "G is not allowed as an argument".into(), None),
             Self::ScaleRate { value } => (&PS0142, format!("G51: scale factor {value} is 0 or too large"), Some("write the factor in its unit: P2000 is 2, or P200000 with --control SCR=0")),
+            Self::PocketTooSmall { code, radius, tool } => (&PS0119, format!("{code}: I, the pocket's radius, is {radius} mm, and D, the tool's, {tool} mm"), Some("write a larger I, or the D of a smaller tool; if the offset holds the tool's diameter, state --control ODI=1")),
             Self::NoSpeedInRigidTapping => (&PS0200, "rigid tapping (M29) while S is 0".into(), Some("write the spindle speed S in the block of M29")),
             Self::MoveBeforeRigidTapping => (&PS0204, "an axis moves between M29 and G84 or G74".into(), Some("write the move before M29, and G84 or G74 in the next block with axis words")),
             Self::PlaneInRigidTapping => (&PS0206, "the plane changes in rigid tapping".into(), Some("select the plane before M29, or after G80")),
