@@ -88,7 +88,8 @@ impl ActualVerdict {
         }
         self.compare_findings(&findings, &mut wrong);
         self.compare_made(&made, &mut wrong);
-        let found = if self.assumptions.is_empty() { "nothing".to_owned() } else { self.assumptions.join("\n  ") };
+        let found =
+            if self.assumptions.is_empty() { "nothing".to_owned() } else { self.assumptions.join("\n  ") };
         if !assumptions.is_empty() && found != assumptions.join("\n  ") {
             wrong.push(format!("assumed is\n  {found}\nexpected is\n  {}", assumptions.join("\n  ")));
         }

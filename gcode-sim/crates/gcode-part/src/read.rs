@@ -98,7 +98,13 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
     if holes.is_empty() && stopped.is_none() {
         return Err(error(None, "no hole after the header: one line for each"));
     }
-    Ok(HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None, stopped: stopped.map(str::to_owned) })
+    Ok(HoleList {
+        unit: Unit::Mm,
+        holes,
+        stock: None,
+        assumptions: None,
+        stopped: stopped.map(str::to_owned),
+    })
 }
 
 fn csv_error(e: &csv::Error) -> FileError {

@@ -422,7 +422,10 @@ mod tests {
         ] {
             let found = found(words, &[]);
             assert_eq!(found.is_empty(), is_set, "{words}: {found:?}");
-            assert!(found.iter().all(|one| one.starts_with("G55=vacant@") && one.ends_with(": 1")), "{found:?}");
+            assert!(
+                found.iter().all(|one| one.starts_with("G55=vacant@") && one.ends_with(": 1")),
+                "{found:?}"
+            );
         }
     }
 
@@ -447,7 +450,11 @@ mod tests {
             assert_eq!(haas, [format!("ODI=0@{line}: 1")], "{mill}");
             assert_eq!(found("haas-ngc", "#2401=4.", mill), haas);
             assert_eq!(found("haas-ngc", "Z3.", mill), [""; 0], "the machine file states the radius");
-            assert_eq!(found("haas-ngc", "Z3.", &mill.replace("D1", "D2 Z-5.")).len(), 1, "D2 is the operator's");
+            assert_eq!(
+                found("haas-ngc", "Z3.", &mill.replace("D1", "D2 Z-5.")).len(),
+                1,
+                "D2 is the operator's"
+            );
         }
         assert_eq!(found("fanuc-31i", "G10 L12 P1 R4.", contour), [""; 0]);
     }
