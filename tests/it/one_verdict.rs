@@ -146,6 +146,11 @@ fn an_alarm_is_in_a_list_and_in_a_picture_without_reference() {
     let (list, exit) = run("gcode-sim holes O1.nc --format json", place.path());
     let list: Value = serde_json::from_str(&list).unwrap();
     assert_eq!((&list["stopped"], exit), (&Value::from(sentence), 3));
+    let (list, exit) = run("gcode-sim holes O1.nc --format csv", place.path());
+    assert!(list.ends_with(&format!("\n# stopped: {sentence}\n")) && exit == 3, "{list}");
+    std::fs::write(place.path().join("O1.csv"), list).unwrap();
+    let (_, exit) = run("gcode-sim verify O1.nc --reference O1.csv", place.path());
+    assert_eq!(exit, 2, "the list lacks holes");
     let (drawn, exit) = run("gcode-sim render O1.nc -o O1.png --size 480x360 --format json", place.path());
     let drawn: Value = serde_json::from_str(&drawn).unwrap();
     assert_eq!((&drawn["verdict"], &drawn["summary"], exit), (&"fail".into(), &sentence.into(), 3));

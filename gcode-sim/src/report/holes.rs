@@ -2,7 +2,7 @@
 use std::fmt::Write;
 
 use super::verdict_table::append_assumptions;
-use gcode_part::HoleList;
+use gcode_part::{HoleList, STOPPED};
 
 /// Point from which the depth of each hole counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
     text
 }
 
-/// Formats the columns of a reference in CSV.
+/// Formats the columns of a reference in CSV; the last line states that the run stopped.
 pub(crate) fn csv(list: &HoleList) -> String {
     let mut text = String::from("id,x,y,z,i,j,k,depth,diameter\n");
     for (index, hole) in list.holes.iter().enumerate() {
@@ -66,6 +66,9 @@ pub(crate) fn csv(list: &HoleList) -> String {
         let numbers = hole.entry.iter().chain(&hole.axis).map(|v| plain(*v).to_string()).collect::<Vec<_>>();
         let diameter = hole.diameter.map(|d| d.to_string()).unwrap_or_default();
         let _ = writeln!(text, "{quoted},{},{},{diameter}", numbers.join(","), hole.depth);
+    }
+    if let Some(sentence) = &list.stopped {
+        let _ = writeln!(text, "{STOPPED}{sentence}");
     }
     text
 }

@@ -15,6 +15,7 @@
 //! | `burr index=0.300 passes=5` | numbers of the flutes: `contact`, `helix_min`, `helix_max`, `index`, `speed_min`, `speed_max`, `nearest`, `passes`, `moves` |
 //! | `made x=10.000 … depth=7.000 at O1:8 by T1` | without a reference: the next hole, by `x`, `y`, `z`, `i`, `j`, `k`, `depth`, `diameter` |
 //! | `not-checked with Z 29` | a line on what isn't checked has these numbers and names |
+//! | `assumes G55 at O1:7 decides 1 2` | the assumptions are these lines, in this order; `assumes nothing`: there is none |
 //! | `layout` | the printed verdict is `verdict.snap` |
 //!
 //! The findings and the holes made are all there are, in this order. A number agrees to half a unit of its last decimal, one
@@ -27,6 +28,8 @@ pub(crate) struct ActualVerdict {
     pub(crate) findings: Vec<FindingLine>,
     pub(crate) missing: Vec<String>,
     pub(crate) not_checked: Vec<String>,
+    /// Assumptions, in the form of the lines of `expect.txt`.
+    pub(crate) assumptions: Vec<String>,
     /// Numbers by subject.
     pub(crate) facts: Vec<(String, Facts)>,
     /// Holes of a program without a reference: block and numbers.
@@ -51,6 +54,7 @@ impl ActualVerdict {
     pub(crate) fn differences(&self, expected: &str) -> Vec<String> {
         let mut wrong = Vec::new();
         let (mut verdicts, mut findings, mut made) = (Vec::new(), Vec::new(), Vec::new());
+        let mut assumptions = Vec::new();
         for line in expected.lines().filter(|line| !line.starts_with('#')) {
             let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
             match word {
@@ -67,6 +71,7 @@ impl ActualVerdict {
                     self.compare_facts(subject, facts, &mut wrong);
                 }
                 "made" => made.push(rest),
+                "assumes" => assumptions.push(rest),
                 "not-checked" => {
                     let words = rest.strip_prefix("with ").unwrap();
                     let is_met = |line: &String| words.split_whitespace().all(|word| mentions(line, word));
@@ -83,6 +88,11 @@ impl ActualVerdict {
         }
         self.compare_findings(&findings, &mut wrong);
         self.compare_made(&made, &mut wrong);
+        let found =
+            if self.assumptions.is_empty() { "nothing".to_owned() } else { self.assumptions.join("\n  ") };
+        if !assumptions.is_empty() && found != assumptions.join("\n  ") {
+            wrong.push(format!("assumed is\n  {found}\nexpected is\n  {}", assumptions.join("\n  ")));
+        }
         wrong
     }
 

@@ -14,7 +14,7 @@ use gcode_inspect::verify::{Answer, Finding, HoleVerdict, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Call};
 use gcode_lang::program::NoLibrary;
-use gcode_part::NominalPart;
+use gcode_part::{Assumption, AssumptionPlace, NominalPart};
 use gcode_session::{GrindingRun, Request, Run, Simulation, grind, simulate};
 use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
@@ -43,7 +43,10 @@ pub(crate) fn run(case: &Case) {
             request.process_limits = reference.process_limits.clone();
             let simulation =
                 simulate(&request, &mut NoLibrary, reference.metal(machine.stock.as_ref())).unwrap();
-            let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
+            let mut verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
+            if text.lines().any(|line| line.starts_with("assumes ")) {
+                simulation.add_assumptions(&mut verdict, &request, false);
+            }
             inspect_holes(&verdict, &simulation.run)
         }
         None => list_holes(&simulate(&request, &mut NoLibrary, None).unwrap()),
@@ -108,11 +111,17 @@ fn inspect_holes(verdict: &Verdict, run: &Run) -> (ActualVerdict, String) {
         findings: finding_lines(&verdict.diagnostics, &verdict.findings, run),
         missing: verdict.missing.clone(),
         not_checked: verdict.not_checked.clone(),
+        assumptions: verdict.assumptions.iter().map(assumption_line).collect(),
         facts,
         made: Vec::new(),
     };
     let shown = table(verdict, Layout::default());
     (actual, with_findings(shown, &verdict.diagnostics, run))
+}
+
+fn assumption_line(assumption: &Assumption) -> String {
+    let Assumption { what, place: AssumptionPlace { program, line }, decides, .. } = assumption;
+    format!("{what} at {} decides {}", place_label(program, *line), decides.join(" ")).trim_end().to_owned()
 }
 
 fn deviations(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
@@ -152,6 +161,7 @@ fn inspect_flutes(grinding: &GrindingRun) -> (ActualVerdict, String) {
         findings: finding_lines(&verdict.diagnostics, &verdict.findings, &grinding.run),
         missing: Vec::new(),
         not_checked: verdict.not_checked.clone(),
+        assumptions: Vec::new(),
         facts: vec![("burr".to_owned(), known_facts(found))],
         made: Vec::new(),
     };
@@ -184,6 +194,7 @@ fn list_holes(simulation: &Simulation) -> (ActualVerdict, String) {
         findings: finding_lines(findings, &[], &simulation.run),
         missing: Vec::new(),
         not_checked: Vec::new(),
+        assumptions: Vec::new(),
         facts: Vec::new(),
         made,
     };

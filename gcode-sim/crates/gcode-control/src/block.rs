@@ -214,6 +214,12 @@ impl Planner<'_> {
         }
         if plan.commands_axes {
             plan.state.end_before_transform = None;
+            let drilling = plan.cycle_plan.as_ref().map(|cycle_plan| cycle_plan.axis);
+            plan.placed_axes = self.named_axes().chain(drilling).fold(0, |axes, axis| axes | 1 << axis);
+            let states = [&self.registers.state, &plan.state];
+            if plan.state.modal.cycle.is_none() && states.iter().all(|state| self.is_tapping_rigid(state)) {
+                return Err(Alarm::MoveBeforeRigidTapping.located_at(self.block));
+            }
             self.check_flow_of_triggering_block(&plan.flow)?;
         }
         if self.needs_lookahead(&plan.state) {

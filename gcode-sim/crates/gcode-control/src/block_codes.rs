@@ -5,6 +5,7 @@ use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
 use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::control::Dialect;
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
 use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
 use gcode_lang::program::g_codes::{Effect, GCodeRow, spelled};
@@ -87,6 +88,9 @@ impl Planner<'_> {
         if modal.plane != before.plane && self.registers.lookahead.is_offset() {
             return Err(Alarm::PlaneInCompensation.located_at(self.block));
         }
+        if modal.plane != before.plane && self.is_tapping_rigid(state) {
+            return Err(Alarm::PlaneInRigidTapping.located_at(self.block));
+        }
         if modal.plane != before.plane && state.transform.rotation.is_some() {
             return Err(Alarm::PlaneInRotation.located_at(self.block));
         }
@@ -97,6 +101,11 @@ impl Planner<'_> {
             return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(self.block));
         }
         self.check_transform_order(before, state)
+    }
+
+    /// Returns true after M29 on a Fanuc, which checks rigid tapping: PS0200, PS0204 and PS0206.
+    pub(super) fn is_tapping_rigid(&self, state: &State) -> bool {
+        state.is_tapping_rigid && Dialect::FANUC.contains(&self.data.settings.codes)
     }
 
     /// Ends transforms whose modes are off, and recomputes the position if the coordinates have changed.

@@ -8,7 +8,7 @@ use super::functions::ExecResult;
 use super::lookahead::Lookahead;
 use super::loop_detection::LoopDetector;
 use super::notes::Note;
-use super::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress, RunEnd};
+use super::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress, RunEnd, UnsetWorkOffset};
 use super::plan::BlockPlan;
 use super::state::State;
 use super::variables::{Value, Vars};
@@ -16,7 +16,7 @@ use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{AxisIndex, Backtrace, EventSink, Position};
-use gcode_lang::program::modes::{ModalGroup, Unit, WorkSystem};
+use gcode_lang::program::modes::{ModalGroup, Unit};
 use gcode_lang::program::{Library, Memory, Slot};
 use gcode_lang::source::Span;
 use gcode_lang::units::Seconds;
@@ -343,9 +343,8 @@ impl Control {
         self.executor.log.notes.iter().map(|(note, block)| (*note, *block))
     }
 
-    /// Returns the work coordinate systems other than G54 that the run has moved in before anything set them, each with the
-    /// block that selected it first.
-    pub fn unset_work_systems(&self) -> &[(WorkSystem, Backtrace)] {
+    /// Returns the work offsets other than G54 that the run has used before anything set them.
+    pub fn unset_work_offsets(&self) -> &[UnsetWorkOffset] {
         &self.executor.log.unset_systems
     }
 

@@ -258,7 +258,7 @@ mod tests {
         data.set_work_offset(0, 0, 0.5);
         let state = State { length_offset: at(0.0, 50.0), ..State::default() };
         assert_eq!(data.to_machine(&state, &at(10.0, 1.0)), at(110.5, 51.0));
-        assert!(data.set_systems.contains(&1), "G54 is known to be set");
+        assert_eq!(data.set_offsets.axes(1), 1, "X of G54 is known to be set");
     }
 
     #[test]

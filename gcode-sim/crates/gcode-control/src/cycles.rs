@@ -81,6 +81,9 @@ impl Planner<'_> {
             self.check_peck_words(plan, pattern)?;
         }
         let (rate, _) = self.locate(self.data.path_time(&plan.state, 1.0, self.words.has(b'F')))?;
+        if plan.state.modal_words.s == 0.0 && cycle.taps() && self.is_tapping_rigid(&plan.state) {
+            return Err(Alarm::NoSpeedInRigidTapping.located_at(self.block));
+        }
         plan.commands_axes = true;
         if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.with_unscaled_pecks(scale_factor), repeats) {
             return Err(self.not_simulated("more than a million pecks in one block"));

@@ -1,5 +1,5 @@
 //! Settings, parameters and offset tables of a control.
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::functions::integer;
 use super::state::State;
@@ -16,8 +16,27 @@ pub(super) struct ControlData {
     /// Parameters that the program has written.
     pub(super) parameters: BTreeMap<ParameterId, f64>,
     pub(super) offsets: Offsets,
-    /// Indices of the work coordinate systems that G10 or a variable has set.
-    pub(super) set_systems: BTreeSet<usize>,
+    /// Axes of the work offsets that G10 or a variable has set.
+    pub(super) set_offsets: SystemAxes,
+}
+
+/// Axes of work coordinate systems, as bits by [`system_index`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct SystemAxes(BTreeMap<usize, u8>);
+
+impl SystemAxes {
+    /// Returns the axes of a system, as bits.
+    pub(super) fn axes(&self, system: usize) -> u8 {
+        self.0.get(&system).copied().unwrap_or_default()
+    }
+
+    pub(super) fn add(&mut self, system: usize, axes: u8) {
+        *self.0.entry(system).or_default() |= axes;
+    }
+
+    pub(super) fn remove(&mut self, system: usize, axes: u8) {
+        self.0.entry(system).and_modify(|all| *all &= !axes);
+    }
 }
 
 /// Offset tables; lengths in mm, multiples of the increment.
@@ -70,12 +89,12 @@ impl ControlData {
             work: vec![Position::default(); STANDARD_SYSTEMS + settings.work_systems],
             tools: std::array::from_fn(|_| vec![0.0; settings.tool_offsets + 1]),
         };
-        Self { settings, parameters: BTreeMap::new(), offsets, set_systems: BTreeSet::new() }
+        Self { settings, parameters: BTreeMap::new(), offsets, set_offsets: SystemAxes::default() }
     }
 
     pub(super) fn set_work_offset(&mut self, system: usize, axis: AxisIndex, value: f64) {
         self.offsets.work[system][axis] = value;
-        self.set_systems.insert(system);
+        self.set_offsets.add(system, 1 << axis);
     }
 
     /// Returns the zero of the active work coordinate system in machine coordinates.
@@ -100,7 +119,7 @@ impl ControlData {
     pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
         let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
         let sum = geometry + self.offsets.tool(Register::DWear, d).ok()?;
-        Some(if self.settings.offsets_are_diameters { sum / 2.0 } else { sum })
+        Some(if self.settings.has_diameter_offsets() { sum / 2.0 } else { sum })
     }
 
     pub(super) fn axis_letter(&self, axis: AxisIndex) -> u8 {

@@ -4,7 +4,7 @@ use super::data::{ControlData, system_index};
 use super::flow::ProgramFlow;
 use super::functions::ExecResult;
 use super::lookahead::Lookahead;
-use super::outcome::{BlockEffects, RunEnd, RunLog};
+use super::outcome::{BlockEffects, RunEnd, RunLog, UnsetWorkOffset};
 use super::plan::{BlockPlan, TableWrite};
 use super::planner::Planner;
 use super::registers::Registers;
@@ -66,7 +66,7 @@ impl Executor {
     /// Carries out a plan in the order of its fields.
     pub(super) fn commit<S: EventSink>(&mut self, plan: &mut BlockPlan, sink: &mut S) {
         std::mem::swap(&mut self.registers.state, &mut plan.state);
-        self.record_work_use(plan.state.modal.work, plan.commands_axes);
+        self.record_work_use(plan.state.modal.work, plan.placed_axes);
         if !plan.commanded_groups.is_empty() {
             self.record_groups(plan.commanded_groups);
         }
@@ -202,13 +202,13 @@ impl Executor {
         self.take_lookahead(&mut lookahead, sink);
     }
 
-    /// Records the use of the work coordinate system after a block. G54 counts as set: its zero is the part's if no system
-    /// is selected.
+    /// Records the use of the work coordinate system by a block that places these axes, as bits. G54 counts as set: its zero is
+    /// the part's if no system is selected.
     #[inline]
-    pub(super) fn record_work_use(&mut self, before: WorkSystem, has_moved: bool) {
+    pub(super) fn record_work_use(&mut self, before: WorkSystem, axes: u8) {
         let work = self.registers.state.modal.work;
         if work != WorkSystem::default() {
-            self.record_other_work(work, before, has_moved);
+            self.record_other_work(work, before, axes);
         }
     }
 
@@ -226,13 +226,22 @@ impl Executor {
     }
 
     #[inline(never)]
-    fn record_other_work(&mut self, work: WorkSystem, before: WorkSystem, has_moved: bool) {
+    fn record_other_work(&mut self, work: WorkSystem, before: WorkSystem, axes: u8) {
         if work != before {
             self.log.work_selected = self.flow.backtrace();
         }
-        let is_recorded = self.log.unset_systems.iter().any(|(other, _)| *other == work);
-        if has_moved && !is_recorded && !self.registers.data.set_systems.contains(&system_index(work)) {
-            self.log.unset_systems.push((work, self.log.work_selected.clone()));
+        let set_axes = self.registers.data.set_offsets.axes(system_index(work));
+        let axes = axes & !set_axes;
+        if axes == 0 {
+            return;
+        }
+        let unset = &mut self.log.unset_systems;
+        match unset.iter_mut().find(|unset| unset.system == work) {
+            Some(unset) => unset.axes |= axes,
+            None => {
+                let selected = self.log.work_selected.clone();
+                unset.push(UnsetWorkOffset { system: work, axes, is_partly_set: set_axes != 0, selected });
+            }
         }
     }
 }

@@ -441,7 +441,7 @@ impl Planner<'_> {
             Alarm::OutOfRange { function: format!("{letter} of {code}"), value }.located_at(self.block)
         };
         if first <= tool {
-            return Err(out_of_range('I', first));
+            return Err(Alarm::PocketTooSmall { code, radius: first, tool }.located_at(self.block));
         }
         if last < first {
             return Err(out_of_range('K', last));

@@ -245,7 +245,8 @@ impl Planner<'_> {
         let Some(z) = self.data.settings.axes.find(b'Z') else { return };
         let mut home = plan.state.machine_position;
         home[z] = 0.0;
-        if self.is_work_offset_set(plan) || plan.state.unknown.all() >> z & 1 == 0 {
+        let unknown = plan.state.unknown.all() & !self.axes_with_work_offset(plan);
+        if unknown >> z & 1 == 0 {
             self.place_at_machine_coordinates(plan, 1 << z);
         }
         self.push_rapid(plan, &home);
@@ -270,14 +271,15 @@ impl Planner<'_> {
         self.rapid_to_endpoint(plan)
     }
 
-    /// Returns true if anything has set the active work offset.
-    fn is_work_offset_set(&self, plan: &BlockPlan) -> bool {
-        self.data.set_systems.contains(&system_index(plan.state.modal.work))
+    /// Returns the axes, as bits, whose active work offset is set.
+    fn axes_with_work_offset(&self, plan: &BlockPlan) -> u8 {
+        self.data.set_offsets.axes(system_index(plan.state.modal.work))
     }
 
-    /// Plans that axes go to machine coordinates. Their position on the part is known if anything has set the work offset.
+    /// Plans that axes go to machine coordinates. The position on the part is known of those whose work offset is
+    /// set.
     fn place_at_machine_coordinates(&self, plan: &mut BlockPlan, axes: u8) {
-        let at_machine_position = if self.is_work_offset_set(plan) { 0 } else { axes };
+        let at_machine_position = axes & !self.axes_with_work_offset(plan);
         let unknown = UnknownAxes { at_machine_position, ..UnknownAxes::default() };
         plan.state.unknown = plan.state.unknown.with_axes_of(axes, unknown);
         self.push_unknown_axes(plan);

@@ -137,6 +137,19 @@ pub(super) enum RunEnd {
 /// Largest number of operator stops kept; a program that loops over M00 must not fill the memory.
 const MAX_STOPS: usize = 10_000;
 
+/// Work offset that the run has used before anything set it.
+#[derive(Clone, Debug)]
+pub struct UnsetWorkOffset {
+    /// Work coordinate system.
+    pub system: WorkSystem,
+    /// Axes used without an offset, as bits.
+    pub axes: u8,
+    /// Something has set the offset of another axis.
+    pub is_partly_set: bool,
+    /// Block that selected the system first.
+    pub selected: Backtrace,
+}
+
 /// Record of a run.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RunLog {
@@ -155,8 +168,7 @@ pub(super) struct RunLog {
     pub(super) notes: BTreeMap<Note, Span>,
     /// Block that selected the active work coordinate system.
     pub(super) work_selected: Backtrace,
-    /// Systems that the run has moved in before anything set them, with the blocks that selected them.
-    pub(super) unset_systems: Vec<(WorkSystem, Backtrace)>,
+    pub(super) unset_systems: Vec<UnsetWorkOffset>,
     /// Modal groups that a block has commanded, without group 01.
     pub(super) commanded_groups: GroupSet,
     /// Those that a move preceded, or a canned cycle G98 and G99.

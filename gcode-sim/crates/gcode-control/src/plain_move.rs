@@ -116,7 +116,7 @@ impl Executor {
         }
         (state.modal.motion, state.modal_words.f) = (resolved_move.motion, f);
         state.modal_words.n = op.number.unwrap_or(state.modal_words.n);
-        self.record_work_use(self.registers.state.modal.work, true);
+        self.record_work_use(self.registers.state.modal.work, resolved_move.named.axes);
         let to = &self.registers.state.machine_position;
         match resolved_move.motion {
             _ if !resolved_move.travel.is_some() => {}
@@ -211,6 +211,7 @@ impl Registers {
         let modal = &self.state.modal;
         modal.cycle.is_none()
             && !self.state.is_in_parameter_input
+            && !self.state.is_tapping_rigid
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
             && self.state.end_before_transform.is_none()

@@ -36,6 +36,8 @@ pub(super) struct BlockPlan {
     pub(super) commanded_groups: GroupSet,
     /// True if the block commands axes, which triggers a modal macro call.
     pub(super) commands_axes: bool,
+    /// Axes, as bits, that the block sends to coordinates of the active work coordinate system.
+    pub(super) placed_axes: u8,
     /// In the order of their M codes.
     pub(super) stops: Vec<StopKind>,
     /// M codes for the machine builder's logic.
@@ -150,6 +152,7 @@ impl BlockPlan {
             lookahead: _,
             commanded_groups,
             commands_axes,
+            placed_axes,
             stops,
             builder_m_codes,
             notes,
@@ -157,7 +160,7 @@ impl BlockPlan {
         } = self;
         **state = *start;
         (*skip_plan, *cycle_plan, *corner, *flow) = (None, None, None, BlockFlow::Next);
-        (*uses_lookahead, *commands_axes) = (false, false);
+        (*uses_lookahead, *commands_axes, *placed_axes) = (false, false, 0);
         *commanded_groups = GroupSet::default();
         events.clear();
         events_after_motion.clear();

@@ -103,14 +103,14 @@ const NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (100_001, 100_200, "positions of more than 20 axes"),
 ];
 
-/// Ranges that differ on a Haas: tool offsets, whose diameters are radii here, and the offset of G52; and #3100, which its
+/// Ranges that differ on a Haas: tool offsets and the offset of G52; and #3100, which its
 /// other timers and switches surround.
 #[rustfmt::skip]
 const HAAS: &[VariableRow] = &[
     row(2001, 2200, Some(|r, n| r.tool_offset(Register::HGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::HGeometry, n, v))),
     row(2201, 2400, Some(|r, n| r.tool_offset(Register::HWear, n)), Some(|r, n, v| r.set_tool_offset(Register::HWear, n, v))),
-    row(2401, 2600, Some(|r, n| Ok(2.0 * r.tool_offset(Register::DGeometry, n)?)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v / 2.0))),
-    row(2601, 2800, Some(|r, n| Ok(2.0 * r.tool_offset(Register::DWear, n)?)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v / 2.0))),
+    row(2401, 2600, Some(|r, n| r.tool_offset(Register::DGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v))),
+    row(2601, 2800, Some(|r, n| r.tool_offset(Register::DWear, n)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v))),
     vacant(3100),
     row(5201, 5220, Some(|r, n| r.position(n, |r, axis| r.state.g52_shift[axis])), Some(|r, n, v| r.set_local(n, v))),
 ];

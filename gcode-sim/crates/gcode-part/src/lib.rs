@@ -75,6 +75,7 @@ pub use overlap::overlaps;
 pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
+pub use read::STOPPED;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
 pub use solid::{NearestPoint, Rod};
 pub use stock::{Pocket, Stock, StockAxis};

@@ -15,6 +15,9 @@ fn error(line: Option<usize>, message: impl Into<String>) -> FileError {
 /// Columns of a list; the last three may be left out.
 const COLUMNS: [&str; 11] = ["id", "x", "y", "z", "i", "j", "k", "depth", "diameter", "features", "through"];
 
+/// Beginning of the last line of a CSV list whose run stopped before its end.
+pub const STOPPED: &str = "# stopped: ";
+
 /// Columns that every list has.
 const REQUIRED: usize = 8;
 
@@ -41,6 +44,10 @@ pub(super) fn has_semicolons(text: &str) -> bool {
 }
 
 pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
+    let (text, stopped) = match text.trim_end().rsplit_once('\n') {
+        Some((before, last)) if last.starts_with(STOPPED) => (before, last.strip_prefix(STOPPED)),
+        _ => (text, None),
+    };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
     let column = |name: &str| header.iter().position(|h| h == name);
@@ -88,10 +95,16 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
         complete(&mut holes[last]);
         check(&holes[last], last).map_err(|message| error(line, message))?;
     }
-    if holes.is_empty() {
+    if holes.is_empty() && stopped.is_none() {
         return Err(error(None, "no hole after the header: one line for each"));
     }
-    Ok(HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None, stopped: None })
+    Ok(HoleList {
+        unit: Unit::Mm,
+        holes,
+        stock: None,
+        assumptions: None,
+        stopped: stopped.map(str::to_owned),
+    })
 }
 
 fn csv_error(e: &csv::Error) -> FileError {
@@ -205,6 +218,21 @@ mod tests {
     fn json_and_csv_give_the_same_holes() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\r\n1, 1, 2, 3, 0, 0.6, 0.8, 5,\r\n";
         assert_eq!(NominalPart::parse(HOLE).unwrap(), NominalPart::parse(csv).unwrap());
+    }
+
+    #[test]
+    fn a_list_of_a_run_that_stopped_is_no_reference() {
+        for list in [
+            r#"{"unit": "mm", "holes": [{"id": "1", "entry": [1, 2, 3], "axis": [0, 0, 1], "depth": 5}], "stopped": "alarm; holes may be missing"}"#,
+            "id,x,y,z,i,j,k,depth,diameter\n1,1,2,3,0,0,1,5,\n# stopped: alarm; holes may be missing\n",
+            "id,x,y,z,i,j,k,depth,diameter\n# stopped: alarm; holes may be missing\n",
+        ] {
+            let error = NominalPart::parse(list).unwrap_err();
+            assert_eq!(error.to_string(), "the list is of a run that stopped: alarm; holes may be missing");
+        }
+        // A hole may have any name.
+        let holes = read_holes("id,x,y,z,i,j,k,depth,diameter\n# 1,1,2,3,0,0,1,5,\n").holes;
+        assert_eq!(holes[0].id.as_deref(), Some("# 1"));
     }
 
     #[test]

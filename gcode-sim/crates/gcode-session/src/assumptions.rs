@@ -86,7 +86,11 @@ impl HoleDependencies {
 /// locals counts as reading it. Without holes only those values matter that can decide whether a block is executed, or how.
 fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     let control = &run.control;
-    let stated = stated_values(request);
+    let mut stated = stated_values(request);
+    if request.settings.assumes_radius_offsets() {
+        // A D that the program sets is one even where the machine file states it.
+        stated.radii.clear();
+    }
     let is_code_unknown = || control.builder_m_codes().keys().any(|code| !stated.codes.contains(code));
     let may_keep_spindle = || {
         let is_stop = |stop: &OperatorStop| matches!(stop.kind, StopKind::M00 | StopKind::M01);
@@ -101,7 +105,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     !request.variables.is_empty()
         || request.settings.skip_signal.is_some()
         || has_holes
-            && (!control.unset_work_systems().is_empty()
+            && (!control.unset_work_offsets().is_empty()
                 || is_code_unknown()
                 || may_keep_spindle()
                 || takes_power_on_modes())
@@ -404,7 +408,55 @@ mod tests {
             assert_eq!(found(words, &[(variable, 7.0)]), [expected], "{words}");
         }
         assert_eq!(found("G10 L2 P1 X3.\nG54", &[(5221, 7.0)]), [""; 0]);
-        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
+        assert_eq!(found("G10 L20 P3 Y3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
+        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), ["G54.1 P3=vacant@5: 1"]);
+        // An offset is set axis by axis; B is not used.
+        for (words, is_set) in [
+            ("G10 L2 P2 X0. Y0. Z0.\nG55", true),
+            ("G10 L2 P2 X0.\nG55", false),
+            ("G10 L2 P2 X0. Y0.\nG55", false),
+            ("#5241=0.\n#5242=0.\n#5243=0.\nG55", true),
+            ("#5241=0.\n#5242=0.\nG55", false),
+            ("#2502=0.\n#2602=0.\n#2702=0.\nG55", true),
+            ("G10 L2 P2 X0. Y0. Z0.\nG55 B90.", false),
+        ] {
+            let found = found(words, &[]);
+            assert_eq!(found.is_empty(), is_set, "{words}: {found:?}");
+            assert!(
+                found.iter().all(|one| one.starts_with("G55=vacant@") && one.ends_with(": 1")),
+                "{found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn setting_40_of_a_haas_is_an_assumption_where_the_program_sets_d() {
+        let machine = |dialect: &str| {
+            format!(
+                "[control]\ndialect = \"{dialect}\"\n[[tool]]\nnumber = 1\ndiameter = 8.0\nkind = \"end-mill\"\n\
+                 radius_offset = 4.0\n"
+            )
+        };
+        let found = |dialect: &str, set: &str, mill: &str| {
+            let text = format!(
+                "O1\nG90 G54 G17 G21 G98\nT1 M06\nS1000 M03\nG0 X20. Y20. Z2.\n{set}\nG1 Z-5. F100.\n{mill}\nG0 Z50.\nM30\n"
+            );
+            assumptions_on(&machine(dialect), &text, &[]).0
+        };
+        let contour = "G41 D1 G1 X26. Y20.\nG3 I-6. J0.\nG40 G1 X20.";
+        for mill in ["G13 I10. D1 F100.", contour] {
+            let line = 8;
+            let haas = found("haas-ngc", "G10 L12 P1 R4.", mill);
+            assert_eq!(haas, [format!("ODI=0@{line}: 1")], "{mill}");
+            assert_eq!(found("haas-ngc", "#2401=4.", mill), haas);
+            assert_eq!(found("haas-ngc", "Z3.", mill), [""; 0], "the machine file states the radius");
+            assert_eq!(
+                found("haas-ngc", "Z3.", &mill.replace("D1", "D2 Z-5.")).len(),
+                1,
+                "D2 is the operator's"
+            );
+        }
+        assert_eq!(found("fanuc-31i", "G10 L12 P1 R4.", contour), [""; 0]);
     }
 
     #[test]

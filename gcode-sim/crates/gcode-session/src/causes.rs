@@ -1,7 +1,7 @@
 //! Likely causes of a verdict: unset work offsets, and what a check of the program's text finds; and of an endless loop: a
 //! counter that its assignment does not change.
 use super::{Request, Run};
-use gcode_control::{Control, Outcome, Value, additional_system_name};
+use gcode_control::{Control, Outcome, UnsetWorkOffset, Value, additional_system_name};
 use gcode_inspect::findings::{MAIN_PROGRAM, WORK_OFFSET};
 use gcode_inspect::machine::Machine;
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -71,13 +71,11 @@ pub(super) fn unset_work_offsets<'r>(
     machine: &'r Machine,
     made: &'r str,
 ) -> impl Iterator<Item = Diagnostic> + 'r {
-    let unset = run.control.unset_work_systems().iter();
-    unset.map(move |(system, backtrace)| {
-        offset_finding(*system, machine, made).with_backtrace(backtrace.clone())
-    })
+    let unset = run.control.unset_work_offsets().iter();
+    unset.map(move |unset| offset_finding(unset, machine, made).with_backtrace(unset.selected.clone()))
 }
 
-fn offset_finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {
+fn offset_finding(unset: &UnsetWorkOffset, machine: &Machine, made: &str) -> Diagnostic {
     let name = |system: WorkSystem| match system {
         WorkSystem::Standard(_) => system.name(),
         WorkSystem::Additional(number) => additional_system_name(machine.dialect, usize::from(number)),
@@ -87,10 +85,12 @@ fn offset_finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnost
         [] => format!("no work offset; all count as zero here, and the {made} are computed as with G54"),
         known => format!("{} only; this one counts as zero here", known.join(", ")),
     };
-    let message = format!(
-        "the program uses work offset {}, which is unknown: the machine file gives {given}",
-        name(system)
-    );
+    let (offset, axes) = (name(unset.system), machine.axes.names(unset.axes));
+    let used = match unset.is_partly_set {
+        false => format!("work offset {offset}, which is unknown"),
+        true => format!("{axes} of work offset {offset}, of which the program sets other axes only"),
+    };
+    let message = format!("the program uses {used}: the machine file gives {given}");
     Diagnostic::new(&WORK_OFFSET, message)
         .help("check that it is the offset set up on the machine; its values there are not checked")
 }

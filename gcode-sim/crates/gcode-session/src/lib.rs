@@ -226,12 +226,15 @@ fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionE
 fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
     let work = machine.offsets.iter().flat_map(|offset| {
         let first = offset.system.first_variable();
-        offset.values.iter().map(move |(axis, value)| (first + *axis as u32, *value))
+        (0..machine.axes.len()).map(move |axis| {
+            let stated = offset.values.iter().find(|(stated, _)| *stated == axis);
+            (first + axis as u32, stated.map_or(0.0, |(_, value)| *value))
+        })
     });
     let tools =
         machine.tools.iter().filter(|tool| (1..=settings.tool_offsets).contains(&(tool.number as usize)));
     let offsets = tools.flat_map(move |tool| {
-        let unit = if settings.offsets_are_diameters { 2.0 } else { 1.0 };
+        let unit = if settings.has_diameter_offsets() { 2.0 } else { 1.0 };
         let variables = settings.offset_variables;
         let length = variables.length(tool.number).zip(tool.length);
         let radius = variables.radius(tool.number).zip(tool.radius_offset.map(|radius| radius * unit));

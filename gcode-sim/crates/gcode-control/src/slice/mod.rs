@@ -22,7 +22,7 @@ use self::branches::Branches;
 use self::marks::{LOCALS, MachineMarks, VariableMarks};
 use self::reads::OffsetEntry;
 use super::control::{Control, Observer};
-use super::data::system_index;
+use super::data::{SystemAxes, system_index};
 use super::flow::ProgramFlow;
 use super::registers::Registers;
 use gcode_lang::control::OffsetVariables;
@@ -48,6 +48,8 @@ pub enum OutsideValue {
     ToolLength(u32),
     /// Cutter radius, by its D.
     CutterRadius(u32),
+    /// Setting 40 of a Haas, ODI: an offset that the program sets is a radius or a diameter.
+    DiameterOffsets,
     /// Position at which the skip signal of G31 comes.
     SkipSignal,
     /// M code of the machine builder.
@@ -69,6 +71,7 @@ impl OutsideValue {
             Self::ExternalOffset => "EXT".to_owned(),
             Self::ToolLength(number) => format!("H{number}"),
             Self::CutterRadius(number) => format!("D{number}"),
+            Self::DiameterOffsets => "ODI".to_owned(),
             Self::SkipSignal => "G31".to_owned(),
             Self::Auxiliary(code) => format!("M{code:02}"),
             Self::PowerOnMode(code) => name(code),
@@ -126,8 +129,8 @@ pub struct Slice {
     set_lengths: BTreeSet<u32>,
     /// Cutter radii that the program has set, by their D.
     set_radii: BTreeSet<u32>,
-    /// Work coordinate systems that the machine file states or the program has set, by their index.
-    set_systems: BTreeSet<usize>,
+    /// Axes of the work offsets that the machine file states or the program has set.
+    set_offsets: SystemAxes,
     /// Modal codes of power-on that the run has read: each is one of its group.
     power_on_modes: Marks,
     /// Values that decide whether the run cuts elsewhere.
@@ -146,17 +149,17 @@ impl Slice {
         offset_variables: OffsetVariables,
         variables: &[(u32, f64)],
     ) -> Self {
-        let mut set_systems: BTreeSet<usize> =
-            stated.work_systems.iter().copied().map(system_index).collect();
+        let mut set_offsets = SystemAxes::default();
+        stated.work_systems.iter().for_each(|system| set_offsets.add(system_index(*system), u8::MAX));
         for (number, _) in variables {
             match reads::offset_of(*number, offset_variables) {
                 Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
                 Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
-                Some(OffsetEntry::Work(system)) => _ = set_systems.remove(&system),
+                Some(OffsetEntry::Work(system, axes)) => set_offsets.remove(system, axes),
                 None => {}
             }
         }
-        Self { stated, set_systems, ..Self::default() }
+        Self { stated, set_offsets, ..Self::default() }
     }
 
     /// Returns the marks of the current block's motion, shared with the sink of the run.

@@ -115,8 +115,8 @@ impl Slice {
             && modal.distance == Distance::Absolute
             && modal.polar == Polar::Off
             && modal.work == WorkSystem::default()
-            && !self.is_system_open(data, modal.work)
-            && !data.set_systems.contains(&0)
+            && self.open_axes(data, modal.work) == 0
+            && data.set_offsets.axes(0) == 0
             && state.transform.is_identity()
             && !state.is_in_parameter_input
             && data.settings.code_calls.is_empty();
@@ -152,22 +152,25 @@ impl Slice {
         let control = self.branches.marks();
         let settings = &data.settings;
         let drills = |axis: AxisIndex| is_drilling(settings, modes.plane, settings.axes.letter(axis) as u8);
-        let is_unset = self.is_system_open(data, modes.work);
+        let open_axes = self.open_axes(data, modes.work);
         // Only --set can have set the external offset.
-        let has_shift = data.set_systems.contains(&0) && !self.set_systems.contains(&0);
+        let shifted_axes = data.set_offsets.axes(0) & !self.set_offsets.axes(0);
+        let drilling = settings.axes.iter().filter(|(axis, _)| modes.is_in_cycle && drills(*axis));
+        let drilling = drilling.fold(0, |bits, (axis, _)| bits | 1 << axis);
         let is_cut = modes.is_in_cycle
             || modes.one_shot == Some(OneShot::Skip)
             || modes.one_shot.is_none() && modes.motion != Motion::Rapid;
         if is_cut {
             self.further |= words.cut;
         }
-        let mut work = Marks::NONE;
         let mut moved = Marks::NONE;
         for (axis, word) in named {
-            if is_unset && work.is_none() {
+            let placed = drilling | 1 << axis;
+            let mut work = Marks::NONE;
+            if open_axes & placed != 0 {
                 work = self.outside(OutsideValue::WorkOffset(modes.work), None, block.flow, block.op);
             }
-            if has_shift {
+            if shifted_axes & placed != 0 {
                 work |= self.outside(OutsideValue::ExternalOffset, None, block.flow, block.op);
             }
             let mut marks = word.marks | control | work | self.machine.coordinates(axis);
@@ -225,7 +228,10 @@ impl Slice {
                     (_, Some(number)) => system_index(WorkSystem::Additional(number as u16)),
                     (_, None) => system_index(block.registers.state.modal.work),
                 };
-                self.set_systems.insert(system);
+                let axes = &block.registers.data.settings.axes;
+                let named = list.iter().filter(|word| word.value.is_some());
+                let named = named.filter_map(|word| axes.find(word.letter));
+                self.set_offsets.add(system, named.fold(0, |bits, axis| bits | 1 << axis));
             }
             (Some(l @ (1 | 10..=13)), Some(number)) => {
                 self.machine.tool_table |= marks;

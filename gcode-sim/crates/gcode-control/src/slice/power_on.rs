@@ -111,17 +111,16 @@ impl Slice {
         let mut marks = self.machine.axes[axis] | self.machine.coordinates(axis) | self.machine.length;
         let state = &block.registers.state;
         let unknown = state.unknown_on_machine();
-        let is_unknown = |axes: u8| axes >> axis & 1 == 1;
+        let is_among = |axes: u8| axes >> axis & 1 == 1;
         let is_known = match range {
             // Machine coordinates of a place on the part rest on the work offset.
             1 => {
-                is_unknown(unknown.at_machine_position)
-                    || !is_unknown(unknown.all())
-                        && block.registers.data.set_systems.contains(&system_index(state.modal.work))
+                let with_offset = block.registers.data.set_offsets.axes(system_index(state.modal.work));
+                is_among(unknown.at_machine_position) || is_among(with_offset & !unknown.all())
             }
             // Tool length offset.
             4 => true,
-            _ => !is_unknown(unknown.all()),
+            _ => !is_among(unknown.all()),
         };
         if !is_known {
             marks |= self.outside_variable(block, number);

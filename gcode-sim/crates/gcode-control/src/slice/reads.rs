@@ -21,18 +21,22 @@ const FIRST_ADDITIONAL: usize = 7;
 pub(super) enum OffsetEntry {
     Length(u32),
     Radius(u32),
-    Work(usize),
+    /// System and axis, as a bit; 0 of an axis that no control has.
+    Work(usize, u8),
 }
 
 /// Returns the entry that a system variable addresses.
 pub(super) fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
     let is_haas = offsets == OffsetVariables::Haas;
-    let work =
-        |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
+    let bit = |axis: u32| 1_u8.checked_shl(axis).unwrap_or(0);
+    let work = |first: u32, system: usize| {
+        let (row, axis) = ((number - first) / POSITIONS, (number - first) % POSITIONS);
+        OffsetEntry::Work(system + row as usize, bit(axis))
+    };
     Some(match number {
         2001..=2400 => OffsetEntry::Length((number - 2001) % 200 + 1),
         2401..=2800 if is_haas => OffsetEntry::Radius((number - 2401) % 200 + 1),
-        2500..=2806 => OffsetEntry::Work((number % 100) as usize),
+        2500..=2806 => OffsetEntry::Work((number % 100) as usize, bit(number / 100 - 25)),
         5201..=5220 if is_haas => return None,
         5201..=5340 => work(5201, 0),
         7001..=7960 => work(7001, FIRST_ADDITIONAL),
@@ -183,12 +187,12 @@ impl Slice {
         self.stated.radii.contains(&number) || self.set_radii.contains(&number)
     }
 
-    /// Returns true if a move in a work coordinate system rests on an offset that is an outside value. G54 is the part's zero
-    /// unless something sets it.
-    pub(super) fn is_system_open(&self, data: &ControlData, work: WorkSystem) -> bool {
+    /// Returns the axes, as bits, whose offset in a work coordinate system is an outside value. G54 is the part's zero unless
+    /// something sets it.
+    pub(super) fn open_axes(&self, data: &ControlData, work: WorkSystem) -> u8 {
         let index = system_index(work);
-        let has_offset = work != WorkSystem::default() || data.set_systems.contains(&index);
-        has_offset && !self.set_systems.contains(&index)
+        let with_offset = if work == WorkSystem::default() { data.set_offsets.axes(index) } else { u8::MAX };
+        with_offset & !self.set_offsets.axes(index)
     }
 
     /// Returns true if the machine file states an offset or a block has set it, by its variable.
@@ -202,7 +206,7 @@ impl Slice {
             Some(OffsetEntry::Radius(tool)) => {
                 self.set_radii.contains(&tool) || is_stated(&self.stated.radii, tool)
             }
-            Some(OffsetEntry::Work(system)) => self.set_systems.contains(&system),
+            Some(OffsetEntry::Work(system, axis)) => self.set_offsets.axes(system) & axis != 0,
             None => false,
         }
     }
@@ -228,7 +232,7 @@ impl Slice {
                 match offset_of(number, registers.data.settings.offset_variables) {
                     Some(OffsetEntry::Length(tool)) => _ = self.set_lengths.insert(tool),
                     Some(OffsetEntry::Radius(tool)) => _ = self.set_radii.insert(tool),
-                    Some(OffsetEntry::Work(system)) => _ = self.set_systems.insert(system),
+                    Some(OffsetEntry::Work(system, axis)) => self.set_offsets.add(system, axis),
                     None => {}
                 }
             }

@@ -242,13 +242,18 @@ impl Slice {
         let d = number_of(b'D', registers.state.modal_words.d);
         let begins =
             registers.state.modal.cutter != modes.cutter || list.iter().any(|word| word.letter == b'D');
+        let mills_circle = matches!(modes.one_shot, Some(OneShot::CirclePocket(_)));
         match modes.cutter {
-            CutterSide::Off => self.machine.radius = control,
-            _ if begins => {
+            CutterSide::Off if !mills_circle => self.machine.radius = control,
+            _ if begins || mills_circle => {
                 let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
                 if d != 0 && !self.is_radius_set(d) {
                     let value = registers.data.offset_radius(d);
                     marks |= self.outside(OutsideValue::CutterRadius(d), value, block.flow, block.op);
+                }
+                let settings = &registers.data.settings;
+                if d != 0 && settings.assumes_radius_offsets() && self.set_radii.contains(&d) {
+                    marks |= self.outside(OutsideValue::DiameterOffsets, Some(0.0), block.flow, block.op);
                 }
                 self.machine.radius = marks;
             }

@@ -122,7 +122,13 @@ impl HoleExtractor<'_> {
         findings.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
             let message =
                 format!("the feed ends {depth:.3} mm inside the part and the tool does not retract along it");
-            Diagnostic::new(kind, message).help("retract along the hole before anything else moves")
+            Diagnostic::new(kind, message).help(match line.tool_axis {
+                Some(_) => "retract along the hole before anything else moves",
+                None => {
+                    "if it mills, give [head] in the machine file: without the direction of the tool each feed into the \
+                     part counts as a hole; else retract along the hole before anything else moves"
+                }
+            })
         });
     }
 

@@ -96,19 +96,20 @@ pub(super) fn without_assumed(axes: UnknownAxes, machine: &Machine) -> UnknownAx
 }
 
 impl UnknownRapids {
-    /// Returns a sentence on what is not checked; `first` is the program and the line of the first rapid.
-    pub(crate) fn describe(&self, first: (String, u32)) -> String {
+    /// Returns what is not checked, and the reason; `first` is the program and the line of the first rapid.
+    pub(crate) fn describe(&self, first: (String, u32)) -> (String, &'static str) {
         let (program, line) = first;
         let moves = match self.count {
             1 => format!("1 move, {program} line {line}"),
             count => format!("{count} moves, first {program} line {line}"),
         };
-        format!(
-            "the clearance of rapids from and to the positions where G28, G30 or G53 sends {} ({moves}): \
-             the machine file lacks the work offset in effect ([offsets]), so the position of machine zero \
-             on the part is unknown",
+        let what = format!(
+            "the clearance of rapids from and to the positions where G28, G30 or G53 sends {} ({moves})",
             self.letters
-        )
+        );
+        let reason = "the machine file lacks the work offset in effect ([offsets]), so the position of machine zero on \
+                      the part is unknown";
+        (what, reason)
     }
 }
 

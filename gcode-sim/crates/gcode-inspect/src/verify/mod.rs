@@ -30,6 +30,7 @@ use std::collections::BTreeMap;
 use self::checks::features::{FeatureFindings, judge_all};
 use self::checks::mirrored::MirrorImage;
 use self::hole_finding::{HoleFindings, Subject};
+use self::not_checked::NotChecked;
 use self::rounding::RoundingDeviation;
 use self::rows::PatternRows;
 use crate::findings::START_UNKNOWN;
@@ -121,12 +122,13 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    verdict.not_checked = not_checked::lines(&inspection, locate);
-    let gaps = not_checked::gaps(&verdict.not_checked);
+    let not_checked = not_checked::list(&inspection, locate);
+    let gaps = not_checked::gaps(&not_checked);
     if !gaps.is_empty() {
         verdict.summary.push_str("; not checked: ");
         verdict.summary.push_str(&gaps.join(", "));
     }
+    verdict.not_checked = not_checked.iter().map(NotChecked::sentence).collect();
     verdict
 }
 

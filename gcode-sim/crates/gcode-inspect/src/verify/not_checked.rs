@@ -1,4 +1,4 @@
-//! Sentences on what a verdict on holes does not cover.
+//! Everything that a verdict on holes does not cover, with the reasons.
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::checks::features::ShapeGap;
@@ -14,80 +14,94 @@ use gcode_part::{Reference, ToolProcess};
 /// Motion that no check covers if neither stock nor surface is known.
 const MOTION: &str = "motion beside the holes (no stock)";
 
-/// Motion whose search was given up.
-const UNSEARCHED: &str = "rapids whose axes may reach too many positions";
-
 /// Metal near feeds of unknown width.
 const UNSIZED: &str = "what mills of unknown diameter remove";
 
-/// Metal of feeds beyond the limit.
-const CUT_SHORT: &str = "what the feeds after the first million remove";
+/// Something that a verdict does not cover.
+pub(super) struct NotChecked {
+    what: String,
+    reason: String,
+    /// The first line of the verdict names it: neither could the reference specify it, nor do most machines lack it.
+    is_gap: bool,
+}
 
-/// End of a sentence on what a reference could specify: it is no gap in a verdict on that reference.
-const UNSPECIFIED: &str = "not specified in the reference";
+impl NotChecked {
+    fn gap(what: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { what: what.into(), reason: reason.into(), is_gap: true }
+    }
 
-/// End of a sentence on axes that most machines lack.
-const UNCOMMANDED: &str = "no block commands it, and it counts as 0";
+    fn aside(what: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { is_gap: false, ..Self::gap(what, reason) }
+    }
 
-/// Returns what these sentences name, for the first line of a verdict: all before the first colon.
-pub(super) fn gaps(lines: &[String]) -> Vec<&str> {
-    let is_gap = |line: &&String| ![UNSPECIFIED, UNCOMMANDED].iter().any(|end| line.ends_with(end));
-    let names = lines.iter().filter(is_gap).map(|line| line.split(": ").next().unwrap_or(line));
-    let mut gaps = Vec::new();
-    names.for_each(|name| {
-        if !gaps.contains(&name) {
-            gaps.push(name)
+    /// Returns `head angles: the head is unknown, each axis is taken along its feed`.
+    pub(super) fn sentence(&self) -> String {
+        format!("{}: {}", self.what, self.reason)
+    }
+}
+
+/// Returns the names of the gaps for the first line of a verdict, each once.
+pub(super) fn gaps(all: &[NotChecked]) -> Vec<&str> {
+    let mut gaps: Vec<&str> = Vec::new();
+    for one in all.iter().filter(|one| one.is_gap) {
+        if !gaps.contains(&one.what.as_str()) {
+            gaps.push(&one.what);
         }
-    });
+    }
     gaps
 }
 
-/// Returns a sentence for each gap of the verdict, so that a pass is not taken for more than it is. What is not checked stands
-/// before a colon, the reason behind it.
-pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
+/// Returns everything that the verdict does not cover, so that a pass is not taken for more than it is.
+pub(super) fn list(
+    inspection: &HoleInspection<'_>,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Vec<NotChecked> {
     let HoleInspection { comparison, extraction, reference, machine, .. } = inspection;
     let mut all = diameters(comparison, machine);
     if !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none()) {
-        all.push("the tool in the spindle at the start: it cuts before the first tool change".to_owned());
+        let what = "the tool in the spindle at the start";
+        all.push(NotChecked::gap(what, "it cuts before the first tool change"));
     }
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
     all.extend(holders(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
     if extraction.findings.iter().any(|finding| finding.kind == &BACK_BORED) {
-        all.push("bores made backwards: their depth and diameter".to_owned());
+        all.push(NotChecked::gap("bores made backwards", "their depth and diameter"));
     }
     let mut drilled = comparison.matched().map(|(.., drilled)| drilled);
     if machine.head.kind == HeadKind::Free && drilled.all(|hole| hole.tool_axis_deviation == Deg::ZERO) {
-        all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());
+        all.push(NotChecked::gap("head angles", "the head is unknown, each axis is taken along its feed"));
     }
     if extraction.assumed_axes != 0 && !extraction.holes.is_empty() {
-        all.push(format!("the position of {}: {UNCOMMANDED}", machine.axes.names(extraction.assumed_axes)));
+        let what = format!("the position of {}", machine.axes.names(extraction.assumed_axes));
+        all.push(NotChecked::aside(what, "no block commands it, and it counts as 0"));
     }
     if !extraction.is_metal_known {
-        all.push(format!(
-            "{MOTION}: give [stock] in the reference or the machine file; the metal is known only round the \
-             nominal holes, to 1 mm from their walls"
-        ));
+        let reason = "give [stock] in the reference or the machine file; the metal is known only round the nominal \
+                      holes, to 1 mm from their walls";
+        all.push(NotChecked::gap(MOTION, reason));
     } else if let Some(unknown) = &extraction.unknown_rapids {
-        all.push(unknown.describe(locate(unknown.backtrace.block)));
+        let (what, reason) = unknown.describe(locate(unknown.backtrace.block));
+        all.push(NotChecked::gap(what, reason));
     }
     if let Some(unsearched) = &extraction.unsearched_rapids {
         let (program, line) = locate(unsearched.backtrace.block);
         let count = unsearched.count;
         let plural = if count == 1 { "" } else { "s" };
-        all.push(format!(
-            "{UNSEARCHED} ({count} rapid{plural}, first {program} line {line}): give [rapid] in the machine file"
-        ));
+        let what = "rapids whose axes may reach too many positions";
+        let reason =
+            format!("{count} rapid{plural}, first {program} line {line}; give [rapid] in the machine file");
+        all.push(NotChecked::gap(what, reason));
     }
     for tool in &extraction.unsized_mills {
         let tool = tool_name(*tool);
-        all.push(format!(
-            "{UNSIZED}: the machine file has no diameter of {tool}; rapids near its feeds pass"
-        ));
+        let reason = format!("the machine file has no diameter of {tool}; rapids near its feeds pass");
+        all.push(NotChecked::gap(UNSIZED, reason));
     }
     if extraction.is_removal_cut_short {
-        all.push(format!("{CUT_SHORT}: rapids where they have removed the metal are reported"));
+        let what = "what the feeds after the first million remove";
+        all.push(NotChecked::gap(what, "rapids where they have removed the metal are reported"));
     }
     all
 }
@@ -101,7 +115,7 @@ fn hole_names(ids: &[&str]) -> String {
 }
 
 /// Returns the holes of unknown diameter, by their tools.
-fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
+fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<NotChecked> {
     let mut by_tool: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
     for (pair, nominal, drilled) in comparison.matched() {
         if nominal.diameter.is_none() && nominal.features.is_empty() {
@@ -115,22 +129,22 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
             }
         }
     }
-    let sentence = |(tool, ids): (Option<u32>, Vec<&str>)| {
-        let holes = hole_names(&ids);
+    let gap = |(tool, ids): (Option<u32>, Vec<&str>)| {
+        let what = format!("the diameter of {}", hole_names(&ids));
         match tool {
-            None if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
-            None => format!("the diameter of {holes}: made before the first tool change"),
+            None if machine.tools.is_empty() => NotChecked::gap("diameters", "the machine has no tool table"),
+            None => NotChecked::gap(what, "made before the first tool change"),
             Some(tool) if machine.find_tool(tool).is_none() => {
-                format!("the diameter of {holes}: T{tool} is not in the machine file")
+                NotChecked::gap(what, format!("T{tool} is not in the machine file"))
             }
-            Some(tool) => format!("the diameter of {holes}: the machine file has none of T{tool}"),
+            Some(tool) => NotChecked::gap(what, format!("the machine file has none of T{tool}")),
         }
     };
-    by_tool.into_iter().map(sentence).collect()
+    by_tool.into_iter().map(gap).collect()
 }
 
 /// Returns the tools whose end the machine file does not describe, with what was taken for it.
-fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
+fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
     let mut ids: BTreeMap<ShapeGap, Vec<&str>> = BTreeMap::new();
     for hole in &inspection.features {
         for gap in &hole.gaps {
@@ -141,46 +155,37 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
             }
         }
     }
-    let sentence = |(gap, ids): (ShapeGap, Vec<&str>)| {
+    let gap = |(gap, ids): (ShapeGap, Vec<&str>)| {
         let holes = hole_names(&ids);
+        let no_angle = |what: String, tool| {
+            NotChecked::gap(what, format!("the machine file has no point_angle of {}", tool_name(tool)))
+        };
         match gap {
             ShapeGap::SpotDrill(tool) => {
-                format!(
-                    "the end of {0} in {holes}: the machine file has no kind or point_angle; {0} is taken for a spot drill",
-                    tool_name(tool)
-                )
+                let tool = tool_name(tool);
+                let reason =
+                    format!("the machine file has no kind or point_angle; {tool} is taken for a spot drill");
+                NotChecked::gap(format!("the end of {tool} in {holes}"), reason)
             }
             ShapeGap::Undrilled(tool) => {
-                format!("the hole in which {} cuts: the program does not drill {holes}", tool_name(tool))
+                let what = format!("the hole in which {} cuts", tool_name(tool));
+                NotChecked::gap(what, format!("the program does not drill {holes}"))
             }
             ShapeGap::FullThrough(tool) => {
-                format!(
-                    "the full diameter of {holes} on the far side: the machine file has no point_angle of {}",
-                    tool_name(tool)
-                )
+                no_angle(format!("the full diameter of {holes} on the far side"), tool)
             }
-            ShapeGap::FullDepth(tool) => {
-                format!(
-                    "the depth of the full diameter of {holes}: the machine file has no point_angle of {}",
-                    tool_name(tool)
-                )
-            }
-            ShapeGap::Angle(tool) => {
-                format!(
-                    "the angle of the countersink of {holes}: the machine file has no point_angle of {}",
-                    tool_name(tool)
-                )
-            }
+            ShapeGap::FullDepth(tool) => no_angle(format!("the depth of the full diameter of {holes}"), tool),
+            ShapeGap::Angle(tool) => no_angle(format!("the angle of the countersink of {holes}"), tool),
         }
     };
-    ids.into_iter().map(sentence).collect()
+    ids.into_iter().map(gap).collect()
 }
 
 /// Returns the tools of unknown length, and the length taken for each.
-fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<String> {
+fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<NotChecked> {
     let unknown = extraction.cut_conditions.iter().filter(|cut| machine.length_of(cut.tool).is_none());
     let tools: BTreeSet<_> = unknown.map(|cut| (cut.tool, cut.compensation)).collect();
-    let sentence = |(tool, compensation): (Option<u32>, LengthCompensation)| {
+    let gap = |(tool, compensation): (Option<u32>, LengthCompensation)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
         let taken = match compensation {
             LengthCompensation::Off | LengthCompensation::Plus(0) | LengthCompensation::Minus(0) => {
@@ -188,13 +193,13 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<String> {
             }
             LengthCompensation::Plus(h) | LengthCompensation::Minus(h) => format!("H{h} as its length"),
         };
-        format!("{whose}: not in the machine file, which takes {taken}")
+        NotChecked::gap(whose, format!("not in the machine file, which takes {taken}"))
     };
-    tools.into_iter().map(sentence).collect()
+    tools.into_iter().map(gap).collect()
 }
 
 /// Returns the tools whose holder is described, but not where it is.
-fn holders(extraction: &HoleExtraction, machine: &Machine) -> Option<String> {
+fn holders(extraction: &HoleExtraction, machine: &Machine) -> Option<NotChecked> {
     let tools: BTreeSet<u32> = extraction.cut_conditions.iter().filter_map(|cut| cut.tool).collect();
     let is_nowhere = |number: &&u32| {
         machine
@@ -202,15 +207,16 @@ fn holders(extraction: &HoleExtraction, machine: &Machine) -> Option<String> {
             .is_some_and(|tool| tool.holder_diameter.is_some() && tool.length.is_none())
     };
     let names: Vec<_> = tools.iter().filter(is_nowhere).map(|number| format!("T{number}")).collect();
-    (!names.is_empty())
-        .then(|| format!("the holder of {} in the holes: the machine file has no length", names.join(", ")))
+    let what = format!("the holder of {} in the holes", names.join(", "));
+    (!names.is_empty()).then(|| NotChecked::gap(what, "the machine file has no length"))
 }
 
 /// Returns the limits of the process that the reference does not specify.
-fn conditions(extraction: &HoleExtraction, reference: &Reference, machine: &Machine) -> Option<String> {
+fn conditions(extraction: &HoleExtraction, reference: &Reference, machine: &Machine) -> Option<NotChecked> {
     let limits = &reference.process_limits;
     if extraction.process_limits != *limits {
-        return Some("cutting conditions: the run was simulated without those of the reference".to_owned());
+        let reason = "the run was simulated without those of the reference";
+        return Some(NotChecked::gap("cutting conditions", reason));
     }
     let tools: BTreeSet<_> = extraction.cut_conditions.iter().map(|cut| cut.tool).collect();
     let lacks = |value: &dyn Fn(&ToolProcess) -> Option<f64>| {
@@ -225,5 +231,5 @@ fn conditions(extraction: &HoleExtraction, reference: &Reference, machine: &Mach
         (rotates && limits.clamp.is_none(), "the rotary clamp"),
     ];
     let names: Vec<_> = conditions.iter().filter(|(lacks, _)| *lacks).map(|(_, name)| *name).collect();
-    (!names.is_empty()).then(|| format!("{}: {UNSPECIFIED}", names.join(", ")))
+    (!names.is_empty()).then(|| NotChecked::aside(names.join(", "), "not specified in the reference"))
 }

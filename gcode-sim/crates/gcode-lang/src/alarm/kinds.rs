@@ -56,6 +56,9 @@ crate::finding_kinds! {
     PS0129 = "PS0129", Alarm, "G as an argument of a macro call";
     PS0142 = "PS0142", Alarm, "G51 with a scale factor of 0 or too large";
     PS0144 = "PS0144", Alarm, "the plane changes in coordinate system rotation (G68)";
+    PS0200 = "PS0200", Alarm, "rigid tapping (M29) without a spindle speed";
+    PS0204 = "PS0204", Alarm, "an axis moves between M29 and G84 or G74";
+    PS0206 = "PS0206", Alarm, "the plane changes in rigid tapping";
     PS0231 = "PS0231", Alarm, "a format error between G10 L52 and G11";
     PS0245 = "PS0245", Alarm, "T in a block with G04, G10 or G50";
     PS0300 = "PS0300", Alarm, "a G code that is not allowed in scaling (G51)";

@@ -160,6 +160,21 @@ pub enum Alarm {
         /// Code without its letter.
         code: String,
     },
+    /// The circular pocket of G12 or G13 is smaller than the tool.
+    PocketTooSmall {
+        /// Code.
+        code: &'static str,
+        /// Radius of the pocket, mm.
+        radius: f64,
+        /// Radius of the tool, mm.
+        tool: f64,
+    },
+    /// A cycle taps in rigid mode (M29) while S is 0.
+    NoSpeedInRigidTapping,
+    /// An axis moves between M29 and the tapping cycle.
+    MoveBeforeRigidTapping,
+    /// The plane changes between M29 and the end of the cycle.
+    PlaneInRigidTapping,
     /// The plane changes in cutter compensation.
     PlaneInCompensation,
     /// `,R` or `,C` is in a block where cutter compensation starts, ends or changes sides.

@@ -74,7 +74,8 @@ impl Dialect {
 
     /// Families of a code that every control has.
     pub const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::HaasNgc];
-    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
+    /// Families of Fanuc controls.
+    pub const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
     /// Controls with five simultaneous axes.
     pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
     pub(crate) const HAAS: &'static [Self] = &[Self::HaasNgc];
@@ -91,7 +92,7 @@ pub enum OffsetVariables {
     /// #10001 wear and #11001 geometry of H, #12001 and #13001 of D; #2001 and #2201 for the first 200 of H.
     #[default]
     Fanuc,
-    /// #2001 geometry and #2201 wear of the length, #2401 and #2601 of the diameter.
+    /// #2001 geometry and #2201 wear of the length, #2401 and #2601 of D.
     Haas,
 }
 
@@ -214,8 +215,8 @@ with_defaults! {
         pub print_needs_open: bool = false,
         /// Most digits that the format of DPRNT allows.
         pub print_digits: usize = 8,
-        /// ODI 5004#2: the offsets of D are diameters.
-        pub offsets_are_diameters: bool = false,
+        /// ODI 5004#2, setting 40 of a Haas: the offsets of D are diameters; `None` if nothing states it, and they count as radii.
+        pub offsets_are_diameters: Option<bool> = None,
         /// EVR 5001#4: a changed offset of D applies from the next block, not from the next D.
         pub applies_radius_at_once: bool = false,
         /// SUP 5003#0: cutter compensation starts and ends by type B.
@@ -306,6 +307,17 @@ impl Settings {
     pub fn rollover_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
         let some = self.rolls_over != [false; MAX_AXES];
         (0..if some { self.axes.len() } else { 0 }).filter(|axis| self.rolls_over[*axis])
+    }
+
+    /// Returns true if the offsets of D are diameters.
+    pub fn has_diameter_offsets(&self) -> bool {
+        self.offsets_are_diameters == Some(true)
+    }
+
+    /// Returns true if the offsets of D count as radii although an operator may set the control to diameters: setting 40 of a
+    /// Haas. On a Fanuc it is a parameter of the machine's builder.
+    pub fn assumes_radius_offsets(&self) -> bool {
+        self.offsets_are_diameters.is_none() && self.codes == Dialect::HaasNgc
     }
 }
 

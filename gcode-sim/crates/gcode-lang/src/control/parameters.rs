@@ -86,7 +86,7 @@ const ROWS: &[ParameterRow] = &[
     length_row(3410, ParameterAccess::Key("3410", |s| s.arc_tolerance)),
     bit_row(5001, 4, ParameterAccess::Key("EVR", |s| f64::from(s.applies_radius_at_once))),
     bit_row(5003, 0, ParameterAccess::Key("SUP", |s| f64::from(s.starts_up_by_type_b))),
-    bit_row(5004, 2, ParameterAccess::Key("ODI", |s| f64::from(s.offsets_are_diameters))),
+    bit_row(5004, 2, ParameterAccess::Key("ODI", |s| f64::from(s.has_diameter_offsets()))),
     bit_row(5101, 0, ParameterAccess::Key("FXY", |s| f64::from(s.drills_by_plane))),
     length_row(5114, ParameterAccess::Key("5114", |s| s.g73_retract)),
     length_row(5115, ParameterAccess::Key("5115", |s| s.g83_clearance)),

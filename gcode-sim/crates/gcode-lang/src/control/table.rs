@@ -185,7 +185,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("PRINT-EXPANDS", "DPRNT prints all digits of a number, also beyond its format", print_expands),
     switch!("PRINT-NEEDS-POPEN", "DPRNT and BPRNT without POPEN raise an alarm", print_needs_open),
     whole!("PRINT-DIGITS", "the most digits that DPRNT's format allows", 1, 15, |s, v| s.print_digits = v),
-    switch!("ODI", "5004#2: the offsets of D are diameters", offsets_are_diameters),
+    switch!("ODI", "5004#2, setting 40 of a Haas: the offsets of D are diameters", |s, on| s.offsets_are_diameters = Some(on)),
     switch!("EVR", "5001#4: a changed offset of D applies from the next block", applies_radius_at_once),
     switch!("SUP", "5003#0: cutter compensation starts and ends by type B", starts_up_by_type_b),
     whole!("19625", "blocks of lookahead in cutter compensation", 3, 8, |s, v| s.lookahead_blocks = v),

@@ -61,6 +61,11 @@ impl Cycle {
     pub fn uses_q(&self) -> bool {
         self.steps.iter().any(|step| matches!(step, Peck | HighSpeedPeck | Shift))
     }
+
+    /// Returns true for G84 and G74.
+    pub fn taps(&self) -> bool {
+        self.steps.iter().any(|step| matches!(step, RigidForward | RigidReverse))
+    }
 }
 
 use CycleStep::{

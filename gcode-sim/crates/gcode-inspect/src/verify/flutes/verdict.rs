@@ -307,7 +307,10 @@ fn not_checked(
         ));
     }
     let unknown = actual.unknown_rapids.as_ref();
-    all.extend(unknown.map(|unknown| unknown.describe(locate(unknown.backtrace.block))));
+    all.extend(unknown.map(|unknown| {
+        let (what, reason) = unknown.describe(locate(unknown.backtrace.block));
+        format!("{what}: {reason}")
+    }));
     all
 }
 
