@@ -70,8 +70,9 @@ impl ControlFlowGraph {
 
     fn block_successors_of(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Successors {
         match kind {
-            // An alarm stops the control; the blocks after it are checked as if it were corrected.
-            OpKind::Empty | OpKind::AssignDirect(_) | OpKind::Alarm(_) => Successors::next_or(Vec::new()),
+            OpKind::Empty | OpKind::AssignDirect(_) => Successors::next_or(Vec::new()),
+            // The corrected block may be a jump.
+            OpKind::Alarm(_) => Successors { jumps_anywhere: true, ..Successors::next_or(Vec::new()) },
             OpKind::Words(words) => {
                 let successors = self.word_successors(program, block, words);
                 match words.form_if_skipped() {
@@ -131,8 +132,8 @@ impl ControlFlowGraph {
             | Statement::SetNames { .. }
             | Statement::Print { .. }
             | Statement::OpenOutput
-            | Statement::CloseOutput
-            | Statement::Alarm(_) => Successors::next_or(Vec::new()),
+            | Statement::CloseOutput => Successors::next_or(Vec::new()),
+            Statement::Alarm(_) => Successors { jumps_anywhere: true, ..Successors::next_or(Vec::new()) },
         }
     }
 
