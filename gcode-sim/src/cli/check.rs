@@ -8,6 +8,8 @@ use super::format::FindingFormat;
 use super::{ExitStatus, UsageError, options, output, unused_machine};
 use crate::report::check::{CheckReport, text};
 use crate::report::sarif::Finding;
+use gcode_lang::program::Memory;
+use gcode_lint::ControlKnowledge;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -57,7 +59,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let program = conditions.of(&arguments.program);
     let (request, mut folders) = options::request(&program)?;
     unused_machine::warn_unused_control(&program, &request);
-    let checked = gcode_lint::check(request.name.clone(), request.bytes, &request.settings, &mut folders);
+    let mut memory = Memory::default();
+    memory.load(request.name.clone(), request.bytes);
+    let is_stated = arguments.machine.is_some() || arguments.control_file.is_some();
+    let knowledge = if is_stated { ControlKnowledge::Stated } else { ControlKnowledge::Assumed };
+    let checked = gcode_lint::check_loaded(memory, &request.settings, knowledge, &mut folders);
     if checked.programs == 0 {
         return Err(UsageError::new(format!("{} contains no program", request.name)));
     }

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
-use gcode_lang::diag::{Diagnostic, FindingKind};
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::{
@@ -13,6 +13,7 @@ use gcode_lang::source::Spanned;
 use gcode_lang::syntax::ast;
 
 use super::calls::{self, CallSite};
+use super::ControlKnowledge;
 use super::control_flow::ControlFlowGraph;
 
 /// Input of a rule.
@@ -20,6 +21,7 @@ use super::control_flow::ControlFlowGraph;
 pub(crate) struct CheckContext<'a> {
     pub memory: &'a Memory,
     pub settings: &'a Settings,
+    pub knowledge: ControlKnowledge,
     pub units: Vec<ProgramUnit<'a>>,
     /// Names of all rules, as valid in CHECK-OFF.
     pub rules: Vec<&'static str>,
@@ -58,13 +60,13 @@ pub(crate) enum Role {
 impl<'a> CheckContext<'a> {
     pub(super) fn new(
         memory: &'a Memory,
-        settings: &'a Settings,
+        (settings, knowledge): (&'a Settings, ControlKnowledge),
         programs: &[ProgramId],
         rules: Vec<&'static str>,
     ) -> Self {
         let unit_indices = programs.iter().enumerate().map(|(unit, id)| (*id, unit)).collect();
         let units = programs.iter().map(|id| ProgramUnit::new(memory.get(*id), settings)).collect();
-        let mut context = Self { memory, settings, units, rules, unit_indices };
+        let mut context = Self { memory, settings, knowledge, units, rules, unit_indices };
         context.link_calls();
         context
     }
@@ -133,7 +135,20 @@ impl<'a> CheckContext<'a> {
         let row = alarm.node.row();
         let help = remedy(&alarm.node, alarm.span, self.memory.sources());
         let finding = unit.finding(kind, block, format!("{}: {}", row.code, row.message));
-        Diagnostic { help, ..finding.with_span(alarm.span) }
+        // A limit of the simulator is no fault of the program.
+        let severity = match alarm.node {
+            Alarm::NotSimulated { .. } => Severity::Note,
+            _ => finding.severity,
+        };
+        Diagnostic { help, severity, ..finding.with_span(alarm.span) }
+    }
+
+    /// Makes a finding that options of the control may remove a note if the control is assumed.
+    pub(crate) fn unless_optional(&self, finding: Diagnostic) -> Diagnostic {
+        match self.knowledge {
+            ControlKnowledge::Stated => finding,
+            ControlKnowledge::Assumed => finding.with_severity(Severity::Note),
+        }
     }
 
     /// Returns the index of the called program if it is under check.

@@ -10,7 +10,7 @@ use gcode_lang::program::{Memory, NoLibrary};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
-use gcode_lint::{check_loaded, rules};
+use gcode_lint::{ControlKnowledge, check_loaded, rules};
 
 /// Rules about what a run does not show, or shows better: it finds the programs that it calls.
 const LEFT_OUT: [&str; 1] = ["missing-program"];
@@ -18,7 +18,7 @@ const LEFT_OUT: [&str; 1] = ["missing-program"];
 /// Returns what a check of the program's text finds: everything from a warning on if the verdict `fails`, otherwise numbers
 /// without a decimal point. The block of an alarm is left out: the alarm says more.
 pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
-    let checked = check_loaded(reload(run), run.control.settings(), &mut NoLibrary);
+    let checked = check_loaded(reload(run), run.control.settings(), ControlKnowledge::Stated, &mut NoLibrary);
     let stopped = match &run.outcome {
         Outcome::Alarm(stop) => Some(stop.backtrace.block),
         Outcome::End | Outcome::Limit => None,
