@@ -1,4 +1,5 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
@@ -12,9 +13,10 @@ use gcode_lang::program::{
 use gcode_lang::source::Spanned;
 use gcode_lang::syntax::ast;
 
-use super::calls::{self, CallSite};
 use super::ControlKnowledge;
+use super::calls::{self, CallSite};
 use super::control_flow::ControlFlowGraph;
+use super::modes::{self, PossibleModes};
 
 /// Input of a rule.
 #[derive(Debug)]
@@ -43,7 +45,10 @@ pub(crate) struct ProgramUnit<'a> {
     pub entry_blocks: Vec<OpIndex>,
     /// True for each reachable block.
     pub is_reached: Vec<bool>,
+    /// True if a path leads beyond the last block.
+    pub reaches_end: bool,
     pub role: Role,
+    modes: OnceCell<Vec<Option<PossibleModes>>>,
 }
 
 /// Way in which a program is entered.
@@ -102,26 +107,33 @@ impl<'a> CheckContext<'a> {
         for unit in &mut self.units {
             unit.role = unit.determine_role();
             unit.is_reached = unit.flow.reachable(&unit.entry_blocks);
+            unit.reaches_end = unit.is_reached.pop().unwrap_or_default();
         }
     }
 
     /// Returns findings for those alarms of reading that `selects` accepts.
     ///
-    /// A reachable block raises an alarm of reading if its text is unreadable or this control refuses its syntax.
+    /// A reachable block raises an alarm of reading if its text is unreadable, or if this control refuses syntax that others
+    /// accept.
     pub(crate) fn reading_findings(
         &self,
         unit: &ProgramUnit<'_>,
         kind: &'static FindingKind,
         selects: impl Fn(&Alarm) -> bool,
     ) -> Vec<Diagnostic> {
-        let written =
-            unit.reached_ops().filter_map(|(block, op)| Some((block, written_alarm(op.kind())?.clone())));
+        let written = unit
+            .reached_ops()
+            .filter_map(|(block, op)| Some((block, written_alarm(op.kind())?.clone())))
+            .filter(|(_, alarm)| selects(&alarm.node))
+            .map(|(block, alarm)| self.alarm_finding(unit, kind, block, &alarm));
         let refused = unit.reached_ops().filter_map(|(block, op)| {
             let syntax = op.dialect_syntax().iter().find(|syntax| !syntax.node.is_accepted(self.settings))?;
             Some((block, syntax.node.alarm().located_at(syntax.span)))
         });
-        let selected = written.chain(refused).filter(|(_, alarm)| selects(&alarm.node));
-        selected.map(|(block, alarm)| self.alarm_finding(unit, kind, block, &alarm)).collect()
+        let refused = refused
+            .filter(|(_, alarm)| selects(&alarm.node))
+            .map(|(block, alarm)| self.unless_optional(self.alarm_finding(unit, kind, block, &alarm)));
+        written.chain(refused).collect()
     }
 
     /// Converts an alarm to a finding with its number, sentence and remedy.
@@ -155,6 +167,11 @@ impl<'a> CheckContext<'a> {
     pub(crate) fn called_unit(&self, call: &CallSite) -> Option<usize> {
         let id = call.target.find(self.memory)?;
         self.unit_indices.get(&id).copied()
+    }
+
+    /// Returns the possible modes before each block of a program; `None` for an unreachable block.
+    pub(crate) fn modes_before<'u>(&self, unit: &'u ProgramUnit<'_>) -> &'u [Option<PossibleModes>] {
+        unit.modes.get_or_init(|| modes::modes_before(self, unit))
     }
 
     /// Returns the row of a G code written as a number; `None` if this control lacks the code, or for another word.
@@ -204,7 +221,9 @@ impl<'a> ProgramUnit<'a> {
             callers: Vec::new(),
             entry_blocks: vec![0],
             is_reached: Vec::new(),
+            reaches_end: false,
             role: Role::Main,
+            modes: OnceCell::new(),
             program,
         }
     }

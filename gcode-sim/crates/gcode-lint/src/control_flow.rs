@@ -166,12 +166,12 @@ impl ControlFlowGraph {
         jumps.iter().copied().chain(next).chain(computed).chain(numbered.iter().copied())
     }
 
-    /// Returns, for each block, whether it is reachable from one of `starts`.
+    /// Returns, for each block and the end of the program, whether it is reachable from one of `starts`.
     pub(crate) fn reachable(&self, starts: &[OpIndex]) -> Vec<bool> {
         let starts = starts.iter().map(|start| (*start, ()));
         let next = |place, (): &()| self.successors(place).map(|to| (to, ())).collect();
         let states = self.propagate(starts, |(), ()| (), next);
-        states[..self.block_successors.len()].iter().map(Option::is_some).collect()
+        states[..=self.block_successors.len()].iter().map(Option::is_some).collect()
     }
 
     /// Returns the state before each node, `None` for an unreachable one.

@@ -25,6 +25,7 @@ mod control_flow;
 mod expressions;
 mod first_reach;
 mod literal;
+mod modes;
 mod parameters;
 mod prelude;
 mod rule;

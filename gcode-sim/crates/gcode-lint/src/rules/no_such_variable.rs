@@ -25,7 +25,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             let finding = context.alarm_finding(unit, &RULE.kind, index, &alarm);
             found.push(match alarm.node {
                 // No control has a variable between its locals and its common variables.
-                Alarm::NoSuchVariable { number } if !NEVER.contains(&number) => context.unless_optional(finding),
+                Alarm::NoSuchVariable { number } if !NEVER.contains(&number) => {
+                    context.unless_optional(finding)
+                }
                 _ => finding,
             });
         };

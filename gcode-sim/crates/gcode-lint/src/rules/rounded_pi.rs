@@ -99,8 +99,16 @@ mod tests {
     #[test]
     fn only_a_rounded_pi_is_reported() {
         for (factor, is_rounded) in [
-            ("3.141", true), ("3.142", true), ("3.143", true), ("3.1428", true), ("3.1415", true), ("3.140", false),
-            ("3.144", false), ("3.1406", false), ("3.1417", false), ("3.14159265", false),
+            ("3.141", true),
+            ("3.142", true),
+            ("3.143", true),
+            ("3.1428", true),
+            ("3.1415", true),
+            ("3.140", false),
+            ("3.144", false),
+            ("3.1406", false),
+            ("3.1417", false),
+            ("3.14159265", false),
         ] {
             let found = lines(&RULE, &format!("O1\n#1=500.\n#2=#1*{factor}\nM30\n"));
             assert_eq!(!found.is_empty(), is_rounded, "{factor}");

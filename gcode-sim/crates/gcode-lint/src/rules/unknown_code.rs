@@ -47,7 +47,9 @@ fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String,
                 None => {
                     let has_code = |(_, dialect): &&(&str, Dialect)| found.row_for(*dialect).is_some();
                     let help = match Dialect::ALL.iter().find(has_code) {
-                        Some((other, _)) => format!("{other} has it: give --dialect {other}, or correct the code"),
+                        Some((other, _)) => {
+                            format!("{other} has it: give --dialect {other}, or correct the code")
+                        }
                         None => "correct it, or name the macro it calls with --code".to_owned(),
                     };
                     Some((format!("{PS0010}: {} has no {name}", settings.codes.name()), Some(help)))
