@@ -41,6 +41,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CODE=PROGRAM")]
     code: Vec<String>,
 
+    /// Show each place of a finding, not the first in each file with the lines of the others
+    #[arg(long)]
+    all: bool,
+
     /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
@@ -68,7 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         return Err(UsageError::new(format!("{} contains no program", request.name)));
     }
     match arguments.format {
-        FindingFormat::Text => output::print(&text(&checked))?,
+        FindingFormat::Text => output::print(&text(&checked, arguments.all))?,
         FindingFormat::Json => output::json(&CheckReport::new(&checked))?,
         FindingFormat::Sarif => {
             let sources = checked.memory.sources();

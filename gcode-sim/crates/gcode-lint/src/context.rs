@@ -18,6 +18,8 @@ use super::calls::{self, CallSite};
 use super::control_flow::ControlFlowGraph;
 use super::modes::{self, PossibleModes};
 
+const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
+
 /// Input of a rule.
 #[derive(Debug)]
 pub(crate) struct CheckContext<'a> {
@@ -159,7 +161,7 @@ impl<'a> CheckContext<'a> {
     pub(crate) fn unless_optional(&self, finding: Diagnostic) -> Diagnostic {
         match self.knowledge {
             ControlKnowledge::Stated => finding,
-            ControlKnowledge::Assumed => finding.with_severity(Severity::Note),
+            ControlKnowledge::Assumed => finding.with_severity(Severity::Note).note(CONTROL_ASSUMED),
         }
     }
 
