@@ -1,6 +1,7 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
@@ -19,6 +20,9 @@ use super::control_flow::ControlFlowGraph;
 use super::modes::{self, PossibleModes};
 
 const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
+
+/// Program numbers of macros, which a control protects.
+pub(crate) const MACROS: RangeInclusive<u32> = 9000..=9999;
 
 /// Input of a rule.
 #[derive(Debug)]
@@ -60,7 +64,7 @@ pub(crate) enum Role {
     Main,
     /// Called only by the programs under check.
     Called,
-    /// Returns but has no caller under check: called by unknown programs.
+    /// Returns but has no caller under check, or has the number of a macro: called by unknown programs.
     Resident,
 }
 
@@ -233,6 +237,9 @@ impl<'a> ProgramUnit<'a> {
     fn determine_role(&self) -> Role {
         if !self.callers.is_empty() {
             return Role::Called;
+        }
+        if self.program.number().is_some_and(|number| MACROS.contains(&number)) {
+            return Role::Resident;
         }
         let words = |(block, op): (usize, &'a Op)| match op.kind() {
             OpKind::Words(words) => Some((words.call().map(|call| call.kind), block)),

@@ -5,7 +5,7 @@
 //! followed in one direction only.
 use std::collections::BTreeSet;
 
-use gcode_lang::program::{OpIndex, OpKind};
+use gcode_lang::program::{self, OpIndex, OpKind};
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Relation, Statement};
 
 use super::context::ProgramUnit;
@@ -56,14 +56,27 @@ pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
 }
 
 /// Returns true if a path leads from the first block to an end without an alarm and does not execute one of some blocks.
+///
+/// A loop that is reached counts as run at least once: left at its END only.
 pub(super) fn can_avoid(unit: &ProgramUnit<'_>, entry: Locals, blocks: &BTreeSet<OpIndex>) -> bool {
     let starts = unit.entry_blocks.first().map(|start| (*start, entry));
-    let next = |block: OpIndex, state: &Locals| match blocks.contains(&block) {
-        true => Vec::new(),
-        false => steps(unit, block, state),
+    let ops = unit.program.ops();
+    let next = |block: OpIndex, state: &Locals| {
+        if blocks.contains(&block) {
+            return Vec::new();
+        }
+        match ops.get(block).map(|op| op.kind()) {
+            Some(OpKind::Statement(program::Statement::While { end, .. })) => {
+                let inside = |(to, _): &(OpIndex, Locals)| *to != end + 1;
+                steps(unit, block, state).into_iter().filter(inside).collect()
+            }
+            Some(OpKind::Statement(program::Statement::End { start, .. })) => {
+                steps(unit, *start, state).into_iter().chain([(block + 1, *state)]).collect()
+            }
+            _ => steps(unit, block, state),
+        }
     };
     let states = unit.flow.propagate(starts, Locals::join, next);
-    let ops = unit.program.ops();
     let is_end = |block: OpIndex| match ops.get(block) {
         Some(op) => {
             let successors = &unit.flow.block_successors[block];

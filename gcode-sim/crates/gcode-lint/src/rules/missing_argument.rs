@@ -224,6 +224,9 @@ mod tests {
             assert_eq!(found(body), [""; 0], "{body}");
         }
         assert_eq!(found("IF[#1 EQ 1]GOTO 5\n#30=#1*#2\nM99\nN5 #31=#2*2\n").len(), 1, "on both paths");
+        let row = "#10=0\nWHILE[#10 LT #24]DO1\nX[#1+#10*#2]\n#10=#10+1\nEND1\n";
+        assert_eq!(found(row).len(), 1, "a loop runs at least once");
+        assert_eq!(found(&row.replace("X[", "IF[#10 EQ 9]GOTO 5\nX[").replace("END1", "N5 END1")), [""; 0]);
         assert_eq!(
             found("X#24\n#30=#1/#2\n"),
             ["O0002 divides by B (#2) in line 6: if it is omitted, this is PS0112"]

@@ -2,10 +2,11 @@
 //!
 //! The control itself plans the block in every mode in which it can be read.
 use gcode_control::static_plan::StaticPlanner;
-use gcode_lang::program::Words;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Motion;
+use gcode_lang::program::{Words, m_codes};
 
+use crate::literal;
 use crate::parameters;
 use crate::prelude::*;
 
@@ -28,7 +29,12 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         let Some(modes) = context.modes_before(unit)[block] else { continue };
         let alarm = planner.certain_alarm(words, unit.op(block).span, modes.in_force());
         if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node)) {
-            found.push(context.alarm_finding(unit, &RULE.kind, block, &alarm));
+            let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
+            found.push(if has_builder_code(context, words) {
+                context.unless_optional(finding)
+            } else {
+                finding
+            });
         }
     }
     found
@@ -37,6 +43,12 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 /// Returns true for the alarms that `stray-word` reports.
 fn has_own_rule(alarm: &Alarm) -> bool {
     matches!(alarm, Alarm::ImproperAddress { letter: 'A'..='C' | 'E' | 'U'..='Z' })
+}
+
+/// Returns true if a block has an M code of the machine builder, which may call a macro with the words as arguments.
+fn has_builder_code(context: &CheckContext<'_>, words: &Words) -> bool {
+    let codes = words.list.iter().filter(|word| word.letter == b'M').filter_map(literal::word_count);
+    codes.into_iter().any(|code| m_codes::find(code, context.settings.codes).is_none())
 }
 
 /// Returns true for a block of axis words with the words of a move, which raises no alarm of this rule.

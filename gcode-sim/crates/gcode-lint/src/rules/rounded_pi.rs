@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind};
+use gcode_lang::units::POWERS;
 
 use crate::expressions;
 use crate::literal::constant;
@@ -67,7 +68,7 @@ fn is_near_pi(expr: &Expr, value: f64) -> bool {
     let is_close = (value - PI).abs() < PI_TOLERANCE;
     match &expr.kind {
         ExprKind::Literal(number) => {
-            let power = 10_f64.powi(i32::from(number.places.unwrap_or(0)));
+            let Some(power) = POWERS.get(usize::from(number.places.unwrap_or(0))) else { return is_close };
             let last = (value * power).round();
             let is_rounded = |exact: f64| last == (exact * power).floor() || last == (exact * power).round();
             is_close && (is_rounded(PI) || is_rounded(22.0 / 7.0))
