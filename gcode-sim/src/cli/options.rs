@@ -26,13 +26,16 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     let piped = program == Path::new("-");
     let name = if piped { "standard input".to_owned() } else { program.display().to_string() };
     let mut request = Request::new(name, input::program(program)?, machine);
+    // The dialect comes first: the control file and `--control` change its defaults.
+    if let Some(name) = &arguments.dialect {
+        let taken = request.settings.set("DIALECT", name);
+        taken.map_err(|error| UsageError::new(format!("--dialect: {error}")))?;
+    }
     if let Some(path) = &arguments.control_file {
-        control_file::apply(&input::text(path)?, &mut request.settings)
+        control_file::apply(&input::text(path)?, &mut request.settings, arguments.dialect.is_none())
             .map_err(|error| UsageError::in_file(path, error))?;
     }
-    // The dialect comes first: `--control` changes its defaults.
     let settings = [
-        ("--dialect", arguments.dialect.iter().map(|name| format!("DIALECT={name}")).collect()),
         ("--control", arguments.control.clone()),
         ("--input", arguments.input.clone()),
         ("--code", arguments.code.clone()),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::main_program;
 use crate::cli::conditions::RunConditions;
+use crate::cli::project::Project;
 use crate::cli::{UsageError, input, options};
 use crate::report::test_report::{CaseAnswer, CaseReport, FirstFailure};
 use gcode_control::Limits;
@@ -83,12 +84,15 @@ impl Case {
             max_blocks: Limits::default().blocks,
             ..RunConditions::default()
         };
+        let project = Project::of(program)?;
+        let (conditions, _) = project.complete(program, &conditions);
         let (mut request, mut folders) = options::request(&conditions.of(program))?;
         if let (Some(one), Some(other)) = (there("reference.json"), there("reference.csv")) {
             let both = format!("{} and {}", one.display(), other.display());
             return Err(UsageError::new(format!("{both}: both are references; delete one")));
         }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
+        let reference = reference.or_else(|| project.reference());
         let nominal = reference.as_deref().map(options::read_nominal).transpose()?;
         let metal = match &nominal {
             Some(NominalPart::Holes(reference)) => {
