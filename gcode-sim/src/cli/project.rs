@@ -39,9 +39,7 @@ impl Project {
         let Ok(folder) = input::canonical(parent.unwrap_or(Path::new("."))) else {
             return Ok(Self { program: name, found: None });
         };
-        let Some(root) = folder.ancestors().find(|folder| folder.join(PROJECT_FILE).is_file()) else {
-            return Ok(Self { program: name, found: None });
-        };
+        let Some(root) = root(&folder) else { return Ok(Self { program: name, found: None }) };
         let below = folder.strip_prefix(root).unwrap_or(Path::new(""));
         let shown = shown(root);
         let path = shown.join(PROJECT_FILE);
@@ -110,6 +108,17 @@ impl Project {
     fn shown(&self, path: &Path) -> PathBuf {
         self.found.as_ref().map_or_else(|| path.to_owned(), |found| found.shown.join(path))
     }
+}
+
+/// Returns the nearest folder with a project's file, from a folder upwards.
+fn root(folder: &Path) -> Option<&Path> {
+    folder.ancestors().find(|folder| folder.join(PROJECT_FILE).is_file())
+}
+
+/// Returns the project's file that holds for the programs of a folder.
+pub(super) fn file_for(folder: &Path) -> Option<PathBuf> {
+    let folder = input::canonical(folder).ok()?;
+    root(&folder).map(|root| root.join(PROJECT_FILE))
 }
 
 /// Returns a folder from the current one: below it or above it, otherwise as it is.
