@@ -20,6 +20,7 @@ use gcode_inspect::verify::Verdict;
 use gcode_inspect::verify::flutes::{FluteVerdict, NominalFlutes};
 use gcode_part::HoleList;
 use gcode_part::job::control_file::ControlFile;
+use gcode_part::job::project::ProjectFile;
 use gcode_part::job::{JobFile, Rates};
 use gcode_review::AcceptedFile;
 
@@ -39,6 +40,7 @@ pub const FORMATS: &[Format] = &[
     file::<JobFile>("job", "a job file, of any family"),
     file::<MachineFile>("machine", "a machine file: --machine"),
     file::<ControlFile>("control", "settings of the control: --control-file"),
+    file::<ProjectFile>("project", "the project's file: gcode.toml"),
     file::<ErrorFile>("errors", "set-up and machine errors: budget --errors"),
     file::<Rates>("rates", "machine-hour rates: gcode-gen sheet --rates"),
     Format {

@@ -30,6 +30,9 @@ Exit codes:
 Results go to standard output, messages to standard error. --format json writes one document and nothing else; its
 schema is what `gcode-sim schema` prints for the command.
 
+gcode.toml in the program's folder or one above gives machine, control, libraries and references; so does machine.toml
+beside the program for the machine. Flags win.
+
 A program is simulated, not measured: every number printed here is a prediction.";
 
 #[derive(Debug, Subcommand)]
@@ -94,7 +97,8 @@ Examples:
   gcode-sim check O1234.nc --lib macros --format json
   gcode-sim check O1234.nc --format sarif > findings.sarif
 
-A comment (CHECK-OFF DOUBLED-N) on a block suppresses that rule for the block, at the head of a program for all of it.")]
+A comment (CHECK-OFF DOUBLED-N) on a block suppresses that rule for the block, at the head of a program for all of it;
+allow = [\"doubled-n\"] in gcode.toml suppresses it for a folder.")]
     Check(check::Arguments),
 
     /// Compare two revisions of a program by their effect: holes, motion, stops, final state

@@ -1,13 +1,17 @@
 //! `gcode-sim check`: finds faults of a program without running it.
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
+use super::project::Project;
 use super::{ExitStatus, UsageError, options, output, unused_machine};
 use crate::report::check::{CheckReport, text};
 use crate::report::sarif::Finding;
+use gcode_lang::program::Memory;
+use gcode_lint::{CheckResult, ControlKnowledge};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -31,13 +35,18 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CONTROL.toml")]
     control_file: Option<PathBuf>,
 
-    /// The machine: its axes and its control [default: the machine of the paper]
+    /// The machine: its axes and its control [default: that of gcode.toml, machine.toml beside the program, or the machine
+    /// of the paper]
     #[arg(long, value_name = "MACHINE.toml")]
     machine: Option<PathBuf>,
 
     /// A code that calls a program, e.g. G201=9010, M50=9020, M6=9001 or T=9000 (repeatable)
     #[arg(long, value_name = "CODE=PROGRAM")]
     code: Vec<String>,
+
+    /// Show each place of a finding, not the first in each file with the lines of the others
+    #[arg(long)]
+    all: bool,
 
     /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
@@ -54,15 +63,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         code: arguments.code.clone(),
         ..RunConditions::default()
     };
-    let program = conditions.of(&arguments.program);
+    let (program, project) = conditions.of(&arguments.program).completed()?;
+    project.check_rules()?;
     let (request, mut folders) = options::request(&program)?;
     unused_machine::warn_unused_control(&program, &request);
-    let checked = gcode_lint::check(request.name.clone(), request.bytes, &request.settings, &mut folders);
+    let mut memory = Memory::default();
+    memory.load(request.name.clone(), request.bytes);
+    let is_stated = program.conditions.machine.is_some() || program.conditions.control_file.is_some();
+    let knowledge = if is_stated { ControlKnowledge::Stated } else { ControlKnowledge::Assumed };
+    let mut checked = gcode_lint::check_loaded(memory, &request.settings, knowledge, &mut folders);
+    leave_out_allowed(&mut checked, &project);
     if checked.programs == 0 {
         return Err(UsageError::new(format!("{} contains no program", request.name)));
     }
     match arguments.format {
-        FindingFormat::Text => output::print(&text(&checked))?,
+        FindingFormat::Text => output::print(&text(&checked, arguments.all))?,
         FindingFormat::Json => output::json(&CheckReport::new(&checked))?,
         FindingFormat::Sarif => {
             let sources = checked.memory.sources();
@@ -70,4 +85,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         }
     }
     Ok(if checked.has_findings() { ExitStatus::Failed } else { ExitStatus::Passed })
+}
+
+/// Removes the findings that the project's file allows in the folder of their file.
+fn leave_out_allowed(checked: &mut CheckResult, project: &Project) {
+    let sources = checked.memory.sources();
+    let mut known = BTreeMap::new();
+    checked.findings.retain(|finding| {
+        let Some(place) = &finding.backtrace else { return true };
+        let (rule, source) = (finding.kind.code, place.block.source);
+        let is_allowed = known
+            .entry((rule, source))
+            .or_insert_with(|| project.allows(rule, Path::new(&sources.get(source).name)));
+        !*is_allowed
+    });
 }

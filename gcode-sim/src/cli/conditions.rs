@@ -37,7 +37,7 @@ impl DenyArguments {
 }
 
 /// A program and the conditions of its run.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(super) struct ProgramArguments {
     /// The main program; '-' reads standard input
     #[arg(value_name = "PROGRAM.nc")]
@@ -88,7 +88,8 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "#N=0|1")]
     pub(super) input: Vec<String>,
 
-    /// The machine: axes, rotary sign, head, tools, offsets [default: the machine of the paper]
+    /// The machine: axes, rotary sign, head, tools, offsets [default: that of gcode.toml, machine.toml beside the program,
+    /// or the machine of the paper]
     #[arg(long, value_name = "MACHINE.toml")]
     pub(super) machine: Option<PathBuf>,
 

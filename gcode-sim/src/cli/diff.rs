@@ -5,6 +5,7 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
+use super::project::{self, Project};
 use super::{ExitStatus, UsageError, options, output, page, render, unused_machine};
 use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
@@ -65,9 +66,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if !arguments.old_libraries.is_empty() {
         before.libraries.clone_from(&arguments.old_libraries);
     }
+    // One machine for both revisions: the differences are those of the programs.
+    let of_project = if arguments.new == Path::new("-") { &arguments.old } else { &arguments.new };
+    let project = Project::of(of_project)?;
+    let (before, _) = project.complete(of_project, &before);
+    let (after, said) = project.complete(of_project, &arguments.run);
+    project::say(&said);
     let (mut old_request, mut old_folders) = options::request(&before.of(&arguments.old))?;
-    let (mut new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
-    unused_machine::warn_unused_machine(&arguments.run.of(&arguments.new), &new_request);
+    let (mut new_request, mut new_folders) = options::request(&after.of(&arguments.new))?;
+    unused_machine::warn_unused_machine(&after.of(&arguments.new), &new_request);
     let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
     let metal = |request: &Request| {
         reference
@@ -126,14 +133,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let seen = |request, revision, trace, verdict| ObservedProgram { request, revision, trace, verdict };
         let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
         let of_old = arguments.old_libraries.iter().map(|folder| format!("--old-lib {}", folder.display()));
-        let flags: Vec<String> = page::flags(&arguments.run).into_iter().chain(of_old).collect();
+        let flags: Vec<String> = page::flags(&after).into_iter().chain(of_old).collect();
         let review = Page {
             old: Some((seen(&old_request, &old, old_trace, old_verdict.as_ref()), difference)),
             new: seen(&new_request, &new, new_trace, new_verdict.as_ref()),
             machine: &new_request.machine,
             reference: reference.as_ref(),
             conditions: &flags,
-            documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
+            documents: &page::documents(&after, arguments.reference.as_deref())?,
         };
         page::write(&review, path)?;
         output::written("page", path, arguments.format == FindingFormat::Text)?;

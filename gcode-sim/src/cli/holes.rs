@@ -29,11 +29,12 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (program, _) = arguments.program.completed()?;
     let (mut request, mut folders) =
-        options::checked_request(&arguments.program, None, None, arguments.page.as_deref())?;
+        options::checked_request(&program, None, None, arguments.page.as_deref())?;
     if let Some(path) = &arguments.page {
         let traced = page::simulate_traced(&request, &mut folders, None)?;
-        page::write_alone(&request, &traced, None, &arguments.program.conditions, path)?;
+        page::write_alone(&request, &traced, None, &program.conditions, path)?;
         let status = print_result(arguments, &request, &traced.0.simulation)?;
         output::written("page", path, arguments.format == ListFormat::Text)?;
         return Ok(status);

@@ -17,6 +17,7 @@ pub mod overwrite_guard;
 pub mod packaging;
 mod page;
 mod progress;
+mod project;
 mod readings;
 mod reference;
 mod render;

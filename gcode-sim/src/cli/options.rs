@@ -32,13 +32,16 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
         let path = path.ok_or_else(|| UsageError::new("--program: write an O number or a name, O1234"))?;
         request.main = Some(path);
     }
+    // The dialect comes first: the control file and `--control` change its defaults.
+    if let Some(name) = &arguments.dialect {
+        let taken = request.settings.set("DIALECT", name);
+        taken.map_err(|error| UsageError::new(format!("--dialect: {error}")))?;
+    }
     if let Some(path) = &arguments.control_file {
-        control_file::apply(&input::text(path)?, &mut request.settings)
+        control_file::apply(&input::text(path)?, &mut request.settings, arguments.dialect.is_none())
             .map_err(|error| UsageError::in_file(path, error))?;
     }
-    // The dialect comes first: `--control` changes its defaults.
     let settings = [
-        ("--dialect", arguments.dialect.iter().map(|name| format!("DIALECT={name}")).collect()),
         ("--control", arguments.control.clone()),
         ("--input", arguments.input.clone()),
         ("--code", arguments.code.clone()),

@@ -33,8 +33,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (program, _) = arguments.program.completed()?;
     let (request, mut folders) =
-        options::checked_request(&arguments.program, None, arguments.picture.as_deref(), None)?;
+        options::checked_request(&program, None, arguments.picture.as_deref(), None)?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
         return Err(UsageError::new("readings need a part: give it with --part JOB.toml"));

@@ -62,12 +62,9 @@ enum View {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (mut request, mut folders) = options::checked_request(
-        &arguments.program,
-        arguments.reference.as_deref(),
-        Some(&arguments.output),
-        None,
-    )?;
+    let (program, _) = arguments.program.completed()?;
+    let (mut request, mut folders) =
+        options::checked_request(&program, arguments.reference.as_deref(), Some(&arguments.output), None)?;
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let drawn = match nominal {

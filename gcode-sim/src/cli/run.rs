@@ -37,8 +37,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (program, _) = arguments.program.completed()?;
     let (mut request, mut folders) =
-        options::checked_request(&arguments.program, None, arguments.output.as_deref(), None)?;
+        options::checked_request(&program, None, arguments.output.as_deref(), None)?;
     let shown = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(MoveRecorder::default);
     let (run, rapids) = progress::of_run(&mut request, |request| {

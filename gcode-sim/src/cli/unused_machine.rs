@@ -1,33 +1,16 @@
 //! Warns of an unused machine file: `--machine` is easily forgotten, and another machine makes other holes.
-#![expect(clippy::disallowed_methods, reason = "the command line finds files")]
-
-use std::path::Path;
-
 use super::conditions::ProgramArguments;
 use super::output;
+use super::project::MACHINE_FILE;
 use gcode_lang::control::{Dialect, Increment};
 use gcode_session::Request;
 
-/// Name that the generator gives a machine file.
-const NAME: &str = "machine.toml";
-
-/// Prints a note if `--machine` is missing and a machine file is next to the program or named in its
-/// comments.
+/// Prints a note if no machine file is used and the program's comments name one.
 pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Request) {
-    if arguments.conditions.machine.is_some() {
-        return;
+    if arguments.conditions.machine.is_none() && head(&request.bytes).is_some() {
+        let why = "the program's comments name a machine file, and none is used: give --machine MACHINE.toml";
+        output::print_message(&format!("note: {why}\n"));
     }
-    let beside = arguments.program.with_file_name(NAME);
-    let piped = arguments.program == Path::new("-");
-    let what = if !piped && beside.is_file() {
-        let file = beside.display();
-        format!("{file} next to the program is not used: give --machine {file}")
-    } else if head(&request.bytes).is_some() {
-        "the program's comments name a machine file, and none is used: give --machine MACHINE.toml".to_owned()
-    } else {
-        return;
-    };
-    output::print_message(&format!("note: {what}\n"));
 }
 
 /// Prints a warning if the program's head names another control than `check` assumes.
@@ -54,7 +37,7 @@ pub(super) fn warn_unused_control(arguments: &ProgramArguments, request: &Reques
     if !differ.is_empty() {
         let differ = differ.join("; ");
         output::print_message(&format!(
-            "warning: the program's head gives {differ}: give --machine {NAME}\n"
+            "warning: the program's head gives {differ}: give --machine {MACHINE_FILE}\n"
         ));
     }
 }

@@ -1,6 +1,6 @@
 //! `gcode-sim verify`: verifies a program's holes or flutes against a reference.
 use std::mem::ManuallyDrop;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -20,14 +20,14 @@ use gcode_part::NominalPart;
 use gcode_part::Reference;
 use gcode_session::{Request, Run, Simulation};
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// The reference: a hole list (JSON or CSV) or a job file (TOML)
+    /// The reference: a hole list (JSON or CSV) or a job file (TOML) [default: that of the program in gcode.toml]
     #[arg(long, value_name = "REF")]
-    reference: PathBuf,
+    reference: Option<PathBuf>,
 
     /// Diameter of the tolerance zone, or tolerance of a burr's contact from its surface, mm [default: the job's,
     /// or 0.1]
@@ -63,17 +63,31 @@ pub(super) struct Arguments {
     format: FindingFormat,
 }
 
+impl Arguments {
+    /// Completes the arguments by the project of the program; returns them with the reference.
+    fn completed(&self) -> Result<(Self, PathBuf), UsageError> {
+        let (program, project) = self.program.completed()?;
+        let reference = self.reference.clone().or_else(|| project.reference()).ok_or_else(|| {
+            UsageError::new(
+                "no reference: give --reference REF, or name the program in [references] of gcode.toml",
+            )
+        })?;
+        Ok((Self { program, ..self.clone() }, reference))
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (arguments, path) = &arguments.completed()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let results = (arguments.picture.as_deref(), arguments.page.as_deref());
     let (mut request, folders) =
-        options::checked_request(&arguments.program, Some(&arguments.reference), results.0, results.1)?;
-    match options::read_nominal(&arguments.reference)? {
+        options::checked_request(&arguments.program, Some(path), results.0, results.1)?;
+    match options::read_nominal(path)? {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
-            holes(arguments, &mut request, folders, &ManuallyDrop::new(reference), tolerances)
+            holes(arguments, &mut request, folders, (path, &ManuallyDrop::new(reference)), tolerances)
         }
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
@@ -137,7 +151,7 @@ fn holes(
     arguments: &Arguments,
     request: &mut Request,
     mut folders: Folders,
-    reference: &Reference,
+    (path_of_reference, reference): (&Path, &Reference),
     tolerances: Tolerances,
 ) -> Result<ExitStatus, UsageError> {
     request.process_limits = reference.process_limits.clone();
@@ -159,7 +173,7 @@ fn holes(
             page::simulate_traced(request, &mut folders, reference.metal(request.machine.stock.as_ref()))?;
         let mut verdict = traced.0.simulation.verify(reference, tolerances, &machine);
         add_assumptions(&traced.0.simulation, &mut verdict, request);
-        let judged = Some((arguments.reference.as_path(), reference, &verdict));
+        let judged = Some((path_of_reference, reference, &verdict));
         page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;
         let status = print(&traced.0.simulation, &verdict)?;
         output::written("page", path, arguments.format == FindingFormat::Text)?;

@@ -1,11 +1,13 @@
 //! The result of `check`: findings with their locations, and a line that counts them.
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::diagnostic;
 use super::figures::count;
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_lang::source::Span;
+use gcode_lang::source::{Sources, Span};
 use gcode_lint::CheckResult;
 
 /// The document of `check --format json`.
@@ -74,14 +76,55 @@ fn report(checked: &CheckResult, finding: &Diagnostic) -> FindingReport {
     }
 }
 
-/// Formats the findings and their count for a terminal.
-pub(crate) fn text(checked: &CheckResult) -> String {
+/// Number of lines that a folded finding names.
+const LINES_SHOWN: usize = 12;
+
+/// Formats the findings and their count for a terminal; each kind once for each file, or with `shows_all` at each place.
+pub(crate) fn text(checked: &CheckResult, shows_all: bool) -> String {
     let sources = checked.memory.sources();
+    let folded;
+    let findings = match shows_all {
+        true => &checked.findings,
+        false => {
+            folded = fold(&checked.findings, sources);
+            &folded
+        }
+    };
     let mut text: String =
-        checked.findings.iter().map(|finding| diagnostic::render(finding, sources) + "\n").collect();
+        findings.iter().map(|finding| diagnostic::render(finding, sources) + "\n").collect();
     text.push_str(&summary(checked));
     text.push('\n');
     text
+}
+
+/// Returns the first finding of each kind and severity in each file, with the lines of the others in a note. Each error has
+/// to be corrected: those of one kind have one message and one remedy.
+fn fold(findings: &[Diagnostic], sources: &Sources) -> Vec<Diagnostic> {
+    let mut groups: BTreeMap<_, (usize, Vec<u32>)> = BTreeMap::new();
+    let mut firsts = Vec::new();
+    for finding in findings {
+        let at = finding.span.or(finding.backtrace.as_ref().map(|backtrace| backtrace.block));
+        let is_error = finding.severity == Severity::Error;
+        let error = is_error.then(|| (finding.message.clone(), finding.help.clone()));
+        let key = (finding.kind.code, finding.severity, at.map(|span| span.source), error);
+        match groups.get_mut(&key) {
+            Some((_, lines)) => lines.extend(at.map(|span| sources.line_column(span).line)),
+            None => {
+                groups.insert(key, (firsts.len(), Vec::new()));
+                firsts.push(finding.clone());
+            }
+        }
+    }
+    for (first, mut lines) in groups.into_values().filter(|(_, lines)| !lines.is_empty()) {
+        let more = count(lines.len(), "more finding");
+        lines.dedup();
+        let shown: Vec<_> = lines.iter().take(LINES_SHOWN).map(u32::to_string).collect();
+        let rest = if lines.len() > LINES_SHOWN { " …" } else { "" };
+        let line = if lines.len() == 1 { "line" } else { "lines" };
+        let note = format!("{more} of this kind in {line} {}{rest} (--all: each)", shown.join(", "));
+        firsts[first].notes.push(note);
+    }
+    firsts
 }
 
 /// Returns `2 programs checked: 1 error, 2 warnings`.

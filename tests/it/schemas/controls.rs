@@ -7,7 +7,7 @@ use super::validator;
 
 fn is_taken(key: &str, value: &Value) -> bool {
     let text = format!("\"{key}\" = {value}\n");
-    control_file::apply(&text, &mut Settings::default()).is_ok()
+    control_file::apply(&text, &mut Settings::default(), true).is_ok()
 }
 
 /// Values of every kind of setting; words are separated by `|`.

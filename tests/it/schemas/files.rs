@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use gcode_inspect::machine::{Machine, error_file};
 use gcode_lang::control::Settings;
 use gcode_part::job::control_file;
+use gcode_part::job::project::ProjectFile;
 use gcode_part::job::{Job, Rates};
 use gcode_tests::workspace;
 use serde_json::Value as Json;
@@ -15,16 +16,17 @@ use super::{schema, validator, walk};
 type Read = fn(&str) -> Result<(), String>;
 
 /// The TOML files by the names of their schemas, each with its reader.
-const READERS: [(&str, Read); 5] = [
+const READERS: [(&str, Read); 6] = [
     ("job", |text| Job::parse(text).map(drop).map_err(|error| error.to_string())),
     ("machine", |text| Machine::parse(text).map(drop).map_err(|error| error.to_string())),
     ("control", |text| {
-        control_file::apply(text, &mut Settings::default()).map_err(|error| error.to_string())
+        control_file::apply(text, &mut Settings::default(), true).map_err(|error| error.to_string())
     }),
     ("errors", |text| {
         let machine = Machine::parse("[head]\nkind = \"manual\"\n").unwrap();
         error_file(text, &machine).map(drop).map_err(|error| error.to_string())
     }),
+    ("project", |text| ProjectFile::parse(text).map(drop).map_err(|error| error.to_string())),
     ("rates", |text| Rates::parse(text).map(drop).map_err(|error| error.to_string())),
 ];
 

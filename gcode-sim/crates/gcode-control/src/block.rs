@@ -184,7 +184,11 @@ impl Executor {
 
 impl Planner<'_> {
     /// Makes the plan of a block whose words are evaluated.
-    fn plan_block(&self, calling_word: Option<CallingWord>, plan: &mut BlockPlan) -> ExecResult<()> {
+    pub(super) fn plan_block(
+        &self,
+        calling_word: Option<CallingWord>,
+        plan: &mut BlockPlan,
+    ) -> ExecResult<()> {
         self.check_words_with_return()?;
         let axis_word_use = self.apply_modal_codes(plan)?;
         // A block with nothing but axis words and codes of group 01 has no other codes.

@@ -92,6 +92,7 @@ mod block;
 mod call_execution;
 mod next_block;
 mod residual_state;
+pub mod static_plan;
 mod unknown_position;
 
 pub mod slice;

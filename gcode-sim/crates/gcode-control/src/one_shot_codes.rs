@@ -46,9 +46,16 @@ impl Planner<'_> {
         match row.facts.without_axes {
             WithoutAxes::Same => None,
             WithoutAxes::AllOrNothing if self.data.settings.homes_all_axes => None,
-            WithoutAxes::Nothing | WithoutAxes::AllOrNothing => Some(Note::NoAxis(code)),
+            WithoutAxes::Waits if !self.writes_axis() => None,
+            WithoutAxes::Nothing | WithoutAxes::Waits | WithoutAxes::AllOrNothing => Some(Note::NoAxis(code)),
             WithoutAxes::CentreDefaulted => Some(Note::CentreDefaulted(code)),
         }
+    }
+
+    /// Returns true if the block has an axis word, with or without a value.
+    fn writes_axis(&self) -> bool {
+        let axes = &self.data.settings.axes;
+        self.lowered_words.list.iter().any(|word| word.axis.is_some() || axes.find(word.letter).is_some())
     }
 
     fn execute_one_shot(&self, one: OneShot, plan: &mut BlockPlan) -> ExecResult<()> {

@@ -1,9 +1,11 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
-use gcode_lang::diag::{Diagnostic, FindingKind};
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::{
@@ -12,14 +14,22 @@ use gcode_lang::program::{
 use gcode_lang::source::Spanned;
 use gcode_lang::syntax::ast;
 
+use super::ControlKnowledge;
 use super::calls::{self, CallSite};
 use super::control_flow::ControlFlowGraph;
+use super::modes::{self, PossibleModes};
+
+const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
+
+/// Program numbers of macros, which a control protects.
+pub(crate) const MACROS: RangeInclusive<u32> = 9000..=9999;
 
 /// Input of a rule.
 #[derive(Debug)]
 pub(crate) struct CheckContext<'a> {
     pub memory: &'a Memory,
     pub settings: &'a Settings,
+    pub knowledge: ControlKnowledge,
     pub units: Vec<ProgramUnit<'a>>,
     /// Names of all rules, as valid in CHECK-OFF.
     pub rules: Vec<&'static str>,
@@ -41,7 +51,10 @@ pub(crate) struct ProgramUnit<'a> {
     pub entry_blocks: Vec<OpIndex>,
     /// True for each reachable block.
     pub is_reached: Vec<bool>,
+    /// True if a path leads beyond the last block.
+    pub reaches_end: bool,
     pub role: Role,
+    modes: OnceCell<Vec<Option<PossibleModes>>>,
 }
 
 /// Way in which a program is entered.
@@ -51,20 +64,20 @@ pub(crate) enum Role {
     Main,
     /// Called only by the programs under check.
     Called,
-    /// Returns but has no caller under check: called by unknown programs.
+    /// Returns but has no caller under check, or has the number of a macro: called by unknown programs.
     Resident,
 }
 
 impl<'a> CheckContext<'a> {
     pub(super) fn new(
         memory: &'a Memory,
-        settings: &'a Settings,
+        (settings, knowledge): (&'a Settings, ControlKnowledge),
         programs: &[ProgramId],
         rules: Vec<&'static str>,
     ) -> Self {
         let unit_indices = programs.iter().enumerate().map(|(unit, id)| (*id, unit)).collect();
         let units = programs.iter().map(|id| ProgramUnit::new(memory.get(*id), settings)).collect();
-        let mut context = Self { memory, settings, units, rules, unit_indices };
+        let mut context = Self { memory, settings, knowledge, units, rules, unit_indices };
         context.link_calls();
         context
     }
@@ -100,26 +113,33 @@ impl<'a> CheckContext<'a> {
         for unit in &mut self.units {
             unit.role = unit.determine_role();
             unit.is_reached = unit.flow.reachable(&unit.entry_blocks);
+            unit.reaches_end = unit.is_reached.pop().unwrap_or_default();
         }
     }
 
     /// Returns findings for those alarms of reading that `selects` accepts.
     ///
-    /// A reachable block raises an alarm of reading if its text is unreadable or this control refuses its syntax.
+    /// A reachable block raises an alarm of reading if its text is unreadable, or if this control refuses syntax that others
+    /// accept.
     pub(crate) fn reading_findings(
         &self,
         unit: &ProgramUnit<'_>,
         kind: &'static FindingKind,
         selects: impl Fn(&Alarm) -> bool,
     ) -> Vec<Diagnostic> {
-        let written =
-            unit.reached_ops().filter_map(|(block, op)| Some((block, written_alarm(op.kind())?.clone())));
+        let written = unit
+            .reached_ops()
+            .filter_map(|(block, op)| Some((block, written_alarm(op.kind())?.clone())))
+            .filter(|(_, alarm)| selects(&alarm.node))
+            .map(|(block, alarm)| self.alarm_finding(unit, kind, block, &alarm));
         let refused = unit.reached_ops().filter_map(|(block, op)| {
             let syntax = op.dialect_syntax().iter().find(|syntax| !syntax.node.is_accepted(self.settings))?;
             Some((block, syntax.node.alarm().located_at(syntax.span)))
         });
-        let selected = written.chain(refused).filter(|(_, alarm)| selects(&alarm.node));
-        selected.map(|(block, alarm)| self.alarm_finding(unit, kind, block, &alarm)).collect()
+        let refused = refused
+            .filter(|(_, alarm)| selects(&alarm.node))
+            .map(|(block, alarm)| self.unless_optional(self.alarm_finding(unit, kind, block, &alarm)));
+        written.chain(refused).collect()
     }
 
     /// Converts an alarm to a finding with its number, sentence and remedy.
@@ -133,13 +153,31 @@ impl<'a> CheckContext<'a> {
         let row = alarm.node.row();
         let help = remedy(&alarm.node, alarm.span, self.memory.sources());
         let finding = unit.finding(kind, block, format!("{}: {}", row.code, row.message));
-        Diagnostic { help, ..finding.with_span(alarm.span) }
+        // A limit of the simulator is no fault of the program.
+        let severity = match alarm.node {
+            Alarm::NotSimulated { .. } => Severity::Note,
+            _ => finding.severity,
+        };
+        Diagnostic { help, severity, ..finding.with_span(alarm.span) }
+    }
+
+    /// Makes a finding that options of the control may remove a note if the control is assumed.
+    pub(crate) fn unless_optional(&self, finding: Diagnostic) -> Diagnostic {
+        match self.knowledge {
+            ControlKnowledge::Stated => finding,
+            ControlKnowledge::Assumed => finding.with_severity(Severity::Note).note(CONTROL_ASSUMED),
+        }
     }
 
     /// Returns the index of the called program if it is under check.
     pub(crate) fn called_unit(&self, call: &CallSite) -> Option<usize> {
         let id = call.target.find(self.memory, call.folder.as_ref())?;
         self.unit_indices.get(&id).copied()
+    }
+
+    /// Returns the possible modes before each block of a program; `None` for an unreachable block.
+    pub(crate) fn modes_before<'u>(&self, unit: &'u ProgramUnit<'_>) -> &'u [Option<PossibleModes>] {
+        unit.modes.get_or_init(|| modes::modes_before(self, unit))
     }
 
     /// Returns the row of a G code written as a number; `None` if this control lacks the code, or for another word.
@@ -189,7 +227,9 @@ impl<'a> ProgramUnit<'a> {
             callers: Vec::new(),
             entry_blocks: vec![0],
             is_reached: Vec::new(),
+            reaches_end: false,
             role: Role::Main,
+            modes: OnceCell::new(),
             program,
         }
     }
@@ -197,6 +237,9 @@ impl<'a> ProgramUnit<'a> {
     fn determine_role(&self) -> Role {
         if !self.callers.is_empty() {
             return Role::Called;
+        }
+        if self.program.number().is_some_and(|number| MACROS.contains(&number)) {
+            return Role::Resident;
         }
         let words = |(block, op): (usize, &'a Op)| match op.kind() {
             OpKind::Words(words) => Some((words.call().map(|call| call.kind), block)),

@@ -70,8 +70,9 @@ impl ControlFlowGraph {
 
     fn block_successors_of(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Successors {
         match kind {
-            // An alarm stops the control; the blocks after it are checked as if it were corrected.
-            OpKind::Empty | OpKind::AssignDirect(_) | OpKind::Alarm(_) => Successors::next_or(Vec::new()),
+            OpKind::Empty | OpKind::AssignDirect(_) => Successors::next_or(Vec::new()),
+            // The corrected block may be a jump.
+            OpKind::Alarm(_) => Successors { jumps_anywhere: true, ..Successors::next_or(Vec::new()) },
             OpKind::Words(words) => {
                 let successors = self.word_successors(program, block, words);
                 match words.form_if_skipped() {
@@ -131,8 +132,8 @@ impl ControlFlowGraph {
             | Statement::SetNames { .. }
             | Statement::Print { .. }
             | Statement::OpenOutput
-            | Statement::CloseOutput
-            | Statement::Alarm(_) => Successors::next_or(Vec::new()),
+            | Statement::CloseOutput => Successors::next_or(Vec::new()),
+            Statement::Alarm(_) => Successors { jumps_anywhere: true, ..Successors::next_or(Vec::new()) },
         }
     }
 
@@ -165,12 +166,12 @@ impl ControlFlowGraph {
         jumps.iter().copied().chain(next).chain(computed).chain(numbered.iter().copied())
     }
 
-    /// Returns, for each block, whether it is reachable from one of `starts`.
+    /// Returns, for each block and the end of the program, whether it is reachable from one of `starts`.
     pub(crate) fn reachable(&self, starts: &[OpIndex]) -> Vec<bool> {
         let starts = starts.iter().map(|start| (*start, ()));
         let next = |place, (): &()| self.successors(place).map(|to| (to, ())).collect();
         let states = self.propagate(starts, |(), ()| (), next);
-        states[..self.block_successors.len()].iter().map(Option::is_some).collect()
+        states[..=self.block_successors.len()].iter().map(Option::is_some).collect()
     }
 
     /// Returns the state before each node, `None` for an unreachable one.

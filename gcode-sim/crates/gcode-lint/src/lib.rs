@@ -26,6 +26,7 @@ mod expressions;
 mod first_reach;
 mod literal;
 mod main_programs;
+mod modes;
 mod parameters;
 mod prelude;
 mod rule;
@@ -58,6 +59,15 @@ pub struct CheckResult {
     pub findings: Vec<Diagnostic>,
 }
 
+/// Whether the settings of a check are those of the control that executes the programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ControlKnowledge {
+    /// A file or the caller states the control.
+    Stated,
+    /// The settings are the defaults: options and codes of the machine builder may add what they lack.
+    Assumed,
+}
+
 /// Checks all programs of a file and the programs that they call.
 ///
 /// A file without a program has no findings, and `programs` is 0.
@@ -69,13 +79,20 @@ pub fn check(
 ) -> CheckResult {
     let mut memory = Memory::default();
     memory.load(name, bytes);
-    check_loaded(memory, settings, library)
+    check_loaded(memory, settings, ControlKnowledge::Stated, library)
 }
 
 /// Checks the programs in memory as [`check`] does.
-pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> CheckResult {
+///
+/// A finding that an option of the control would remove is a note if the control is assumed.
+pub fn check_loaded(
+    mut memory: Memory,
+    settings: &Settings,
+    knowledge: ControlKnowledge,
+    library: &mut impl Library,
+) -> CheckResult {
     let programs = load_called_programs(&mut memory, settings, library);
-    let context = CheckContext::new(&memory, settings, &programs, rules::codes());
+    let context = CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes());
     let findings = rules::findings(&context);
     CheckResult { programs: programs.len(), memory, findings }
 }

@@ -3,7 +3,9 @@
 //! A state is a set of possibilities for each local: never set, set to `#0`, or a number. Where paths meet,
 //! the sets are united. A condition that the state decides (`#24 EQ #0` for a local that is never set) is
 //! followed in one direction only.
-use gcode_lang::program::{OpIndex, OpKind};
+use std::collections::BTreeSet;
+
+use gcode_lang::program::{self, OpIndex, OpKind};
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Relation, Statement};
 
 use super::context::ProgramUnit;
@@ -51,6 +53,38 @@ pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
     let entries = std::iter::once(entry).chain(std::iter::repeat(Locals::ANYTHING));
     let starts = unit.entry_blocks.iter().copied().zip(entries);
     unit.flow.propagate(starts, Locals::join, |block, state| steps(unit, block, state))
+}
+
+/// Returns true if a path leads from the first block to an end without an alarm and does not execute one of some blocks.
+///
+/// A loop that is reached counts as run at least once: left at its END only.
+pub(super) fn can_avoid(unit: &ProgramUnit<'_>, entry: Locals, blocks: &BTreeSet<OpIndex>) -> bool {
+    let starts = unit.entry_blocks.first().map(|start| (*start, entry));
+    let ops = unit.program.ops();
+    let next = |block: OpIndex, state: &Locals| {
+        if blocks.contains(&block) {
+            return Vec::new();
+        }
+        match ops.get(block).map(|op| op.kind()) {
+            Some(OpKind::Statement(program::Statement::While { end, .. })) => {
+                let inside = |(to, _): &(OpIndex, Locals)| *to != end + 1;
+                steps(unit, block, state).into_iter().filter(inside).collect()
+            }
+            Some(OpKind::Statement(program::Statement::End { start, .. })) => {
+                steps(unit, *start, state).into_iter().chain([(block + 1, *state)]).collect()
+            }
+            _ => steps(unit, block, state),
+        }
+    };
+    let states = unit.flow.propagate(starts, Locals::join, next);
+    let is_end = |block: OpIndex| match ops.get(block) {
+        Some(op) => {
+            let successors = &unit.flow.block_successors[block];
+            successors.is_exit && !raises_alarm(op.kind()) && !blocks.contains(&block)
+        }
+        None => block == ops.len(),
+    };
+    states.iter().enumerate().any(|(block, state)| state.is_some() && is_end(block))
 }
 
 /// Returns the nodes that follow a node, each with its state.

@@ -11,7 +11,7 @@ use gcode_lang::program::{Memory, NoLibrary};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
-use gcode_lint::{check_loaded, main_programs, programs_called_by_others, rules};
+use gcode_lint::{ControlKnowledge, check_loaded, main_programs, programs_called_by_others, rules};
 
 /// Rules about what a run does not show, or shows better: it finds the programs that it calls.
 const LEFT_OUT: [&str; 1] = ["missing-program"];
@@ -19,7 +19,8 @@ const LEFT_OUT: [&str; 1] = ["missing-program"];
 /// Returns what a check of the program's text finds: everything from a warning on if the verdict `fails`, otherwise numbers
 /// without a decimal point. The block of an alarm is left out: the alarm says more.
 pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
-    let checked = check_loaded(run.control.memory().reload(), run.control.settings(), &mut NoLibrary);
+    let memory = run.control.memory().reload();
+    let checked = check_loaded(memory, run.control.settings(), ControlKnowledge::Stated, &mut NoLibrary);
     let stopped = match &run.outcome {
         Outcome::Alarm(stop) => Some(stop.backtrace.block),
         Outcome::End | Outcome::Limit => None,

@@ -32,7 +32,7 @@ use std::sync::Arc;
 pub use assumptions::HoleDependencies;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
-use gcode_control::{Control, Limits, Note, Observer, Outcome, Progress};
+use gcode_control::{Control, Limits, Observer, Outcome, Progress};
 use gcode_inspect::flutes::{FluteTracker, GrinderError, GrindingResult};
 use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
@@ -42,7 +42,7 @@ use gcode_inspect::verify::{Answer, Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::{Alarm, remedy};
 use gcode_lang::control::Settings;
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, EventSink};
 use gcode_lang::program::{Library, Memory, Program};
 use gcode_lang::source::{Bytes, Span};
@@ -433,13 +433,7 @@ impl Run {
     pub fn note_findings(&self) -> impl Iterator<Item = Diagnostic> + '_ {
         let of_control = self.control.notes().map(|(note, block)| {
             let (kind, message, help) = note.describe();
-            let finding =
-                Diagnostic::new(kind, message).with_backtrace(Backtrace { block, calls: None }).help(help);
-            match note {
-                // G53 without axes is a deliberate wait.
-                Note::NoAxis(530) => finding.with_severity(Severity::Note),
-                _ => finding,
-            }
+            Diagnostic::new(kind, message).with_backtrace(Backtrace { block, calls: None }).help(help)
         });
         self.main_note.iter().cloned().chain(of_control)
     }

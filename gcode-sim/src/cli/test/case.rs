@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use super::main_program::{self, MainProgram};
 use crate::cli::conditions::RunConditions;
+use crate::cli::project::Project;
 use crate::cli::{UsageError, input, options};
 use crate::report::test_report::{CaseAnswer, CaseReport, FirstFailure};
 use gcode_control::Limits;
@@ -108,12 +109,15 @@ impl Case {
             max_blocks: Limits::default().blocks,
             ..RunConditions::default()
         };
+        let project = Project::of(&main.file)?;
+        let (conditions, _) = project.complete(&main.file, &conditions);
         let (mut request, mut folders) = options::request(&conditions.of(&main.file))?;
         if let (Some(one), Some(other)) = (own("reference.json"), own("reference.csv")) {
             let both = format!("{} and {}", one.display(), other.display());
             return Err(UsageError::new(format!("{both}: both are references; delete one")));
         }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(own);
+        let reference = reference.or_else(|| project.reference());
         let nominal = reference.as_deref().map(options::read_nominal).transpose()?;
         let metal = match &nominal {
             Some(NominalPart::Holes(reference)) => {

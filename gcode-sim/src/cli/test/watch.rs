@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use super::{Arguments, all, case, cases};
-use crate::cli::{ExitStatus, UsageError, output};
+use crate::cli::{ExitStatus, UsageError, output, project};
 use crate::report::test_report::TestReport;
 
 /// Interval between two checks of the files.
@@ -77,10 +77,15 @@ fn differing(old: &Stamps, new: &Stamps) -> Vec<PathBuf> {
     gone.chain(written).cloned().collect()
 }
 
-/// Returns the stamps of all files in the folders and below them.
+/// Returns the stamps of all files in the folders and below them, and of the projects' files above them.
 fn stamps<'a>(folders: impl Iterator<Item = &'a PathBuf>) -> Stamps {
     let mut found = Stamps::new();
     let mut left: Vec<PathBuf> = folders.cloned().collect();
+    for path in left.iter().filter_map(|folder| project::file_for(folder)) {
+        if let Ok(about) = std::fs::metadata(&path) {
+            found.insert(path, (about.modified().ok(), about.len()));
+        }
+    }
     let mut seen = BTreeSet::new();
     while let Some(folder) = left.pop() {
         // A link may lead back to a parent folder.

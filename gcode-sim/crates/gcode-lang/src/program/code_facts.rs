@@ -53,6 +53,8 @@ pub enum WithoutAxes {
     Same,
     /// No effect, which is rarely intended.
     Nothing,
+    /// Wait for the motion before it, if the block is written without an axis; no effect if its axes are vacant.
+    Waits,
     /// The current position is the centre.
     CentreDefaulted,
     /// All axes on some controls, no effect on others.
@@ -282,7 +284,8 @@ pub(super) const SKIP: CodeFacts = CodeFacts {
     timing: Waits,
     ..ONE_SHOT
 };
-pub(super) const MACHINE_COORDINATE_SYSTEM: CodeFacts = CodeFacts { coordinates: NotTransformed, ..SKIP };
+pub(super) const MACHINE_COORDINATE_SYSTEM: CodeFacts =
+    CodeFacts { without_axes: WithoutAxes::Waits, coordinates: NotTransformed, ..SKIP };
 pub(super) const SINGLE_DIRECTION: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     without_axes: Nothing,

@@ -15,7 +15,6 @@ mod numbers;
 mod output;
 mod print;
 mod program_name;
-mod program_name;
 #[cfg(test)]
 mod property_tests;
 mod statement;

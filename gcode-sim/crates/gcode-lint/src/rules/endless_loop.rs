@@ -50,19 +50,27 @@ fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, reported:
     for (block, component) in components[..unit.flow.block_successors.len()].iter().enumerate() {
         members.entry(*component).or_default().push(block);
     }
+    let mut closing: BTreeMap<usize, Vec<(&Jump, OpIndex)>> = BTreeMap::new();
     for jump in &unit.flow.jumps {
-        let Some(to) = backward_target(jump).filter(|to| components[*to] == components[jump.block]) else {
-            continue;
-        };
-        let component = components[to];
-        let Some(inside) = members.remove(&component) else { continue };
-        if has_exit(context, unit, &inside, |to| components.get(to) == Some(&component)) {
+        if let Some(to) = backward_target(jump).filter(|to| components[*to] == components[jump.block]) {
+            closing.entry(components[to]).or_default().push((jump, to));
+        }
+    }
+    for (component, jumps) in closing {
+        let inside = members.remove(&component).unwrap_or_default();
+        let contains = |to: OpIndex| components.get(to) == Some(&component);
+        if has_exit(context, unit, &inside, contains) {
             continue;
         }
+        // Without this jump the blocks after the loop are reached; an inner loop ends by itself.
+        let leads_out = jumps.iter().rfind(|(jump, _)| !contains(jump.block + 1));
+        let Some((jump, to)) = leads_out.or(jumps.iter().max_by_key(|(jump, to)| jump.block - to)) else {
+            continue;
+        };
         let message = format!("GOTO {} loops forever: no block in the loop exits it", jump.number);
         let help = "change a variable of the exit condition in the loop, or count the iterations";
         let finding = unit.finding(&RULE.kind, jump.block, message).help(help);
-        found.push(finding.label(unit.op(to).span, "it jumps back to here"));
+        found.push(finding.label(unit.op(*to).span, "it jumps back to here"));
     }
     found
 }
@@ -258,11 +266,22 @@ mod tests {
     #[test]
     fn nested_and_adjacent_loops_are_separate() {
         let twice = "O1\n#1=0\nN1 X1.\nIF[#2 EQ 5]GOTO 1\nX2.\nGOTO 1\nM30\n";
-        assert_eq!(lines(&RULE, twice), [4], "one loop, reported at its first GOTO");
+        assert_eq!(lines(&RULE, twice), [6], "one loop, reported at the GOTO that keeps it from its end");
         let beside = "O1\nN1 IF[#500 EQ 1]GOTO 2\n#500=#500+1\nGOTO 1\nN2 X1.\nGOTO 2\nM30\n";
         assert_eq!(lines(&RULE, beside), [6]);
         let crossed = "O1\n#1=0\nN1 X1.\nN2 #1=#1+1\nIF[#1 LT 5]GOTO 1\nIF[#1 LT 9]GOTO 2\nM30\n";
         assert_eq!(lines(&RULE, crossed), NOWHERE);
+    }
+
+    #[test]
+    fn the_jump_that_repeats_a_loop_that_ends_is_reported() {
+        let counted = "N10 G01 X1. F100.\n#1=3\nN30 #1=#1-1\nIF[#1 GT 0]GOTO 30\nGOTO 10\nM30\n";
+        assert_eq!(messages(&RULE, counted), ["GOTO 10 loops forever: no block in the loop exits it"]);
+        assert_eq!(lines(&RULE, counted), [5]);
+        let without_end = counted.replace("M30\n", "");
+        assert_eq!(lines(&RULE, &without_end), [5]);
+        let two = "O1\nN1 X1.\nN2 X2.\nIF[#500 EQ 1]GOTO 2\nIF[#501 EQ 1]GOTO 9\nGOTO 1\nN9 GOTO 2\n";
+        assert_eq!(lines(&RULE, two), [7], "the last block");
     }
 
     #[test]

@@ -6,6 +6,7 @@
 //! #5001… (end of the preceding block) and #5061… (latched by G31) do not depend on the instant.
 use std::ops::RangeInclusive;
 
+use gcode_lang::control::Dialect;
 use gcode_lang::program::code_facts::Timing;
 use gcode_lang::program::{Statement, WordOperand, Words};
 
@@ -24,6 +25,9 @@ const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    if limits_lookahead(context, unit) {
+        return Vec::new();
+    }
     let pending = pending_moves(context, unit);
     let mut found = Vec::new();
     for (block, written) in unit.reached_blocks() {
@@ -41,6 +45,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         }
     }
     found
+}
+
+/// Returns true if G103 of a Haas limits lookahead in a program, or may do so in a caller.
+fn limits_lookahead(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> bool {
+    let limits = |words: &Words| words.list.iter().any(|word| matches!(word.value, WordOperand::G(1030, _)));
+    context.settings.codes == Dialect::HaasNgc
+        && (unit.role != Role::Main || unit.reached_words().any(|(_, words)| limits(words)))
 }
 
 const HELP: &str = "insert a block before it that waits for the move: G53, M00 or G31";
@@ -98,6 +109,9 @@ fn words_effect(context: &CheckContext<'_>, words: &Words) -> Option<bool> {
 mod tests {
     use super::super::testing::{NOWHERE, lines};
     use super::RULE;
+    use crate::check;
+    use gcode_lang::control::Settings;
+    use gcode_lang::program::NoLibrary;
 
     #[test]
     fn a_position_read_after_a_move_is_reported() {
@@ -116,6 +130,19 @@ mod tests {
             assert_eq!(lines(&RULE, &format!("O1\n#1=1\nG0 X10.\nG53\n{written}\nM30\n")), NOWHERE);
         }
         assert_eq!(lines(&RULE, "O1\nG0 X10.\n#100=#4001+#3011+#1100\n#3003=1\nM30\n"), NOWHERE);
+    }
+
+    #[test]
+    fn a_limit_of_lookahead_waits() {
+        let mut settings = Settings::default();
+        settings.set("DIALECT", "haas-ngc").unwrap();
+        let found = |text: &str| {
+            let checked = check("O1.nc", text.as_bytes(), &settings, &mut NoLibrary);
+            checked.findings.iter().filter(|finding| finding.kind == &RULE.kind).count()
+        };
+        assert_eq!(found("O1\nG0 X10.\n#100=#5041\nM30\n"), 1);
+        assert_eq!(found("O1\nG103 P1\nG0 X10.\n#100=#5041\nM30\n"), 0);
+        assert_eq!(found("O2\nG0 X10.\n#100=#5041\nM99\n"), 0, "its caller may limit lookahead");
     }
 
     #[test]

@@ -1,17 +1,18 @@
 //! Rule: a macro call without a required argument.
 //!
-//! Without the argument every path through the macro ends in its #3000, or the macro computes with a vacant
-//! variable.
+//! Without the argument every path through the macro ends in its #3000, or multiplies or divides by the vacant variable.
 use std::collections::{BTreeMap, BTreeSet};
 
+use gcode_lang::alarm::kinds::PS0112;
 use gcode_lang::program::argument_letter;
-use gcode_lang::syntax::ast::Statement;
+use gcode_lang::syntax::ast::{BinaryOp, Block, Expr, ExprKind, Statement};
 
 use crate::control_flow::raises_alarm;
-use crate::expressions::ValueUse;
+use crate::expressions::{ValueUse, block_expressions};
+use crate::literal;
 use crate::prelude::*;
 use crate::unset_reads::{entry_locals, unset_reads};
-use crate::vacancy::{Locals, NUMBER, States, UNSET, states, truth};
+use crate::vacancy::{Locals, NUMBER, States, UNSET, can_avoid, states, truth};
 use crate::variables;
 
 pub(super) static RULE: Rule =
@@ -50,7 +51,6 @@ fn missing_argument_effects(
     let mut filled = entry;
     missing.iter().for_each(|(local, _)| filled.0[*local] = NUMBER);
     let mut effects = Vec::new();
-    let mut reported = BTreeSet::new();
     // Arguments that depend on each other may be omitted together even if each is required with the others.
     let can_alarm = unavoidable_alarm(context, called, &states(called, entry)).is_some();
     for (local, letter) in missing.iter().filter(|_| can_alarm) {
@@ -59,7 +59,6 @@ fn missing_argument_effects(
         if let Some(alarm) = unavoidable_alarm(context, called, &states(called, without))
             && unavoidable_alarm(context, called, &states(called, filled)).is_none()
         {
-            reported.insert(*local as u32);
             let message = format!(
                 "{label} needs {letter} (#{local}): if it is omitted, the program stops with {alarm}"
             );
@@ -70,17 +69,75 @@ fn missing_argument_effects(
     if !effects.is_empty() || modal {
         return effects;
     }
+    effects.extend(factors_left_out(called, entry).into_iter().filter_map(|(local, block, is_divisor)| {
+        let letter = argument_letter(local as usize)?;
+        let line = context.memory.sources().line_column(called.op(block).span).line;
+        Some(match is_divisor {
+            true => (
+                Severity::Error,
+                format!("{label} divides by {letter} (#{local}) in line {line}: if it is omitted, this is {PS0112}"),
+            ),
+            false => (
+                Severity::Warning,
+                format!("{label} uses {letter} (#{local}) in line {line}; if it is omitted, it is 0"),
+            ),
+        })
+    }));
+    effects
+}
+
+/// Returns the locals that are vacant as a factor on every path through a program, with the block and true for a divisor.
+///
+/// A macro that tests a local, compares or sets it makes a case of its absence, and a vacant term of a sum is no offset.
+fn factors_left_out(called: &ProgramUnit<'_>, entry: Locals) -> Vec<(u32, OpIndex, bool)> {
     let states = states(called, entry);
-    for ((block, local), (_, usage)) in unset_reads(called, &states) {
-        let Some(letter) = argument_letter(local as usize) else { continue };
-        if usage == ValueUse::Computed && reported.insert(local) {
-            let line = context.memory.sources().line_column(called.op(block).span).line;
-            let message =
-                format!("{label} uses {letter} (#{local}) in line {line}; if it is omitted, it is 0");
-            effects.push((Severity::Warning, message));
+    let unset: BTreeSet<_> = unset_reads(called, &states).into_iter().map(|(read, _)| read).collect();
+    let mut blocks: BTreeMap<u32, BTreeSet<OpIndex>> = BTreeMap::new();
+    let mut divisors = BTreeSet::new();
+    for (block, written) in called.blocks.iter().enumerate() {
+        for (local, is_divisor) in factor_reads(written) {
+            if unset.contains(&(block, local)) {
+                blocks.entry(local).or_default().insert(block);
+                divisors.extend(is_divisor.then_some((block, local)));
+            }
         }
     }
-    effects
+    blocks.retain(|local, blocks| !is_optional(called, *local) && !can_avoid(called, entry, blocks));
+    let first = blocks.into_iter().filter_map(|(local, blocks)| {
+        let divides = blocks.iter().all(|block| divisors.contains(&(*block, local)));
+        Some((local, *blocks.first()?, divides))
+    });
+    first.collect()
+}
+
+/// Returns true if a program tests, compares or sets a local.
+fn is_optional(called: &ProgramUnit<'_>, local: u32) -> bool {
+    called.blocks.iter().any(|block| {
+        let is_set = block.items.iter().filter_map(variables::item_assignment);
+        let mut is_set = is_set.map(|(target, _)| literal::variable(target));
+        is_set.any(|number| number == Some(local))
+            || variables::block_reads(block).iter().any(|read| {
+                read.number == local && matches!(read.usage, ValueUse::VacancyTest | ValueUse::Comparison)
+            })
+    })
+}
+
+/// Returns the locals that are factors or divisors by themselves in a block, with true for a divisor.
+fn factor_reads(block: &Block) -> Vec<(u32, bool)> {
+    let mut found = Vec::new();
+    for (expr, _) in block_expressions(block) {
+        collect_factors(expr, &mut found);
+    }
+    found
+}
+
+fn collect_factors(expr: &Expr, found: &mut Vec<(u32, bool)>) {
+    if let ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right) = &expr.kind {
+        let is_divisor = *op == BinaryOp::Div;
+        let factors = [(left, false), (right, is_divisor)].into_iter();
+        found.extend(factors.filter_map(|(part, is_divisor)| Some((literal::variable(part)?, is_divisor))));
+    }
+    expr.operands().for_each(|part| collect_factors(part, found));
 }
 
 /// Returns the alarm that every path through a program ends in; `None` if one path ends otherwise.
@@ -111,11 +168,10 @@ fn unavoidable_alarm(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, states:
 /// Returns the alarm as in messages, `MC3007 (R MISSING)`.
 fn alarm_text(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> String {
     let written = &unit.blocks[block];
-    let number =
-        variables::assignment(written).and_then(|(_, value)| crate::literal::constant(value)).map_or_else(
-            || "its alarm".to_owned(),
-            |n| format!("MC{:04}", f64::from(context.settings.macro_alarm_base) + n),
-        );
+    let number = variables::assignment(written).and_then(|(_, value)| literal::constant(value)).map_or_else(
+        || "its alarm".to_owned(),
+        |n| format!("MC{:04}", f64::from(context.settings.macro_alarm_base) + n),
+    );
     match written.comments.first() {
         Some(text) => format!("{number} ({})", String::from_utf8_lossy(&text.text).trim()),
         None => number,
@@ -146,6 +202,35 @@ mod tests {
         );
         assert_eq!(call("R5. D2."), ["O0002 uses F (#9) in line 9; if it is omitted, it is 0"]);
         assert_eq!(call("").len(), 2, "R and D; F is not checked before they are present");
+    }
+
+    /// Each call leaves out B (#2); only a product or quotient on every path, of a local never tested, is known.
+    #[test]
+    fn arguments_that_a_macro_makes_cases_of_are_accepted() {
+        let found = |body: &str| {
+            let text = format!("O1\nG65 P2 A1. X5.\nM30\nO2\n{body}M99\n");
+            messages(&RULE, &text)
+        };
+        for body in [
+            "#30=#24+#2\n",
+            "#[2200+#2]=#1\n",
+            "X[#24-#2]\n",
+            "#30=SIN[#2]\n",
+            "IF[#1 EQ 1]GOTO 5\n#30=#1*#2\nN5 X#24\n",
+            "#30=#1*#2\nIF[#2 EQ #0]GOTO 5\nX#30\nN5\n",
+            "IF[#2 LT 1.]GOTO 5\n#30=#1*#2\nN5\n",
+            "GOTO#500\nN5 #30=#1*#2\nN6\n",
+        ] {
+            assert_eq!(found(body), [""; 0], "{body}");
+        }
+        assert_eq!(found("IF[#1 EQ 1]GOTO 5\n#30=#1*#2\nM99\nN5 #31=#2*2\n").len(), 1, "on both paths");
+        let row = "#10=0\nWHILE[#10 LT #24]DO1\nX[#1+#10*#2]\n#10=#10+1\nEND1\n";
+        assert_eq!(found(row).len(), 1, "a loop runs at least once");
+        assert_eq!(found(&row.replace("X[", "IF[#10 EQ 9]GOTO 5\nX[").replace("END1", "N5 END1")), [""; 0]);
+        assert_eq!(
+            found("X#24\n#30=#1/#2\n"),
+            ["O0002 divides by B (#2) in line 6: if it is omitted, this is PS0112"]
+        );
     }
 
     /// A ball requires neither K nor Q, a nose of arcs both.

@@ -5,6 +5,9 @@ use crate::prelude::*;
 pub(super) static RULE: Rule =
     Rule::new("missing-offset", Severity::Error, "an H or D number beyond the tool offsets", find);
 
+/// Number of tool offsets that the options of a control give at most.
+const MOST_OFFSETS: i64 = 999;
+
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let max = context.settings.tool_offsets;
     let mut found = Vec::new();
@@ -18,7 +21,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             let Some(number) = number.map(i64::from) else { continue };
             let alarm = Alarm::OffsetNumber { number }.located_at(word.span);
             let help = format!("correct the number: this control has {max}, or give --control OFFSETS=…");
-            found.push(context.alarm_finding(unit, &RULE.kind, block, &alarm).help(help));
+            let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm).help(help);
+            found.push(if number > MOST_OFFSETS { finding } else { context.unless_optional(finding) });
         }
     }
     found

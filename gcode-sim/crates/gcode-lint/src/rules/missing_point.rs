@@ -46,7 +46,31 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             found.push(finding.help(format!("write {written}.")));
         }
     }
-    found
+    if found.len() < MANY_NUMBERS || numbers(unit, settings).any(|number| number.places.is_some()) {
+        return found;
+    }
+    // Such a program is written for another setting, which is one fault.
+    let others = found.len() - 1;
+    let first = found.into_iter().next().into_iter();
+    let as_whole = first.map(|first| {
+        let message =
+            format!("{}, and so with {others} more: no number of the program has a point", first.message);
+        let help = "write the points, or give --control DPI=1 for a control with calculator-type input";
+        Diagnostic { message, ..first }.help(help)
+    });
+    as_whole.collect()
+}
+
+/// Number of numbers without a point from which a program without any point is one finding.
+const MANY_NUMBERS: usize = 4;
+
+/// Iterates over the literals that are lengths, angles or seconds.
+fn numbers<'a>(unit: &'a ProgramUnit<'_>, settings: &'a Settings) -> impl Iterator<Item = Decimal> + 'a {
+    let words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
+    words.flat_map(|words| measured_words(words, settings)).filter_map(|word| match word.value {
+        WordOperand::Literal(number) => Some(number),
+        _ => None,
+    })
 }
 
 fn block_words(kind: &OpKind) -> Option<&Words> {
@@ -106,16 +130,11 @@ fn is_drilling(words: &Words) -> bool {
 /// The program has no decimal point and at least one number of 1 mm or more.
 fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
     let mut large = false;
-    for words in unit.program.ops().iter().filter_map(|op| block_words(op.kind())) {
-        for word in measured_words(words, settings) {
-            match word.value {
-                WordOperand::Literal(Decimal { places: Some(_), .. }) => return false,
-                WordOperand::Literal(number) => {
-                    large |= number.digits as f64 >= settings.increment.per_unit()
-                }
-                _ => {}
-            }
+    for number in numbers(unit, settings) {
+        if number.places.is_some() {
+            return false;
         }
+        large |= number.digits as f64 >= settings.increment.per_unit();
     }
     large
 }
@@ -157,6 +176,16 @@ mod tests {
             found,
             ["Z-3 is -0.003 mm", "X2 is 0.002 seconds", "B90 is 0.09 degrees", "A5 is 0.005 for the macro"]
         );
+    }
+
+    #[test]
+    fn a_program_without_any_point_is_one_finding() {
+        let text = "O1\nG0 X10 Y20\nG1 Z-3 F100\nX45\nM30\n";
+        assert_eq!(
+            messages(&RULE, text),
+            ["X10 is 0.01 mm, and so with 3 more: no number of the program has a point"]
+        );
+        assert_eq!(lines(&RULE, &text.replace("X45", "X45.5")), [2, 2, 3], "it has a point");
     }
 
     #[test]

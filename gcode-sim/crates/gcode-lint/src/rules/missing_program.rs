@@ -2,6 +2,7 @@
 use gcode_lang::alarm::kinds::{PS0076, PS0310};
 
 use crate::calls::CalledProgramName;
+use crate::context::MACROS;
 use crate::prelude::*;
 
 pub(super) static RULE: Rule =
@@ -26,9 +27,14 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             CalledProgramName::Missing => {
                 (format!("{PS0076}: a call without a program number"), "write the program number after P")
             }
-            CalledProgramName::Number(_) => (
+            CalledProgramName::Number(number) => (
                 format!("{PS0076}: program {label} is not found"),
-                "give the folder that holds it with --lib",
+                match MACROS.contains(&number) {
+                    true => {
+                        "a macro of the machine or the probe: save it from the control, and give its folder with --lib"
+                    }
+                    false => "give the folder that holds it with --lib",
+                },
             ),
             CalledProgramName::Name(_) => (
                 format!("{PS0310}: program {label} is not found"),

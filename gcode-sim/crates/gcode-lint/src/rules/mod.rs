@@ -7,6 +7,7 @@ mod jump_into_loop;
 mod live_position;
 mod loop_pairs;
 mod missing_argument;
+mod missing_end;
 mod missing_feed;
 mod missing_n;
 mod missing_offset;
@@ -14,6 +15,7 @@ mod missing_point;
 mod missing_program;
 mod no_such_variable;
 mod open_comment;
+mod refused_words;
 mod relation_symbol;
 mod round_brackets;
 mod rounded_pi;
@@ -52,6 +54,7 @@ pub static ALL: &[&Rule] = &[
     &missing_feed::RULE,
     &open_comment::RULE,
     &stray_word::RULE,
+    &refused_words::RULE,
     &unset_variable::RULE,
     &missing_point::RULE,
     &rounded_pi::RULE,
@@ -59,6 +62,7 @@ pub static ALL: &[&Rule] = &[
     &endless_loop::RULE,
     &unreachable_alarm::RULE,
     &unreachable::RULE,
+    &missing_end::RULE,
     &unknown_check::RULE,
 ];
 

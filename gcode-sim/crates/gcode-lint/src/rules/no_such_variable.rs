@@ -1,4 +1,6 @@
 //! Rule: a variable that does not exist (PS0115) or that cannot be written (PS0116) or read (PS1115).
+use std::ops::RangeInclusive;
+
 use gcode_control::static_eval::VariableTable;
 use gcode_lang::alarm::LocatedAlarm;
 
@@ -12,15 +14,22 @@ pub(super) static RULE: Rule = Rule::new(
     find,
 );
 
+/// Numbers that no option and no machine builder gives.
+const NEVER: RangeInclusive<i64> = 34..=99;
+
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let known = VariableTable::new(context.settings);
     let mut found = Vec::new();
     for (index, block) in unit.reached_blocks() {
         let mut report = |alarm: LocatedAlarm| {
-            // A limit of the simulator is not a fault of the program.
-            if !matches!(alarm.node, Alarm::NotSimulated { .. }) {
-                found.push(context.alarm_finding(unit, &RULE.kind, index, &alarm));
-            }
+            let finding = context.alarm_finding(unit, &RULE.kind, index, &alarm);
+            found.push(match alarm.node {
+                // No control has a variable between its locals and its common variables.
+                Alarm::NoSuchVariable { number } if !NEVER.contains(&number) => {
+                    context.unless_optional(finding)
+                }
+                _ => finding,
+            });
         };
         for read in variables::block_reads(block) {
             if let Err(alarm) = known.read(read.number) {

@@ -24,13 +24,14 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             let Some(first) = lost else { continue };
             if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
                 let alarm = Alarm::PluralM { first, second: code }.located_at(word.span);
-                found.push(context.alarm_finding(unit, &RULE.kind, block, &alarm));
+                let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
+                found.push(context.unless_optional(finding));
             } else {
                 let message =
                     format!("M{first:02} is lost: of several M codes in a block only the last counts");
                 let help = "write each M code in a block of its own, or give --control M3B=1 for a control that accepts three";
                 let finding = unit.finding(&RULE.kind, block, message).with_span(word.span).help(help);
-                found.push(finding.with_severity(Severity::Warning));
+                found.push(context.unless_optional(finding.with_severity(Severity::Warning)));
             }
         }
     }

@@ -1,9 +1,11 @@
 //! Rule: a G code that the control does not have.
 //!
-//! Notes report M codes of the machine builder and codes that are not simulated.
+//! Notes report M codes of the machine builder, codes that are not simulated, and unknown G codes where the control is
+//! assumed.
 use std::collections::BTreeSet;
 
 use gcode_lang::alarm::kinds::PS0010;
+use gcode_lang::control::Dialect;
 use gcode_lang::program::g_codes::{Effect, spelled};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::{LoweredWord, WordOperand};
@@ -20,29 +22,40 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut reported = BTreeSet::new();
     for (block, words) in unit.reached_words() {
         for word in &words.list {
-            let Some((message, raises_alarm)) = code_fault(context, word) else { continue };
+            let Some((message, help)) = code_fault(context, word) else { continue };
             let finding = unit.finding(&RULE.kind, block, message.clone()).with_span(word.span);
-            if raises_alarm {
-                found.push(finding.help("correct it, or name the macro it calls with --code"));
-            } else if reported.insert(message) {
-                found.push(finding.with_severity(Severity::Note));
+            let finding = match help {
+                Some(help) => context.unless_optional(finding).help(help),
+                None => finding.with_severity(Severity::Note),
+            };
+            if finding.severity != Severity::Note || reported.insert(message) {
+                found.push(finding);
             }
         }
     }
     found
 }
 
-/// Returns the message for a code that does not run as written, and true if it raises an alarm.
-fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, bool)> {
+/// Returns the message for a code that does not run as written, with the remedy of one that raises an alarm.
+fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, Option<String>)> {
     let settings = context.settings;
     let is_call = |code: u32| settings.code_calls.find_call(word.letter, code).is_some();
     match (word.letter, word.value) {
-        (b'G', WordOperand::G(code, _)) if !is_call(code) => {
+        (b'G', WordOperand::G(code, found)) if !is_call(code) => {
             let name = format!("G{}", spelled(code));
             match context.g_code_row(word) {
-                None => Some((format!("{PS0010}: the control has no {name}"), true)),
+                None => {
+                    let has_code = |(_, dialect): &&(&str, Dialect)| found.row_for(*dialect).is_some();
+                    let help = match Dialect::ALL.iter().find(has_code) {
+                        Some((other, _)) => {
+                            format!("{other} has it: give --dialect {other}, or correct the code")
+                        }
+                        None => "correct it, or name the macro it calls with --code".to_owned(),
+                    };
+                    Some((format!("{PS0010}: {} has no {name}", settings.codes.name()), Some(help)))
+                }
                 Some(row) if row.effect == Effect::NotSimulated => {
-                    Some((format!("{name} ({}) is not simulated", row.description), false))
+                    Some((format!("{name} ({}) is not simulated", row.description), None))
                 }
                 Some(_) => None,
             }
@@ -54,7 +67,7 @@ fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String,
                 Some(_) => return None,
                 None => "is a code of the machine builder: its effect is unknown",
             };
-            Some((format!("M{code:02} {fault}"), false))
+            Some((format!("M{code:02} {fault}"), None))
         }
         _ => None,
     }

@@ -17,8 +17,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             continue;
         }
         let end = (block..ops.len()).find(|next| unit.is_reached[*next]).unwrap_or(ops.len());
-        // Comments and numbers alone have no effect, nor has an end after an end or an alarm; an unreachable
-        // alarm has its own rule.
+        // Comments and numbers alone have no effect, nor has an end or a jump after an end or an alarm; an
+        // unreachable alarm has its own rule.
         let missed: Vec<_> = (block..end).filter(|b| !is_harmless(unit, *b)).collect();
         if let (Some(first), Some(last)) = (missed.first(), missed.last()) {
             let line = |block: usize| context.memory.sources().line_column(ops[block].span).line;
@@ -41,6 +41,7 @@ fn is_harmless(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     match kind {
         OpKind::Empty => true,
         OpKind::Words(words) => unit.flow.block_successors[block].is_exit && words.list.len() <= 1,
+        OpKind::Statement(Statement::Goto(_)) => true,
         // A loop that is always left by a jump still requires its END.
         OpKind::Statement(Statement::End { start, .. }) => unit.is_reached[*start],
         _ => raises_alarm(kind),
@@ -64,6 +65,7 @@ mod tests {
     fn an_end_after_an_alarm_is_accepted() {
         assert_eq!(lines(&RULE, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\n#3000=1(NO)\nG0 X1.\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 8\nN7 #3000=1(NO)\nGOTO 7\nN8 M30\n"), NOWHERE);
         let left = "O1\nN3 WHILE[#500 LT 3]DO1\n#500=#500+1\nGOTO 3\nEND1\nM30\n";
         assert_eq!(lines(&RULE, left), NOWHERE, "a loop needs its END");
     }
@@ -72,6 +74,13 @@ mod tests {
     fn a_called_program_may_return_after_the_end() {
         assert_eq!(lines(&RULE, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99 P9\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\nM98 P2\nM30\nN9 G0 X1.\nM30\nO2\nM99\n"), [4]);
+    }
+
+    /// What an unreadable block is meant to do is unknown: it may be the jump.
+    #[test]
+    fn an_unreadable_block_may_jump_anywhere() {
+        assert_eq!(lines(&RULE, "O1\nIF[#500.1]GOTO 9\nM30\nN9 G0 X2.\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nIF[#500.1]GOTO 9\nM30\nG0 X2.\nM30\n"), [4], "it has no number");
     }
 
     #[test]

@@ -22,15 +22,17 @@ use gcode_lang::control::{
 };
 
 /// Applies the text of a control file to the settings, the dialect first and the rest in the order of the
-/// file.
+/// file. Without `takes_dialect` that of the settings stays.
 ///
 /// # Errors
 /// An unknown key or a value outside the range of its setting, with its line and the allowed values.
-pub fn apply(text: &str, settings: &mut Settings) -> Result<(), FileError> {
+pub fn apply(text: &str, settings: &mut Settings, takes_dialect: bool) -> Result<(), FileError> {
     let reader = Reader { text };
     let entries: BTreeMap<Located<String>, Value> = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
     let mut entries: Vec<_> = entries.into_iter().collect();
-    entries.sort_by_key(|(key, _)| (!key.as_ref().eq_ignore_ascii_case("DIALECT"), key.span().start));
+    let is_dialect = |key: &Located<String>| key.as_ref().eq_ignore_ascii_case("DIALECT");
+    entries.retain(|(key, _)| takes_dialect || !is_dialect(key));
+    entries.sort_by_key(|(key, _)| (!is_dialect(key), key.span().start));
     for (key, value) in entries {
         let name = key.as_ref();
         let value = match value {
@@ -143,7 +145,7 @@ mod tests {
     fn settings_come_by_name_and_by_number_and_the_family_first() {
         let mut settings = Settings::default();
         let text = "NAT = true\n5115 = 0.25\nMACRO-LEVELS = 4\nDIALECT = \"haas-ngc\"\n\"#1005\" = 1\n";
-        apply(text, &mut settings).unwrap();
+        apply(text, &mut settings, true).unwrap();
         assert_eq!(settings.dialect, Dialect::HaasNgc);
         assert!(settings.returns_signed_angles);
         assert_eq!(settings.macro_levels, 4, "the family would have set 9");
@@ -163,7 +165,7 @@ mod tests {
             ("NAT = 2\n", "line 1: setting NAT is '2': 0 or 1"),
             ("\nNAT = [1]\n", "line 2: key 'NAT': a number or a text in quotes"),
         ] {
-            let error = apply(text, &mut Settings::default()).unwrap_err();
+            let error = apply(text, &mut Settings::default(), true).unwrap_err();
             assert_eq!(error.to_string(), message);
         }
     }

@@ -8,6 +8,7 @@ mod burr;
 pub mod control_file;
 mod honeycomb;
 mod pin_holes;
+pub mod project;
 mod sheet;
 
 use std::borrow::Cow;

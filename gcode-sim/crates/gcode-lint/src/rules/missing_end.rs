@@ -1,0 +1,51 @@
+//! Rule: a program whose last block leads on to its end without M02, M30 or M99, PS5010.
+use crate::prelude::*;
+
+pub(super) static RULE: Rule =
+    Rule::new("missing-end", Severity::Error, "a program that ends without M02, M30 or M99", find);
+
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    // A main program that is the last text of a file may end there.
+    if unit.role == Role::Main && !unit.program.is_closed || !unit.reaches_end {
+        return Vec::new();
+    }
+    let Some(last) = unit.program.ops().len().checked_sub(1) else { return Vec::new() };
+    let alarm = Alarm::EndOfRecord.located_at(unit.op(last).span);
+    let help = match unit.role {
+        Role::Main => "write M30 at the end of the program",
+        Role::Called | Role::Resident => "write M99 at the end of the program",
+    };
+    vec![context.alarm_finding(unit, &RULE.kind, last, &alarm).help(help)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::RULE;
+
+    #[test]
+    fn a_program_needs_its_end() {
+        assert_eq!(lines(&RULE, "O1\nG0 X1.\n%\n"), [2]);
+        assert_eq!(lines(&RULE, "O1\nM98 P2\nM30\nO2\nG0 X1.\n"), [5], "a subprogram has to return");
+        assert_eq!(lines(&RULE, "O1\nM30\nN9 G0 X1.\n%\n"), NOWHERE, "its last block is not reached");
+        assert_eq!(lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 9\nM30\nN9 G0 X1.\n%\n"), [4]);
+        assert_eq!(
+            messages(&RULE, "O1\nG0 X1.\nO2\nM30\n"),
+            ["PS5010: the program ends without M02, M30 or M99"]
+        );
+    }
+
+    #[test]
+    fn a_program_with_an_end_is_accepted() {
+        for text in [
+            "O1\nG0 X1.\nM02\n%\n",
+            "O1\nG0 X1.\n",
+            "O1\nN1 G0 X1.\nGOTO 1\n%\n",
+            "O1\nG0 X1.\nM99\n%\n",
+            "O1\nIF[#500 EQ 1]GOTO 9\nM30\nN9 #3000=1(NO)\n%\n",
+            "G0 X1.\nM30\n(NOTES)\n%\n",
+        ] {
+            assert_eq!(messages(&RULE, text), [""; 0], "{text}");
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Rule: words that raise an alarm in their block whatever runs before: G83 without Q, L in a canned cycle, `S900.`.
+//!
+//! The control itself plans the block in every mode in which it can be read.
+use gcode_control::static_plan::StaticPlanner;
+use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::modes::Motion;
+use gcode_lang::program::{Words, m_codes};
+
+use crate::literal;
+use crate::parameters;
+use crate::prelude::*;
+
+pub(super) static RULE: Rule =
+    Rule::new("refused-words", Severity::Error, "words that raise an alarm in this block", find);
+
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    // A modal macro may take the words of any block as its arguments.
+    if unit.calls.iter().any(|call| call.is_modal) {
+        return Vec::new();
+    }
+    let mut planner = StaticPlanner::new(context.settings.clone());
+    let parameters = parameters::parameter_blocks(unit.program);
+    let mut found = Vec::new();
+    for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
+        let calls_by_code = words.call().is_none() && unit.call_in(block).is_some();
+        if calls_by_code || is_plain(context, words) {
+            continue;
+        }
+        let Some(modes) = context.modes_before(unit)[block] else { continue };
+        let alarm = planner.certain_alarm(words, unit.op(block).span, modes.in_force());
+        if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node)) {
+            let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
+            found.push(if has_builder_code(context, words) {
+                context.unless_optional(finding)
+            } else {
+                finding
+            });
+        }
+    }
+    found
+}
+
+/// Returns true for the alarms that `stray-word` reports.
+fn has_own_rule(alarm: &Alarm) -> bool {
+    matches!(alarm, Alarm::ImproperAddress { letter: 'A'..='C' | 'E' | 'U'..='Z' })
+}
+
+/// Returns true if a block has an M code of the machine builder, which may call a macro with the words as arguments.
+fn has_builder_code(context: &CheckContext<'_>, words: &Words) -> bool {
+    let codes = words.list.iter().filter(|word| word.letter == b'M').filter_map(literal::word_count);
+    codes.into_iter().any(|code| m_codes::find(code, context.settings.codes).is_none())
+}
+
+/// Returns true for a block of axis words with the words of a move, which raises no alarm of this rule.
+fn is_plain(context: &CheckContext<'_>, words: &Words) -> bool {
+    let mut is_arc = false;
+    let mut has_centre = false;
+    let is_plain = words.list.iter().all(|word| match word.letter {
+        b'G' => context.g_code_row(word).is_some_and(|row| match row.effect {
+            Effect::Motion(motion) => {
+                is_arc = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
+                true
+            }
+            _ => false,
+        }),
+        b'I' | b'J' | b'K' | b'R' => {
+            has_centre = true;
+            true
+        }
+        letter => !word.comma && (letter == b'F' || context.settings.axes.find(letter).is_some()),
+    });
+    is_plain && (!is_arc || has_centre) && words.call().is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::RULE;
+
+    #[test]
+    fn the_alarm_of_the_control_is_named() {
+        for (block, alarm) in [
+            ("G83 X1. Z-5. R1. F100.", "PS0045"),
+            ("G99 G73 Z-#1 R#2 F#9", "PS0045"),
+            ("G81 X1. Z-5. R1. F100. L3", "PS0009"),
+            ("S900. M3", "PS0007"),
+            ("T1.", "PS0007"),
+            ("G43 H-1 Z5.", "PS0006"),
+            ("G2 X5. F100.", "PS0022"),
+            ("G30 P5 Z0", "PS0046"),
+            ("X5. L3", "PS0009"),
+            ("M98 P2 D2.0", "PS0007"),
+            ("G08 P2", "PS0109"),
+            ("S123456 M3", "PS0003"),
+        ] {
+            let found = messages(&RULE, &format!("O1\n{block}\nM30\nO2\nM99\n"));
+            assert!(found.len() == 1 && found[0].starts_with(alarm), "{block}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn modes_of_earlier_blocks_count() {
+        assert_eq!(lines(&RULE, "O1\nG81 Z-5. R1. F9.\nX1. K2\nX2. L2\nG80\nM30\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\nG81 Z-5. R1. F9.\nG28 Z5.\nM30\n"), [3]);
+        assert_eq!(
+            lines(&RULE, "O1\nG83 Z-5. R1. Q1. F9.\nX1.\nG83 X2.\nM30\n"),
+            NOWHERE,
+            "Q stays in force"
+        );
+        assert_eq!(lines(&RULE, "O1\nG83 Z-5. R1. Q1. F9.\nG80\nG83 X2. Z-5. R1.\nM30\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 5\nG73 Z-5. R1. Q1. F9.\nN5 G83 X2.\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nG81 Z-5. R1. F9.\nM98 P2\nG28 Z5.\nM30\nO2\nG80\nM99\n"), NOWHERE);
+    }
+
+    #[test]
+    fn words_that_a_value_or_a_caller_decides_are_accepted() {
+        for text in [
+            "O1\nG83 Z-5. R1. Q#1 F9.\nM30\n",
+            "O1\nG4 P500\nG4 X1.5\nG10 L2 P1 X1.\nG10 L52\nN6004 R1\nG11\nM30\n",
+            "O1\nT#1 M6\nS[#500*2] M3\nG#1 X5. L3\nG43 H#1 Z5.\nG2 X1. R#3 F9.\nM30\n",
+            "O2\nG83 X5.\nX2. K3\nM99\n",
+            "O1\nG66 P2 A1.\nX5. L3\nG67\nM30\nO2\nM99\n",
+            "O1\nM98 P2 L3\nG65 P2 L3 D5.\nM30\nO2\nM99\n",
+            "O1\nM88 P1.5 Q2\nM30\n",
+            "O1\nG68 X0 Y0 R45.\nG69\nG51 X0 Y0 P2000\nG50\nG54.1 P5\nM30\n",
+        ] {
+            assert_eq!(messages(&RULE, text), [""; 0], "{text}");
+        }
+    }
+}
